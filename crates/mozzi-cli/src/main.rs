@@ -1,0 +1,2 @@
+//! The `mozzi` command line.
+fn main() {}

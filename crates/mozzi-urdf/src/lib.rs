@@ -1,0 +1,1 @@
+//! Reads URDF robot descriptions.

@@ -1,0 +1,2 @@
+//! `cargo xtask test | check`: what CI runs, anyone can run.
+fn main() {}
