@@ -1,1 +1,13 @@
 //! Dynamics of open-chain robots in the screw notation of Lynch and Park.
+#![cfg_attr(not(feature = "std"), no_std)]
+extern crate alloc;
+pub mod lie;
+pub mod linalg;
+pub mod scalar;
+pub mod spatial;
+#[cfg(test)]
+mod testing;
+pub use lie::{SE3, SO3};
+pub use linalg::{Mat3, Sym3, Vec3};
+pub use scalar::{Dual, Real, Scalar};
+pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};

@@ -1,0 +1,68 @@
+//! `f64` and `f32` as scalars; elementary functions from `std`, or from `libm` without it.
+
+use super::{Real, Scalar, sin_cos};
+
+#[cfg(feature = "std")]
+mod elementary {
+    macro_rules! from_std {
+        ($($f:ident: $t:ty),*) => { $(pub mod $f {
+            pub fn sin_cos(x: $t) -> ($t, $t) { x.sin_cos() }
+            pub fn sqrt(x: $t) -> $t { x.sqrt() }
+            pub fn tanh(x: $t) -> $t { x.tanh() }
+            pub fn atan2(y: $t, x: $t) -> $t { y.atan2(x) }
+        })* };
+    }
+    from_std!(f64: core::primitive::f64, f32: core::primitive::f32);
+}
+
+#[cfg(all(not(feature = "std"), feature = "libm"))]
+mod elementary {
+    pub mod f64 {
+        pub use libm::{atan2, sqrt, tanh};
+        pub fn sin_cos(x: f64) -> (f64, f64) {
+            libm::sincos(x)
+        }
+    }
+    pub mod f32 {
+        pub use libm::{atan2f as atan2, sqrtf as sqrt, tanhf as tanh};
+        pub fn sin_cos(x: f32) -> (f32, f32) {
+            libm::sincosf(x)
+        }
+    }
+}
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("mozzi takes square roots and trigonometry from `std` or from `libm`: enable one of these features");
+
+macro_rules! float {
+    ($($f:ident),*) => { $(
+        impl Scalar for $f {
+            #[inline(always)]
+            fn from_f64(x: f64) -> Self { x as $f }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                if self.abs() <= sin_cos::$f::LARGEST { sin_cos::$f::sin_cos(self, |a, b, c| a * b + c) } else { elementary::$f::sin_cos(self) }
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self { elementary::$f::sqrt(self) }
+            fn tanh(self) -> Self { elementary::$f::tanh(self) }
+            #[inline(always)]
+            fn sgn(self) -> Self {
+                if self > 0.0 { 1.0 } else if self < 0.0 { -1.0 } else { self * 0.0 }
+            }
+        }
+        impl Real for $f {
+            fn atan2(self, x: Self) -> Self { elementary::$f::atan2(self, x) }
+            #[inline(always)]
+            fn abs(self) -> Self { <$f>::abs(self) }
+        }
+    )* };
+}
+float!(f64, f32);
+
+/// Sine and cosine with fused multiply-add; exact reduction for arguments beyond the polynomial's range.
+#[inline(always)]
+pub(super) fn sin_cos_fused(x: f64) -> (f64, f64) {
+    if x.abs() <= sin_cos::f64::LARGEST { sin_cos::f64::sin_cos(x, super::fused::mul_add) } else { elementary::f64::sin_cos(x) }
+}
+pub(super) use elementary::f64::{sqrt, tanh};

@@ -1,0 +1,75 @@
+//! `f64` whose `mul_add` is one machine instruction.
+
+use super::{Scalar, assign_ops, float};
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// An `f64` with fused multiply-add, for entries compiled with `#[target_feature(enable = "fma")]` alone (see
+/// [`native`](crate::native)): elsewhere each `mul_add` is a slow library call.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[repr(transparent)]
+pub struct Fused(pub f64);
+
+#[cfg(feature = "std")]
+#[inline(always)]
+pub(super) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+    f64::mul_add(a, b, c)
+}
+
+/// Without `std` no instruction set is chosen at run time, and `libm`'s emulated fma is a hundred times slower.
+#[cfg(not(feature = "std"))]
+#[inline(always)]
+pub(super) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+    a * b + c
+}
+
+macro_rules! ops {
+    ($($Op:ident $op:ident),*) => { $(impl $Op for Fused {
+        type Output = Self;
+        #[inline(always)]
+        fn $op(self, other: Self) -> Self { Fused($Op::$op(self.0, other.0)) }
+    })* };
+}
+ops!(Add add, Sub sub, Mul mul, Div div);
+assign_ops!([] Fused);
+
+impl Neg for Fused {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Fused(-self.0)
+    }
+}
+
+impl From<f64> for Fused {
+    #[inline(always)]
+    fn from(x: f64) -> Self {
+        Fused(x)
+    }
+}
+
+impl Scalar for Fused {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        Fused(x)
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = float::sin_cos_fused(self.0);
+        (Fused(s), Fused(c))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Fused(float::sqrt(self.0))
+    }
+    fn tanh(self) -> Self {
+        Fused(float::tanh(self.0))
+    }
+    #[inline(always)]
+    fn sgn(self) -> Self {
+        Fused(self.0.sgn())
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Fused(mul_add(self.0, a.0, b.0))
+    }
+}

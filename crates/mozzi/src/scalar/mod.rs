@@ -1,0 +1,87 @@
+//! The number that every kernel is generic over.
+
+mod dual;
+mod float;
+mod fused;
+mod sin_cos;
+
+pub use dual::Dual;
+pub use fused::Fused;
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A real number that the kernels compute with: `f64`, `f32`, [`Dual`] (derivatives), lanes, or a recording.
+///
+/// There is deliberately no `PartialOrd`: a branch on a value means nothing for eight lanes or for a recording.
+/// A kernel with states of type `S` takes the model's constants of type `C` by `S: From<C>`.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// The number nearest to `x`.
+    fn from_f64(x: f64) -> Self;
+
+    /// (sin x, cos x); NaN for NaN and for ±∞.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// √x; NaN for negative x.
+    fn sqrt(self) -> Self;
+
+    /// tanh x.
+    fn tanh(self) -> Self;
+
+    /// −1, 0 or 1, with sgn 0 = 0; its derivative is 0 everywhere. NaN for NaN.
+    fn sgn(self) -> Self;
+
+    /// self · a + b, with one rounding where the number's type offers it.
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+
+    /// 0.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::from_f64(0.0)
+    }
+
+    /// 1.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::from_f64(1.0)
+    }
+}
+
+/// A [`Scalar`] with an order, for what must look at a value: logarithms, checks and iterations.
+pub trait Real: Scalar + PartialOrd {
+    /// The angle of the point (x, y), in (−π, π]; `self` is y.
+    fn atan2(self, x: Self) -> Self;
+
+    /// |x|.
+    fn abs(self) -> Self {
+        if self < Self::zero() { -self } else { self }
+    }
+}
+
+/// Implements the assigning operators by their plain ones.
+macro_rules! assign_ops {
+    ([$($generics:tt)*] $t:ty) => {
+        impl<$($generics)*> core::ops::AddAssign for $t {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) { *self = *self + other }
+        }
+        impl<$($generics)*> core::ops::SubAssign for $t {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) { *self = *self - other }
+        }
+    };
+}
+pub(crate) use assign_ops;

@@ -1,0 +1,96 @@
+//! The screw axis of a joint in its link's normal form: along z, A = (0, 0, a, 0, 0, b).
+
+use super::{Twist, Wrench};
+use crate::lie::{LieBracket, SE3, SO3};
+use crate::linalg::{Mat3, Vec3};
+use crate::scalar::Scalar;
+use core::ops::{Add, Mul};
+
+/// A = (0, 0, a, 0, 0, b): revolute (1, 0), prismatic (0, 1), helical (1, pitch). No joint needs a case of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JointAxis<S> {
+    pub a: S,
+    pub b: S,
+}
+
+/// A θ̇ = (0, 0, w, 0, 0, v).
+#[derive(Clone, Copy)]
+pub(crate) struct JointTwist<S> {
+    w: S,
+    v: S,
+}
+
+impl<S: Scalar> JointAxis<S> {
+    /// e^{−`[A]`q} M: turn M by −aq about z, and slide it by −bq along z.
+    #[inline(always)]
+    pub fn transform(self, q: S, M: SE3<S>) -> SE3<S> {
+        let (s, c) = (self.a * q).sin_cos();
+        let ([px, py, pz], R) = (M.p.0, M.R.matrix());
+        SE3 {
+            R: SO3(Mat3 { x: R.y.mul_add(s, R.x * c), y: R.x.mul_add(-s, R.y * c), z: R.z }),
+            p: Vec3([py.mul_add(s, px * c), px.mul_add(-s, py * c), q.mul_add(-self.b, pz)]),
+        }
+    }
+
+    #[inline(always)]
+    pub fn twist(self) -> Twist<S> {
+        let o = S::zero();
+        Twist { w: Vec3([o, o, self.a]), v: Vec3([o, o, self.b]) }
+    }
+}
+
+impl<S: Scalar> Mul<S> for JointAxis<S> {
+    type Output = JointTwist<S>;
+    #[inline(always)]
+    fn mul(self, rate: S) -> JointTwist<S> {
+        JointTwist { w: self.a * rate, v: self.b * rate }
+    }
+}
+
+/// AᵀF, the force or torque that the joint's motor feels.
+impl<S: Scalar> Mul<Wrench<S>> for JointAxis<S> {
+    type Output = S;
+    #[inline(always)]
+    fn mul(self, F: Wrench<S>) -> S {
+        let ([.., mz], [.., fz]) = (F.m.0, F.f.0);
+        self.a.mul_add(mz, self.b * fz)
+    }
+}
+
+impl<S: Scalar> Add<JointTwist<S>> for Twist<S> {
+    type Output = Twist<S>;
+    #[inline(always)]
+    fn add(self, o: JointTwist<S>) -> Twist<S> {
+        let ([x, y, z], [a, b, c]) = (self.w.0, self.v.0);
+        Twist { w: Vec3([x, y, z + o.w]), v: Vec3([a, b, c + o.v]) }
+    }
+}
+
+impl<S: Scalar> Mul<JointTwist<S>> for LieBracket<S> {
+    type Output = Twist<S>;
+    #[inline(always)]
+    fn mul(self, A: JointTwist<S>) -> Twist<S> {
+        let ([wx, wy, _], [vx, vy, _], o) = (self.0.w.0, self.0.v.0, S::zero());
+        Twist {
+            w: Vec3([wy * A.w, -(wx * A.w), o]),
+            v: Vec3([vy.mul_add(A.w, wy * A.v), -(vx.mul_add(A.w, wx * A.v)), o]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{distance, twist};
+
+    #[test]
+    fn the_short_forms_equal_the_general_ones() {
+        let (V, M, q) = (twist(1), SE3::exp(twist(2)), 0.7);
+        for (a, b) in [(1.0, 0.0), (0.0, 1.0), (1.0, 0.3)] {
+            let A = JointAxis { a, b };
+            assert!(distance(A.transform(q, M), SE3::exp(A.twist() * -q) * M) < 1e-15);
+            assert!((V.ad() * (A * q) - V.ad() * (A.twist() * q)).norm() < 1e-15);
+            assert!((V + A * q - (V + A.twist() * q)).norm() == 0.0);
+        }
+    }
+}

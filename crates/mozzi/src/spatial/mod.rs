@@ -1,0 +1,16 @@
+//! The nouns of rigid-body mechanics: one noun, one file.
+
+mod articulated_inertia;
+mod inertia;
+mod joint_axis;
+mod screw_axis;
+pub mod solids;
+mod twist;
+mod wrench;
+
+pub use articulated_inertia::ArticulatedInertia;
+pub use inertia::{InertiaVerdict, SpatialInertia};
+pub(crate) use joint_axis::JointAxis;
+pub use screw_axis::{NotAScrew, ScrewAxis};
+pub use twist::Twist;
+pub use wrench::Wrench;

@@ -1,0 +1,126 @@
+//! Unit screw axes.
+
+use super::Twist;
+use crate::linalg::Vec3;
+use crate::scalar::Scalar;
+use core::ops::Mul;
+
+/// A = (ω, v): with ‖ω‖ = 1 a screw about the line of direction ω through ω × v with the pitch ωᵀv (0: revolute);
+/// with ω = 0 and ‖v‖ = 1 a translation along v. Unit, checked: θ is radians (or metres) only then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct ScrewAxis<S = f64>(Twist<S>);
+
+/// The twist given for a screw axis is not unit.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1 (use ScrewAxis::normalize \
+     and scale this joint's θ by what it returns)"
+)]
+pub struct NotAScrew {
+    /// ‖ω‖.
+    pub angular: f64,
+    /// ‖v‖.
+    pub linear: f64,
+}
+
+impl ScrewAxis<f64> {
+    /// From (ω, v), unit to 10⁻¹².
+    ///
+    /// # Errors
+    /// [`NotAScrew`] when it is not unit: the caller knows whether θ is to be rescaled, see
+    /// [`normalize`](Self::normalize).
+    pub fn new(w: [f64; 3], v: [f64; 3]) -> Result<Self, NotAScrew> {
+        let twist = Twist { w: Vec3(w), v: Vec3(v) };
+        let (angular, linear) = (twist.w.norm(), twist.v.norm());
+        let unit = |norm: f64| (norm - 1.0).abs() <= 1e-12;
+        let is_screw = linear.is_finite() && (unit(angular) || angular == 0.0 && unit(linear));
+        if is_screw { Ok(ScrewAxis(twist)) } else { Err(NotAScrew { angular, linear }) }
+    }
+
+    /// The unit screw axis A along a twist V, and the size k > 0 with V = k A: a joint that was described by V and θ is
+    /// described by A and kθ, and its torque by τ/k.
+    ///
+    /// # Errors
+    /// [`NotAScrew`] when V is 0 or not finite.
+    pub fn normalize(V: Twist) -> Result<(Self, f64), NotAScrew> {
+        let (angular, linear) = (V.w.norm(), V.v.norm());
+        let size = if angular > 0.0 { angular } else { linear };
+        let axis = ScrewAxis(V * (1.0 / size));
+        if size > 0.0 && axis.0.norm().is_finite() { Ok((axis, size)) } else { Err(NotAScrew { angular, linear }) }
+    }
+
+    /// The turn about the line through `point` with the unit direction `axis`, sliding `pitch` metres per radian.
+    ///
+    /// # Errors
+    /// [`NotAScrew`] when the axis is not unit.
+    pub fn from_line(axis: [f64; 3], point: [f64; 3], pitch: f64) -> Result<Self, NotAScrew> {
+        let w = Vec3(axis);
+        Self::new(axis, (Vec3(point).cross(w) + w * pitch).0)
+    }
+
+    /// The translation along the unit vector `axis`.
+    ///
+    /// # Errors
+    /// [`NotAScrew`] when the axis is not unit.
+    pub fn prismatic(axis: [f64; 3]) -> Result<Self, NotAScrew> {
+        Self::new([0.0; 3], axis)
+    }
+
+    /// Metres of slide per radian: 0 for a revolute joint, infinite for a prismatic one.
+    pub fn pitch(self) -> f64 {
+        if self.is_prismatic() { f64::INFINITY } else { self.0.w.dot(self.0.v) }
+    }
+
+    /// ω = 0?
+    pub fn is_prismatic(self) -> bool {
+        self.0.w == Vec3::zero()
+    }
+
+    /// Seen from another frame: A_s = `[Ad_T]` A_b with T = `T_sb`.
+    pub fn seen_from(self, T_sb: crate::SE3) -> Self {
+        ScrewAxis(T_sb.Ad() * self.0)
+    }
+}
+
+impl<S: Scalar> ScrewAxis<S> {
+    /// As a twist: 1 rad/s (or 1 m/s) about the screw.
+    pub fn twist(self) -> Twist<S> {
+        self.0
+    }
+}
+
+/// A θ̇: the twist of the joint's rate; or A θ, for the exponential.
+impl<S: Scalar> Mul<S> for ScrewAxis<S> {
+    type Output = Twist<S>;
+    #[inline(always)]
+    fn mul(self, rate: S) -> Twist<S> {
+        self.0 * rate
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_of_screw() {
+        let helical = ScrewAxis::from_line([0.0, 0.0, 1.0], [1.0, 2.0, 3.0], 0.25).expect("unit");
+        assert_eq!(helical.twist().to_array(), [0.0, 0.0, 1.0, 2.0, -1.0, 0.25]);
+        assert_eq!(helical.pitch(), 0.25);
+        assert!(ScrewAxis::prismatic([0.0, 0.6, 0.8]).expect("unit").is_prismatic());
+    }
+
+    #[test]
+    fn what_is_not_unit_is_refused_or_rescaled_knowingly() {
+        let message = ScrewAxis::new([1.0, 0.0, 1.0], [0.0, 1.0, 0.0]).expect_err("‖ω‖ = √2").to_string();
+        assert!(message.contains("1.41421356"), "{message}");
+        assert!(ScrewAxis::new([0.0; 3], [0.0; 3]).is_err());
+        assert!(ScrewAxis::new([f64::NAN, 0.0, 1.0], [0.0; 3]).is_err());
+        assert!(ScrewAxis::new([0.0, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]).is_err());
+        let V = Twist::from_array([1.0, 0.0, 1.0, 0.0, 1.0, 0.0]);
+        let (A, k) = ScrewAxis::normalize(V).expect("a screw");
+        assert!((A * k - V).norm() < 1e-15 && (A.twist().w.norm() - 1.0).abs() < 1e-15);
+        assert!(ScrewAxis::normalize(Twist::zero()).is_err());
+    }
+}
