@@ -1,0 +1,161 @@
+//! A robot as its file tells it: plain data, nothing computed.
+
+use crate::lie::SE3;
+use crate::spatial::{ScrewAxis, SpatialInertia};
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// Links, joints and frames in the order of the file. [`build`](Description::build) makes a [`Model`](crate::Model).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// The robot's name.
+    pub name: String,
+    /// Rigid bodies; exactly one of them, the base, is no joint's child.
+    pub links: Vec<Link>,
+    /// Joints between them.
+    pub joints: Vec<Joint>,
+    /// Further frames.
+    pub frames: Vec<NamedFrame>,
+    /// The end-effector frame, where it was named.
+    pub end_effector: Option<String>,
+    /// Gravity in base coordinates, m/s².
+    pub gravity: [f64; 3],
+}
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Unique among links and frames.
+    pub name: String,
+    /// In the link's frame; zero for a massless link.
+    pub inertia: SpatialInertia,
+}
+
+/// A joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Unique among joints.
+    pub name: String,
+    /// The link that carries it.
+    pub parent: String,
+    /// The link that it moves.
+    pub child: String,
+    /// The child link's frame seen from the parent's when the joint is at 0.
+    pub origin: SE3,
+    /// How it moves.
+    pub kind: JointKind,
+    /// How far, how fast, how strong.
+    pub limits: Limits,
+    /// Viscous friction d ≥ 0: N m s/rad or N s/m.
+    pub damping: f64,
+    /// Coulomb friction μ ≥ 0: N m or N.
+    pub friction: f64,
+    /// Rotor inertia, seen at the joint: kg m² or kg.
+    pub armature: f64,
+    /// The joint that it follows, if it follows one.
+    pub mimic: Option<Mimic>,
+}
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointKind {
+    /// Not at all.
+    Fixed,
+    /// About and along a unit screw axis, in the child link's frame: revolute, prismatic or helical.
+    Screw(ScrewAxis),
+}
+
+impl JointKind {
+    /// "fixed", "revolute", "prismatic" or "helical".
+    pub fn name(self) -> &'static str {
+        match self {
+            JointKind::Fixed => "fixed",
+            JointKind::Screw(A) if A.is_prismatic() => "prismatic",
+            JointKind::Screw(A) if A.pitch().abs() < 1e-12 => "revolute",
+            JointKind::Screw(_) => "helical",
+        }
+    }
+}
+
+/// Limits of a joint, each `None` where there is none. A revolute joint without position limits is continuous.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// Lowest and highest position: rad or m.
+    pub position: Option<[f64; 2]>,
+    /// rad/s or m/s.
+    pub velocity: Option<f64>,
+    /// N m or N.
+    pub effort: Option<f64>,
+}
+
+/// θ = ratio · θ_master + offset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint that is followed.
+    pub joint: String,
+    /// The ratio.
+    pub ratio: f64,
+    /// The offset: rad or m.
+    pub offset: f64,
+}
+
+/// A frame fixed to a link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedFrame {
+    /// Unique among links and frames.
+    pub name: String,
+    /// The link.
+    pub link: String,
+    /// The frame seen from the link's.
+    pub T: SE3,
+}
+
+impl Description {
+    /// An empty robot, with gravity (0, 0, −9.81).
+    pub fn new(name: impl Into<String>) -> Self {
+        Description {
+            name: name.into(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            frames: Vec::new(),
+            end_effector: None,
+            gravity: [0.0, 0.0, -9.81],
+        }
+    }
+
+    /// Adds a link, its inertia in its own frame.
+    pub fn link(mut self, name: impl Into<String>, inertia: SpatialInertia) -> Self {
+        self.links.push(Link { name: name.into(), inertia });
+        self
+    }
+
+    /// Adds a joint.
+    pub fn joint(mut self, joint: Joint) -> Self {
+        self.joints.push(joint);
+        self
+    }
+
+    /// Adds a frame, seen from a link's.
+    pub fn frame(mut self, name: impl Into<String>, link: impl Into<String>, T: SE3) -> Self {
+        self.frames.push(NamedFrame { name: name.into(), link: link.into(), T });
+        self
+    }
+}
+
+impl Joint {
+    /// A joint without limits, friction or armature. `origin` is the child's frame seen from the parent's at 0.
+    pub fn new(name: impl Into<String>, parent: impl Into<String>, child: impl Into<String>, origin: SE3, kind: JointKind) -> Self {
+        Joint {
+            name: name.into(),
+            parent: parent.into(),
+            child: child.into(),
+            origin,
+            kind,
+            limits: Limits::default(),
+            damping: 0.0,
+            friction: 0.0,
+            armature: 0.0,
+            mimic: None,
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What surrounds the robot: gravity, the motion of its base, and what it pushes against.
+
+use super::{FrameId, Model};
+use crate::linalg::Vec3;
+use crate::scalar::Scalar;
+use crate::spatial::{Twist, Wrench};
+
+/// Gravity, the base's motion, and the wrenches that the robot applies *to* the environment.
+///
+/// ```no_run
+/// # use mozzi::{Environment, Model, Wrench, Vec3};
+/// # fn example(model: &Model) -> Result<(), mozzi::Error> {
+/// let tool = model.end_effector()?;
+/// let push = [(tool, Wrench { m: Vec3([0.0; 3]), f: Vec3([0.0, 0.0, -20.0]) })];
+/// let environment = Environment { applied: &push, ..model.environment() };
+/// # Ok(()) }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Environment<'a, S = f64> {
+    /// Gravity g in base coordinates, m/s².
+    pub gravity: Vec3<S>,
+    /// The base's twist 𝒱₀ in base coordinates.
+    pub base_twist: Twist<S>,
+    /// The base's acceleration 𝒱̇₀ in base coordinates, gravity not included.
+    pub base_acceleration: Twist<S>,
+    /// Wrenches that the frames apply to the environment, each in its frame's own coordinates: F_tip, and any other.
+    pub applied: &'a [(FrameId, Wrench<S>)],
+}
+
+impl<S: Scalar> Environment<'_, S> {
+    /// Base at rest, nothing touched.
+    #[inline(always)]
+    pub fn with_gravity(gravity: Vec3<S>) -> Self {
+        Environment { gravity, base_twist: Twist::zero(), base_acceleration: Twist::zero(), applied: &[] }
+    }
+
+    /// 𝒱̇₀ of the recursion: gravity is a base accelerating upwards.
+    #[inline(always)]
+    pub(crate) fn proper_base_acceleration(&self) -> Twist<S> {
+        self.base_acceleration - Twist::linear(self.gravity)
+    }
+}
+
+impl<C: Scalar> Model<C> {
+    /// The model's own gravity, the base at rest, nothing touched.
+    pub fn environment<S: Scalar + From<C>>(&self) -> Environment<'static, S> {
+        Environment::with_gravity(self.gravity.map(S::from))
+    }
+}

@@ -1,0 +1,146 @@
+//! The robot: what its file says ([`Description`]), and what the kernels read ([`Model`]).
+
+mod build;
+mod check;
+pub mod description;
+mod environment;
+mod error;
+mod frame;
+mod link;
+mod screws;
+mod workspace;
+
+use crate::linalg::{Vec3, ldlt::Pattern};
+use crate::scalar::Scalar;
+use crate::spatial::SpatialInertia;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+pub use check::{Element, Problem, Severity};
+pub use description::Description;
+pub use environment::Environment;
+pub use error::Error;
+pub use frame::{Frame, FrameId};
+pub(crate) use link::Link;
+pub use screws::{HomeFrames, Screws, ScrewLists};
+pub use workspace::Workspace;
+
+/// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
+/// fixed joints are folded away, and every frame of the file survives as a [`Frame`].
+///
+/// The constants are of type `C`; states of any [`Scalar`] `S: From<C>` run on them. A model never changes: share it.
+#[derive(Clone, Debug)]
+pub struct Model<C = f64> {
+    /// Moving links, parents before children; slot i of the kernels is `links[i - 1]`, slot 0 the base.
+    pub(crate) links: Vec<Link<C>>,
+    /// What the base link and all that is fixed to it weighs, in the base frame.
+    pub(crate) base_inertia: SpatialInertia<C>,
+    /// Rotor inertia of each independent joint, seen at the joint, followers included: Σ ratio² · armature.
+    pub(crate) armature: Vec<C>,
+    /// Viscous friction of each independent joint: Σ ratio² · d.
+    pub(crate) damping: Vec<C>,
+    /// Coulomb friction of each independent joint: Σ |ratio| · μ.
+    pub(crate) friction: Vec<C>,
+    pub(crate) frames: Vec<Frame<C>>,
+    pub(crate) gravity: Vec3<C>,
+    pub(crate) structure: Arc<Structure>,
+}
+
+/// What of a model is no number.
+#[derive(Debug)]
+pub(crate) struct Structure {
+    pub description: Description,
+    /// The joint of the description that moves slot i, at i − 1.
+    pub moving_joints: Vec<usize>,
+    /// The independent joints of the description, in the order of θ.
+    pub joints: Vec<usize>,
+    /// The first frames are those of the description's links, in its order; then its further frames.
+    pub end_effector: Option<FrameId>,
+    /// Candidates, where the end effector must be named.
+    pub leaves: Vec<FrameId>,
+    pub pattern: Pattern,
+    /// Some joint follows another.
+    pub coupled: bool,
+}
+
+impl<C: Scalar> Model<C> {
+    /// The number n of velocities: the length of θ̇, θ̈ and τ.
+    pub fn n(&self) -> usize {
+        self.armature.len()
+    }
+
+    /// The number of positions: the length of θ.
+    pub fn nq(&self) -> usize {
+        self.structure.joints.len()
+    }
+
+    /// The number N of moving links; larger than n where joints follow others.
+    pub fn moving_links(&self) -> usize {
+        self.links.len()
+    }
+
+    /// Does some joint follow another (mimic)?
+    pub fn is_coupled(&self) -> bool {
+        self.structure.coupled
+    }
+
+    /// Gravity in base coordinates, m/s².
+    pub fn gravity(&self) -> Vec3<C> {
+        self.gravity
+    }
+
+    /// What the model was built from.
+    pub fn description(&self) -> &Description {
+        &self.structure.description
+    }
+
+    /// The names of the n independent joints, in the order of θ.
+    pub fn joint_names(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.joints().map(|joint| joint.name.as_str())
+    }
+
+    /// The n independent joints as described, in the order of θ: limits, damping, friction, armature.
+    pub fn joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
+        self.structure.joints.iter().map(|&joint| &self.structure.description.joints[joint])
+    }
+
+    /// The joint of each moving link as described, base to tips, followers included.
+    pub fn moving_joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
+        self.structure.moving_joints.iter().map(|&joint| &self.structure.description.joints[joint])
+    }
+
+    /// The same robot with constants of another type: `model.map(f32::from_f64)`, `model.map(Dual::constant)`.
+    pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Model<U> {
+        let list = |constants: &[C]| constants.iter().map(|&c| f(c)).collect();
+        Model {
+            links: self.links.iter().map(|link| link.map(f)).collect(),
+            base_inertia: self.base_inertia.map(f),
+            armature: list(&self.armature),
+            damping: list(&self.damping),
+            friction: list(&self.friction),
+            frames: self.frames.iter().map(|frame| Frame { slot: frame.slot, T: frame.T.map(f) }).collect(),
+            gravity: self.gravity.map(f),
+            structure: Arc::clone(&self.structure),
+        }
+    }
+
+    /// Moving links with their slots and constants as `S`, base to tips.
+    #[inline(always)]
+    pub(crate) fn outward<S: Scalar + From<C>>(&self) -> impl Iterator<Item = (usize, Link<S>)> {
+        self.links.iter().enumerate().map(|(k, link)| (k + 1, link.lift()))
+    }
+
+    /// Moving links with their slots and constants as `S`, tips to base.
+    #[inline(always)]
+    pub(crate) fn inward<S: Scalar + From<C>>(&self) -> impl Iterator<Item = (usize, Link<S>)> {
+        self.links.iter().enumerate().rev().map(|(k, link)| (k + 1, link.lift()))
+    }
+
+    /// The moving links from a slot's own down to the base.
+    #[inline(always)]
+    pub(crate) fn to_base<S: Scalar + From<C>>(&self, slot: usize) -> impl Iterator<Item = (usize, Link<S>)> {
+        core::iter::successors(Some(slot), |&i| Some(self.links[i - 1].parent))
+            .take_while(|&i| i > 0)
+            .map(|i| (i, self.links[i - 1].lift()))
+    }
+}

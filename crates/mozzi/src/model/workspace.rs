@@ -1,0 +1,75 @@
+//! Memory for one evaluation.
+
+use super::Model;
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::scalar::Scalar;
+use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// Memory for the kernels, without meaning between calls. Slot 0 is the base, slot i moving link i.
+#[derive(Clone, Debug)]
+pub struct Workspace<S = f64> {
+    /// T_{i,i−1}.
+    pub(crate) T: Vec<SE3<S>>,
+    pub(crate) V: Vec<Twist<S>>,
+    pub(crate) dV: Vec<Twist<S>>,
+    pub(crate) F: Vec<Wrench<S>>,
+    /// Composite inertia 𝒢ᶜ.
+    pub(crate) G_c: Vec<SpatialInertia<S>>,
+    /// Its rate.
+    pub(crate) dG_c: Vec<SpatialInertia<S>>,
+    /// Articulated inertia Ĝ.
+    pub(crate) G_hat: Vec<ArticulatedInertia<S>>,
+    /// ĜA.
+    pub(crate) U: Vec<Wrench<S>>,
+    /// One number for each joint.
+    pub(crate) u: Vec<S>,
+    /// The pivots of the last solve, for the caller that can compare numbers.
+    pub(crate) pivots: Vec<S>,
+    /// n zeros or a right-hand side.
+    pub(crate) vector: Vec<S>,
+    /// n × n where joints follow others; else empty, and filled on demand by the caller.
+    pub(crate) matrix: Vec<S>,
+}
+
+impl<S: Scalar> Workspace<S> {
+    /// Memory for this model: O(n), and n × n more where joints follow others.
+    pub fn new<C: Scalar>(model: &Model<C>) -> Self {
+        let (slots, n) = (model.links.len() + 1, model.n());
+        let o = S::zero();
+        Workspace {
+            T: vec![SE3::identity(); slots],
+            V: vec![Twist::zero(); slots],
+            dV: vec![Twist::zero(); slots],
+            F: vec![Wrench::zero(); slots],
+            G_c: vec![SpatialInertia::zero(); slots],
+            dG_c: vec![SpatialInertia::zero(); slots],
+            G_hat: vec![SpatialInertia::zero().into(); slots],
+            U: vec![Wrench::zero(); slots],
+            u: vec![o; slots],
+            pivots: vec![o; n],
+            vector: vec![o; n],
+            matrix: if model.is_coupled() { vec![o; n * n] } else { Vec::new() },
+        }
+    }
+
+    /// Every number NaN: what stands here must not matter.
+    pub fn poison(&mut self) {
+        let nan = S::from_f64(f64::NAN);
+        let (V, F, T) = (Twist::from_array([nan; 6]), Wrench::from_array([nan; 6]), SE3::identity().map(|_: S| nan));
+        let G = SpatialInertia { mass: nan, mc: Vec3([nan; 3]), I: crate::Sym3::zero().map(|_: S| nan) };
+        self.T.fill(T);
+        self.V.fill(V);
+        self.dV.fill(V);
+        self.F.fill(F);
+        self.U.fill(F);
+        self.G_c.fill(G);
+        self.dG_c.fill(G);
+        self.G_hat.fill(G.into());
+        for list in [&mut self.u, &mut self.pivots, &mut self.vector, &mut self.matrix] {
+            list.fill(nan);
+        }
+    }
+}
