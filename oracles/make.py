@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reference numbers for mozzi's tests, from Pinocchio, MuJoCo and the Modern Robotics package.
 
-    python oracles/make.py --out DIR                      the package's main robots and models/, 100 states each
+    python oracles/make.py --out DIR                      the package's main robots and our own, 100 states each
     python oracles/make.py ur5 models/panda --out DIR     these only (--states N; --list shows the names)
     python oracles/make.py --all --states 10 --out DIR    every URDF of example_robot_data that Pinocchio loads
     python oracles/make.py --committed                    the small files beside this script
@@ -60,18 +60,23 @@ def package_root():
 
 
 def own_models():
-    return [f"models/{path.stem}" for path in sorted((REPOSITORY / "models").glob("*.urdf"))]
+    paths = sorted([*REPOSITORY.glob("models/*.urdf"), *REPOSITORY.glob("oracles/*.urdf")])
+    return [f"{path.parent.name}/{path.stem}" for path in paths]
+
+
+def is_own(name):
+    return name.startswith(("models/", "oracles/"))
 
 
 def find_urdf(name):
     """The path of a robot's file, and that path as written into the record."""
-    if name.startswith("models/"):
+    if is_own(name):
         path, shown = REPOSITORY / f"{name}.urdf", f"{name}.urdf"
     else:
         shown = ROBOTS.get(name, name if name.endswith(".urdf") else f"{name}.urdf")
         path = package_root() / shown
     if not path.is_file():
-        raise Failure(f"{name}: no file {path}")
+        raise Failure(f"no file {path}")
     return path, shown
 
 
@@ -154,6 +159,14 @@ def random_state(rng, urdf, names):
     return {"theta": theta, "dtheta": dtheta, "ddtheta": ddtheta, "tau": tau}
 
 
+def regular(M):
+    """Whether M, scaled to ones on its diagonal, is positive definite well beyond rounding."""
+    diagonal = np.diag(M)
+    if diagonal.min() <= 0.0:
+        return False
+    return np.linalg.eigvalsh(M / np.sqrt(np.outer(diagonal, diagonal)))[0] > 1e-12
+
+
 def rng_of(name):
     return np.random.default_rng(zlib.crc32(name.encode()))
 
@@ -198,12 +211,12 @@ class PinocchioRobot:
             raise Failure(f"no frame {self.tip}")
         self.frame = self.model.getFrameId(self.tip, pinocchio.FrameType.BODY)
         # Pinocchio's own mimic joints, where it can load them, are a second opinion on M and h.
-        self.native = None
+        self.native, self.trap = None, None
         if self.urdf.mimic:
             try:
                 self.native = self.load(mimic=True)
             except Exception as error:
-                print(f"  trap: Pinocchio's mimic=True refuses {name}: {str(error).strip()}", file=sys.stderr)
+                self.trap = str(error).strip()
 
     def load(self, mimic):
         try:
@@ -260,7 +273,9 @@ class PinocchioRobot:
         r["velocity_product"] = G.T @ pin.rnea(self.weightless, self.weightless.createData(), q, v, 0 * v)
         r["gravity_forces"] = G.T @ pin.computeGeneralizedGravity(model, data, q)
         r["bias_forces"] = G.T @ pin.nonLinearEffects(model, data, q, v)
-        if self.urdf.mimic:
+        if not regular(r["mass_matrix"]):
+            pass  # massless links leave M singular: the accelerations do not exist
+        elif self.urdf.mimic:
             r["forward_dynamics"] = np.linalg.solve(r["mass_matrix"], tau - r["bias_forces"])
         else:
             r["forward_dynamics"] = pin.aba(model, data, q, v, tau).copy()
@@ -281,11 +296,13 @@ class PinocchioRobot:
         scale = np.abs(M @ r["ddtheta"]).max() + np.abs(r["bias_forces"]).max() + np.abs(r["gravity_forces"]).max()
         worst.check("M ddtheta + h = inverse dynamics", terms, r["inverse_dynamics"], 1e-12, scale)
         worst.check("c + g = h", r["velocity_product"] + r["gravity_forces"], r["bias_forces"], 1e-12, scale)
-        worst.check("C dtheta = c", r["coriolis_matrix"] @ dtheta, r["velocity_product"], 1e-11)
+        motion = np.abs(r["velocity_product"]).max() + np.abs(M).max() * (dtheta @ dtheta)
+        worst.check("C dtheta = c", r["coriolis_matrix"] @ dtheta, r["velocity_product"], 1e-12, motion)
         worst.check("K = dtheta' M dtheta / 2", 0.5 * dtheta @ M @ dtheta, r["kinetic_energy"], 1e-12)
-        back = M @ r["forward_dynamics"] + r["bias_forces"]
-        force = np.abs(M) @ np.abs(r["forward_dynamics"]) + np.abs(r["bias_forces"])
-        worst.check("M forward dynamics + h = tau", back, r["tau"], 1e-10, force.max())
+        if "forward_dynamics" in r:
+            back = M @ r["forward_dynamics"] + r["bias_forces"]
+            force = np.abs(M) @ np.abs(r["forward_dynamics"]) + np.abs(r["bias_forces"])
+            worst.check("M forward dynamics + h = tau", back, r["tau"], 1e-10, force.max())
         # a wrench applied to the environment is, for Pinocchio, its opposite applied to the last link
         q = self.configuration(self.model, self.all_angles(theta))
         joint = self.model.frames[self.frame].parentJoint
@@ -333,15 +350,17 @@ class PinocchioRobot:
 
 def pinocchio_record(name, states, absolute):
     robot = PinocchioRobot(name)
+    if robot.trap:
+        print(f"{name}: no second opinion from Pinocchio's mimic=True: {robot.trap}")
     rng, worst, records = rng_of(name), Worst(), []
     for index in range(states):
         state = random_state(rng, robot.urdf, robot.names)
         records.append(robot.evaluate(state, rng.standard_normal(6)))
         robot.check(records[-1], worst, index == 0)
     record = {
-        "robot": name.removeprefix("models/"),
+        "robot": Path(name).name if is_own(name) else name,
         "urdf": robot.shown,
-        "urdf_package": None if name.startswith("models/") else PACKAGE,
+        "urdf_package": None if is_own(name) else PACKAGE,
         "library": f"pinocchio {metadata.version('pin')}",
         "gravity": GRAVITY,
         "tip_frame": robot.tip,
@@ -375,7 +394,7 @@ def mujoco_record(name, states):
     coupling = Coupling(urdf, names)
     G, tip = coupling.matrix, TIPS.get(name) or urdf.tip()
     rng, worst, records = rng_of(f"mujoco {name}"), Worst(), []
-    body, nv = model.body(tip).id, model.nv
+    body, nv, other = model.body(tip).id, model.nv, PinocchioRobot(name)
     for _ in range(states):
         r = random_state(rng, urdf, coupling.names)
         data.qpos[:], data.qvel[:] = G @ r["theta"] + coupling.offset, G @ r["dtheta"]
@@ -406,24 +425,29 @@ def mujoco_record(name, states):
         worst.check("M ddtheta + h = inverse dynamics", r["mass_matrix"] @ r["ddtheta"] + r["bias_forces"],
                     r["inverse_dynamics"], 1e-11, scale)
         worst.check("K", 0.5 * r["dtheta"] @ r["mass_matrix"] @ r["dtheta"], r["kinetic_energy"], 1e-11)
-        compare_with_pinocchio(name, coupling.names, r, worst)
+        compare_with_pinocchio(other, coupling.names, r, worst)
         records.append(r)
     record = {
-        "robot": name.removeprefix("models/"), "urdf": shown, "urdf_package": None,
+        "robot": Path(name).name, "urdf": shown, "urdf_package": None,
         "library": f"mujoco {metadata.version('mujoco')}", "gravity": GRAVITY, "tip_frame": tip,
         "joint_names": coupling.names, "mimic": coupling.followers, "states": records,
     }
     return record, worst
 
 
-def compare_with_pinocchio(name, names, r, worst):
-    robot = PinocchioRobot(name)
-    if robot.names != list(names):
-        raise Failure(f"{name}: MuJoCo orders the joints as {names}")
-    state = {key: r[key] for key in ("theta", "dtheta", "ddtheta", "tau")}
+def compare_with_pinocchio(robot, names, r, worst):
+    order = [names.index(joint) for joint in robot.names]
+    state = {key: r[key][order] for key in ("theta", "dtheta", "ddtheta", "tau")}
     other = robot.evaluate(state, np.zeros(6))
     for key in r.keys() - state.keys():
-        worst.check(f"Pinocchio: {key}", r[key], other[key], 1e-9)
+        value = r[key]
+        if key == "mass_matrix":
+            value = value[np.ix_(order, order)]
+        elif key.endswith("jacobian"):
+            value = value[:, order]
+        elif key not in ("pose", "kinetic_energy"):
+            value = value[order]
+        worst.check(f"Pinocchio: {key}", value, other[key], 1e-9)
 
 
 # Modern Robotics -----------------------------------------------------------------------------------------------------
@@ -519,6 +543,9 @@ def write(path, made):
     record = plain(record)
     states = record.pop("states", None)
     dump = lambda value: json.dumps(value, separators=(", ", ": ") if states is None else (",", ":"), allow_nan=False)
+    missing = sum("forward_dynamics" not in state for state in states or [])
+    if missing:
+        print(f"{path.name}: {missing} states without forward_dynamics, since M is singular there")
     lines = [f"{json.dumps(key)}: {dump(value)}" for key, value in record.items()]
     if states is not None:
         lines.append('"states": [\n' + ",\n".join(dump(state) for state in states) + "\n]")
@@ -529,15 +556,15 @@ def write(path, made):
 
 def committed():
     for name in own_models():
-        write(HERE / f"pinocchio_{name.removeprefix('models/')}.json", pinocchio_record(name, 5, absolute=False))
-    for name in ("models/ur5", "models/panda"):
-        write(HERE / f"mujoco_{name.removeprefix('models/')}.json", mujoco_record(name, 5))
+        write(HERE / f"pinocchio_{Path(name).name}.json", pinocchio_record(name, 5, absolute=False))
+    for name in ("models/ur5", "models/panda", "oracles/test_tree"):
+        write(HERE / f"mujoco_{Path(name).name}.json", mujoco_record(name, 5))
     write(HERE / "modern_robotics.json", modern_robotics_record())
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("robots", nargs="*", help="a name of --list, models/NAME, or a path inside the package")
+    parser.add_argument("robots", nargs="*", help="a name of --list, or a path inside the package")
     parser.add_argument("--all", action="store_true", help="every URDF of the package that loads")
     parser.add_argument("--states", type=int, default=100, help="random states a robot (100)")
     parser.add_argument("--out", type=Path, help="folder to write to")
