@@ -75,7 +75,8 @@ fn check(workspace: &Workspace) -> ExitCode {
         command::outcome(workspace.cargo(&arguments))
     });
     report.step("documentation", || {
-        let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps"]);
+        // Libraries: the program `mozzi` would be written over the library of the same name, at the same time.
+        let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);
         command::outcome(doc.env("RUSTDOCFLAGS", "-Dwarnings"))
     });
     report.step("licences", || licences::check(workspace));

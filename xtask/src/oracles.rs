@@ -13,15 +13,17 @@ const STATES: &str = "100";
 
 /// Where the example_robot_data robots are: the package has no Python module, but it lists its files.
 const ROBOTS: &str = "\
-import importlib.metadata, pathlib
-for file in importlib.metadata.files('example-robot-data') or []:
-    path = pathlib.Path(file.locate()).resolve()
-    folders = [p for p in path.parents if p.name == 'robots' and p.parent.name == 'example-robot-data']
+import importlib.metadata as metadata, pathlib
+try:
+    files = metadata.files('example-robot-data') or []
+except metadata.PackageNotFoundError:
+    files = []
+for file in files:
+    parents = pathlib.Path(file.locate()).resolve().parents
+    folders = [p for p in parents if p.name == 'robots' and p.parent.name == 'example-robot-data']
     if folders:
         print(folders[0])
-        break
-else:
-    raise SystemExit('example-robot-data is installed without a robots folder')";
+        break";
 
 /// Make them, unless they were made already from the same sources.
 pub fn make(workspace: &Workspace) -> Outcome {
@@ -35,6 +37,7 @@ pub fn make(workspace: &Workspace) -> Outcome {
 }
 
 fn try_make(workspace: &Workspace) -> Result<String, String> {
+    robots(workspace).ok_or("the robots of example-robot-data are not installed")?;
     let stamp = stamp(workspace)?;
     if stamp.is_fresh() {
         return Ok("made already".into());
@@ -56,10 +59,9 @@ pub fn folder(workspace: &Workspace) -> Option<PathBuf> {
 
 /// The folder of the robots' URDF files, found by asking Python.
 pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
-    let mut python = Command::new(venv::python(workspace));
-    python.args(["-c", ROBOTS]).stderr(std::process::Stdio::null());
-    let (true, text) = command::output(&mut python).ok()? else { return None };
-    Some(PathBuf::from(text.trim()))
+    let (_, text) = command::output(Command::new(venv::python(workspace)).args(["-c", ROBOTS])).ok()?;
+    let folder = text.trim();
+    (!folder.is_empty()).then(|| PathBuf::from(folder))
 }
 
 /// What the numbers are made from: the Python files and requirements under `oracles/`, and our own robots.
