@@ -44,7 +44,7 @@ impl Example {
     pub fn run(&self, workspace: &Workspace) -> Outcome {
         let folder = match workspace.scratch(&self.name()) {
             Ok(folder) => folder,
-            Err(error) => return Outcome::Failed(format!("no folder to run it in: {error}")),
+            Err(why) => return Outcome::Failed(why),
         };
         match self {
             Self::None => Outcome::Skipped("there is nothing in examples/ yet".into()),

@@ -7,6 +7,6 @@ use crate::workspace::Workspace;
 pub fn run(workspace: &Workspace) -> Outcome {
     match workspace.scratch("main_job") {
         Ok(folder) => command::outcome(workspace.cargo_run_in(&folder, &["--release"])),
-        Err(error) => Outcome::Failed(format!("no folder to run it in: {error}")),
+        Err(why) => Outcome::Failed(why),
     }
 }

@@ -42,9 +42,7 @@ fn try_make(workspace: &Workspace) -> Result<String, String> {
     if stamp.is_fresh() {
         return Ok("made already".into());
     }
-    let folder = workspace.path("target/oracles");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    stamp.remove()?;
+    let folder = workspace.fresh_folder("target/oracles")?; // without the stamp: an interrupted run is no finished one
     let mut python = Command::new(venv::python(workspace));
     python.current_dir(&workspace.root).arg(SCRIPT).args(["--states", STATES, "--out"]);
     command::run(python.arg(folder))?;
@@ -64,10 +62,10 @@ pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
     (!folder.is_empty()).then(|| PathBuf::from(folder))
 }
 
-/// What the numbers are made from: the Python files and requirements under `oracles/`, and our own robots.
+/// What the numbers are made from: scripts, requirements and robots under `oracles/`, and the robots of `models/`.
 fn stamp(workspace: &Workspace) -> Result<Stamp, String> {
     let mut files = Vec::new();
-    for (folder, endings) in [("oracles", &["py", "txt"][..]), ("models", &["urdf"][..])] {
+    for (folder, endings) in [("oracles", &["py", "txt", "urdf"][..]), ("models", &["urdf"][..])] {
         let Ok(entries) = std::fs::read_dir(workspace.path(folder)) else { continue };
         let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
         files.extend(paths.filter(|path| path.extension().is_some_and(|e| endings.iter().any(|known| e == *known))));

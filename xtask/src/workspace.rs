@@ -19,14 +19,17 @@ impl Workspace {
         self.root.join(relative)
     }
 
-    /// An empty folder under `target/`, for a program that writes where it is started.
-    pub fn scratch(&self, name: &str) -> std::io::Result<PathBuf> {
-        let folder = self.path("target/xtask").join(name);
-        if folder.exists() {
-            std::fs::remove_dir_all(&folder)?;
-        }
-        std::fs::create_dir_all(&folder)?;
-        Ok(folder)
+    /// That folder, made anew and empty.
+    pub fn fresh_folder(&self, relative: &str) -> Result<PathBuf, String> {
+        let folder = self.path(relative);
+        let remove = if folder.exists() { std::fs::remove_dir_all(&folder) } else { Ok(()) };
+        let made = remove.and_then(|()| std::fs::create_dir_all(&folder));
+        made.map(|()| folder).map_err(|error| format!("{relative}: {error}"))
+    }
+
+    /// An empty folder for a program that writes where it is started.
+    pub fn scratch(&self, name: &str) -> Result<PathBuf, String> {
+        self.fresh_folder(&format!("target/xtask/{name}"))
     }
 
     /// The same cargo that started this program, in the workspace's root.
