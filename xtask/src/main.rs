@@ -1,2 +1,92 @@
-//! `cargo xtask test | check`: what CI runs, anyone can run.
-fn main() {}
+//! `cargo xtask test | check | bench`: what CI runs, anyone can run.
+//!
+//! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
+//! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
+
+mod advisories;
+mod bench;
+mod command;
+mod examples;
+mod house_rules;
+mod licences;
+mod main_job;
+mod metadata;
+mod no_std;
+mod oracles;
+mod report;
+mod source_text;
+mod spdx;
+mod stamp;
+mod tests;
+mod venv;
+mod workspace;
+
+use report::Report;
+use std::process::ExitCode;
+use workspace::Workspace;
+
+const USAGE: &str = "\
+usage: cargo xtask COMMAND
+
+  test    build and run everything: Python environment, reference numbers, every test,
+          the no_std check, every example, the main job
+  check   formatting, clippy, documentation, licences, advisories, house rules
+  bench   the benchmarks";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let workspace = Workspace::find();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["test"] => test(&workspace),
+        ["check"] => check(&workspace),
+        ["bench"] => run_benches(&workspace),
+        ["--help" | "-h" | "help"] => {
+            println!("{USAGE}");
+            ExitCode::SUCCESS
+        }
+        _ => {
+            eprintln!("{USAGE}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn test(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    let mut count = tests::Count::default();
+    report.step("Python environment", || venv::prepare(workspace));
+    report.step("reference numbers", || oracles::make(workspace));
+    report.step("tests", || tests::run(workspace, &mut count));
+    report.step("no_std", || no_std::check(workspace));
+    for example in examples::list(workspace) {
+        report.step(&format!("example {}", example.name()), || example.run(workspace));
+    }
+    report.step("main job", || main_job::run(workspace));
+    let exit = report.finish();
+    println!("{count}"); // CI reads this line
+    exit
+}
+
+fn check(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
+    report.step("clippy", || {
+        let arguments = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
+        command::outcome(workspace.cargo(&arguments))
+    });
+    report.step("documentation", || {
+        // Libraries: the program `mozzi` would be written over the library of the same name, at the same time.
+        let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);
+        command::outcome(doc.env("RUSTDOCFLAGS", "-Dwarnings"))
+    });
+    report.step("licences", || licences::check(workspace));
+    report.step("advisories", || advisories::check(workspace));
+    report.step("house rules", || house_rules::check(workspace));
+    report.finish()
+}
+
+fn run_benches(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("benchmarks", || bench::run(workspace));
+    report.finish()
+}

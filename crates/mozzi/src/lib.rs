@@ -3,11 +3,13 @@
 extern crate alloc;
 pub mod lie;
 pub mod linalg;
+pub mod model;
 pub mod scalar;
 pub mod spatial;
 #[cfg(test)]
 mod testing;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
+pub use model::{Description, Environment, Error, Frame, FrameId, Model, Workspace};
 pub use scalar::{Dual, Real, Scalar};
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};

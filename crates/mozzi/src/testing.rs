@@ -35,7 +35,11 @@ pub fn inertia(seed: u64) -> SpatialInertia {
     let mut random = Random(seed + 2000);
     let [a, b, c] = random.array().map(|x: f64| 0.1 + x * x);
     let turn = SE3::exp(Twist::from_array(random.array())).R.matrix();
-    SpatialInertia::new(1.0 + 0.9 * random.next(), Vec3(random.array()), Sym3::diagonal(b + c, a + c, a + b).congruence(turn))
+    SpatialInertia::new(
+        1.0 + 0.9 * random.next(),
+        Vec3(random.array()),
+        Sym3::diagonal(b + c, a + c, a + b).congruence(turn),
+    )
 }
 
 /// The largest difference of two configurations' entries.

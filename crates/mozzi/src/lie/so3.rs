@@ -75,7 +75,11 @@ impl SO3<f64> {
         let (error, tolerance, determinant) = (R.transpose() * R - Mat3::identity(), 1e-12, R.determinant());
         let deviation = error.x.max_abs().max(error.y.max_abs()).max(error.z.max_abs());
         // written so that NaN is refused
-        if deviation <= tolerance && determinant > 0.0 { Ok(SO3(R)) } else { Err(NotARotation { deviation, tolerance, determinant }) }
+        if deviation <= tolerance && determinant > 0.0 {
+            Ok(SO3(R))
+        } else {
+            Err(NotARotation { deviation, tolerance, determinant })
+        }
     }
 
     /// The rotation nearest to a matrix in the Frobenius norm (its polar factor), and how far it is: the largest entry
@@ -180,9 +184,9 @@ mod tests {
     #[test]
     fn a_half_turn_has_its_axis() {
         for axis in [[1.0_f64, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, -0.8]] {
-            let R = SO3(Mat3::from_rows([0, 1, 2].map(|i| {
-                [0, 1, 2].map(|j| 2.0 * axis[i] * axis[j] - if i == j { 1.0 } else { 0.0 })
-            })));
+            let R = SO3(Mat3::from_rows(
+                [0, 1, 2].map(|i| [0, 1, 2].map(|j| 2.0 * axis[i] * axis[j] - if i == j { 1.0 } else { 0.0 })),
+            ));
             let w = R.log();
             let sign = w.dot(Vec3(axis)).signum();
             assert!((w * sign - Vec3(axis) * PI).norm() < 8.0 * f64::EPSILON);

@@ -61,7 +61,14 @@ struct Report<'a> {
 }
 
 impl Report<'_> {
-    fn add(&mut self, severity: Severity, element: Element, attribute: &'static str, code: &'static str, message: String) {
+    fn add(
+        &mut self,
+        severity: Severity,
+        element: Element,
+        attribute: &'static str,
+        code: &'static str,
+        message: String,
+    ) {
         let d = self.description;
         let subject = match element {
             Element::Robot => format!("robot `{}`", d.name),
@@ -99,7 +106,8 @@ impl Description {
         let frames = (self.links.iter().enumerate().map(|(i, link)| (Element::Link(i), link.name.as_str())))
             .chain(self.frames.iter().enumerate().map(|(i, frame)| (Element::Frame(i), frame.name.as_str())));
         let frames = report.unique(frames);
-        let joints = report.unique(self.joints.iter().enumerate().map(|(i, joint)| (Element::Joint(i), joint.name.as_str())));
+        let joints =
+            report.unique(self.joints.iter().enumerate().map(|(i, joint)| (Element::Joint(i), joint.name.as_str())));
         let link = |name: &str| match frames.get(name) {
             Some(&Element::Link(i)) => Some(i),
             _ => None,
@@ -115,7 +123,12 @@ impl Description {
         if let Some(name) = &self.end_effector
             && !frames.contains_key(name.as_str())
         {
-            report.error(Element::Robot, "end effector", "unknown_frame", format!("there is no link or frame `{name}`"));
+            report.error(
+                Element::Robot,
+                "end effector",
+                "unknown_frame",
+                format!("there is no link or frame `{name}`"),
+            );
         }
         report.problems
     }
@@ -148,19 +161,37 @@ impl Report<'_> {
             if !joint.origin.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
                 self.error(element, "origin", "not_finite", "has entries that are not finite".to_string());
             }
-            for (attribute, x) in [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)] {
+            for (attribute, x) in
+                [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)]
+            {
                 if !(x >= 0.0 && x.is_finite()) {
-                    self.error(element, attribute, "negative_friction", format!("is {x}, expected a finite number, at least 0"));
+                    self.error(
+                        element,
+                        attribute,
+                        "negative_friction",
+                        format!("is {x}, expected a finite number, at least 0"),
+                    );
                 }
             }
             if let Some([low, high]) = joint.limits.position
                 && !(low <= high)
             {
-                self.error(element, "limits", "reversed_limits", format!("go from {low} to {high}, expected the lower first"));
+                self.error(
+                    element,
+                    "limits",
+                    "reversed_limits",
+                    format!("go from {low} to {high}, expected the lower first"),
+                );
             }
-            for (attribute, limit) in [("velocity limit", joint.limits.velocity), ("effort limit", joint.limits.effort)] {
+            for (attribute, limit) in [("velocity limit", joint.limits.velocity), ("effort limit", joint.limits.effort)]
+            {
                 if limit.is_some_and(|x| !(x >= 0.0)) {
-                    self.error(element, attribute, "negative_limit", format!("is {}, expected at least 0", limit.unwrap_or_default()));
+                    self.error(
+                        element,
+                        attribute,
+                        "negative_limit",
+                        format!("is {}, expected at least 0", limit.unwrap_or_default()),
+                    );
                 }
             }
         }
@@ -209,7 +240,9 @@ impl Report<'_> {
         let name = |&i: &usize| format!("`{}`", d.links[i].name);
         match roots.as_slice() {
             [] => {
-                let message = "every link is the child of a joint: a closed ring; expected one link, the base, that is no child".to_string();
+                let message =
+                    "every link is the child of a joint: a closed ring; expected one link, the base, that is no child"
+                        .to_string();
                 self.error(Element::Robot, "joints", "no_base", message);
             }
             [root] => {
@@ -219,7 +252,10 @@ impl Report<'_> {
                     stack.extend(&children[i]);
                 }
                 for i in (0..d.links.len()).filter(|&i| !reached[i]) {
-                    let message = format!("is not connected to the base `{}`: it hangs in a closed ring of joints", d.links[*root].name);
+                    let message = format!(
+                        "is not connected to the base `{}`: it hangs in a closed ring of joints",
+                        d.links[*root].name
+                    );
                     self.error(Element::Link(i), "joints", "unreachable_link", message);
                 }
             }
@@ -257,14 +293,22 @@ impl Report<'_> {
                 self.error(element, "mimic", "unknown_joint", message);
                 continue;
             };
-            if joint.kind == JointKind::Fixed || d.joints[k].kind == JointKind::Fixed {
-                let fixed = if joint.kind == JointKind::Fixed { &joint.name } else { &mimic.joint };
-                self.error(element, "mimic", "fixed_mimic", format!("joint `{fixed}` is fixed, expected two joints that move"));
+            if joint.kind == JointKind::Fixed {
+                let message = format!("follows `{}`, but is fixed: it does not move", mimic.joint);
+                self.add(Severity::Warning, element, "mimic", "fixed_follower", message);
+            } else if d.joints[k].kind == JointKind::Fixed {
+                self.error(
+                    element,
+                    "mimic",
+                    "fixed_master",
+                    format!("joint `{}` is fixed, expected one that moves", mimic.joint),
+                );
             }
             // a chain of followers longer than all joints goes in a circle
             let end = (0..d.joints.len()).try_fold(i, |at, _| master(at));
             if end.is_some() {
-                let message = format!("following `{}` leads back in a circle, expected a joint that follows none", mimic.joint);
+                let message =
+                    format!("following `{}` leads back in a circle, expected a joint that follows none", mimic.joint);
                 self.error(element, "mimic", "circular_mimic", message);
             }
         }

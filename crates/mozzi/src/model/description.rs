@@ -144,7 +144,13 @@ impl Description {
 
 impl Joint {
     /// A joint without limits, friction or armature. `origin` is the child's frame seen from the parent's at 0.
-    pub fn new(name: impl Into<String>, parent: impl Into<String>, child: impl Into<String>, origin: SE3, kind: JointKind) -> Self {
+    pub fn new(
+        name: impl Into<String>,
+        parent: impl Into<String>,
+        child: impl Into<String>,
+        origin: SE3,
+        kind: JointKind,
+    ) -> Self {
         Joint {
             name: name.into(),
             parent: parent.into(),

@@ -22,7 +22,7 @@ pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
 pub(crate) use link::Link;
-pub use screws::{HomeFrames, Screws, ScrewLists};
+pub use screws::{HomeFrames, ScrewLists, Screws};
 pub use workspace::Workspace;
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
@@ -52,6 +52,8 @@ pub(crate) struct Structure {
     pub description: Description,
     /// The joint of the description that moves slot i, at i − 1.
     pub moving_joints: Vec<usize>,
+    /// The link of the description that it moves.
+    pub moving_links: Vec<usize>,
     /// The independent joints of the description, in the order of θ.
     pub joints: Vec<usize>,
     /// The first frames are those of the description's links, in its order; then its further frames.

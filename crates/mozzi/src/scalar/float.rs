@@ -63,6 +63,10 @@ float!(f64, f32);
 /// Sine and cosine with fused multiply-add; exact reduction for arguments beyond the polynomial's range.
 #[inline(always)]
 pub(super) fn sin_cos_fused(x: f64) -> (f64, f64) {
-    if x.abs() <= sin_cos::f64::LARGEST { sin_cos::f64::sin_cos(x, super::fused::mul_add) } else { elementary::f64::sin_cos(x) }
+    if x.abs() <= sin_cos::f64::LARGEST {
+        sin_cos::f64::sin_cos(x, super::fused::mul_add)
+    } else {
+        elementary::f64::sin_cos(x)
+    }
 }
 pub(super) use elementary::f64::{sqrt, tanh};

@@ -61,11 +61,7 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     pub fn rate(self, V: Twist<S>) -> Self {
         let (W, I, v, mc) = (Mat3::hat(V.w), self.I.to_mat3(), Mat3::hat(V.v), Mat3::hat(self.mc));
-        SpatialInertia {
-            mass: S::zero(),
-            mc: (self * V).f,
-            I: Sym3::upper(W * I - I * W - (v * mc + mc * v)),
-        }
+        SpatialInertia { mass: S::zero(), mc: (self * V).f, I: Sym3::upper(W * I - I * W - (v * mc + mc * v)) }
     }
 
     /// The 6 × 6 matrix, as rows, angular first.
@@ -91,7 +87,9 @@ impl<S: Scalar> Mul<Twist<S>> for SpatialInertia<S> {
 
 /// The matrix given for a spatial inertia is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("not a spatial inertia: entry ({row}, {column}) is {found}, expected {expected} (the form is [[I, [mc]], [−[mc], m]])")]
+#[error(
+    "not a spatial inertia: entry ({row}, {column}) is {found}, expected {expected} (the form is [[I, [mc]], [−[mc], m]])"
+)]
 pub struct NotASpatialInertia {
     row: usize,
     column: usize,
@@ -106,7 +104,8 @@ impl SpatialInertia<f64> {
     /// # Errors
     /// When it is not of the form `[[I, [mc]], [−[mc], m]]` with I symmetric, to 10⁻¹² of its largest entry.
     pub fn from_matrix(G: [[f64; 6]; 6]) -> Result<Self, NotASpatialInertia> {
-        let block = |r: usize, c: usize| Mat3::from_rows([0, 1, 2].map(|i| [G[r + i][c], G[r + i][c + 1], G[r + i][c + 2]]));
+        let block =
+            |r: usize, c: usize| Mat3::from_rows([0, 1, 2].map(|i| [G[r + i][c], G[r + i][c + 1], G[r + i][c + 2]]));
         let this = SpatialInertia { mass: G[3][3], mc: block(0, 3).vee(), I: Sym3::upper(block(0, 0)) };
         let largest = G.as_flattened().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         for (row, (found, expected)) in G.iter().zip(this.to_matrix()).enumerate() {
@@ -185,7 +184,10 @@ impl fmt::Display for InertiaVerdict {
             Some(InertiaProblem::NotFinite) => write!(f, "not finite"),
             Some(InertiaProblem::NegativeMass) => write!(f, "the mass is {} kg, expected at least 0", self.mass),
             Some(InertiaProblem::NegativeMoment) => {
-                write!(f, "the smallest principal moment about the centre of mass is {a:.6e} kg m², expected at least 0")
+                write!(
+                    f,
+                    "the smallest principal moment about the centre of mass is {a:.6e} kg m², expected at least 0"
+                )
             }
             Some(InertiaProblem::Triangle) => write!(
                 f,
@@ -255,7 +257,10 @@ mod tests {
     #[test]
     fn a_matrix_gives_the_inertia_back_or_is_refused() {
         let G = inertia(5);
-        assert!(SpatialInertia::from_matrix(G.to_matrix()).is_ok_and(|back| difference(back.to_matrix(), G.to_matrix()) < 1e-15));
+        assert!(
+            SpatialInertia::from_matrix(G.to_matrix())
+                .is_ok_and(|back| difference(back.to_matrix(), G.to_matrix()) < 1e-15)
+        );
         let mut wrong = G.to_matrix();
         wrong[4][4] += 1.0; // a mass that depends on the direction
         let message = SpatialInertia::from_matrix(wrong).expect_err("two masses").to_string();
@@ -264,7 +269,8 @@ mod tests {
 
     #[test]
     fn verdicts() {
-        let at = |c: [f64; 3], I: [f64; 3]| SpatialInertia::new(2.0, Vec3(c), Sym3::diagonal(I[0], I[1], I[2])).verdict();
+        let at =
+            |c: [f64; 3], I: [f64; 3]| SpatialInertia::new(2.0, Vec3(c), Sym3::diagonal(I[0], I[1], I[2])).verdict();
         assert!(at([0.3, -4.0, 100.0], [0.0, 0.0, 0.0]).is_physical(), "a point mass far away");
         assert!(at([1.0, 2.0, 3.0], [0.0, 1.0, 1.0]).is_physical(), "a rod");
         assert!(at([0.0; 3], [1.0, 2.0, 3.0]).is_physical(), "a plate");

@@ -52,7 +52,9 @@ impl Solid {
         // means of x², y², z² over the solid
         let [x, y, z] = match self {
             Solid::Box(edges) => edges.map(|e| e * e / 12.0),
-            Solid::Cylinder { radius, length } => [radius * radius / 4.0, radius * radius / 4.0, length * length / 12.0],
+            Solid::Cylinder { radius, length } => {
+                [radius * radius / 4.0, radius * radius / 4.0, length * length / 12.0]
+            }
             Solid::Ellipsoid(axes) => axes.map(|a| a * a / 5.0),
             Solid::Sphere { radius } => [radius * radius / 5.0; 3],
         };

@@ -1,0 +1,202 @@
+//! From a description to the screw normal form.
+
+use super::description::{Joint, JointKind};
+use super::{Description, Error, Frame, FrameId, Link, Model, Severity, Structure};
+use crate::lie::{SE3, SO3};
+use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
+use crate::spatial::{JointAxis, ScrewAxis, SpatialInertia};
+use alloc::collections::BTreeMap;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+
+impl Description {
+    /// The model of this robot. Joints are numbered depth first, siblings in the order of the file; a follower takes no
+    /// number. Fixed links are folded into the link that carries them.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with all that [`check`](Self::check) calls an error.
+    pub fn build(self) -> Result<Model, Error> {
+        let problems = self.check();
+        if problems.iter().any(|problem| problem.severity == Severity::Error) {
+            return Err(Error::Invalid { robot: self.name, problems });
+        }
+        Ok(normal_form(self))
+    }
+}
+
+/// The model of a description that was checked.
+fn normal_form(description: Description) -> Model {
+    let link_index = index(description.links.iter().map(|link| link.name.as_str()));
+    let (joints_of, base) = branches(&description, &link_index);
+
+    // depth first: each link's frame on its slot, the moving links, and what each slot weighs
+    let mut frames = vec![Frame { slot: 0, T: SE3::identity() }; description.links.len()];
+    let mut inertias = vec![SpatialInertia::zero()];
+    let (mut links, mut moving_joints) = (Vec::new(), Vec::new());
+    let mut stack: Vec<(usize, Option<usize>)> = vec![(base, None)];
+    while let Some((link, joint)) = stack.pop() {
+        if let Some(i) = joint {
+            let joint = &description.joints[i];
+            let carrier = frames[link_index[joint.parent.as_str()]];
+            let home = carrier.T * joint.origin; // the child's frame at 0, seen from the carrier's normal frame
+            frames[link] = match joint.kind {
+                JointKind::Fixed => Frame { slot: carrier.slot, T: home },
+                JointKind::Screw(A) => {
+                    let (axis, normal) = normal_frame(A);
+                    links.push(Link {
+                        parent: carrier.slot,
+                        q: 0,
+                        j: 0,
+                        A: axis,
+                        M: (home * normal).inverse(),
+                        G: SpatialInertia::zero(),
+                        ratio: 1.0,
+                        offset: 0.0,
+                    });
+                    moving_joints.push(i);
+                    inertias.push(SpatialInertia::zero());
+                    Frame { slot: links.len(), T: normal.inverse() }
+                }
+            };
+        }
+        let Frame { slot, T } = frames[link];
+        inertias[slot] += description.links[link].inertia.congruence(T.inverse().Ad());
+        stack
+            .extend(joints_of[link].iter().rev().map(|&i| (link_index[description.joints[i].child.as_str()], Some(i))));
+    }
+    for (link, &G) in links.iter_mut().zip(&inertias[1..]) {
+        link.G = G;
+    }
+
+    let leaves =
+        (0..description.links.len()).filter(|&i| joints_of[i].is_empty() && (frames[i].slot > 0 || links.is_empty()));
+    let leaves: Vec<FrameId> = leaves.map(FrameId).collect();
+    for frame in &description.frames {
+        let Frame { slot, T } = frames[link_index[frame.link.as_str()]];
+        frames.push(Frame { slot, T: T * frame.T });
+    }
+    let names =
+        description.links.iter().map(|link| &link.name).chain(description.frames.iter().map(|frame| &frame.name));
+    let end_effector = match &description.end_effector {
+        Some(name) => names.into_iter().position(|known| known == name).map(FrameId),
+        None if leaves.len() == 1 => leaves.first().copied(),
+        None => None,
+    };
+
+    let joints = couple(&description, &moving_joints, &mut links);
+    let sum = |of: fn(&Joint, f64) -> f64| {
+        let mut total = vec![0.0; joints.len()];
+        for (link, &i) in links.iter().zip(&moving_joints) {
+            total[link.j] += of(&description.joints[i], link.ratio);
+        }
+        total
+    };
+    Model {
+        base_inertia: inertias[0],
+        armature: sum(|joint, ratio| ratio * ratio * joint.armature),
+        damping: sum(|joint, ratio| ratio * ratio * joint.damping),
+        friction: sum(|joint, ratio| ratio.abs() * joint.friction),
+        frames,
+        gravity: Vec3(description.gravity),
+        structure: Arc::new(Structure {
+            pattern: Pattern::new(joints.len(), links.iter().map(|link| (link.parent, link.j))),
+            coupled: joints.len() < links.len(),
+            moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
+            moving_joints,
+            joints,
+            end_effector,
+            leaves,
+            description,
+        }),
+        links,
+    }
+}
+
+fn index<'n>(names: impl Iterator<Item = &'n str>) -> BTreeMap<&'n str, usize> {
+    names.enumerate().map(|(i, name)| (name, i)).collect()
+}
+
+/// The joints that each link carries, and the base: the link that no joint moves.
+fn branches(description: &Description, link_index: &BTreeMap<&str, usize>) -> (Vec<Vec<usize>>, usize) {
+    let mut joints_of = vec![Vec::new(); description.links.len()];
+    let mut is_child = vec![false; description.links.len()];
+    for (i, joint) in description.joints.iter().enumerate() {
+        joints_of[link_index[joint.parent.as_str()]].push(i);
+        is_child[link_index[joint.child.as_str()]] = true;
+    }
+    let base = is_child.iter().position(|&child| !child).unwrap_or(0);
+    (joints_of, base)
+}
+
+/// Numbers the independent joints in the order of their links, and gives each follower its master's number, ratio and
+/// offset, through chains of followers. Returns the description's joint of each number.
+fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<f64>]) -> Vec<usize> {
+    let joint_index = index(description.joints.iter().map(|joint| joint.name.as_str()));
+    let mimic = |i: usize| description.joints[i].mimic.as_ref();
+    let joints: Vec<usize> = moving_joints.iter().copied().filter(|&i| mimic(i).is_none()).collect();
+    let mut number = vec![0; description.joints.len()];
+    for (j, &i) in joints.iter().enumerate() {
+        number[i] = j;
+    }
+    for (link, &i) in links.iter_mut().zip(moving_joints) {
+        let mut master = i;
+        while let Some(followed) = mimic(master) {
+            // ratio · (r θ + o) + offset
+            link.offset += link.ratio * followed.offset;
+            link.ratio *= followed.ratio;
+            master = joint_index[followed.joint.as_str()];
+        }
+        (link.q, link.j) = (number[master], number[master]);
+    }
+    joints
+}
+
+/// The joint's axis in the normal form, and the normal frame seen from the link's: z along the screw, the origin on it.
+/// The other axes are the link's own where the screw is along one of them, so that zeros stay zeros.
+fn normal_frame(A: ScrewAxis) -> (JointAxis<f64>, SE3) {
+    let V = A.twist();
+    let (axis, z, p) = if A.is_prismatic() {
+        (JointAxis { a: 0.0, b: 1.0 }, V.v, Vec3::zero())
+    } else {
+        (JointAxis { a: 1.0, b: A.pitch() }, V.w, V.w.cross(V.v))
+    };
+    let size = z.map(f64::abs).0;
+    let least = (1..3).fold(0, |least, i| if size[i] < size[least] { i } else { least });
+    let mut e = [0.0; 3];
+    e[least] = 1.0;
+    let x = Vec3(e) - z * z.0[least];
+    let x = x * (1.0 / x.norm());
+    let R = Mat3 { x, y: z.cross(x), z }.transpose();
+    (axis, SE3 { R: SO3(R), p })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn the_normal_frame_holds_the_screw_on_its_z_axis() {
+        let mut random = Random(3);
+        for k in 0..20 {
+            let mut V = crate::Twist::from_array(random.array());
+            if k % 3 == 0 {
+                V.w = Vec3::zero();
+            }
+            let (A, _) = ScrewAxis::normalize(V).expect("a screw");
+            let (axis, normal) = normal_frame(A);
+            assert!(((normal.Ad() * axis.twist()) - A.twist()).norm() < 1e-14);
+            assert!(SO3::from_matrix(normal.R.matrix()).is_ok());
+        }
+    }
+
+    #[test]
+    fn axes_of_the_link_give_exact_zeros() {
+        for axis in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]] {
+            let A = ScrewAxis::new(axis, [0.0; 3]).expect("unit");
+            let entries = normal_frame(A).1.R.matrix().rows();
+            assert!(entries.as_flattened().iter().all(|x| [0.0, 1.0, -1.0].contains(x)));
+        }
+    }
+}

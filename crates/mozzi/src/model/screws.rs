@@ -1,0 +1,176 @@
+//! The book's lists: home frames, screw axes and inertias, in and out.
+
+use super::description::{Joint, JointKind, NamedFrame};
+use super::{Description, Error, Model};
+use crate::lie::SE3;
+use crate::spatial::{ScrewAxis, SpatialInertia};
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// Where the link frames of a serial chain are when all joints are at 0: n frames, then the end effector's.
+#[derive(Clone, Copy, Debug)]
+pub enum HomeFrames<'a> {
+    /// M_1 … M_n, M_{n+1}, each seen from the base.
+    Base(&'a [SE3]),
+    /// M_{0,1} … M_{n,n+1}, each seen from the one before, as the Modern Robotics package has them.
+    Relative(&'a [SE3]),
+}
+
+/// The n screw axes of a serial chain.
+#[derive(Clone, Copy, Debug)]
+pub enum Screws<'a> {
+    /// S_i, in the base frame.
+    Space(&'a [ScrewAxis]),
+    /// B_i, in the end-effector frame.
+    Body(&'a [ScrewAxis]),
+    /// A_i, each in its link's frame.
+    Link(&'a [ScrewAxis]),
+}
+
+impl Description {
+    /// A serial chain as the book gives it: home frames, the spatial inertia of each link in its frame, and screw axes.
+    /// Links are named `link1` …, joints `joint1` …, the base `base` and the last frame `end_effector`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] when the lists are not n + 1, n and n long.
+    pub fn from_screws(
+        name: impl Into<String>,
+        frames: HomeFrames,
+        inertias: &[SpatialInertia],
+        screws: Screws,
+    ) -> Result<Self, Error> {
+        let (Screws::Space(axes) | Screws::Body(axes) | Screws::Link(axes)) = screws;
+        let (HomeFrames::Base(given) | HomeFrames::Relative(given)) = frames;
+        let n = axes.len();
+        let length = |what, found, expected| {
+            if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
+        };
+        length("the list of spatial inertias", inertias.len(), n)?;
+        length("the list of home frames (one for each link, and the end effector's)", given.len(), n + 1)?;
+
+        let mut home = given.to_vec(); // seen from the base
+        if let HomeFrames::Relative(_) = frames {
+            (1..=n).for_each(|i| home[i] = home[i - 1] * home[i]);
+        }
+        let mut robot = Description::new(name).link("base", SpatialInertia::zero());
+        let mut parent = String::from("base");
+        for i in 0..n {
+            let M = match frames {
+                HomeFrames::Relative(given) => given[i],
+                HomeFrames::Base(_) if i == 0 => home[0],
+                HomeFrames::Base(_) => home[i - 1].inverse() * home[i],
+            };
+            let A = match screws {
+                Screws::Space(S) => S[i].seen_from(home[i].inverse()), // A_i = Ad_{M_i⁻¹} S_i
+                Screws::Body(B) => B[i].seen_from(home[i].inverse() * home[n]),
+                Screws::Link(A) => A[i],
+            };
+            let link = format!("link{}", i + 1);
+            robot = robot.link(link.clone(), inertias[i]);
+            robot = robot.joint(Joint::new(format!("joint{}", i + 1), parent, link.clone(), M, JointKind::Screw(A)));
+            parent = link;
+        }
+        let T = if n == 0 { home[0] } else { home[n - 1].inverse() * home[n] };
+        robot.frames.push(NamedFrame { name: "end_effector".into(), link: parent, T });
+        robot.end_effector = Some("end_effector".into());
+        Ok(robot)
+    }
+}
+
+/// A model in the book's terms. Frame {i} of moving link i is at the centre of mass of the link with all that is fixed
+/// to it, oriented as the link's frame of the file; a massless link's frame is that frame itself. Lists run over the N
+/// moving links, base to tips, each at 0 of its own joint.
+#[derive(Clone, Debug)]
+pub struct ScrewLists {
+    /// The joint that moves each link.
+    pub joints: Vec<String>,
+    /// The link that it moves.
+    pub links: Vec<String>,
+    /// Number of the link that carries it, from 1; 0 is the base.
+    pub parents: Vec<usize>,
+    /// M_i: frame {i} seen from the base.
+    pub M: Vec<SE3>,
+    /// M_{i−1,i}: frame {i} seen from its parent's.
+    pub M_relative: Vec<SE3>,
+    /// S_i, in the base frame.
+    pub S: Vec<ScrewAxis>,
+    /// A_i, in frame {i}.
+    pub A: Vec<ScrewAxis>,
+    /// 𝒢_i, in frame {i}: block-diagonal.
+    pub G: Vec<SpatialInertia>,
+    /// The end effector's name and home frame M_{n+1}, where the model has one.
+    pub end_effector: Option<(String, SE3)>,
+    /// B_i, in the end-effector frame; empty where the model has none.
+    pub B: Vec<ScrewAxis>,
+}
+
+impl Model<f64> {
+    /// The book's M_i, S_i, B_i, A_i and 𝒢_i of this model.
+    pub fn screws(&self) -> ScrewLists {
+        let mut homes = alloc::vec![SE3::identity()]; // of the normal frames
+        for link in &self.links {
+            homes.push(homes[link.parent] * link.M.inverse());
+        }
+        let bodies: Vec<SE3> = (0..=self.links.len()).map(|slot| self.body_frame(slot)).collect();
+        let M: Vec<SE3> = (1..homes.len()).map(|i| homes[i] * bodies[i]).collect();
+        let A: Vec<ScrewAxis> = (self.moving_joints().zip(&bodies[1..]).enumerate())
+            .filter_map(|(k, (joint, &body))| match joint.kind {
+                JointKind::Screw(A) => Some(A.seen_from(body.inverse() * self.link_frame(k + 1))),
+                JointKind::Fixed => None,
+            })
+            .collect();
+        let S: Vec<ScrewAxis> = A.iter().zip(&M).map(|(A, &M)| A.seen_from(M)).collect();
+        let end_effector = self.structure.end_effector.map(|id| {
+            let frame = self.frames[id.0];
+            (self.frame_name(id).into(), homes[frame.slot] * frame.T)
+        });
+        let B = match &end_effector {
+            Some((_, tip)) => S.iter().map(|S| S.seen_from(tip.inverse())).collect(),
+            None => Vec::new(),
+        };
+        ScrewLists {
+            joints: self.moving_joints().map(|joint| joint.name.clone()).collect(),
+            links: self.moving_joints().map(|joint| joint.child.clone()).collect(),
+            parents: self.links.iter().map(|link| link.parent).collect(),
+            M_relative: self
+                .links
+                .iter()
+                .zip(1..)
+                .map(|(link, i)| bodies[link.parent].inverse() * link.M.inverse() * bodies[i])
+                .collect(),
+            G: self
+                .links
+                .iter()
+                .zip(&bodies[1..])
+                .map(|(link, body)| link.G.congruence(body.Ad()))
+                .map(block_diagonal)
+                .collect(),
+            M,
+            S,
+            A,
+            B,
+            end_effector,
+        }
+    }
+
+    /// The file's frame of the link on a slot, seen from the slot's normal frame.
+    pub(crate) fn link_frame(&self, slot: usize) -> SE3 {
+        if slot == 0 { SE3::identity() } else { self.frames[self.structure.moving_links[slot - 1]].T }
+    }
+
+    /// The book's frame {i} seen from the slot's normal frame; the base frame itself for slot 0.
+    pub(crate) fn body_frame(&self, slot: usize) -> SE3 {
+        let link = self.link_frame(slot);
+        if slot == 0 {
+            return link;
+        }
+        let c = self.links[slot - 1].G.congruence(link.Ad()).center_of_mass();
+        link * SE3::translation(c.0)
+    }
+}
+
+/// The first moment at the centre of mass is rounding alone.
+fn block_diagonal(G: SpatialInertia) -> SpatialInertia {
+    if G.mass == 0.0 { G } else { SpatialInertia { mc: crate::Vec3::zero(), ..G } }
+}

@@ -1,0 +1,123 @@
+//! The project's own rules for `crates/*/src`, tests left out: no unwrap, nothing unfinished, unsafe in known places.
+
+use crate::report::Outcome;
+use crate::source_text::{code_only, without_tests};
+use crate::workspace::Workspace;
+use std::path::{Path, PathBuf};
+
+/// Where `unsafe` may stand: instruction-set dispatch. A file that starts so.
+const UNSAFE_ALLOWED: [&str; 1] = ["crates/mozzi/src/native"];
+
+/// A file longer than this is asking to be two.
+const LONG: usize = 400;
+
+pub fn check(workspace: &Workspace) -> Outcome {
+    let mut files = Vec::new();
+    rust_files(&workspace.path("crates"), &mut files);
+    rust_files(&workspace.path("xtask/src"), &mut files);
+    files.sort();
+    let (mut broken, mut long) = (0, 0);
+    for file in &files {
+        let name = file.strip_prefix(&workspace.root).unwrap_or(file).to_string_lossy().replace('\\', "/");
+        let Ok(source) = std::fs::read_to_string(file) else {
+            return Outcome::Failed(format!("{name} cannot be read"));
+        };
+        if source.lines().count() > LONG {
+            println!("warning: {name}: {} lines, more than {LONG}", source.lines().count());
+            long += 1;
+        }
+        if !is_library_code(&name) {
+            continue;
+        }
+        for (line, rule) in broken_rules(&name, &source) {
+            println!("{name}:{line}: {rule}");
+            broken += 1;
+        }
+    }
+    let note = format!("{} files, {long} longer than {LONG} lines", files.len());
+    match broken {
+        0 => Outcome::Passed(note),
+        _ => Outcome::Failed(format!("{broken} places break a rule; {note}")),
+    }
+}
+
+/// `crates/*/src`, without files that are tests as a whole.
+fn is_library_code(name: &str) -> bool {
+    let parts: Vec<_> = name.split('/').collect();
+    parts[0] == "crates"
+        && parts.get(2) == Some(&"src")
+        && !parts.iter().any(|part| ["tests", "tests.rs"].contains(part))
+}
+
+/// The line and the rule of each breach.
+fn broken_rules(name: &str, source: &str) -> Vec<(usize, &'static str)> {
+    let code = without_tests(&code_only(source));
+    let unsafe_allowed = UNSAFE_ALLOWED.iter().any(|start| name.starts_with(start));
+    let mut broken = Vec::new();
+    for (index, line) in code.lines().enumerate() {
+        let rules = [
+            (line.contains(".unwrap()"), "unwrap: name the error, or use expect with the reason it cannot happen"),
+            (has_word(line, "todo!"), "todo!: finish it"),
+            (has_word(line, "unimplemented!"), "unimplemented!: finish it"),
+            (!unsafe_allowed && has_word(line, "unsafe"), "unsafe: only in dispatch, JIT and bindings"),
+        ];
+        broken.extend(rules.into_iter().filter(|(is_broken, _)| *is_broken).map(|(_, rule)| (index + 1, rule)));
+    }
+    broken
+}
+
+/// Whether `word` stands in the line, not as a part of a longer name.
+fn has_word(line: &str, word: &str) -> bool {
+    let in_name = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    line.match_indices(word).any(|(at, _)| {
+        let after = line[at + word.len()..].chars().next();
+        !in_name(line[..at].chars().next_back()) && (word.ends_with('!') || !in_name(after))
+    })
+}
+
+fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+    for path in entries.map(|entry| entry.path()) {
+        if path.is_dir() {
+            if path.file_name().is_some_and(|name| name != "target") {
+                rust_files(&path, files);
+            }
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{broken_rules, is_library_code};
+
+    #[test]
+    fn each_rule_finds_its_line() {
+        let source = "let a = b.unwrap();\ntodo!();\nunimplemented!(\"x\");\nunsafe { c() }\n";
+        let lines: Vec<_> = broken_rules("crates/mozzi/src/a.rs", source).iter().map(|(line, _)| *line).collect();
+        assert_eq!(lines, [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn comments_tests_and_longer_names_break_nothing() {
+        let source = "//! b.unwrap()\n#![deny(unsafe_op_in_unsafe_fn)]\na.unwrap_or(1);\n#[cfg(test)]\nmod tests { fn f() { b.unwrap(); } }";
+        assert_eq!(broken_rules("crates/mozzi/src/a.rs", source), []);
+    }
+
+    #[test]
+    fn unsafe_has_its_places() {
+        let source = "unsafe { c() }";
+        assert_eq!(broken_rules("crates/mozzi/src/native.rs", source), []);
+        assert_eq!(broken_rules("crates/mozzi/src/native/x86.rs", source), []);
+        assert_eq!(broken_rules("crates/mozzi-urdf/src/lib.rs", source).len(), 1);
+    }
+
+    #[test]
+    fn only_the_crates_sources_are_judged() {
+        assert!(is_library_code("crates/mozzi/src/lie/so3.rs"));
+        assert!(!is_library_code("crates/mozzi/tests/oracle.rs"));
+        assert!(!is_library_code("crates/mozzi/src/lie/tests.rs"));
+        assert!(!is_library_code("xtask/src/main.rs"));
+    }
+}

@@ -1,0 +1,29 @@
+//! The packages on which the workspace stands, as `cargo metadata` tells.
+
+use crate::command;
+use crate::workspace::Workspace;
+use serde_json::Value;
+
+/// A package from elsewhere.
+pub struct Dependency {
+    /// Name and version.
+    pub name: String,
+    /// SPDX expression, if the package states one.
+    pub licence: Option<String>,
+}
+
+/// Every one in `Cargo.lock`, whatever the platform; the workspace's own packages left out.
+pub fn dependencies(workspace: &Workspace) -> Result<Vec<Dependency>, String> {
+    let (true, text) = command::output(workspace.cargo(&["metadata", "--format-version", "1"]))? else {
+        return Err("`cargo metadata` failed".into());
+    };
+    let metadata: Value = serde_json::from_str(&text).map_err(|error| format!("`cargo metadata`: {error}"))?;
+    let packages = metadata["packages"].as_array().ok_or("`cargo metadata` lists no packages")?;
+    let foreign = packages.iter().filter(|package| !package["source"].is_null());
+    let dependency = |package: &Value| {
+        let text = |key: &str| package[key].as_str().map(str::to_owned);
+        let name = text("name").zip(text("version")).map(|(name, version)| format!("{name} {version}"));
+        Some(Dependency { name: name?, licence: text("license") })
+    };
+    foreign.map(dependency).collect::<Option<_>>().ok_or("a package without a name".into())
+}

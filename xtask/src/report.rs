@@ -1,0 +1,52 @@
+//! What each step did: a heading when it starts, a line in the list at the end.
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// How a step ended, with what there is to say about it (empty for nothing).
+#[derive(Debug, PartialEq)]
+pub enum Outcome {
+    Passed(String),
+    Skipped(String),
+    Failed(String),
+}
+
+/// The steps of one command, in the order in which they ran.
+#[derive(Default)]
+pub struct Report {
+    lines: Vec<String>,
+    failed: Vec<String>,
+}
+
+impl Report {
+    pub fn step(&mut self, name: &str, run: impl FnOnce() -> Outcome) {
+        println!("\n=== {name} ===");
+        let start = Instant::now();
+        let (word, note) = match run() {
+            Outcome::Passed(note) => ("passed", note),
+            Outcome::Skipped(why) => ("skipped", why),
+            Outcome::Failed(why) => {
+                self.failed.push(name.to_owned());
+                ("FAILED", why)
+            }
+        };
+        let mut line = format!("{word:8} {name} [{:.1} s]", start.elapsed().as_secs_f64());
+        if !note.is_empty() {
+            line += &format!(": {note}");
+        }
+        println!("{line}");
+        self.lines.push(line);
+    }
+
+    pub fn finish(self) -> ExitCode {
+        println!("\n=== summary ===");
+        for line in &self.lines {
+            println!("{line}");
+        }
+        if self.failed.is_empty() {
+            return ExitCode::SUCCESS;
+        }
+        println!("failed: {}", self.failed.join(", "));
+        ExitCode::FAILURE
+    }
+}

@@ -1,0 +1,52 @@
+//! A stamp: the text from which something was made, kept beside it. Same text, nothing to do.
+
+use std::path::PathBuf;
+
+pub struct Stamp {
+    file: PathBuf,
+    text: String,
+}
+
+impl Stamp {
+    pub fn new(file: PathBuf, text: String) -> Self {
+        Self { file, text }
+    }
+
+    pub fn is_fresh(&self) -> bool {
+        std::fs::read_to_string(&self.file).is_ok_and(|text| text == self.text)
+    }
+
+    /// Before making: an interrupted run must not look finished.
+    pub fn remove(&self) -> Result<(), String> {
+        match std::fs::remove_file(&self.file) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(self.complaint(&error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// After making.
+    pub fn write(&self) -> Result<(), String> {
+        std::fs::write(&self.file, &self.text).map_err(|error| self.complaint(&error))
+    }
+
+    fn complaint(&self, error: &std::io::Error) -> String {
+        format!("{}: {error}", self.file.display())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Stamp;
+
+    #[test]
+    fn fresh_after_writing_the_same_text_only() -> Result<(), String> {
+        let file = std::env::temp_dir().join(format!("mozzi-stamp-{}", std::process::id()));
+        let stamp = Stamp::new(file.clone(), "one".into());
+        stamp.remove()?;
+        assert!(!stamp.is_fresh());
+        stamp.write()?;
+        assert!(stamp.is_fresh());
+        assert!(!Stamp::new(file, "two".into()).is_fresh());
+        stamp.remove()
+    }
+}
