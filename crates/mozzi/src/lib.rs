@@ -9,6 +9,7 @@ pub mod linalg;
 pub mod model;
 pub mod scalar;
 pub mod spatial;
+mod task_space;
 #[cfg(test)]
 mod testing;
 pub use api::{BodyFrame, NewtonEuler};
@@ -19,3 +20,4 @@ pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{Description, Environment, Error, Frame, FrameId, Model, Workspace};
 pub use scalar::{Dual, Real, Scalar};
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
+pub use task_space::{Task, TaskFrame, TaskSpaceDynamics};

@@ -104,7 +104,8 @@ impl Model<f64> {
         let pivots = pivots.clone();
         let mut M = vec![0.0; n * n];
         kernel::mass_matrix(self, theta, workspace, &mut M);
-        for (j, &pivot) in pivots.iter().enumerate() {
+        // the outermost first: what it divided by spoils those below
+        for (j, &pivot) in pivots.iter().enumerate().rev() {
             let diagonal = M[j * n + j];
             if !(pivot > 64.0 * f64::EPSILON * diagonal && pivot.is_finite()) {
                 return Err(self.singular(j, pivot, diagonal, theta));

@@ -1,6 +1,7 @@
 //! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇).
 
 mod bias_forces;
+mod closed_form;
 mod coriolis_matrix;
 mod energy;
 mod forward_dynamics;
@@ -9,7 +10,11 @@ mod joint_friction;
 mod mass_matrix;
 mod mass_matrix_solve;
 
+#[cfg(test)]
+mod tests;
+
 pub use bias_forces::{bias_forces, gravity_forces, tip_forces, velocity_product};
+pub use closed_form::ClosedForm;
 pub use coriolis_matrix::{coriolis_matrix, mass_matrix_rate};
 pub use energy::{kinetic_energy, potential_energy};
 pub use forward_dynamics::forward_dynamics;

@@ -3,6 +3,7 @@
 mod build;
 mod check;
 pub mod description;
+mod edit;
 mod environment;
 mod error;
 mod frame;
