@@ -176,7 +176,15 @@ mod tests {
             }
             // the portable path is the plain kernel, bit for bit
             let mut tau = vec![0.0; n];
-            kernel::inverse_dynamics(&model, &theta, &dtheta, &x, &environment, &mut crate::Workspace::new(&model), &mut tau);
+            kernel::inverse_dynamics(
+                &model,
+                &theta,
+                &dtheta,
+                &x,
+                &environment,
+                &mut crate::Workspace::new(&model),
+                &mut tau,
+            );
             assert_eq!(tau, portable[0]);
         }
     }
