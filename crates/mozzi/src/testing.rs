@@ -2,7 +2,10 @@
 
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
-use crate::spatial::{SpatialInertia, Twist, Wrench};
+use crate::model::description::{Joint, JointKind, Mimic};
+use crate::model::{Description, Model};
+use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
+use alloc::format;
 
 /// Numbers in [−1, 1) from a seed (Steele and Vigna's SplitMix64).
 pub struct Random(pub u64);
@@ -46,4 +49,56 @@ pub fn inertia(seed: u64) -> SpatialInertia {
 pub fn distance(a: SE3, b: SE3) -> f64 {
     let (a, b) = (a.to_matrix(), b.to_matrix());
     a.as_flattened().iter().zip(b.as_flattened()).fold(0.0, |m, (x, y)| m.max((x - y).abs()))
+}
+
+/// A random tree of moving links: revolute, prismatic and helical joints, axes and masses off every frame, masses over
+/// four decades, fixed links folded in between, friction and armature; `followers` of the last joints follow others.
+pub fn tree(seed: u64, links: usize, followers: usize) -> Model {
+    let mut random = Random(seed + 3000);
+    let mut robot = Description::new("tree").link("link0", inertia(seed));
+    for i in 1..=links {
+        let parent = ((random.next() + 1.0) * 0.5 * i as f64) as usize;
+        // mostly chains, some branches
+        let parent = if random.next() < 0.4 { i - 1 } else { parent.min(i - 1) };
+        let mut V = Twist::from_array(random.array());
+        match i % 4 {
+            0 => V.w = Vec3::zero(),
+            1 => {}
+            _ => V.v = Vec3(random.array()).cross(V.w),
+        }
+        let (axis, _) = ScrewAxis::normalize(V).expect("a random screw");
+        let origin = SE3::exp(Twist::from_array(random.array()));
+        let mut joint = Joint::new(
+            format!("joint{i}"),
+            format!("link{parent}"),
+            format!("link{i}"),
+            origin,
+            JointKind::Screw(axis),
+        );
+        if i % 3 == 0 {
+            (joint.damping, joint.friction, joint.armature) = (0.3 + random.next() * 0.2, 0.5, 0.1);
+        }
+        if i > links - followers {
+            let joint_followed = format!("joint{}", 1 + (i * 7) % (links - followers));
+            joint.mimic = Some(Mimic { joint: joint_followed, ratio: 1.5 * random.next(), offset: random.next() });
+        }
+        let scale = 10.0_f64.powf(2.0 * random.next());
+        robot = robot.link(format!("link{i}"), inertia(seed + i as u64) * scale).joint(joint);
+        if i % 5 == 2 {
+            let origin = SE3::exp(Twist::from_array(random.array()));
+            let fixed =
+                Joint::new(format!("weld{i}"), format!("link{i}"), format!("tool{i}"), origin, JointKind::Fixed);
+            robot = robot.link(format!("tool{i}"), inertia(seed + 50 + i as u64)).joint(fixed);
+        }
+    }
+    robot = robot.frame("tip", format!("link{links}"), SE3::exp(twist(seed)));
+    robot.gravity = [0.3, -1.0, -9.7];
+    robot.end_effector = Some("tip".into());
+    robot.build().expect("a sound robot")
+}
+
+/// A random state (θ, θ̇, θ̈) of a model.
+pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {
+    let mut random = Random(seed + 4000);
+    [random.vector(model.nq(), 3.0), random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
 }

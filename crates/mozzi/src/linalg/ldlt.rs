@@ -49,7 +49,8 @@ impl Pattern {
     /// k's ancestors, nearest (largest) first.
     #[inline(always)]
     pub fn ancestors(&self, k: usize) -> impl Iterator<Item = usize> {
-        core::iter::successors(Some(self.parent[k]), |&i| Some(self.parent[i])).take_while(|&i| i != usize::MAX)
+        core::iter::successors(self.parent.get(k).copied(), |&i| self.parent.get(i).copied())
+            .take_while(|&i| i != usize::MAX)
     }
 }
 

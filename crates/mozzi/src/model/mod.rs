@@ -3,6 +3,7 @@
 mod build;
 mod check;
 pub mod description;
+mod edit;
 mod environment;
 mod error;
 mod frame;
@@ -126,6 +127,20 @@ impl<C: Scalar> Model<C> {
         }
     }
 
+    /// Panics unless each slice is as long as it should be: a wrong length is a bug of the caller.
+    #[inline(always)]
+    #[track_caller]
+    pub(crate) fn assert_lengths<const K: usize>(&self, positions: usize, velocities: [usize; K]) {
+        assert!(positions == self.nq(), "theta has {positions} entries, expected {}", self.nq());
+        for found in velocities {
+            assert!(
+                found == self.n(),
+                "a slice has {found} entries, expected one for each of the {} velocities",
+                self.n()
+            );
+        }
+    }
+
     /// Moving links with their slots and constants as `S`, base to tips.
     #[inline(always)]
     pub(crate) fn outward<S: Scalar + From<C>>(&self) -> impl Iterator<Item = (usize, Link<S>)> {
@@ -141,7 +156,7 @@ impl<C: Scalar> Model<C> {
     /// The moving links from a slot's own down to the base.
     #[inline(always)]
     pub(crate) fn to_base<S: Scalar + From<C>>(&self, slot: usize) -> impl Iterator<Item = (usize, Link<S>)> {
-        core::iter::successors(Some(slot), |&i| Some(self.links[i - 1].parent))
+        core::iter::successors(Some(slot), |&i| Some(self.links[i.checked_sub(1)?].parent))
             .take_while(|&i| i > 0)
             .map(|i| (i, self.links[i - 1].lift()))
     }

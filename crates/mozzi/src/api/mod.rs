@@ -1,0 +1,27 @@
+//! The methods of [`Model`]: the kernels on plain numbers, answering with an error where a kernel would panic, and with
+//! nalgebra's vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
+
+mod dynamics;
+mod forward_dynamics;
+mod kinematics;
+mod newton_euler;
+
+pub use newton_euler::{BodyFrame, NewtonEuler};
+
+use crate::model::{Error, Model};
+
+impl Model<f64> {
+    /// Every argument as long as it must be.
+    pub(crate) fn check_lengths<const K: usize>(
+        &self,
+        theta: &[f64],
+        velocities: [(&'static str, &[f64]); K],
+    ) -> Result<(), Error> {
+        let (q, v) =
+            ([("theta", theta.len(), self.nq())], velocities.map(|(what, slice)| (what, slice.len(), self.n())));
+        match q.into_iter().chain(v).find(|(_, found, expected)| found != expected) {
+            Some((what, found, expected)) => Err(Error::WrongLength { what, found, expected }),
+            None => Ok(()),
+        }
+    }
+}

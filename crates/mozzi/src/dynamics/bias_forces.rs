@@ -1,0 +1,89 @@
+//! The parts of τ: each is inverse dynamics with arguments set to zero (Modern Robotics, section 8.5).
+
+use super::inverse_dynamics::newton_euler;
+use crate::linalg::Vec3;
+use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::Wrench;
+
+/// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction. Wrenches in `environment.applied` and a
+/// base that moves are counted in, where they are given.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ or `h` not n.
+#[inline(always)]
+pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    h: &mut [S],
+) {
+    with_zeros(workspace, |zero, workspace| newton_euler(model, theta, dtheta, zero, environment, workspace, h));
+}
+
+/// c(θ, θ̇), the Coriolis and centripetal forces, quadratic in θ̇; base at rest.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ or `c` not n.
+#[inline(always)]
+pub fn velocity_product<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    workspace: &mut Workspace<S>,
+    c: &mut [S],
+) {
+    bias_forces(model, theta, dtheta, &Environment::with_gravity(Vec3::zero()), workspace, c);
+}
+
+/// g(θ), the forces that hold the robot against gravity; base at rest.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `g` not n.
+#[inline(always)]
+pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    gravity: Vec3<S>,
+    workspace: &mut Workspace<S>,
+    g: &mut [S],
+) {
+    let environment = Environment::with_gravity(gravity);
+    with_zeros(workspace, |zero, workspace| newton_euler(model, theta, zero, zero, &environment, workspace, g));
+}
+
+/// JᵀF: what the joints must carry for the wrenches that frames apply to the environment, each in its frame's
+/// coordinates.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or τ not n.
+#[inline(always)]
+pub fn tip_forces<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    applied: &[(FrameId, Wrench<S>)],
+    workspace: &mut Workspace<S>,
+    tau: &mut [S],
+) {
+    let environment = Environment { applied, ..Environment::with_gravity(Vec3::zero()) };
+    with_zeros(workspace, |zero, workspace| newton_euler(model, theta, zero, zero, &environment, workspace, tau));
+}
+
+/// Lends n zeros out of the workspace.
+#[inline(always)]
+fn with_zeros<S: Scalar>(workspace: &mut Workspace<S>, run: impl FnOnce(&[S], &mut Workspace<S>)) {
+    let mut zero = core::mem::take(&mut workspace.vector);
+    zero.fill(S::zero());
+    run(&zero, workspace);
+    workspace.vector = zero;
+}

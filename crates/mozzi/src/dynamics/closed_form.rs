@@ -1,0 +1,191 @@
+//! The book's stacked closed form (Modern Robotics, section 8.4): dense, to look at, and computed apart from the kernels,
+//! from the screws in the centre-of-mass frames.
+
+use super::joint_friction::joint_friction;
+use crate::lie::SE3;
+use crate::model::{Environment, Error, Model};
+use crate::spatial::{Twist, Wrench};
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// Every stacked vector and matrix of the closed form at one state, for N moving links and n joints. Frame {i} is at the
+/// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first.
+///
+/// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
+/// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
+#[derive(Clone, Debug)]
+pub struct ClosedForm {
+    /// 𝒜, 6N × n: the screw axes on the block diagonal; a follower's stands in its master's column, times its ratio.
+    pub A: DMatrix<f64>,
+    /// 𝒢, 6N × 6N: the spatial inertias.
+    pub G: DMatrix<f64>,
+    /// 𝒲(θ), 6N × 6N: `[Ad_T_ip]` in the block of link i and its parent p. Nilpotent of the tree's depth.
+    pub W: DMatrix<f64>,
+    /// ℒ(θ) = (I − 𝒲)⁻¹ = I + 𝒲 + 𝒲² + …, 6N × 6N.
+    pub L: DMatrix<f64>,
+    /// `[ad_𝒱]`, 6N × 6N.
+    pub ad_V: DMatrix<f64>,
+    /// `[ad_𝒜θ̇]`, 6N × 6N.
+    pub ad_Adtheta: DMatrix<f64>,
+    /// 𝒱 = ℒ(𝒜θ̇ + 𝒱_base), 6N.
+    pub V: DVector<f64>,
+    /// 𝒱_base, 6N: `[Ad_T_i0]` 𝒱₀ for the links on the base.
+    pub V_base: DVector<f64>,
+    /// 𝒱̇_base, 6N: `[Ad_T_i0]` 𝒱̇₀ for the links on the base, gravity in it.
+    pub dV_base: DVector<f64>,
+    /// 𝓕_tip, 6N: what each link applies to the environment.
+    pub F_tip: DVector<f64>,
+    /// θ̇.
+    pub dtheta: DVector<f64>,
+    /// The rotors' inertia at each joint.
+    pub armature: DVector<f64>,
+    /// f(θ̇), the friction in the joints.
+    pub friction: DVector<f64>,
+}
+
+impl Model<f64> {
+    /// The stacked closed form at (θ, θ̇). O(N³): to read and to compare.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn closed_form(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<ClosedForm, Error> {
+        self.check_lengths(theta, [("dtheta", dtheta)])?;
+        let (lists, N, n) = (self.screws(), self.moving_links(), self.n());
+        let mut form = ClosedForm {
+            A: DMatrix::zeros(6 * N, n),
+            G: DMatrix::zeros(6 * N, 6 * N),
+            W: DMatrix::zeros(6 * N, 6 * N),
+            L: DMatrix::identity(6 * N, 6 * N),
+            ad_V: DMatrix::zeros(6 * N, 6 * N),
+            ad_Adtheta: DMatrix::zeros(6 * N, 6 * N),
+            V: DVector::zeros(6 * N),
+            V_base: DVector::zeros(6 * N),
+            dV_base: DVector::zeros(6 * N),
+            F_tip: DVector::zeros(6 * N),
+            dtheta: DVector::from_column_slice(dtheta),
+            armature: DVector::from_column_slice(&self.armature),
+            friction: DVector::from_fn(n, |j, _| joint_friction(self, j, dtheta[j])),
+        };
+        for (i, link) in self.links.iter().enumerate() {
+            let (A, q) = (lists.A[i], link.ratio * theta[link.q] + link.offset);
+            let T = SE3::exp(A * -q) * lists.M_relative[i].inverse(); // T_{i,p} = e^{−[A]q} M_{i,p}
+            let Ad = matrix6(T.Ad().to_matrix());
+            match link.parent {
+                0 => {
+                    form.V_base.rows_mut(6 * i, 6).copy_from(&(&Ad * vector6(environment.base_twist)));
+                    form.dV_base.rows_mut(6 * i, 6).copy_from(&(&Ad * vector6(environment.proper_base_acceleration())));
+                }
+                parent => form.W.view_mut((6 * i, 6 * (parent - 1)), (6, 6)).copy_from(&Ad),
+            }
+            form.A.view_mut((6 * i, link.j), (6, 1)).copy_from(&vector6(A * link.ratio));
+            form.G.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&matrix6(lists.G[i].to_matrix()));
+            let ad = matrix6((A * (link.ratio * dtheta[link.j])).ad().to_matrix());
+            form.ad_Adtheta.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&ad);
+        }
+        let mut power = form.W.clone();
+        while power.iter().any(|&x| x != 0.0) && !power.iter().any(|x| x.is_nan()) {
+            form.L += &power;
+            power = &form.W * power;
+        }
+        form.V = &form.L * (&form.A * &form.dtheta + &form.V_base);
+        for i in 0..N {
+            let V = Twist::from_array(core::array::from_fn(|k| form.V[6 * i + k]));
+            form.ad_V.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&matrix6(V.ad().to_matrix()));
+        }
+        for &(frame, F) in environment.applied {
+            let frame = self.frames[frame.0];
+            if frame.slot > 0 {
+                let Ad = matrix6((frame.T.inverse() * self.body_frame(frame.slot)).Ad().to_matrix());
+                let mut block = form.F_tip.rows_mut(6 * (frame.slot - 1), 6);
+                block += Ad.transpose() * DVector::from_column_slice(&F.to_array());
+            }
+        }
+        Ok(form)
+    }
+}
+
+impl ClosedForm {
+    /// M = 𝒜ᵀℒᵀ𝒢ℒ𝒜 + diag(armature).
+    pub fn mass_matrix(&self) -> DMatrix<f64> {
+        self.jacobians().transpose() * &self.G * self.jacobians() + DMatrix::from_diagonal(&self.armature)
+    }
+
+    /// The stacked body Jacobians ℒ𝒜, 6N × n: block i is J_ib, with 𝒱_i = J_ib θ̇ and M = Σ J_ibᵀ𝒢_iJ_ib.
+    pub fn jacobians(&self) -> DMatrix<f64> {
+        &self.L * &self.A
+    }
+
+    /// The book's matrix before θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + [ad_𝒱]ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ less twice this
+    /// matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
+    pub fn factor_of_c(&self) -> DMatrix<f64> {
+        let inner = &self.G * &self.L * &self.ad_Adtheta * &self.W + self.ad_V.transpose() * &self.G;
+        -(self.jacobians().transpose() * inner * self.jacobians())
+    }
+
+    /// c, base at rest.
+    pub fn velocity_product(&self) -> DVector<f64> {
+        self.factor_of_c() * &self.dtheta
+    }
+
+    /// g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base.
+    pub fn gravity_forces(&self) -> DVector<f64> {
+        self.jacobians().transpose() * &self.G * &self.L * &self.dV_base
+    }
+
+    /// JᵀF = 𝒜ᵀℒᵀ𝓕_tip.
+    pub fn tip_forces(&self) -> DVector<f64> {
+        self.jacobians().transpose() * &self.F_tip
+    }
+
+    /// 𝒱̇ = ℒ(𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base), 6N, at any motion of the base.
+    pub fn accelerations(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
+        &self.L * (&self.A * ddtheta - &self.ad_Adtheta * (&self.W * &self.V + &self.V_base) + &self.dV_base)
+    }
+
+    /// 𝓕 = ℒᵀ(𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip), 6N.
+    pub fn wrenches(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
+        let own = &self.G * self.accelerations(ddtheta) - self.ad_V.transpose() * &self.G * &self.V + &self.F_tip;
+        self.L.transpose() * own
+    }
+
+    /// τ = 𝒜ᵀ𝓕 + armature θ̈ + f(θ̇), at any motion of the base.
+    pub fn inverse_dynamics(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
+        self.A.transpose() * self.wrenches(ddtheta) + self.armature.component_mul(ddtheta) + &self.friction
+    }
+
+    /// Ṁ = −(X + Xᵀ) with X = 𝒜ᵀℒᵀ𝒢ℒ[ad_𝒜θ̇]𝒲ℒ𝒜 (Modern Robotics, exercise 8.7); base at rest.
+    pub fn mass_matrix_rate(&self) -> DMatrix<f64> {
+        let X = self.jacobians().transpose() * &self.G * &self.L * &self.ad_Adtheta * &self.W * self.jacobians();
+        -(&X + X.transpose())
+    }
+
+    /// The Coriolis matrix of the Christoffel symbols, C = 𝒜ᵀℒᵀ(½(𝒢[ad_𝒱] − [ad_𝒱]ᵀ𝒢 + H(𝒢𝒱)) − 𝒢ℒ[ad_𝒜θ̇]𝒲)ℒ𝒜 with
+    /// H(m, f) = `[[−[m], −[f]], [−[f], 0]]`: Cθ̇ = c and Ṁ = C + Cᵀ; base at rest.
+    pub fn coriolis_matrix(&self) -> DMatrix<f64> {
+        let momenta = &self.G * &self.V;
+        let mut H = DMatrix::zeros(self.G.nrows(), self.G.ncols());
+        for i in 0..momenta.len() / 6 {
+            let P = Wrench::from_array(core::array::from_fn(|k| momenta[6 * i + k]));
+            let (m, f) = (crate::Mat3::hat(-P.m).rows(), crate::Mat3::hat(-P.f).rows());
+            for r in 0..3 {
+                for s in 0..3 {
+                    H[(6 * i + r, 6 * i + s)] = m[r][s];
+                    H[(6 * i + r, 6 * i + 3 + s)] = f[r][s];
+                    H[(6 * i + 3 + r, 6 * i + s)] = f[r][s];
+                }
+            }
+        }
+        let inner = (&self.G * &self.ad_V - self.ad_V.transpose() * &self.G + H) * 0.5
+            - &self.G * &self.L * &self.ad_Adtheta * &self.W;
+        self.jacobians().transpose() * inner * self.jacobians()
+    }
+}
+
+fn matrix6(rows: [[f64; 6]; 6]) -> DMatrix<f64> {
+    DMatrix::from_fn(6, 6, |i, j| rows[i][j])
+}
+
+fn vector6(V: Twist) -> DVector<f64> {
+    let entries: Vec<f64> = V.to_array().to_vec();
+    DVector::from_vec(entries)
+}

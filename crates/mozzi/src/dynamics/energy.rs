@@ -1,0 +1,54 @@
+//! Kinetic and potential energy.
+
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::Twist;
+
+/// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of the moving links; `base_twist` is the base's, in base
+/// coordinates (zero for ½ θ̇ᵀMθ̇).
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ not n.
+#[rustfmt::skip]
+pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>,
+) -> S {
+    model.assert_lengths(theta.len(), [dtheta.len()]);
+    let V = &mut workspace.V;
+    V[0] = base_twist;
+    let mut twice = S::zero();
+    for (i, link) in model.outward::<S>() {
+        V[i] = link.transform(theta).Ad() * V[link.parent] + link.A * link.rate(dtheta);
+        twice += V[i].dot(link.G * V[i]);
+    }
+    for (&armature, &rate) in model.armature.iter().zip(dtheta) {
+        twice += S::from(armature) * rate * rate;
+    }
+    twice * S::from_f64(0.5)
+}
+
+/// 𝒫 = −Σ m_i gᵀp_i in joules, p_i the centres of mass of the moving links seen from the base; 0 for a mass at the base's
+/// origin.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long.
+#[rustfmt::skip]
+pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], gravity: Vec3<S>, workspace: &mut Workspace<S>,
+) -> S {
+    model.assert_lengths(theta.len(), []);
+    let T = &mut workspace.T;
+    T[0] = SE3::identity();
+    let mut first_moment = Vec3::zero();
+    for (i, link) in model.outward::<S>() {
+        T[i] = T[link.parent] * link.transform(theta).inverse();                 // T_{0,i}
+        first_moment += T[i].R * link.G.mc + T[i].p * link.G.mass;
+    }
+    -gravity.dot(first_moment)
+}

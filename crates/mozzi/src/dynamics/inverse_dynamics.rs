@@ -1,0 +1,71 @@
+//! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
+
+use super::joint_friction::joint_friction;
+use crate::model::{Environment, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::Wrench;
+
+/// The joint forces and torques τ that produce the motion (θ, θ̇, θ̈):
+///
+/// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇), with f = d θ̇ + μ sgn θ̇
+///
+/// where M holds the rotors' inertia (armature) and F is what `environment.applied` says the robot applies to its
+/// environment. N m for revolute and helical joints, N for prismatic ones.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇, θ̈ or τ not n.
+#[inline(always)]
+pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    ddtheta: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    tau: &mut [S],
+) {
+    newton_euler(model, theta, dtheta, ddtheta, environment, workspace, tau);
+    for j in 0..tau.len() {
+        tau[j] += S::from(model.armature[j]) * ddtheta[j] + joint_friction(model, j, dtheta[j]);
+    }
+}
+
+/// The links' part of τ, without armature and friction. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link;
+/// 𝓕_0 is the wrench that the base applies to the chain.
+#[inline(always)]
+#[rustfmt::skip] // one equation a line, as in the book
+pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
+) {
+    model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
+    let Workspace { T, V, dV, F, .. } = workspace;
+
+    // base: at its given twist, accelerating against gravity; nothing hangs from it yet
+    (V[0], dV[0], F[0]) = (environment.base_twist, environment.proper_base_acceleration(), Wrench::zero());
+
+    // base to tips: configuration, twist and acceleration of each link, and the wrench that its motion needs
+    for (i, link) in model.outward::<S>() {
+        let (A, G, parent) = (link.A, link.G, link.parent);
+        let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
+        T[i]  = link.transform(theta);                                                    // T_{i,i−1} = e^{−[A]q} M_{i,i−1}
+        let Ad = T[i].Ad();
+        V[i]  = Ad * V[parent] + A * dq;                                                  // (8.51)
+        dV[i] = Ad * dV[parent] + V[i].ad() * (A * dq) + A * ddq;                         // (8.52)
+        F[i]  = G * dV[i] - V[i].ad().transpose() * (G * V[i]);                           // (8.53), its own part
+    }
+    for &(frame, F_b) in environment.applied {
+        let frame = model.frame_at::<S>(frame);
+        F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;                        // by link i to the environment
+    }
+
+    // tips to base: what each joint must carry (a follower adds to its master)
+    tau.fill(S::zero());
+    for (i, link) in model.inward::<S>() {
+        tau[link.j] += link.ratio * (link.A * F[i]);                                      // (8.54)
+        let F_i = T[i].Ad().transpose() * F[i];
+        F[link.parent] += F_i;                                                            // (8.53), the child's part
+    }
+}

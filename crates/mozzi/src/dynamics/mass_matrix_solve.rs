@@ -1,0 +1,41 @@
+//! Forward dynamics by the mass matrix: composite rigid bodies, then LᵀDL along the tree's sparsity.
+
+use super::bias_forces::bias_forces;
+use super::joint_friction::joint_friction;
+use super::mass_matrix::mass_matrix;
+use crate::linalg::ldlt;
+use crate::model::{Environment, Model, Workspace};
+use crate::scalar::Scalar;
+
+/// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ̇), with h by one call of inverse dynamics. `M` is
+/// memory for n × n numbers; afterwards it holds the factors. The way for models whose joints follow others.
+///
+/// Cost O(n · depth²), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, θ̇, τ or θ̈ not n, or `M` not n².
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and the memory for M
+pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    tau: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    M: &mut [S],
+    ddtheta: &mut [S],
+) {
+    model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
+    let (n, pattern) = (model.n(), &model.structure.pattern);
+    bias_forces(model, theta, dtheta, environment, workspace, ddtheta);
+    for j in 0..n {
+        ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
+    }
+    mass_matrix(model, theta, workspace, M);
+    ldlt::factor(pattern, n, M);
+    ldlt::solve(pattern, n, M, ddtheta);
+    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
+        *pivot = M[j * n + j];
+    }
+}

@@ -1,0 +1,23 @@
+//! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇).
+
+mod bias_forces;
+mod closed_form;
+mod coriolis_matrix;
+mod energy;
+mod forward_dynamics;
+mod inverse_dynamics;
+mod joint_friction;
+mod mass_matrix;
+mod mass_matrix_solve;
+
+#[cfg(test)]
+mod tests;
+
+pub use bias_forces::{bias_forces, gravity_forces, tip_forces, velocity_product};
+pub use closed_form::ClosedForm;
+pub use coriolis_matrix::{coriolis_matrix, mass_matrix_rate};
+pub use energy::{kinetic_energy, potential_energy};
+pub use forward_dynamics::forward_dynamics;
+pub use inverse_dynamics::inverse_dynamics;
+pub use mass_matrix::mass_matrix;
+pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;

@@ -1,0 +1,325 @@
+//! The kernels against the closed form, against each other, and against the identities of mechanics, on random trees.
+
+use crate::model::{Environment, Model, Workspace};
+use crate::testing::{Random, state, tree, twist, wrench};
+use crate::{Dual, Scalar, dynamics as kernel};
+use nalgebra::{DMatrix, DVector};
+
+const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12, 4), (20, 0)];
+
+fn models() -> impl Iterator<Item = (u64, Model)> {
+    TREES.iter().enumerate().flat_map(|(k, &(links, followers))| {
+        (0..4).map(move |s| (10 * k as u64 + s, tree(10 * k as u64 + s, links, followers)))
+    })
+}
+
+/// |a − b| over ε times the size of the terms.
+#[track_caller]
+fn close(a: &DMatrix<f64>, b: &DMatrix<f64>, scale: f64, bound: f64, what: &str) {
+    let error = (a - b).amax() / (f64::EPSILON * scale.max(a.amax()).max(b.amax()));
+    assert!(error < bound, "{what}: normalised error {error}");
+}
+fn column(v: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_column_slice(v.len(), 1, v.as_slice())
+}
+
+#[test]
+fn the_kernels_equal_the_closed_form() {
+    for (seed, model) in models() {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let tip = model.end_effector().expect("named");
+        let at_rest = model.environment();
+        let form = model.closed_form(&theta, &dtheta, &at_rest).expect("lengths");
+        let M = model.mass_matrix(&theta).expect("lengths");
+        close(&M, &form.mass_matrix(), 0.0, 300.0, "M");
+        let c = column(&model.velocity_product(&theta, &dtheta).expect("lengths"));
+        let C = model.coriolis_matrix(&theta, &dtheta).expect("lengths");
+        let scale = M.amax() * dtheta.iter().fold(1.0_f64, |m, x| m.max(x * x));
+        close(&c, &column(&form.velocity_product()), scale, 300.0, "c");
+        close(&C, &form.coriolis_matrix(), scale, 1000.0, "C");
+        close(
+            &model.mass_matrix_rate(&theta, &dtheta).expect("lengths"),
+            &form.mass_matrix_rate(),
+            scale,
+            1000.0,
+            "dM",
+        );
+        close(
+            &column(&model.gravity_forces(&theta).expect("lengths")),
+            &column(&form.gravity_forces()),
+            0.0,
+            300.0,
+            "g",
+        );
+
+        // all at once: a base that moves, wrenches on two frames, friction and armature
+        let other = model.frame("link1").expect("a link");
+        let applied = [(tip, wrench(seed)), (other, wrench(seed + 1) * 10.0)];
+        let everything =
+            Environment { base_twist: twist(seed), base_acceleration: twist(seed + 1), applied: &applied, ..at_rest };
+        let form = model.closed_form(&theta, &dtheta, &everything).expect("lengths");
+        let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &everything).expect("lengths");
+        close(
+            &column(&tau),
+            &column(&form.inverse_dynamics(&DVector::from_column_slice(&ddtheta))),
+            0.0,
+            1000.0,
+            "tau",
+        );
+        close(
+            &column(&model.tip_forces(&theta, &applied).expect("lengths")),
+            &column(&form.tip_forces()),
+            0.0,
+            300.0,
+            "JᵀF",
+        );
+    }
+}
+
+#[test]
+fn w_is_nilpotent_and_l_its_geometric_sum() {
+    let model = tree(5, 8, 0);
+    let [theta, dtheta, _] = state(&model, 5);
+    let form = model.closed_form(&theta, &dtheta, &model.environment()).expect("lengths");
+    let one = DMatrix::identity(form.W.nrows(), form.W.ncols());
+    close(&((&one - &form.W) * &form.L), &one, form.L.amax(), 100.0, "(I − W)L");
+    let power = (0..8).fold(one, |power, _| power * &form.W);
+    assert_eq!(power.amax(), 0.0);
+}
+
+#[test]
+fn three_forward_dynamics_invert_inverse_dynamics() {
+    for (seed, model) in models() {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let tip = model.end_effector().expect("named");
+        let environment =
+            Environment { base_twist: twist(seed), applied: &[(tip, wrench(seed))], ..model.environment() };
+        let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+        let M = model.mass_matrix(&theta).expect("lengths");
+        for (what, found) in [
+            ("default", model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment)),
+            ("mass matrix", model.forward_dynamics_by_mass_matrix(&theta, &dtheta, tau.as_slice(), &environment)),
+            ("n calls", model.forward_dynamics_by_inverse_dynamics(&theta, &dtheta, tau.as_slice(), &environment)),
+        ] {
+            // backward error: M θ̈ against τ
+            let found = found.expect("a regular mass matrix");
+            let again = model.inverse_dynamics(&theta, &dtheta, found.as_slice(), &environment).expect("lengths");
+            close(&column(&again), &column(&tau), M.amax() * found.amax(), 1000.0, what);
+        }
+    }
+}
+
+#[test]
+fn identities_of_the_coriolis_matrix() {
+    for (seed, model) in models() {
+        let [theta, dtheta, _] = state(&model, seed);
+        let C = model.coriolis_matrix(&theta, &dtheta).expect("lengths");
+        let c = model.velocity_product(&theta, &dtheta).expect("lengths");
+        let scale =
+            model.mass_matrix(&theta).expect("lengths").amax() * dtheta.iter().fold(1.0_f64, |m, x| m.max(x * x));
+        close(&column(&(&C * DVector::from_column_slice(&dtheta))), &column(&c), scale, 1000.0, "Cθ̇ = c");
+        let dM = model.mass_matrix_rate(&theta, &dtheta).expect("lengths");
+        let skew = &dM - &C * 2.0;
+        close(&(-skew.transpose()), &skew, scale, 4.0, "Ṁ − 2C skew");
+        // Ṁ against dual numbers
+        let moving: alloc::vec::Vec<Dual> =
+            theta.iter().zip(&dtheta).map(|(&value, &derivative)| Dual { value, derivative }).collect();
+        let (n, dual) = (model.n(), model.map(Dual::constant));
+        let mut M = alloc::vec![Dual::zero(); n * n];
+        kernel::mass_matrix(&dual, &moving, &mut Workspace::new(&dual), &mut M);
+        close(&DMatrix::from_fn(n, n, |i, j| M[i * n + j].derivative), &dM, scale, 1000.0, "Ṁ");
+        // and C against the Christoffel symbols Γ_ijk = ½(∂M_ij/∂θ_k + ∂M_ik/∂θ_j − ∂M_jk/∂θ_i), by dual numbers
+        let dM_by: alloc::vec::Vec<DMatrix<f64>> = (0..n)
+            .map(|k| {
+                let theta: alloc::vec::Vec<Dual> = theta
+                    .iter()
+                    .enumerate()
+                    .map(|(i, &value)| Dual { value, derivative: f64::from(u8::from(i == k)) })
+                    .collect();
+                kernel::mass_matrix(&model, &theta, &mut Workspace::new(&model), &mut M);
+                DMatrix::from_fn(n, n, |i, j| M[i * n + j].derivative)
+            })
+            .collect();
+        let christoffel = DMatrix::from_fn(n, n, |i, j| {
+            (0..n).map(|k| 0.5 * (dM_by[k][(i, j)] + dM_by[j][(i, k)] - dM_by[i][(j, k)]) * dtheta[k]).sum()
+        });
+        close(&christoffel, &C, scale, 1000.0, "Christoffel");
+    }
+}
+
+#[test]
+fn energies_and_power() {
+    for (seed, model) in models() {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let M = model.mass_matrix(&theta).expect("lengths");
+        let rates = DVector::from_column_slice(&dtheta);
+        let kinetic = model.kinetic_energy(&theta, &dtheta).expect("lengths");
+        assert!((kinetic / (0.5 * rates.dot(&(&M * &rates))) - 1.0).abs() < 1e-12);
+        // dE/dt = θ̇ᵀ(τ − f(θ̇)) − 𝒱ᵀF_tip, the left side by dual numbers
+        let dual = |x: &[f64], dx: &[f64]| -> alloc::vec::Vec<Dual> {
+            x.iter().zip(dx).map(|(&value, &derivative)| Dual { value, derivative }).collect()
+        };
+        let mut workspace = Workspace::new(&model);
+        let (q, dq) = (dual(&theta, &dtheta), dual(&dtheta, &ddtheta));
+        let energy = kernel::kinetic_energy(&model, &q, &dq, crate::Twist::zero(), &mut workspace)
+            + kernel::potential_energy(&model, &q, model.gravity().map(Dual::constant), &mut workspace);
+        let tip = model.end_effector().expect("named");
+        let F = wrench(seed) * 5.0;
+        let environment = Environment { applied: &[(tip, F)], ..model.environment() };
+        let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+        let V = &model.body_jacobian(&theta, tip).expect("lengths") * &dtheta[..];
+        let friction: f64 =
+            (0..model.n()).map(|j| super::joint_friction::joint_friction(&model, j, dtheta[j]) * dtheta[j]).sum();
+        let power = rates.dot(&tau) - friction - V.dot(F);
+        let scale = rates.amax() * tau.amax() * rates.len() as f64;
+        assert!((energy.derivative - power).abs() < 1e-12 * scale, "{} {power}", energy.derivative);
+        // g is the gradient of the potential energy
+        let g = model.gravity_forces(&theta).expect("lengths");
+        let along: f64 = rates.dot(&g);
+        let slope =
+            kernel::potential_energy(&model, &q, model.gravity().map(Dual::constant), &mut workspace).derivative;
+        assert!((along - slope).abs() < 1e-12 * g.amax() * rates.amax() * rates.len() as f64);
+    }
+}
+
+#[test]
+fn the_workspace_has_no_meaning_between_calls() {
+    for (seed, model) in models() {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let (n, environment) = (model.n(), model.environment());
+        let run = |workspace: &mut Workspace, clean: bool| {
+            let mut all = alloc::vec::Vec::new();
+            let mut out = alloc::vec![0.0; n];
+            let mut square = alloc::vec![0.0; n * n];
+            let poison = |w: &mut Workspace| {
+                if !clean {
+                    w.poison()
+                }
+            };
+            poison(workspace);
+            kernel::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
+            all.extend_from_slice(&out);
+            poison(workspace);
+            kernel::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
+            all.extend_from_slice(&out);
+            poison(workspace);
+            kernel::gravity_forces(&model, &theta, environment.gravity, workspace, &mut out);
+            all.extend_from_slice(&out);
+            poison(workspace);
+            kernel::mass_matrix(&model, &theta, workspace, &mut square);
+            all.extend_from_slice(&square);
+            poison(workspace);
+            kernel::coriolis_matrix(&model, &theta, &dtheta, workspace, &mut square);
+            all.extend_from_slice(&square);
+            poison(workspace);
+            all.push(kernel::kinetic_energy(&model, &theta, &dtheta, crate::Twist::zero(), workspace));
+            poison(workspace);
+            all.push(kernel::potential_energy(&model, &theta, environment.gravity, workspace));
+            all
+        };
+        let clean = run(&mut Workspace::new(&model), true);
+        assert_eq!(clean, run(&mut Workspace::new(&model), false));
+        assert!(clean.iter().all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn nan_in_nan_out() {
+    let model = tree(3, 5, 0);
+    let [mut theta, dtheta, tau] = state(&model, 3);
+    theta[2] = f64::NAN;
+    let found = model.forward_dynamics(&theta, &dtheta, &tau, &model.environment()).expect("NaN is no error");
+    assert!(found.iter().any(|x| x.is_nan()));
+}
+
+#[test]
+fn f32_runs_on_the_same_source() {
+    let model = tree(4, 6, 1);
+    let [theta, dtheta, ddtheta] = state(&model, 4);
+    let small = |x: &[f64]| x.iter().map(|&x| x as f32).collect::<alloc::vec::Vec<f32>>();
+    let single = model.map(f32::from_f64);
+    let mut tau = alloc::vec![0.0_f32; model.n()];
+    let workspace = &mut Workspace::<f32>::new(&single);
+    kernel::inverse_dynamics(
+        &single,
+        &small(&theta),
+        &small(&dtheta),
+        &small(&ddtheta),
+        &single.environment(),
+        workspace,
+        &mut tau,
+    );
+    let reference = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment()).expect("lengths");
+    let error =
+        tau.iter().zip(reference.iter()).fold(0.0_f64, |m, (&a, b)| m.max((f64::from(a) - b).abs())) / reference.amax();
+    assert!(error < 100.0 * f64::from(f32::EPSILON), "{error}");
+}
+
+#[test]
+fn a_wrong_length_is_named() {
+    let model = tree(1, 3, 0);
+    let error = model.inverse_dynamics(&[0.0; 3], &[0.0; 2], &[0.0; 3], &model.environment()).expect_err("two rates");
+    assert_eq!(error.to_string(), "dtheta has 2 entries, expected 3");
+}
+
+#[test]
+fn a_massless_tip_is_a_singular_mass_matrix() {
+    use crate::model::description::{Joint, JointKind};
+    use crate::{Description, SE3, ScrewAxis, SpatialInertia};
+    let z = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit"));
+    let build = |armature: f64| {
+        let origin = SE3::exp(twist(1));
+        let mut last = Joint::new("last", "arm", "tip", origin, z);
+        last.armature = armature;
+        Description::new("robot")
+            .link("base", SpatialInertia::zero())
+            .link("arm", crate::testing::inertia(1))
+            .link("tip", SpatialInertia::zero())
+            .joint(Joint::new("first", "base", "arm", origin, z))
+            .joint(last)
+            .build()
+            .expect("a sound robot")
+    };
+    let model = build(0.0);
+    let (x, environment) = ([0.1, 0.2], model.environment());
+    for result in [
+        model.forward_dynamics(&x, &x, &x, &environment),
+        model.forward_dynamics_by_mass_matrix(&x, &x, &x, &environment),
+        model.forward_dynamics_by_inverse_dynamics(&x, &x, &x, &environment),
+    ] {
+        let message = result.expect_err("nothing to accelerate").to_string();
+        assert!(message.contains("singular at joint `last`"), "{message}");
+    }
+    let model = build(0.01);
+    assert!(model.forward_dynamics(&x, &x, &x, &model.environment()).is_ok());
+}
+
+#[test]
+fn a_hanging_weight_pulls_as_its_wrench_does() {
+    use crate::{Mat3, Vec3};
+    // a weight glued to the tip, against the wrench that the robot must apply to hold it
+    let model = tree(2, 5, 0);
+    let [theta, _, _] = state(&model, 2);
+    let zero = alloc::vec![0.0; model.n()];
+    let tip = model.end_effector().expect("named");
+    let (mass, gravity) = (3.0, model.gravity());
+    let R: Mat3 = model.forward_kinematics(&theta, tip).expect("lengths").R.matrix();
+    let weight = crate::Wrench { m: Vec3::zero(), f: R.transpose_mul(gravity * -mass) }; // holds it up, in tip coordinates
+    let held = Environment { applied: &[(tip, weight)], ..model.environment() };
+    let by_wrench = model.inverse_dynamics(&theta, &zero, &zero, &held).expect("lengths");
+    let glued = model.with_payload(tip, crate::SpatialInertia::point_mass(mass, Vec3::zero())).expect("a frame");
+    let by_mass = glued.inverse_dynamics(&theta, &zero, &zero, &glued.environment()).expect("lengths");
+    close(&column(&by_wrench), &column(&by_mass), 0.0, 100.0, "weight");
+}
+
+#[test]
+fn random_states_many() {
+    let model = tree(42, 10, 0);
+    let mut random = Random(7);
+    for _ in 0..50 {
+        let theta = random.vector(10, 3.0);
+        let M = model.mass_matrix(&theta).expect("lengths");
+        assert!(M.clone().cholesky().is_some(), "M is positive definite");
+        assert_eq!(M, M.transpose());
+    }
+}

@@ -1,0 +1,89 @@
+//! Jacobians of a frame (Modern Robotics, chapter 5).
+
+use crate::lie::SE3;
+use crate::model::{FrameId, Model};
+use crate::scalar::Scalar;
+use crate::spatial::{Twist, Wrench};
+use alloc::vec::Vec;
+use core::ops::Mul;
+
+/// The n columns of a Jacobian: 𝒱 = Jθ̇, τ = JᵀF.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jacobian<S = f64>(pub Vec<Twist<S>>);
+
+impl<S: Scalar> Mul<&[S]> for &Jacobian<S> {
+    type Output = Twist<S>;
+    /// 𝒱 = Jθ̇.
+    fn mul(self, dtheta: &[S]) -> Twist<S> {
+        twist_of(&self.0, dtheta)
+    }
+}
+
+impl<S: Scalar> Jacobian<S> {
+    /// τ = JᵀF.
+    pub fn transpose_mul(&self, F: Wrench<S>) -> Vec<S> {
+        self.0.iter().map(|column| column.dot(F)).collect()
+    }
+}
+
+impl Jacobian<f64> {
+    /// The 6 × n matrix, angular rows first.
+    pub fn matrix(&self) -> nalgebra::DMatrix<f64> {
+        nalgebra::DMatrix::from_fn(6, self.0.len(), |row, column| self.0[column].to_array()[row])
+    }
+}
+
+#[inline(always)]
+pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
+    columns.iter().zip(dtheta).fold(Twist::zero(), |V, (&column, &rate)| V + column * rate)
+}
+
+/// The body Jacobian `J_b`(θ) of a frame {b}: 𝒱_b = `J_b` θ̇ in {b} coordinates (Modern Robotics 5.18). `J` takes its n
+/// columns; zero for joints that do not move the frame. A follower adds ratio × its own to its master's column.
+///
+/// Cost O(depth), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `J` not n.
+pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    frame: FrameId,
+    J: &mut [Twist<S>],
+) {
+    body_columns(model, theta, frame, J);
+}
+
+/// The space Jacobian `J_s`(θ) of a frame {b}: 𝒱_s = `J_s` θ̇ in base coordinates (Modern Robotics 5.11), by
+/// `J_s` = `[Ad_T_sb]` `J_b`. `J` takes its n columns.
+///
+/// Cost O(depth), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `J` not n.
+pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    frame: FrameId,
+    J: &mut [Twist<S>],
+) {
+    let T_sb = body_columns(model, theta, frame, J);
+    for column in J {
+        *column = T_sb.Ad() * *column;
+    }
+}
+
+/// Fills the body Jacobian and returns `T_sb`.
+#[inline(always)]
+#[rustfmt::skip]
+pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], frame: FrameId, J: &mut [Twist<S>]) -> SE3<S> {
+    model.assert_lengths(theta.len(), [J.len()]);
+    J.fill(Twist::zero());
+    let frame = model.frame_at::<S>(frame);
+    let mut T = frame.T.inverse();                                        // T_{b,i}
+    for (_, link) in model.to_base::<S>(frame.slot) {
+        J[link.j] += T.Ad() * link.A.twist() * link.ratio;                // J_i = Ad_{T_{b,i}} A_i
+        T = T * link.transform(theta);                                    // T_{b,i−1} = T_{b,i} T_{i,i−1}
+    }
+    T.inverse()
+}

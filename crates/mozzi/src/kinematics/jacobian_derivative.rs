@@ -1,0 +1,70 @@
+//! ∂J_i/∂θ_j of both Jacobians (Modern Robotics, exercise 8.6).
+
+use crate::lie::SE3;
+use crate::model::{FrameId, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::Twist;
+
+/// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j where joint j is between joint i and the frame,
+/// else 0.
+///
+/// Cost O(n² + depth²), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `H` not n².
+pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    frame: FrameId,
+    workspace: &mut Workspace<S>,
+    H: &mut [Twist<S>],
+) {
+    brackets(model, theta, frame, workspace, H, |outer, inner, bracket, H, n| H[inner * n + outer] += bracket);
+}
+
+/// ∂J_i/∂θ_j of the space Jacobian, at `H[i * n + j]`: `[ad_{J_j}]` J_i where joint j is between the base and joint i,
+/// else 0.
+///
+/// Cost O(n² + depth²), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `H` not n².
+pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    frame: FrameId,
+    workspace: &mut Workspace<S>,
+    H: &mut [Twist<S>],
+) {
+    let T_sb =
+        brackets(model, theta, frame, workspace, H, |outer, inner, bracket, H, n| H[outer * n + inner] += bracket);
+    for entry in H {
+        *entry = T_sb.Ad() * *entry;
+    }
+}
+
+/// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of joints on the frame's path; returns `T_sb`.
+fn brackets<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    frame: FrameId,
+    workspace: &mut Workspace<S>,
+    H: &mut [Twist<S>],
+    add: impl Fn(usize, usize, Twist<S>, &mut [Twist<S>], usize),
+) -> SE3<S> {
+    let n = model.n();
+    model.assert_lengths(theta.len(), []);
+    assert!(H.len() == n * n, "H has {} entries, expected n² = {}", H.len(), n * n);
+    H.fill(Twist::zero());
+    let frame = model.frame_at::<S>(frame);
+    let J = &mut workspace.V;
+    let mut T = frame.T.inverse(); // T_{b,i}
+    for (i, inner) in model.to_base::<S>(frame.slot) {
+        J[i] = T.Ad() * inner.A.twist() * inner.ratio;
+        for (k, outer) in model.to_base::<S>(frame.slot).take_while(|&(k, _)| k != i) {
+            add(outer.j, inner.j, J[i].ad() * J[k], H, n);
+        }
+        T = T * inner.transform(theta);
+    }
+    T.inverse()
+}

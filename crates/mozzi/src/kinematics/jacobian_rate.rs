@@ -1,0 +1,52 @@
+//! Rates of the Jacobians along a motion.
+
+use super::jacobian::{body_columns, twist_of};
+use crate::model::{FrameId, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::Twist;
+
+/// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` takes its n columns,
+/// J̇_i = `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame.
+///
+/// Cost O(depth), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ or `dJ` not n.
+#[rustfmt::skip]
+pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], dtheta: &[S], frame: FrameId, dJ: &mut [Twist<S>]) {
+    model.assert_lengths(theta.len(), [dtheta.len(), dJ.len()]);
+    dJ.fill(Twist::zero());
+    let frame = model.frame_at::<S>(frame);
+    let mut T = frame.T.inverse();                                        // T_{b,i}
+    let mut V = Twist::zero();                                            // of the frame seen from link i
+    for (_, link) in model.to_base::<S>(frame.slot) {
+        let J_i = T.Ad() * link.A.twist();
+        dJ[link.j] += J_i.ad() * V * link.ratio;
+        V += J_i * link.rate(dtheta);
+        T = T * link.transform(theta);
+    }
+}
+
+/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in base coordinates. `dJ` takes its n columns,
+/// J̇_s = `[Ad_T_sb]` (`[ad_V_b]` `J_b` + J̇_b).
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ or `dJ` not n.
+pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    frame: FrameId,
+    workspace: &mut Workspace<S>,
+    dJ: &mut [Twist<S>],
+) {
+    body_jacobian_rate(model, theta, dtheta, frame, dJ);
+    let J = &mut workspace.V[..model.n()];
+    let T_sb = body_columns(model, theta, frame, J);
+    let V_b = twist_of(J, dtheta);
+    for (dJ_i, &J_i) in dJ.iter_mut().zip(&*J) {
+        *dJ_i = T_sb.Ad() * (V_b.ad() * J_i + *dJ_i);
+    }
+}

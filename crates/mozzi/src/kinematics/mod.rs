@@ -1,0 +1,11 @@
+//! Where frames are and how they move.
+
+mod forward;
+mod jacobian;
+mod jacobian_derivative;
+mod jacobian_rate;
+
+pub use forward::{forward_kinematics, frame_poses};
+pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
+pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};
+pub use jacobian_rate::{body_jacobian_rate, space_jacobian_rate};

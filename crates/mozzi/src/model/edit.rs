@@ -1,0 +1,198 @@
+//! New robots from old ones: payloads, locked joints, parts of a robot, further frames.
+
+use super::description::{JointKind, NamedFrame};
+use super::{Description, Error, FrameId, Model};
+use crate::lie::SE3;
+use crate::spatial::SpatialInertia;
+use alloc::collections::BTreeSet;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+impl Model<f64> {
+    /// The same robot carrying a body, its inertia given in a frame's coordinates.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the numbers are not finite.
+    pub fn with_payload(&self, frame: FrameId, inertia: SpatialInertia) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        let (link, T) = self.link_of(frame);
+        robot.links[link].inertia += inertia.congruence(T.inverse().Ad());
+        robot.build()
+    }
+
+    /// The same robot with a further frame, `T` seen from a frame that it has; as end effector if asked.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the name is taken.
+    pub fn with_frame(&self, name: impl Into<String>, on: FrameId, T: SE3) -> Result<Model, Error> {
+        let (mut robot, (link, T_link_on)) = (self.description().clone(), self.link_of(on));
+        let link = robot.links[link].name.clone();
+        robot.frames.push(NamedFrame { name: name.into(), link, T: T_link_on * T });
+        robot.build()
+    }
+
+    /// The same robot with this frame as its end effector.
+    pub fn with_end_effector(&self, frame: FrameId) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        robot.end_effector = Some(self.frame_name(frame).to_string());
+        robot.build()
+    }
+
+    /// The same robot under another gravity, in base coordinates, m/s².
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the numbers are not finite.
+    pub fn with_gravity(&self, gravity: [f64; 3]) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        robot.gravity = gravity;
+        robot.build()
+    }
+
+    /// The same robot with joints held at these positions; their followers are held where they follow to.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a follower or a position that is not finite.
+    pub fn with_locked_joints(&self, positions: &[(&str, f64)]) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        for &(name, position) in positions {
+            let i = robot.joint_at(name)?;
+            if let Some(mimic) = &robot.joints[i].mimic {
+                let found = alloc::format!("`{name}`, which follows `{}`", mimic.joint);
+                return Err(Error::BadArgument {
+                    what: "the joint to lock",
+                    found,
+                    expected: "a joint that follows none",
+                });
+            }
+            if !position.is_finite() {
+                let found = alloc::format!("{position} for `{name}`");
+                return Err(Error::BadArgument { what: "the position to lock at", found, expected: "a finite number" });
+            }
+            // followers of followers too: each round locks those whose master was locked in the one before
+            let mut locked = alloc::vec![(i, position)];
+            while let Some((i, position)) = locked.pop() {
+                let joint = &mut robot.joints[i];
+                let name = joint.name.clone();
+                if let JointKind::Screw(A) = joint.kind {
+                    joint.origin = joint.origin * SE3::exp(A * position);
+                    (joint.kind, joint.mimic) = (JointKind::Fixed, None);
+                }
+                locked.extend(robot.joints.iter().enumerate().filter_map(|(k, joint)| {
+                    let mimic = joint.mimic.as_ref().filter(|mimic| mimic.joint == name)?;
+                    Some((k, mimic.ratio * position + mimic.offset))
+                }));
+            }
+        }
+        robot.build()
+    }
+
+    /// The part of the robot from one link, which becomes the base, to another: what hangs from the links between, off
+    /// the path, is left out. Gravity keeps its coordinates: give the part its own where its base is turned.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] when `to` does not hang from `from`, or a joint on the path follows one off it.
+    pub fn sub_chain(&self, from: FrameId, to: FrameId) -> Result<Model, Error> {
+        let whole = self.description();
+        let (from, to) = (self.link_of(from).0, self.link_of(to).0);
+        let (mut links, mut joints, mut at) = (BTreeSet::from([to]), BTreeSet::new(), to);
+        while at != from {
+            let Some(i) = whole.joints.iter().position(|joint| joint.child == whole.links[at].name) else {
+                let found = alloc::format!("from `{}` to `{}`", whole.links[from].name, whole.links[to].name);
+                return Err(Error::BadArgument {
+                    what: "the sub-chain",
+                    found,
+                    expected: "a link and one that hangs from it",
+                });
+            };
+            joints.insert(i);
+            at = whole.links.iter().position(|link| link.name == whole.joints[i].parent).unwrap_or(from);
+            links.insert(at);
+        }
+        for &i in &joints {
+            let joint = &whole.joints[i];
+            if let Some(mimic) = &joint.mimic
+                && !joints.iter().any(|&k| whole.joints[k].name == mimic.joint)
+            {
+                let found = alloc::format!("`{}`, which follows `{}` off the path", joint.name, mimic.joint);
+                return Err(Error::BadArgument {
+                    what: "a joint of the sub-chain",
+                    found,
+                    expected: "a master on the path",
+                });
+            }
+        }
+        let has = |name: &String| links.iter().any(|&i| whole.links[i].name == *name);
+        Description {
+            name: whole.name.clone(),
+            links: links.iter().map(|&i| whole.links[i].clone()).collect(),
+            joints: joints.iter().map(|&i| whole.joints[i].clone()).collect(),
+            frames: whole.frames.iter().filter(|frame| has(&frame.link)).cloned().collect::<Vec<_>>(),
+            end_effector: Some(whole.links[to].name.clone()),
+            gravity: whole.gravity,
+        }
+        .build()
+    }
+
+    /// The link of the description that carries a frame, and the frame seen from it.
+    fn link_of(&self, frame: FrameId) -> (usize, SE3) {
+        let robot = self.description();
+        match frame.0.checked_sub(robot.links.len()) {
+            None => (frame.0, SE3::identity()),
+            Some(k) => {
+                let frame = &robot.frames[k];
+                (robot.links.iter().position(|link| link.name == frame.link).unwrap_or(0), frame.T)
+            }
+        }
+    }
+}
+
+impl Description {
+    fn joint_at(&self, name: &str) -> Result<usize, Error> {
+        self.joints.iter().position(|joint| joint.name == name).ok_or_else(|| Error::NoSuchJoint {
+            name: name.to_string(),
+            known: self.joints.iter().map(|joint| joint.name.clone()).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{distance, state, tree};
+
+    #[test]
+    fn a_locked_joint_is_a_joint_that_does_not_move() {
+        for (followers, seed) in [(0, 1), (2, 2)] {
+            let model = tree(seed, 7, followers);
+            let [mut theta, mut dtheta, mut ddtheta] = state(&model, seed);
+            (dtheta[1], ddtheta[1]) = (0.0, 0.0);
+            let name = model.joint_names().nth(1).expect("a joint").to_string();
+            let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment()).expect("lengths");
+            let locked = model.with_locked_joints(&[(&name, theta[1])]).expect("a joint");
+            for list in [&mut theta, &mut dtheta, &mut ddtheta] {
+                list.remove(1);
+            }
+            let without = locked.inverse_dynamics(&theta, &dtheta, &ddtheta, &locked.environment()).expect("lengths");
+            for (a, b) in tau.iter().enumerate().filter(|(j, _)| *j != 1).map(|(_, x)| x).zip(without.iter()) {
+                assert!((a - b).abs() < 1e-11 * tau.amax(), "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_sub_chain_moves_as_in_the_whole() {
+        let model = tree(11, 9, 0);
+        let (base, tip) = (model.frame("link0").expect("base"), model.frame("link9").expect("a link"));
+        let part = model.sub_chain(base, tip).expect("a path");
+        let [theta, _, _] = state(&model, 11);
+        let theta_part: Vec<f64> = part
+            .joint_names()
+            .map(|name| theta[model.joint_names().position(|known| known == name).expect("a joint")])
+            .collect();
+        let (whole, part) = (
+            model.forward_kinematics(&theta, tip).expect("lengths"),
+            part.forward_kinematics(&theta_part, part.end_effector().expect("named")).expect("lengths"),
+        );
+        assert!(distance(whole, part) < 1e-14);
+        assert!(model.sub_chain(tip, base).is_err());
+    }
+}

@@ -1,0 +1,120 @@
+//! Dynamics in the task space (Modern Robotics, section 8.6; for redundant robots Khatib 1987).
+
+use crate::kinematics::Jacobian;
+use crate::model::{Environment, Error, FrameId, Model};
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// In whose coordinates the task's twist and wrench are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaskFrame {
+    /// The frame's own: 𝒱_b, with v the velocity of the frame's origin.
+    Body,
+    /// The base's: 𝒱_s, with v the velocity of the point of the body that is at the base's origin.
+    Space,
+}
+
+/// What the task is: a frame, whose coordinates, and which of the six rows (ω, v), by index.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    /// The frame that is to move.
+    pub frame: FrameId,
+    /// In whose coordinates.
+    pub coordinates: TaskFrame,
+    /// Rows of (ω_x, ω_y, ω_z, v_x, v_y, v_z), each once.
+    pub rows: &'a [usize],
+}
+
+impl Task<'_> {
+    /// All six rows.
+    pub fn all(frame: FrameId, coordinates: TaskFrame) -> Self {
+        Task { frame, coordinates, rows: &[0, 1, 2, 3, 4, 5] }
+    }
+}
+
+/// 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱) for the k rows of a task.
+#[derive(Clone, Debug)]
+pub struct TaskSpaceDynamics {
+    /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k: the mass matrix that the task's frame shows.
+    pub Lambda: DMatrix<f64>,
+    /// η = Λ(J M⁻¹h − J̇θ̇), k.
+    pub eta: DVector<f64>,
+    /// J, k × n.
+    pub J: DMatrix<f64>,
+    /// J̇θ̇, k: 𝒱̇ = J̇θ̇ + Jθ̈.
+    pub dJ_dtheta: DVector<f64>,
+}
+
+impl TaskSpaceDynamics {
+    /// 𝓕 = Λ𝒱̇ + η: the wrench that moves the task's frame so, by τ = Jᵀ𝓕.
+    pub fn wrench(&self, dV: &DVector<f64>) -> DVector<f64> {
+        &self.Lambda * dV + &self.eta
+    }
+}
+
+impl Model<f64> {
+    /// Λ and η of a task. Where the task has n independent rows they are the book's J⁻ᵀMJ⁻¹ and
+    /// J⁻ᵀh − ΛJ̇J⁻¹𝒱; where the robot has more joints, the dynamically consistent ones. h as
+    /// [`bias_forces`](Self::bias_forces) in this environment, without friction. O(n³).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for rows that are none or not distinct;
+    /// [`Error::SingularMassMatrix`]; [`Error::SingularTask`] with the singular values of J where its rows cannot be moved
+    /// independently (the smallest below 10⁻¹² of the largest).
+    pub fn task_space_dynamics(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        task: Task,
+        environment: &Environment,
+    ) -> Result<TaskSpaceDynamics, Error> {
+        self.check_lengths(theta, [("dtheta", dtheta)])?;
+        let distinct = (1..task.rows.len()).all(|k| !task.rows[..k].contains(&task.rows[k]));
+        if task.rows.is_empty() || task.rows.iter().any(|&row| row > 5) || !distinct {
+            let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
+            return Err(Error::BadArgument {
+                what: "the task's rows",
+                found: alloc::format!("{:?}", task.rows),
+                expected,
+            });
+        }
+        let (J, dJ) = match task.coordinates {
+            TaskFrame::Body => {
+                (self.body_jacobian(theta, task.frame)?, self.body_jacobian_rate(theta, dtheta, task.frame)?)
+            }
+            TaskFrame::Space => {
+                (self.space_jacobian(theta, task.frame)?, self.space_jacobian_rate(theta, dtheta, task.frame)?)
+            }
+        };
+        let rows = |J: Jacobian| J.matrix().select_rows(task.rows);
+        let (J, dJ) = (rows(J), rows(dJ));
+        let dtheta_vector = DVector::from_column_slice(dtheta);
+        let dJ_dtheta = dJ * &dtheta_vector;
+
+        let mut singular_values: Vec<f64> = J.singular_values().iter().copied().collect();
+        singular_values.resize(task.rows.len(), 0.0); // more rows than joints
+        let tolerance = 1e-12 * singular_values[0];
+        if singular_values.iter().any(|&s| s <= tolerance) {
+            return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
+        }
+        // M⁻¹ column by column, by the kernels: M⁻¹Jᵀ and M⁻¹h
+        let h = self.bias_forces(theta, dtheta, environment)?;
+        let M = self.mass_matrix(theta)?;
+        let Some(factors) = M.cholesky() else {
+            // names the joint
+            self.forward_dynamics_by_mass_matrix(theta, dtheta, dtheta, environment)?;
+            return Err(Error::BadArgument {
+                what: "the mass matrix",
+                found: "not positive definite".into(),
+                expected: "a positive definite one",
+            });
+        };
+        let inverse_mobility = &J * factors.solve(&J.transpose()); // Λ⁻¹
+        let Some(mobility) = inverse_mobility.cholesky() else {
+            return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
+        };
+        let Lambda = mobility.inverse();
+        let eta = mobility.solve(&(&J * factors.solve(&h) - &dJ_dtheta));
+        Ok(TaskSpaceDynamics { Lambda, eta, J, dJ_dtheta })
+    }
+}
