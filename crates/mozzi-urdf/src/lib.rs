@@ -1,1 +1,176 @@
-//! Reads URDF robot descriptions.
+//! Reads robot descriptions in URDF: text in, [`Description`] out, and diagnostics that point at the place.
+//!
+//! Nothing is guessed in silence. What is wrong is an error, all errors of one run are reported together; what is odd is
+//! a warning; what is right is never mentioned.
+//!
+//! ```
+//! let robot = mozzi_urdf::open("ur5")?; // or a path
+//! assert!(robot.warnings.is_empty());
+//! let model = robot.build()?;
+//! assert_eq!(model.n(), 6);
+//!
+//! let error = mozzi_urdf::parse("arm.urdf", b"<robot name='arm'><link name='a'><intertial/></link></robot>");
+//! assert_eq!(
+//!     error.expect_err("a misspelled word").to_string(),
+//!     "arm.urdf is refused: 1 error\n\
+//!      arm.urdf:1:35: error: link `a`: has an element <intertial>, which URDF does not know here"
+//! );
+//! # Ok::<(), mozzi_urdf::LoadError>(())
+//! ```
+mod axis;
+mod bytes;
+mod context;
+mod diagnostic;
+mod element;
+pub mod embedded;
+mod error;
+mod finding;
+mod joint;
+mod limit;
+mod link;
+mod number;
+mod origin;
+mod places;
+mod pretty;
+mod problem;
+mod robot;
+mod scan;
+mod source;
+mod spelling;
+mod syntax;
+mod words;
+
+pub use diagnostic::Diagnostic;
+pub use error::LoadError;
+pub use mozzi::model::Severity;
+pub use pretty::Style;
+
+use context::Context;
+use element::Element;
+use finding::{Findings, Placed};
+use mozzi::{Description, Model};
+use places::Places;
+use source::Source;
+use std::io::Read;
+use std::path::Path;
+
+/// A robot that was read, and what is odd about it.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The robot as its file tells it.
+    pub description: Description,
+    /// In the order of the file.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Loaded {
+    /// The model of this robot; the warnings are dropped.
+    ///
+    /// # Errors
+    /// [`LoadError::Build`], which a description that was read does not give.
+    pub fn build(self) -> Result<Model, LoadError> {
+        Ok(self.description.build()?)
+    }
+}
+
+/// How strictly a file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// Warnings are errors.
+    Strict,
+    /// Errors are refused, warnings are said.
+    #[default]
+    Default,
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// [`LoadError::File`] when it cannot be read, [`LoadError::Refused`] with all that is wrong with it.
+pub fn load(path: impl AsRef<Path>) -> Result<Loaded, LoadError> {
+    load_with(path, Policy::Default)
+}
+
+/// Reads a file under a policy.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: impl AsRef<Path>, policy: Policy) -> Result<Loaded, LoadError> {
+    let path = path.as_ref();
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| {
+        // one byte more than is accepted, so that a file which is too large is known as such and never read whole
+        file.take(bytes::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)
+    });
+    match read {
+        Ok(_) => parse_with(&path.to_string_lossy(), &bytes, policy),
+        Err(source) => Err(LoadError::File { path: path.to_path_buf(), source }),
+    }
+}
+
+/// Reads a text. The name is what diagnostics call it.
+///
+/// # Errors
+/// [`LoadError::Refused`] with all that is wrong with it.
+pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, LoadError> {
+    parse_with(file_name, text, Policy::Default)
+}
+
+/// Reads a text under a policy.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Result<Loaded, LoadError> {
+    let mut findings = Findings::default();
+    let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
+    let description = if findings.has_errors() { None } else { read(&source, &mut findings) };
+    let Placed { mut diagnostics, errors, omitted } = findings.place(&source);
+    if policy == Policy::Strict {
+        diagnostics = diagnostics.into_iter().map(Diagnostic::into_error).collect();
+    }
+    match description {
+        Some(description) if errors == 0 && (policy != Policy::Strict || diagnostics.is_empty()) => {
+            Ok(Loaded { description, warnings: diagnostics })
+        }
+        _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, omitted }),
+    }
+}
+
+/// The model of a file; what is odd about the file is dropped.
+///
+/// # Errors
+/// As [`load`].
+pub fn model(path: impl AsRef<Path>) -> Result<Model, LoadError> {
+    load(path)?.build()
+}
+
+/// A robot by the name of one that mozzi brings along (see [`embedded`]), or by its file's path.
+///
+/// # Errors
+/// As [`load`]; [`LoadError::NoSuchRobot`] when there is neither.
+pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
+    match embedded::text(name_or_path) {
+        Some(text) => parse(&format!("{name_or_path}.urdf"), text),
+        None if Path::new(name_or_path).exists() => load(name_or_path),
+        None => Err(LoadError::NoSuchRobot { name: name_or_path.to_string() }),
+    }
+}
+
+/// From text to a description, all findings noted.
+fn read(source: &Source, findings: &mut Findings) -> Option<Description> {
+    let document = match syntax::parse(source) {
+        Ok(document) => document,
+        Err(finding) => {
+            findings.add(finding);
+            return None;
+        }
+    };
+    let mut cx = Context::default();
+    std::mem::swap(&mut cx.findings, findings);
+    let root = Element::new(document.root_element(), &source.text, "robot".to_string());
+    let result = robot::read(&root, &mut cx);
+    *findings = cx.findings;
+    let (description, places): (Description, Places) = result?;
+    problem::findings(&description, &places).into_iter().for_each(|finding| findings.add(finding));
+    Some(description)
+}

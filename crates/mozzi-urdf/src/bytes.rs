@@ -1,0 +1,38 @@
+//! From bytes to text: size and encoding.
+
+use crate::finding::{Finding, Findings};
+
+/// Larger files are refused unread.
+pub(crate) const MOST_BYTES: usize = 64 << 20;
+
+/// The text without its byte order mark, or what is wrong with it and the part of it that can be shown.
+pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
+    if bytes.len() > MOST_BYTES {
+        let message = format!("the file has {} bytes, expected at most {MOST_BYTES}", bytes.len());
+        return Err(("", Finding::error("too_large", 0..0, message)));
+    }
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        let message = "the file is encoded as UTF-16, expected UTF-8".to_string();
+        let help = "save it as UTF-8";
+        return Err(("", Finding::error("not_utf8", 0..0, message).help(help)));
+    }
+    let bytes = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|error| {
+        let at = error.valid_up_to();
+        let good = std::str::from_utf8(&bytes[..at]).unwrap_or_default();
+        let message = format!("byte {at} of the text is {:#04x}, which is not UTF-8", bytes[at]);
+        let help = "save the file as UTF-8; a file that declares another encoding has to be converted";
+        (good, Finding::error("not_utf8", at..at, message).help(help))
+    })
+}
+
+/// The same into a report.
+pub(crate) fn read<'b>(bytes: &'b [u8], findings: &mut Findings) -> &'b str {
+    match to_text(bytes) {
+        Ok(text) => text,
+        Err((shown, finding)) => {
+            findings.add(finding);
+            shown
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Robots that mozzi brings along, each with the source of its numbers in its file.
+
+/// Name and text.
+const ROBOTS: [(&str, &str); 5] = [
+    ("double_pendulum", include_str!("../../../models/double_pendulum.urdf")),
+    ("furuta_pendulum", include_str!("../../../models/furuta_pendulum.urdf")),
+    ("panda", include_str!("../../../models/panda.urdf")),
+    ("two_link_planar", include_str!("../../../models/two_link_planar.urdf")),
+    ("ur5", include_str!("../../../models/ur5.urdf")),
+];
+
+/// The names, in alphabetical order.
+pub fn names() -> impl ExactSizeIterator<Item = &'static str> {
+    ROBOTS.iter().map(|&(name, _)| name)
+}
+
+/// The URDF text of a robot.
+pub fn text(name: &str) -> Option<&'static str> {
+    ROBOTS.iter().find(|&&(known, _)| known == name).map(|&(_, text)| text)
+}

@@ -1,0 +1,104 @@
+//! Why a robot was not loaded.
+
+use crate::diagnostic::Diagnostic;
+use crate::embedded;
+use mozzi::model::Severity;
+use std::fmt;
+use std::path::PathBuf;
+
+/// More diagnostics are counted, not printed.
+pub(crate) const PRINTED: usize = 20;
+
+/// Why a robot was not loaded. Displays as one line per error; [`pretty`](Self::pretty) shows the places.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The file cannot be read.
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Neither a robot that mozzi brings along nor a file.
+    NoSuchRobot {
+        /// What was asked for.
+        name: String,
+    },
+    /// The file is wrong: all that was found.
+    Refused {
+        /// Its name.
+        file: String,
+        /// Errors, and warnings beside them, in the order of the file; at most a thousand of each.
+        diagnostics: Vec<Diagnostic>,
+        /// Found beyond those.
+        omitted: usize,
+    },
+    /// The model could not be built from a description that was accepted.
+    Build(mozzi::Error),
+}
+
+impl LoadError {
+    /// Errors and warnings, in the order of the file; empty where no file was read.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match self {
+            LoadError::Refused { diagnostics, .. } => diagnostics,
+            _ => &[],
+        }
+    }
+
+    /// The errors among them.
+    pub fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics().iter().filter(|diagnostic| diagnostic.severity() == Severity::Error)
+    }
+
+    pub(crate) fn more(&self) -> usize {
+        let LoadError::Refused { omitted, .. } = self else { return 0 };
+        omitted + self.errors().count().saturating_sub(PRINTED)
+    }
+
+    /// "robot.urdf is refused: 3 errors"
+    pub(crate) fn headline(&self) -> String {
+        match self {
+            LoadError::File { path, source } => format!("{} cannot be read: {source}", path.display()),
+            LoadError::NoSuchRobot { name } => {
+                let known: Vec<&str> = embedded::names().collect();
+                format!("`{name}` is neither a file nor one of the robots {}", crate::words::list(&known))
+            }
+            LoadError::Refused { file, omitted, .. } => match omitted + self.errors().count() {
+                1 => format!("{file} is refused: 1 error"),
+                n => format!("{file} is refused: {n} errors"),
+            },
+            LoadError::Build(error) => error.to_string(),
+        }
+    }
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.headline())?;
+        for diagnostic in self.errors().take(PRINTED) {
+            write!(f, "\n{diagnostic}")?;
+        }
+        match self.more() {
+            0 => Ok(()),
+            more => write!(f, "\nand {more} more"),
+        }
+    }
+}
+
+impl std::error::Error for LoadError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            LoadError::File { source, .. } => Some(source),
+            LoadError::Build(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<mozzi::Error> for LoadError {
+    fn from(error: mozzi::Error) -> Self {
+        LoadError::Build(error)
+    }
+}

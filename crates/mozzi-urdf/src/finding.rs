@@ -1,0 +1,91 @@
+//! What a reader noticed, before its place is looked up.
+
+use crate::diagnostic::Diagnostic;
+use crate::source::{Source, Walker};
+use mozzi::model::Severity;
+use std::ops::Range;
+
+/// More are counted, not kept.
+pub(crate) const MOST_FINDINGS: usize = 1000;
+
+/// Something noticed at a span of the text.
+#[derive(Clone, Debug)]
+pub(crate) struct Finding {
+    pub severity: Severity,
+    pub code: &'static str,
+    pub span: Range<usize>,
+    pub message: String,
+    pub help: Option<String>,
+}
+
+impl Finding {
+    pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Finding { severity: Severity::Error, code, span, message: message.into(), help: None }
+    }
+
+    pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Finding { severity: Severity::Warning, ..Finding::error(code, span, message) }
+    }
+
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub fn maybe_help(mut self, help: Option<String>) -> Self {
+        self.help = help;
+        self
+    }
+}
+
+/// Everything noticed, the first thousand of either severity.
+#[derive(Default)]
+pub(crate) struct Findings {
+    kept: Vec<Finding>,
+    errors: usize,
+    warnings: usize,
+}
+
+/// All findings with their places, in the order of the file.
+pub(crate) struct Placed {
+    pub diagnostics: Vec<Diagnostic>,
+    pub errors: usize,
+    /// Errors found, but not kept.
+    pub omitted: usize,
+}
+
+impl Findings {
+    pub fn add(&mut self, finding: Finding) {
+        let count = match finding.severity {
+            Severity::Error => &mut self.errors,
+            Severity::Warning => &mut self.warnings,
+        };
+        *count += 1;
+        if *count <= MOST_FINDINGS {
+            self.kept.push(finding);
+        }
+    }
+
+    pub fn error(&mut self, code: &'static str, span: Range<usize>, message: impl Into<String>) {
+        self.add(Finding::error(code, span, message));
+    }
+
+    pub fn has_errors(&self) -> bool {
+        self.errors > 0
+    }
+
+    /// Looks up every place in one pass.
+    pub fn place(mut self, source: &Source) -> Placed {
+        let omitted = self.errors.saturating_sub(MOST_FINDINGS);
+        for finding in &mut self.kept {
+            finding.span = source.clamp(finding.span.clone());
+        }
+        self.kept.sort_by_key(|finding| finding.span.start);
+        let mut walker = Walker::new(&source.text);
+        let placed = |finding: Finding| {
+            let position = walker.advance(finding.span.start);
+            Diagnostic::new(finding, position, source.clone())
+        };
+        Placed { diagnostics: self.kept.into_iter().map(placed).collect(), errors: self.errors, omitted }
+    }
+}

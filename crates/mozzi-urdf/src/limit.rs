@@ -1,0 +1,89 @@
+//! `<limit>`: how far, how fast, how strong.
+//!
+//! URDF demands a limit of revolute and prismatic joints, and takes 0 for a bound that is not given. Published robots
+//! (eight joints in two of the robots of `example-robot-data`: wheels and knees) give effort and velocity and no bound,
+//! and mean a joint that turns freely, not one that cannot move. So: with no bound at all the joint is unlimited, with
+//! one bound the other is URDF's 0; either way the user is told.
+
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::places::Place;
+use crate::words::LIMIT;
+use mozzi::model::description::Limits;
+
+/// The limits of a joint that moves.
+pub(crate) fn read(
+    kind: &str,
+    limit: Option<&Element>,
+    joint: &Element,
+    place: &mut Place,
+    cx: &mut Context,
+) -> Limits {
+    let Some(limit) = limit else {
+        if kind != "continuous" {
+            let message = format!("{}: has no <limit>, expected one on a {kind} joint", joint.subject);
+            let help = match kind {
+                "revolute" => "it is taken as unlimited; a joint that turns freely is of type `continuous`",
+                _ => "it is taken as unlimited",
+            };
+            cx.findings.add(Finding::warning("missing_limit", joint.span(), message).help(help));
+        }
+        return Limits::default();
+    };
+    limit.check_attributes(&LIMIT, cx);
+    limit.check_children(&LIMIT, cx);
+    for (name, attribute) in [("lower", "limits"), ("velocity", "velocity limit"), ("effort", "effort limit")] {
+        if let Some(value) = limit.attribute(name) {
+            place.set(attribute, value.span);
+        }
+    }
+    let mut number = |name| match limit.attribute(name) {
+        Some(value) => (true, limit.vector::<1>(name, &value, cx).map(|[x]| x)),
+        None => (false, None),
+    };
+    let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"].map(&mut number);
+    if kind == "continuous" {
+        continuous(limit, joint, [lower.1, upper.1], cx);
+        return Limits { position: None, velocity: velocity.1, effort: effort.1 };
+    }
+    let mut missing = |name: &str, help: &str| {
+        let message = format!("{}: has no attribute `{name}`, expected one on a {kind} joint", limit.subject);
+        cx.findings.add(Finding::warning("missing_limit", limit.span(), message).help(help));
+    };
+    let position = match (lower, upper) {
+        ((false, _), (false, _)) => {
+            missing("lower", "with neither `lower` nor `upper` the joint is taken as unlimited");
+            None
+        }
+        ((true, low), (false, _)) => {
+            missing("upper", "it is taken as 0, URDF's default");
+            low.map(|low| [low, 0.0])
+        }
+        ((false, _), (true, high)) => {
+            missing("lower", "it is taken as 0, URDF's default");
+            high.map(|high| [0.0, high])
+        }
+        ((true, low), (true, high)) => low.zip(high).map(|(low, high)| [low, high]),
+    };
+    for (name, (is_there, _)) in [("velocity", velocity), ("effort", effort)] {
+        if !is_there {
+            missing(name, "it is taken as unlimited");
+        }
+    }
+    Limits { position, velocity: velocity.1, effort: effort.1 }
+}
+
+/// A continuous joint has no bounds; those that say nothing, because a full turn or more lies between them, or nothing
+/// at all, pass in silence.
+fn continuous(limit: &Element, joint: &Element, bounds: [Option<f64>; 2], cx: &mut Context) {
+    let [low, high] = bounds.map(|bound| bound.unwrap_or(0.0));
+    let says_nothing = low == 0.0 && high == 0.0 || high - low >= core::f64::consts::TAU;
+    let Some(value) = limit.attribute("lower").or_else(|| limit.attribute("upper")) else { return };
+    if !says_nothing {
+        let message =
+            format!("{}: limit: goes from {low} to {high}, but a continuous joint has no bounds", joint.subject);
+        let help = "they are ignored; a joint with bounds is of type `revolute`";
+        cx.findings.add(Finding::warning("continuous_limits", value.span, message).help(help));
+    }
+}

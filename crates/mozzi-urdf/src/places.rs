@@ -1,0 +1,82 @@
+//! Where in the text each element of a description stands, so that what is found wrong with it later can be pointed at.
+
+use crate::element::Value;
+use mozzi::model::Element;
+use std::ops::Range;
+
+/// The place of one link or joint, and of its attributes as the checks call them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Place {
+    element: Range<usize>,
+    attributes: Vec<(&'static str, Range<usize>)>,
+    /// Attributes that were already reported: what the checks say of them is an echo.
+    reported: Vec<&'static str>,
+}
+
+impl Place {
+    pub fn new(element: Range<usize>) -> Self {
+        Place { element, ..Place::default() }
+    }
+
+    pub fn set(&mut self, attribute: &'static str, span: Range<usize>) {
+        self.attributes.push((attribute, span));
+    }
+
+    pub fn report(&mut self, attribute: &'static str) {
+        self.reported.push(attribute);
+    }
+
+    /// Keeps the value's place, or notes that its absence was reported; gives its text.
+    pub fn note(&mut self, attribute: &'static str, value: Option<Value>) -> String {
+        match value {
+            Some(value) => {
+                self.set(attribute, value.span);
+                value.text.to_string()
+            }
+            None => {
+                self.report(attribute);
+                String::new()
+            }
+        }
+    }
+
+    pub fn has_reported(&self, attribute: &str) -> bool {
+        self.reported.contains(&attribute)
+    }
+}
+
+/// The places of all elements of a description.
+#[derive(Debug, Default)]
+pub(crate) struct Places {
+    pub robot: Place,
+    pub links: Vec<Place>,
+    pub joints: Vec<Place>,
+}
+
+impl Places {
+    fn of(&self, element: Element) -> &Place {
+        let place = match element {
+            Element::Link(i) => self.links.get(i),
+            Element::Joint(i) => self.joints.get(i),
+            Element::Robot | Element::Frame(_) => None,
+        };
+        place.unwrap_or(&self.robot)
+    }
+
+    /// The span of an attribute's value; of the element itself where there is none.
+    pub fn span(&self, element: Element, attribute: &str) -> Range<usize> {
+        let place = self.of(element);
+        let found = place.attributes.iter().find(|(known, _)| *known == attribute);
+        found.map_or(&place.element, |(_, span)| span).clone()
+    }
+
+    pub fn has_reported(&self, element: Element, attribute: &str) -> bool {
+        self.of(element).has_reported(attribute)
+    }
+
+    /// Is some name missing, so that the tree cannot be judged?
+    pub fn names_are_missing(&self) -> bool {
+        let missing = |place: &Place| ["name", "parent", "child"].iter().any(|name| place.has_reported(name));
+        self.links.iter().chain(&self.joints).any(missing)
+    }
+}

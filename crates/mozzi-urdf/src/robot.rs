@@ -1,0 +1,54 @@
+//! `<robot>`: the root element.
+
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::places::{Place, Places};
+use crate::spelling::did_you_mean;
+use crate::words::{ROBOT, shown};
+use crate::{joint, link};
+use mozzi::Description;
+
+/// Links and joints in the order of the file, and their places. None when the file is no URDF at all.
+pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Places)> {
+    if root.name() != "robot" {
+        cx.findings.add(wrong_root(root));
+        return None;
+    }
+    root.check_attributes(&ROBOT, cx);
+    let mut places = Places { robot: Place::new(root.span()), ..Places::default() };
+    let name = root.required("name", cx);
+    let mut description = Description::new(places.robot.note("name", name));
+    for child in root.elements().filter(|child| !child.has_prefix()) {
+        match child.name() {
+            "link" => {
+                let (link, place) = link::read(&child, cx);
+                description.links.push(link);
+                places.links.push(place);
+            }
+            "joint" => {
+                let (joint, place) = joint::read(&child, cx);
+                description.joints.push(joint);
+                places.joints.push(place);
+            }
+            "loop_joint" => {
+                let message = format!("{}: closes a loop of links, which mozzi does not compute", child.subject);
+                let help = "expected a tree: cut the loop by removing this joint, if that is what you want to compute";
+                cx.findings.add(Finding::error("loop_closure", child.span(), message).help(help));
+            }
+            _ => {}
+        }
+    }
+    root.check_children(&ROBOT, cx);
+    Some((description, places))
+}
+
+fn wrong_root(root: &Element) -> Finding {
+    let message = format!("the root element is <{}>, expected <robot>", shown(root.written_name()));
+    let help = match root.name() {
+        "mujoco" | "mujocoinclude" => Some("this is a MuJoCo model (MJCF), not a URDF".to_string()),
+        "sdf" => Some("this is an SDF model, not a URDF".to_string()),
+        other => did_you_mean(other, ["robot"]),
+    };
+    Finding::error("wrong_root", root.span(), message).maybe_help(help)
+}

@@ -1,0 +1,84 @@
+//! The text of a file, and where in it a byte stands.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A named text, cheap to clone: each diagnostic carries it, to show the place.
+#[derive(Clone)]
+pub(crate) struct Source {
+    pub name: Arc<str>,
+    pub text: Arc<str>,
+}
+
+/// A place in a text, both counted from 1, columns in characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Position {
+    pub line: usize,
+    pub column: usize,
+}
+
+impl Source {
+    pub fn new(name: &str, text: &str) -> Self {
+        Source { name: name.into(), text: text.into() }
+    }
+
+    /// The byte of a line and column, as the XML parser counts them; the end of the text when it is shorter.
+    pub fn offset(&self, line: usize, column: usize) -> usize {
+        let start = match line.checked_sub(2) {
+            None => 0,
+            Some(k) => self.text.match_indices('\n').nth(k).map_or(self.text.len(), |(at, _)| at + 1),
+        };
+        let rest = &self.text[start..];
+        start + rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |(at, _)| at)
+    }
+
+    /// The span cut to the text, on boundaries of characters.
+    pub fn clamp(&self, span: Range<usize>) -> Range<usize> {
+        let start = self.text.floor_char_boundary(span.start);
+        start..self.text.floor_char_boundary(span.end).max(start)
+    }
+}
+
+/// Finds positions of ascending offsets in one pass over the text.
+pub(crate) struct Walker<'t> {
+    text: &'t str,
+    at: usize,
+    position: Position,
+}
+
+impl<'t> Walker<'t> {
+    pub fn new(text: &'t str) -> Self {
+        Walker { text, at: 0, position: Position { line: 1, column: 1 } }
+    }
+
+    /// The position of a byte on a character's boundary, not before the last one asked for.
+    pub fn advance(&mut self, offset: usize) -> Position {
+        let passed = self.text.get(self.at..offset).unwrap_or_default();
+        match passed.rfind('\n') {
+            Some(last) => {
+                self.position.line += passed.matches('\n').count();
+                self.position.column = 1 + passed[last + 1..].chars().count();
+            }
+            None => self.position.column += passed.chars().count(),
+        }
+        self.at = self.at.max(offset);
+        self.position
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_characters() {
+        let source = Source::new("a", "äx\r\n öy\n");
+        let mut walker = Walker::new(&source.text);
+        assert_eq!(walker.advance(2), Position { line: 1, column: 2 });
+        let y = source.text.find('y').expect("a y");
+        assert_eq!(walker.advance(y), Position { line: 2, column: 3 });
+        assert_eq!(source.offset(2, 3), y);
+        assert_eq!(source.offset(9, 1), source.text.len());
+        assert_eq!(walker.advance(source.text.len()), Position { line: 3, column: 1 });
+    }
+}

@@ -1,0 +1,55 @@
+//! Did you mean …?
+
+/// The known word nearest to one that is not known, if it is near enough to have been meant.
+pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    if word.len() > 64 {
+        return None;
+    }
+    let lower = word.to_lowercase();
+    let near = |known: &'k str| {
+        let d = distance(&lower, &known.to_lowercase());
+        // one slip in three letters or more, two in six, three in nine
+        (d <= word.chars().count().min(known.chars().count()) / 3).then_some((d, known))
+    };
+    known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(|&(d, _)| d).map(|(_, known)| known)
+}
+
+/// "did you mean `x`?"
+pub(crate) fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    nearest(word, known).map(|word| format!("did you mean `{word}`?"))
+}
+
+/// Letters to insert, drop, replace or swap with their neighbour (optimal string alignment).
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let (mut before, mut previous): (Vec<usize>, Vec<usize>) = (Vec::new(), (0..=b.len()).collect());
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let same = usize::from(a[i - 1] != b[j - 1]);
+            let mut d = (previous[j] + 1).min(row[j - 1] + 1).min(previous[j - 1] + same);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                d = d.min(before[j - 2] + 1);
+            }
+            row.push(d);
+        }
+        (before, previous) = (previous, row);
+    }
+    previous.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_are_near_and_other_words_are_not() {
+        assert_eq!(nearest("intertial", ["inertial", "visual"]), Some("inertial"));
+        assert_eq!(nearest("Lower", ["upper", "lower"]), Some("lower"));
+        assert_eq!(nearest("revolut", ["revolute"]), Some("revolute"));
+        assert_eq!(nearest("xzy", ["xyz", "rpy"]), Some("xyz"));
+        assert_eq!(nearest("gravity", ["inertial", "visual", "collision"]), None);
+        assert_eq!(nearest("D", ["damping"]), None);
+        assert_eq!(distance("", "abc"), 3);
+    }
+}

@@ -1,0 +1,79 @@
+//! The XML parser's complaints, at their places and in our words.
+
+use crate::finding::Finding;
+use crate::scan::scan;
+use crate::source::Source;
+use crate::words::shown;
+use roxmltree::{Document, Error, ParsingOptions};
+use std::ops::Range;
+
+/// More nodes (elements, texts, comments) are refused: a parsed node is some ten times its text.
+const MOST_NODES: u32 = 4_000_000;
+
+/// The parsed text, or the first error of its syntax.
+pub(crate) fn parse(source: &Source) -> Result<Document<'_>, Finding> {
+    if source.text.trim().is_empty() {
+        return Err(Finding::error("empty", 0..0, "the file is empty, expected a <robot>"));
+    }
+    let unclosed = scan(&source.text)?;
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(&source.text, options).map_err(|error| explain(source, error, unclosed))
+}
+
+fn explain(source: &Source, error: Error, unclosed: Option<Range<usize>>) -> Finding {
+    let at = |pos: roxmltree::TextPos| {
+        let start = source.offset(pos.row as usize, pos.col as usize);
+        let rest = &source.text[start.min(source.text.len())..];
+        let first = rest.chars().next().filter(|c| *c != '\n').map_or(0, char::len_utf8);
+        start..start + first
+    };
+    let syntax = |span, message: String| Finding::error("syntax", span, message);
+    match error {
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream => match unclosed {
+            Some(span) => {
+                let name = shown(&source.text[span.clone()]);
+                syntax(span, format!("the file ends before <{name}> is closed")).help("is the file complete?")
+            }
+            None => {
+                let end = source.text.trim_end().len();
+                syntax(end..end, "the file ends in the middle".to_string()).help("is the file complete?")
+            }
+        },
+        Error::NoRootNode => syntax(0..0, "the file has no element, expected a <robot>".to_string()),
+        Error::UnexpectedCloseTag(expected, found, pos) => {
+            let (expected, found) = (shown(&expected), shown(&found));
+            syntax(at(pos), format!("</{found}> closes <{expected}>, expected </{expected}>"))
+        }
+        Error::UnknownNamespace(prefix, pos) => {
+            let prefix = shown(&prefix);
+            syntax(at(pos), format!("the prefix `{prefix}:` is not declared"))
+                .help(format!("declare it on the robot: <robot xmlns:{prefix}=\"…\">"))
+        }
+        Error::DuplicatedAttribute(name, pos) => {
+            syntax(at(pos), format!("the attribute `{}` stands twice on one element", shown(&name)))
+        }
+        Error::UnknownEntityReference(name, pos) => {
+            let message = format!("the entity `&{};` is not known, and no entities are expanded", shown(&name));
+            syntax(at(pos), message).help("write the character itself; `&` is written `&amp;`")
+        }
+        Error::MalformedEntityReference(pos) => {
+            syntax(at(pos), "`&` begins no entity here".to_string()).help("`&` is written `&amp;`")
+        }
+        Error::InvalidAttributeValue(pos) => syntax(at(pos), "`<` stands inside an attribute's value".to_string())
+            .help("is a closing quote missing before it? `<` itself is written `&lt;`"),
+        Error::NodesLimitReached => {
+            return Finding::error(
+                "too_large",
+                0..0,
+                format!("the file has more than {MOST_NODES} elements and texts"),
+            );
+        }
+        Error::DtdDetected => return Finding::error("document_type", 0..0, "the file has a document type"),
+        other => {
+            // the parser's own words, without the position that they end in
+            let (pos, text) = (other.pos(), other.to_string());
+            let place = format!(" at {pos}");
+            syntax(at(pos), text.replace(&place, ""))
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The words of URDF.
+
+/// What may stand on and in an element.
+pub(crate) struct Vocabulary {
+    pub attributes: &'static [&'static str],
+    /// Children that may stand once.
+    pub once: &'static [&'static str],
+    /// Children that may stand often.
+    pub many: &'static [&'static str],
+    /// Known extensions, attributes or children, which say nothing about dynamics here.
+    pub silent: &'static [&'static str],
+}
+
+const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], many: &[], silent: &[] };
+
+pub(crate) const ROBOT: Vocabulary = Vocabulary {
+    attributes: &["name", "version"],
+    many: &["link", "joint"],
+    silent: &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco"],
+    ..NOTHING
+};
+pub(crate) const LINK: Vocabulary = Vocabulary {
+    attributes: &["name"],
+    once: &["inertial"],
+    many: &["visual", "collision"],
+    silent: &["type", "material", "gazebo", "sensor", "contact"],
+};
+pub(crate) const INERTIAL: Vocabulary = Vocabulary { once: &["origin", "mass", "inertia"], ..NOTHING };
+pub(crate) const MASS: Vocabulary = Vocabulary { attributes: &["value"], ..NOTHING };
+pub(crate) const INERTIA: Vocabulary =
+    Vocabulary { attributes: &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], ..NOTHING };
+pub(crate) const ORIGIN: Vocabulary = Vocabulary { attributes: &["xyz", "rpy"], ..NOTHING };
+pub(crate) const JOINT: Vocabulary = Vocabulary {
+    attributes: &["name", "type"],
+    once: &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"],
+    silent: &["gazebo", "sensor", "transmission"],
+    ..NOTHING
+};
+pub(crate) const PARENT: Vocabulary = Vocabulary { attributes: &["link"], ..NOTHING };
+pub(crate) const AXIS: Vocabulary = Vocabulary { attributes: &["xyz"], ..NOTHING };
+pub(crate) const LIMIT: Vocabulary = Vocabulary {
+    attributes: &["lower", "upper", "effort", "velocity"],
+    silent: &["acceleration", "deceleration", "jerk"],
+    ..NOTHING
+};
+pub(crate) const DYNAMICS: Vocabulary = Vocabulary { attributes: &["damping", "friction"], ..NOTHING };
+pub(crate) const MIMIC: Vocabulary = Vocabulary { attributes: &["joint", "multiplier", "offset"], ..NOTHING };
+
+/// The types of joints that mozzi computes.
+pub(crate) const JOINT_TYPES: [&str; 4] = ["revolute", "continuous", "prismatic", "fixed"];
+
+/// At most forty characters of a text, on one line.
+pub(crate) fn shown(text: &str) -> String {
+    let line = |c: char| if c.is_control() { ' ' } else { c };
+    let mut short: String = text.chars().take(40).map(line).collect();
+    if short.len() < text.len() {
+        short.push('…');
+    }
+    short
+}
+
+/// `a`, `b`, `c`
+pub(crate) fn list(words: &[&str]) -> String {
+    if words.is_empty() {
+        return "none".to_string();
+    }
+    words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_cut() {
+        assert_eq!(shown("a\nb"), "a b");
+        assert_eq!(shown(&"ä".repeat(41)), format!("{}…", "ä".repeat(40)));
+        assert_eq!(list(&["a", "b"]), "`a`, `b`");
+    }
+}
