@@ -41,28 +41,26 @@ impl Recorded {
     }
 }
 
-/// Every recorded step on these inputs; then a recorded number's value can be read.
+/// Every recorded step on these inputs, and a new tape; then a recorded number's value can be read.
 pub fn play(inputs: &[f64]) -> impl Fn(Recorded) -> f64 + use<> {
     let mut values: Vec<f64> = Vec::new();
-    TAPE.with_borrow(|tape| {
-        for &step in tape {
-            let at = |x: Recorded| value(&values, x);
-            let next = match step {
-                Step::Input(k) => inputs[k],
-                Step::Add(a, b) => at(a) + at(b),
-                Step::Sub(a, b) => at(a) - at(b),
-                Step::Mul(a, b) => at(a) * at(b),
-                Step::Div(a, b) => at(a) / at(b),
-                Step::Neg(a) => -at(a),
-                Step::Sin(a) => Scalar::sin_cos(at(a)).0,
-                Step::Cos(a) => Scalar::sin_cos(at(a)).1,
-                Step::Sqrt(a) => Scalar::sqrt(at(a)),
-                Step::Tanh(a) => Scalar::tanh(at(a)),
-                Step::Sgn(a) => at(a).sgn(),
-            };
-            values.push(next);
-        }
-    });
+    for step in TAPE.take() {
+        let at = |x: Recorded| value(&values, x);
+        let next = match step {
+            Step::Input(k) => inputs[k],
+            Step::Add(a, b) => at(a) + at(b),
+            Step::Sub(a, b) => at(a) - at(b),
+            Step::Mul(a, b) => at(a) * at(b),
+            Step::Div(a, b) => at(a) / at(b),
+            Step::Neg(a) => -at(a),
+            Step::Sin(a) => Scalar::sin_cos(at(a)).0,
+            Step::Cos(a) => Scalar::sin_cos(at(a)).1,
+            Step::Sqrt(a) => Scalar::sqrt(at(a)),
+            Step::Tanh(a) => Scalar::tanh(at(a)),
+            Step::Sgn(a) => at(a).sgn(),
+        };
+        values.push(next);
+    }
     move |x| value(&values, x)
 }
 
