@@ -1,13 +1,14 @@
 //! The planar arm with two joints (Modern Robotics, section 8.1): hand formulas against the library.
 //!
 //! Two massless rods of lengths L1 and L2, a point mass at the tip of each, in a vertical plane; θ1 is measured from
-//! the horizontal, θ2 from the first rod. (The robot's file says how the book's x-y plane lies there.) Lagrange's way, with c1 = cos θ1, c12 = cos(θ1 + θ2), s2 = sin θ2 …:
+//! the horizontal, θ2 from the first rod. (The robot's file says how the book's x-y plane lies there.) Lagrange's
+//! way, with c1 = cos θ1, c12 = cos(θ1 + θ2), s2 = sin θ2 …:
 //!
 //! > p1 = L1 (c1, s1),  p2 = p1 + L2 (c12, s12)
 //! > ‖ṗ1‖² = L1²θ̇1²,  ‖ṗ2‖² = (L1² + 2L1L2c2 + L2²)θ̇1² + 2(L2² + L1L2c2)θ̇1θ̇2 + L2²θ̇2²
 //! > 𝒦 = ½m1‖ṗ1‖² + ½m2‖ṗ2‖² = ½θ̇ᵀMθ̇,  𝒫 = m1 g L1s1 + m2 g (L1s1 + L2s12)
 //!
-//! so that, of τ = d/dt ∂𝒦/∂θ̇ − ∂𝒦/∂θ + ∂𝒫/∂θ (Modern Robotics 8.9),
+//! so that, of τ = d/dt ∂𝒦/∂θ̇ − ∂𝒦/∂θ + ∂𝒫/∂θ,
 //!
 //! > M = [[m1L1² + m2(L1² + 2L1L2c2 + L2²), m2(L1L2c2 + L2²)], [m2(L1L2c2 + L2²), m2L2²]]
 //! > c = (−m2L1L2s2(2θ̇1θ̇2 + θ̇2²), m2L1L2s2θ̇1²)

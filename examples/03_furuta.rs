@@ -1,9 +1,9 @@
 //! The rotary inverted pendulum of Furuta (Modern Robotics, exercise 8.4): equations by hand, and its torque ellipsoid.
 //!
-//! 𝔪1 = 𝔪2 = 2, L1 = L2 = 1, g = 10, I1 = diag(0, 4, 4), I2 = diag(4, 4, 0) in the link frames. The book's figure is not
-//! at hand; assumed: joint 1 turns about z at the origin, link 1 lies along x with its frame at its tip (L1, 0, 0), joint 2
-//! turns about x there, link 2 stands along +z with its frame at (L1, 0, L2), all axes parallel at θ = 0. Were link 2 to
-//! hang along −z, L2 would change its sign in what follows: shown too.
+//! 𝔪1 = 𝔪2 = 2, L1 = L2 = 1, g = 10, I1 = diag(0, 4, 4), I2 = diag(4, 4, 0) in the link frames. The book's figure is
+//! not at hand; assumed: joint 1 turns about z at the origin, link 1 lies along x with its frame at its tip (L1, 0,
+//! 0), joint 2 turns about x there, link 2 stands along +z with its frame at (L1, 0, L2), all axes parallel at θ = 0.
+//! Were link 2 to hang along −z, L2 would change its sign in what follows: shown too.
 //!
 //! Seen from axes that turn with link 1, with s2 = sin θ2, c2 = cos θ2, the links have
 //!
@@ -17,7 +17,8 @@
 //! > c1 = M11′θ̇1θ̇2 + M12′θ̇2² = 12s2c2θ̇1θ̇2 + 2s2θ̇2²,   c2 = −½M11′θ̇1² = −6s2c2θ̇1²    (′ = ∂/∂θ2)
 //! > g = (0, −𝔪2 g L2s2) = (0, −20s2)
 //!
-//! The torque ellipsoid is {Mθ̈ : ‖θ̈‖ = 1}: its principal axes are the eigenvectors of M, its semi-axes the eigenvalues.
+//! The torque ellipsoid is {Mθ̈ : ‖θ̈‖ = 1}: its principal axes are the eigenvectors of M, its semi-axes the
+//! eigenvalues.
 
 use mozzi::model::{HomeFrames, Screws};
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Vec3};

@@ -9,8 +9,8 @@
 //!
 //! > ∂J_i/∂θ_j = ad_{J_j}(J_i) for j < i, 0 for j ≥ i        (space)
 //!
-//! The body Jacobian's column is J_i = Ad_Q B_i, Q = e^{−[B_n]θ_n} ⋯ e^{−[B_{i+1}]θ_{i+1}}: seen from the end effector the
-//! joints beyond it move axis i, and backwards, −ad_{J_j}(J_i):
+//! The body Jacobian's column is J_i = Ad_Q B_i, Q = e^{−[B_n]θ_n} ⋯ e^{−[B_{i+1}]θ_{i+1}}: seen from the end
+//! effector the joints beyond it move axis i, and backwards, −ad_{J_j}(J_i):
 //!
 //! > ∂J_i/∂θ_j = ad_{J_i}(J_j) for j > i, 0 for j ≤ i        (body)
 //!

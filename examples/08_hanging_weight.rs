@@ -1,13 +1,13 @@
 //! A weight hanging from the Panda's hand: as a wrench at the tip, and as a payload.
 //!
-//! F_tip is what the hand applies *to* the environment (Modern Robotics 8.47). A weight of mass m that hangs still is held
-//! up by the hand, so the force on it is −mg, opposed to gravity; in the coordinates of the hand's frame {b}, at the point p
-//! of the hand from which it hangs,
+//! F_tip is what the hand applies *to* the environment (Modern Robotics, section 8.3). A weight of mass m that hangs
+//! still is held up by the hand, so the force on it is −mg, opposed to gravity; in the coordinates of the hand's
+//! frame {b}, at the point p of the hand from which it hangs,
 //!
 //! > f_b = −m R_sbᵀg,  m_b = p × f_b,  τ = g(θ) + J_bᵀ(m_b, f_b)
 //!
-//! The same weight fixed to the hand at p is a payload: the mass matrix grows, and so does g(θ). Held still, both need the
-//! same torques; moved, the payload's inertia shows, and a constant wrench knows nothing of it.
+//! The same weight fixed to the hand at p is a payload: the mass matrix grows, and so does g(θ). Held still, both
+//! need the same torques; moved, the payload's inertia shows, and a constant wrench knows nothing of it.
 
 use mozzi::{Environment, SpatialInertia, Vec3, Wrench};
 use mozzi_examples::{agree, difference, row};

@@ -1,13 +1,15 @@
 //! Simulation (Modern Robotics, section 8.5): Euler's method against Runge-Kutta's, on a falling double pendulum.
 //!
-//! With q1 = θ and q2 = θ̇ the equation of motion is q̇1 = q2, q̇2 = FD(q1, q2, τ, F_tip). Euler's method with N steps δt:
+//! With q1 = θ and q2 = θ̇ the equation of motion is q̇1 = q2, q̇2 = FD(q1, q2, τ, F_tip). Euler's method with N
+//! steps δt:
 //!
 //! > θ[k+1] = θ[k] + θ̇[k]δt,  θ̇[k+1] = θ̇[k] + θ̈[k]δt,  θ̈[k] = FD(θ[k], θ̇[k], τ(kδt), F_tip(kδt))
 //!
-//! A step leaves out what Taylor's series has from δt² on; N = t_f/δt of them add up to an error that falls as δt: order 1.
-//! Semi-implicit Euler takes the new θ̇ for the step of θ: order 1 too, but no steady gain of energy. Runge-Kutta's method
-//! asks FD four times a step, and its error falls as δt⁴. The order that one sees is log2 of the quotient of the errors with
-//! N and 2N steps. Without motors or friction the energy 𝒦 + 𝒫 should stay what it was: its drift is a second witness.
+//! A step leaves out what Taylor's series has from δt² on; N = t_f/δt of them add up to an error that falls as δt:
+//! order 1. Semi-implicit Euler takes the new θ̇ for the step of θ: order 1 too, but no steady gain of energy.
+//! Runge-Kutta's method asks FD four times a step, and its error falls as δt⁴. The order that one sees is log2 of the
+//! quotient of the errors with N and 2N steps. Without motors or friction the energy 𝒦 + 𝒫 should stay what it was:
+//! its drift is a second witness.
 
 use mozzi::Model;
 use mozzi::simulation::{Method, Options, Zero};

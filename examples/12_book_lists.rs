@@ -1,9 +1,10 @@
 //! A robot from the lists of the Modern Robotics package: home frames M_{i−1,i}, spatial inertias G_i, screw axes S_i.
 //!
 //! The package's documentation works with an arm of three joints, the first of the UR5. Its first screw axis there is
-//! (1, 0, 1, 0, 1, 0): ‖ω‖ = √2, not a unit screw, so that θ_1 is no angle: 1 of it is a turn by √2 rad. Here such an axis is
-//! refused, or rescaled knowingly. With V = kA, A unit, the joint described by V and θ is described by A and kθ, for
-//! e^{[V]θ} = e^{[A]kθ}; with rates kθ̇ and kθ̈; and since the power τθ̇ stays, with the torque τ/k. With K = diag(k, 1, 1):
+//! (1, 0, 1, 0, 1, 0): ‖ω‖ = √2, not a unit screw, so that θ_1 is no angle: 1 of it is a turn by √2 rad. Here such an
+//! axis is refused, or rescaled knowingly. With V = kA, A unit, the joint described by V and θ is described by A and
+//! kθ, for e^{[V]θ} = e^{[A]kθ}; with rates kθ̇ and kθ̈; and since the power τθ̇ stays, with the torque τ/k. With K =
+//! diag(k, 1, 1):
 //!
 //! > τ_V(θ, θ̇, θ̈) = K τ_A(Kθ, Kθ̇, Kθ̈),  M_V(θ) = K M_A(Kθ) K,  θ̈_V(θ, θ̇, τ) = K⁻¹ θ̈_A(Kθ, Kθ̇, K⁻¹τ)
 //!

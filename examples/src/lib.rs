@@ -4,7 +4,7 @@ pub mod plot;
 
 use nalgebra::DMatrix;
 
-/// Panics unless two lists of numbers agree to a tolerance, relative to the largest of those expected; says how well they do.
+/// Panics unless two lists of numbers agree to a tolerance, relative to the largest number expected; says how well they do.
 pub fn agree<'a>(
     what: &str,
     found: impl IntoIterator<Item = &'a f64>,
