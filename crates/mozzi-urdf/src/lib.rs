@@ -126,7 +126,7 @@ pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Re
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
     let description = if findings.has_errors() { None } else { read(&source, &mut findings) };
-    let Placed { mut diagnostics, errors, omitted } = findings.place(&source);
+    let Placed { mut diagnostics, errors, is_cut } = findings.place(&source);
     if policy == Policy::Strict {
         diagnostics = diagnostics.into_iter().map(Diagnostic::into_error).collect();
     }
@@ -134,7 +134,7 @@ pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Re
         Some(description) if errors == 0 && (policy != Policy::Strict || diagnostics.is_empty()) => {
             Ok(Loaded { description, warnings: diagnostics })
         }
-        _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, omitted }),
+        _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, is_cut }),
     }
 }
 
