@@ -7,7 +7,10 @@ pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
+#[cfg(feature = "std")]
+pub mod native;
 pub mod scalar;
+pub mod simulation;
 pub mod spatial;
 mod task_space;
 #[cfg(test)]
@@ -19,5 +22,6 @@ pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{Description, Environment, Error, Frame, FrameId, Model, Workspace};
 pub use scalar::{Dual, Real, Scalar};
+pub use simulation::Trajectory;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 pub use task_space::{Task, TaskFrame, TaskSpaceDynamics};
