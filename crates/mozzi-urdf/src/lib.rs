@@ -34,6 +34,7 @@ mod origin;
 mod places;
 mod pretty;
 mod problem;
+mod repair;
 mod robot;
 mod scan;
 mod source;
@@ -83,6 +84,8 @@ pub enum Policy {
     /// Errors are refused, warnings are said.
     #[default]
     Default,
+    /// An inertia that no body can have is replaced by the nearest that one can have; this is said as a warning.
+    Lenient,
 }
 
 /// Reads a file.
@@ -125,7 +128,7 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, LoadErro
 pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Result<Loaded, LoadError> {
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
-    let description = if findings.has_errors() { None } else { read(&source, &mut findings) };
+    let description = if findings.has_errors() { None } else { read(&source, policy, &mut findings) };
     let Placed { mut diagnostics, errors, is_cut } = findings.place(&source);
     if policy == Policy::Strict {
         diagnostics = diagnostics.into_iter().map(Diagnostic::into_error).collect();
@@ -159,7 +162,7 @@ pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
 }
 
 /// From text to a description, all findings noted.
-fn read(source: &Source, findings: &mut Findings) -> Option<Description> {
+fn read(source: &Source, policy: Policy, findings: &mut Findings) -> Option<Description> {
     let document = match syntax::parse(source) {
         Ok(document) => document,
         Err(finding) => {
@@ -172,7 +175,10 @@ fn read(source: &Source, findings: &mut Findings) -> Option<Description> {
     let root = Element::new(document.root_element(), &source.text, "robot".to_string());
     let result = robot::read(&root, &mut cx);
     *findings = cx.findings;
-    let (description, places): (Description, Places) = result?;
+    let (mut description, places): (Description, Places) = result?;
+    if policy == Policy::Lenient {
+        repair::inertias(&mut description, &places, findings);
+    }
     problem::findings(&description, &places).into_iter().for_each(|finding| findings.add(finding));
     Some(description)
 }
