@@ -3,6 +3,21 @@
 //! Nothing is guessed in silence. What is wrong is an error, all errors of one run are reported together; what is odd is
 //! a warning; what is right is never mentioned.
 //!
+//! # What is refused, and what is said
+//! Measured on the 69 robots of `example-robot-data` 6.0.0: 66 load, 39 of them without a word; three are refused, for a
+//! follower of a joint that does not exist, for negative moments of inertia, and for having no links.
+//!
+//! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
+//!   namespaces) silent, other unknown ones a warning once per kind.
+//! - An axis that is not of length 1 is a direction, with a warning beyond 10⁻³; positions stay radians or metres.
+//! - A missing limit is a warning, and no limit; limits do not enter the dynamics.
+//! - An inertia that breaks the triangle inequality is computed as given, with a warning. A negative principal moment is an
+//!   error if the rigid body of all links fixed to each other has one, a warning otherwise.
+//! - [`Policy::Strict`] makes errors of all warnings, [`Policy::Lenient`] repairs inertias, and says so.
+//!
+//! Time and memory are bounded for any input: 64 MiB, two million elements and texts, 256 levels, 256 attributes on an
+//! element, 64 namespaces at one place, names of 256 bytes, a thousand errors; no document type, no entities.
+//!
 //! ```
 //! let robot = mozzi_urdf::open("ur5")?; // or a path
 //! assert!(robot.warnings.is_empty());
@@ -41,12 +56,14 @@ mod source;
 mod spelling;
 mod syntax;
 mod words;
+mod write;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;
 pub use explain::{codes, explain};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
+pub use write::{NotUrdf, write};
 
 use context::Context;
 use element::Element;
