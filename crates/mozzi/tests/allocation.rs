@@ -1,4 +1,5 @@
 //! Kernels allocate nothing, and long chains cost no more than their length.
+#![allow(clippy::unwrap_used)]
 
 use mozzi::model::{HomeFrames, Screws};
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Twist, Vec3, Workspace, native};
