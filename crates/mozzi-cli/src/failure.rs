@@ -31,8 +31,8 @@ impl Failure {
     }
 }
 
-/// Where standard error is closed, nobody wants to know.
-fn write(text: &str) {
+/// To standard error; where that is closed, nobody wants to know.
+pub fn write(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 

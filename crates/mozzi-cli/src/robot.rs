@@ -5,6 +5,9 @@ use crate::numbers::array;
 use clap::Args;
 use mozzi::{FrameId, Model};
 
+/// More are counted: `mozzi check` shows them, each with its place.
+const WARNINGS: usize = 3;
+
 #[derive(Args, Debug)]
 pub struct RobotArguments {
     /// A URDF file, or an embedded robot: double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
@@ -24,7 +27,11 @@ impl RobotArguments {
     /// Loads the robot, saying what is odd about it.
     pub fn load(&self) -> Result<Model> {
         let loaded = mozzi_urdf::open(&self.model)?;
-        loaded.warnings.iter().for_each(failure::say);
+        let warnings = &loaded.warnings;
+        warnings.iter().take(WARNINGS).for_each(|warning| failure::write(&format!("{warning}\n")));
+        if warnings.len() > WARNINGS {
+            failure::note(&format!("{} warnings in all; `mozzi check {}` shows them", warnings.len(), self.model));
+        }
         let mut model = loaded.build()?;
         if let Some(text) = &self.gravity {
             model = model.with_gravity(array("--gravity", text, ["x", "y", "z"])?)?;

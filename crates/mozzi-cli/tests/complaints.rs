@@ -29,6 +29,21 @@ fn wrong_robots() {
 }
 
 #[test]
+fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
+    let folder = folder("odd_robots");
+    let joint = "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>";
+    let robot =
+        file(&folder, "odd.urdf", &format!("<robot name='odd'><link name='a'/><link name='b'/>{joint}</robot>"));
+    let output = mozzi(&["info", &robot, "--json"]);
+    let said = String::from_utf8_lossy(&output.stderr).to_string();
+    assert!(output.status.success() && said.contains("odd.urdf:1:") && said.contains("limit"), "{said}");
+    let output = mozzi(&["check", &robot]);
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("1 warning"), "{output:?}");
+    assert_eq!(mozzi(&["check", &robot, "--strict"]).status.code(), Some(1));
+    assert!(output.stderr.len() > said.len());
+}
+
+#[test]
 fn wrong_numbers() {
     wrong(&["terms", "ur5", "--theta", "1,2,3"], &["--theta has 3 entries, expected 6", "elbow_joint"]);
     wrong(&["terms", "ur5", "--theta", "0,0,abc,0,0,0"], &["--theta: entry 3 is `abc`, expected a number"]);

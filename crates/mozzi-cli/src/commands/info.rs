@@ -51,7 +51,10 @@ pub fn headline(model: &Model) -> String {
 pub fn surroundings(model: &Model) -> String {
     let tip = match model.end_effector() {
         Ok(frame) => model.frame_name(frame).to_string(),
-        Err(Error::NoEndEffector { leaves }) => format!("to be named, such as {}", leaves.join(", ")),
+        Err(Error::NoEndEffector { leaves }) => match leaves.get(..5) {
+            Some(some) if leaves.len() > 5 => format!("to be named, such as {}, …", some.join(", ")),
+            _ => format!("to be named, such as {}", leaves.join(", ")),
+        },
         Err(error) => error.to_string(),
     };
     format!("gravity: {} m/s²; end effector: {tip}", tuple(&model.gravity().0))
