@@ -24,6 +24,7 @@ mod diagnostic;
 mod element;
 pub mod embedded;
 mod error;
+mod explain;
 mod finding;
 mod joint;
 mod limit;
@@ -42,6 +43,7 @@ mod words;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;
+pub use explain::{codes, explain};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
 

@@ -27,9 +27,12 @@ fn explain(source: &Source, error: Error, unfinished: Option<Unfinished>) -> Fin
         start..start + first
     };
     let syntax = |span, message: String| Finding::error("syntax", span, message);
-    let is_end = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream);
+    let is_end = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream)
+        || at(error.pos()).start >= source.text.trim_end().len();
     match unfinished {
-        Some(Unfinished::Piece(span, what)) if is_end || at(error.pos()).start >= span.start => {
+        Some(Unfinished::Piece(span, what))
+            if is_end || matches!(error, Error::InvalidString(..)) && at(error.pos()).start >= span.start =>
+        {
             return syntax(span, format!("the file ends inside {what} that opens here")).help("is the file complete?");
         }
         Some(Unfinished::Element(span)) if is_end => {
@@ -59,8 +62,16 @@ fn explain(source: &Source, error: Error, unfinished: Option<Unfinished>) -> Fin
         Error::MalformedEntityReference(pos) => {
             syntax(at(pos), "`&` begins no entity here".to_string()).help("`&` is written `&amp;`")
         }
-        Error::InvalidAttributeValue(pos) => syntax(at(pos), "`<` stands inside an attribute's value".to_string())
-            .help("is a closing quote missing before it? `<` itself is written `&lt;`"),
+        Error::InvalidAttributeValue(pos) | Error::InvalidChar(b'"' | b'\'', b'<', pos) => {
+            syntax(at(pos), "`<` stands inside an attribute's value".to_string())
+                .help("is a closing quote missing before it? `<` itself is written `&lt;`")
+        }
+        Error::InvalidChar(expected, found, pos) => {
+            syntax(at(pos), format!("expected `{}`, found `{}`", expected as char, found as char))
+        }
+        Error::InvalidChar2(expected, found, pos) => {
+            syntax(at(pos), format!("expected {expected}, found `{}`", found as char))
+        }
         Error::NodesLimitReached => {
             Finding::error("too_large", 0..0, format!("the file has more than {MOST_NODES} elements and texts"))
         }

@@ -93,8 +93,8 @@ macro_rules! entry {
                 Inner::Plain(workspace) => kernel::$name(model, $($in,)* $($environment,)? workspace, $out),
                 Inner::Fused(workspace, _applied) => {
                     $(let $environment = &fused_environment($environment, _applied);)?
-                    // SAFETY: the variant exists only where the processor has AVX2 and FMA.
                     #[allow(unused_unsafe)] // no target feature elsewhere
+                    // SAFETY: the variant exists only where the processor has AVX2 and FMA.
                     unsafe { entry(model, $(fused($in),)* $($environment,)? workspace, fused_mut($out)) }
                 }
             }

@@ -69,6 +69,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<TaskSpaceDynamics, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
+        self.check_frame(task.frame)?;
         let distinct = (1..task.rows.len()).all(|k| !task.rows[..k].contains(&task.rows[k]));
         if task.rows.is_empty() || task.rows.iter().any(|&row| row > 5) || !distinct {
             let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";

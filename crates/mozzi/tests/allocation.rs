@@ -1,4 +1,5 @@
 //! Kernels allocate nothing, and long chains cost no more than their length.
+#![allow(clippy::unwrap_used)]
 
 use mozzi::model::{HomeFrames, Screws};
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Twist, Vec3, Workspace, native};
@@ -101,4 +102,24 @@ fn ten_thousand_links() {
     let scale = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     assert!(again.iter().zip(&tau).all(|(a, b)| (a - b).abs() < 1e-9 * scale));
     assert_eq!(model.screws().M.len(), n);
+}
+
+#[test]
+fn a_simulation_allocates_what_it_records() {
+    use mozzi::simulation::{GravityCompensation, Method, Options, Table, TorqueTable, applied};
+    let model = chain(7);
+    let tip = model.end_effector().unwrap();
+    let allocations = |method, steps| {
+        let table = Table::new(vec![0.0, 1.0], vec![0.5; 14]).unwrap();
+        let push = applied(tip, |_, _, _| mozzi::Wrench::from_array([0.1; 6]));
+        let input = (GravityCompensation::new(&model), (TorqueTable(table), push));
+        let options = Options { method, record_every: steps, ..Options::new(0.1, steps) };
+        let before = ALLOCATIONS.get();
+        let motion = model.simulate(&[0.3; 7], &[-0.2; 7], input, &options).unwrap();
+        assert_eq!(motion.len(), 2);
+        ALLOCATIONS.get() - before
+    };
+    for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
+        assert_eq!(allocations(method, 10), allocations(method, 1000));
+    }
 }

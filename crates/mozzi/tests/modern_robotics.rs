@@ -119,8 +119,10 @@ fn dynamics_of_chapter_8() {
         let twists: Vec<Twist> = items("Slist").iter().map(|S| Twist::from_array(six(S))).collect();
         let unit = twists.iter().all(|S| ScrewAxis::new(S.w.0, S.v.0).is_ok());
         assert_eq!(unit, !refused);
-        let (axes, sizes): (Vec<ScrewAxis>, Vec<f64>) = twists.iter().map(|&S| ScrewAxis::normalize(S).unwrap()).unzip();
-        let mut robot = Description::from_screws(name, HomeFrames::Relative(&frames), &inertias, Screws::Space(&axes)).unwrap();
+        let (axes, sizes): (Vec<ScrewAxis>, Vec<f64>) =
+            twists.iter().map(|&S| ScrewAxis::normalize(S).unwrap()).unzip();
+        let mut robot =
+            Description::from_screws(name, HomeFrames::Relative(&frames), &inertias, Screws::Space(&axes)).unwrap();
         robot.gravity = list(&example["g"]).try_into().unwrap();
         let model = robot.build().unwrap();
 

@@ -19,6 +19,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
+        self.check_environment(environment)?;
         Ok(self.vector(|w, tau| kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, w, tau)))
     }
 
@@ -28,6 +29,7 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn bias_forces(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
+        self.check_environment(environment)?;
         Ok(self.vector(|w, h| kernel::bias_forces(self, theta, dtheta, environment, w, h)))
     }
 
@@ -55,6 +57,7 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn tip_forces(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [])?;
+        applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))?;
         Ok(self.vector(|w, tau| kernel::tip_forces(self, theta, applied, w, tau)))
     }
 

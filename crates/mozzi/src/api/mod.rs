@@ -8,7 +8,8 @@ mod newton_euler;
 
 pub use newton_euler::{BodyFrame, NewtonEuler};
 
-use crate::model::{Error, Model};
+use crate::model::{Environment, Error, FrameId, Model};
+use alloc::format;
 
 impl Model<f64> {
     /// Every argument as long as it must be.
@@ -23,5 +24,18 @@ impl Model<f64> {
             Some((what, found, expected)) => Err(Error::WrongLength { what, found, expected }),
             None => Ok(()),
         }
+    }
+    /// A frame of this model, not of a larger one.
+    pub(crate) fn check_frame(&self, frame: FrameId) -> Result<(), Error> {
+        let frames = self.frames().len();
+        if frame.0 < frames {
+            return Ok(());
+        }
+        let found = format!("number {} of another model (this one has {frames})", frame.0);
+        Err(Error::BadArgument { what: "the frame", found, expected: "a frame of this model" })
+    }
+
+    pub(crate) fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
+        environment.applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))
     }
 }

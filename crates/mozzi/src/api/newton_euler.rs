@@ -47,6 +47,7 @@ impl Model<f64> {
         frame: BodyFrame,
     ) -> Result<NewtonEuler, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
+        self.check_environment(environment)?;
         let (mut workspace, mut tau) = (Workspace::new(self), vec![0.0; self.n()]);
         kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
         let Workspace { V, dV, F, .. } = workspace;

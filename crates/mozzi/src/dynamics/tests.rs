@@ -260,6 +260,12 @@ fn a_wrong_length_is_named() {
     let model = tree(1, 3, 0);
     let error = model.inverse_dynamics(&[0.0; 3], &[0.0; 2], &[0.0; 3], &model.environment()).expect_err("two rates");
     assert_eq!(error.to_string(), "dtheta has 2 entries, expected 3");
+    let stranger = tree(9, 12, 0).end_effector().expect("named");
+    let environment = Environment { applied: &[(stranger, wrench(1))], ..model.environment() };
+    let error =
+        model.bias_forces(&[0.0; 3], &[0.0; 3], &environment).expect_err("a frame of another model").to_string();
+    assert!(error.starts_with("the frame is number 16 of another model"), "{error}");
+    assert!(model.body_jacobian(&[0.0; 3], stranger).is_err());
 }
 
 #[test]
