@@ -7,6 +7,8 @@ pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
+#[cfg(feature = "std")]
+pub mod native;
 pub mod scalar;
 pub mod spatial;
 mod task_space;

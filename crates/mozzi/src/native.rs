@@ -1,0 +1,183 @@
+//! The kernels on `f64`, with the instruction set of the machine that runs them: fused multiply-add and AVX2 where the
+//! processor has them, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation.
+//!
+//! Results agree with the plain kernels to rounding, not bit for bit. AVX-512 is deliberately left out: for one state it
+//! makes code slower.
+//!
+//! ```
+//! # use mozzi::{Description, native};
+//! # fn example(model: &mozzi::Model) {
+//! let mut workspace = native::Workspace::new(model);
+//! let (theta, dtheta, ddtheta) = (vec![0.1; model.nq()], vec![0.0; model.n()], vec![0.0; model.n()]);
+//! let mut tau = vec![0.0; model.n()];
+//! native::inverse_dynamics(model, &theta, &dtheta, &ddtheta, &model.environment(), &mut workspace, &mut tau);
+//! # }
+//! ```
+
+use crate::dynamics as kernel;
+use crate::model::{Environment, FrameId, Model};
+use crate::scalar::Fused;
+use crate::spatial::Wrench;
+use alloc::vec::Vec;
+
+/// Memory for the kernels of this module, and the choice of the instruction set.
+#[derive(Clone, Debug)]
+pub struct Workspace(Inner);
+
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // one per thread, not in lists
+enum Inner {
+    Plain(crate::Workspace<f64>),
+    /// Made only where the processor has AVX2 and FMA: the proof that the fused entries may be called.
+    Fused(crate::Workspace<Fused>, Vec<(FrameId, Wrench<Fused>)>),
+}
+
+impl Workspace {
+    /// Memory for this model.
+    pub fn new(model: &Model) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
+            return Workspace(Inner::Fused(crate::Workspace::new(model), Vec::with_capacity(model.frames().len())));
+        }
+        Self::portable(model)
+    }
+
+    /// Memory for this model, on plain `f64` whatever the processor has: bit for bit the plain kernels' results.
+    pub fn portable(model: &Model) -> Self {
+        Workspace(Inner::Plain(crate::Workspace::new(model)))
+    }
+
+    /// "avx2 + fma" or "portable".
+    pub fn instruction_set(&self) -> &'static str {
+        match self.0 {
+            Inner::Plain(_) => "portable",
+            Inner::Fused(..) => "avx2 + fma",
+        }
+    }
+}
+
+fn fused(x: &[f64]) -> &[Fused] {
+    // SAFETY: Fused is a transparent f64.
+    unsafe { core::slice::from_raw_parts(x.as_ptr().cast(), x.len()) }
+}
+fn fused_mut(x: &mut [f64]) -> &mut [Fused] {
+    // SAFETY: Fused is a transparent f64, and the borrow is handed on.
+    unsafe { core::slice::from_raw_parts_mut(x.as_mut_ptr().cast(), x.len()) }
+}
+
+/// The environment with fused numbers, its wrenches in `applied`.
+fn fused_environment<'a>(e: &Environment, applied: &'a mut Vec<(FrameId, Wrench<Fused>)>) -> Environment<'a, Fused> {
+    applied.clear();
+    applied.extend(e.applied.iter().map(|&(frame, F)| (frame, F.map(Fused))));
+    Environment {
+        gravity: e.gravity.map(Fused),
+        base_twist: e.base_twist.map(Fused),
+        base_acceleration: e.base_acceleration.map(Fused),
+        applied,
+    }
+}
+
+/// One entry: the same kernel on plain or on fused numbers, the latter compiled for AVX2 and FMA.
+macro_rules! entry {
+    ($(#[$doc:meta])* $name:ident($($in:ident),*; $([$environment:ident])? $out:ident)) => {
+        $(#[$doc])*
+        pub fn $name(model: &Model, $($in: &[f64],)* $($environment: &Environment,)? workspace: &mut Workspace, $out: &mut [f64]) {
+            #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2,fma"))]
+            fn entry(
+                model: &Model, $($in: &[Fused],)* $($environment: &Environment<Fused>,)?
+                workspace: &mut crate::Workspace<Fused>, $out: &mut [Fused],
+            ) {
+                kernel::$name(model, $($in,)* $($environment,)? workspace, $out);
+            }
+            match &mut workspace.0 {
+                Inner::Plain(workspace) => kernel::$name(model, $($in,)* $($environment,)? workspace, $out),
+                Inner::Fused(workspace, _applied) => {
+                    $(let $environment = &fused_environment($environment, _applied);)?
+                    // SAFETY: the variant exists only where the processor has AVX2 and FMA.
+                    #[allow(unused_unsafe)] // no target feature elsewhere
+                    unsafe { entry(model, $(fused($in),)* $($environment,)? workspace, fused_mut($out)) }
+                }
+            }
+        }
+    };
+}
+
+entry! {
+    /// [`inverse_dynamics`](kernel::inverse_dynamics()).
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    inverse_dynamics(theta, dtheta, ddtheta; [environment] tau)
+}
+entry! {
+    /// [`forward_dynamics`](kernel::forward_dynamics()).
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    forward_dynamics(theta, dtheta, tau; [environment] ddtheta)
+}
+entry! {
+    /// [`bias_forces`](kernel::bias_forces()).
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    bias_forces(theta, dtheta; [environment] h)
+}
+entry! {
+    /// [`velocity_product`](kernel::velocity_product).
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    velocity_product(theta, dtheta; c)
+}
+entry! {
+    /// [`mass_matrix`](kernel::mass_matrix()).
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    mass_matrix(theta; M)
+}
+entry! {
+    /// [`coriolis_matrix`](kernel::coriolis_matrix()).
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    coriolis_matrix(theta, dtheta; C)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{state, tree, wrench};
+
+    #[test]
+    fn the_instruction_set_changes_results_by_rounding_alone() {
+        for (seed, followers) in [(1, 0), (2, 3)] {
+            let model = tree(seed, 9, followers);
+            let [theta, dtheta, x] = state(&model, seed);
+            let n = model.n();
+            let applied = [(model.end_effector().expect("named"), wrench(1))];
+            let environment = Environment { applied: &applied, ..model.environment() };
+            let run = |mut w: Workspace| {
+                let (mut tau, mut ddtheta, mut c, mut h) = (vec![0.0; n], vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+                let (mut M, mut C) = (vec![0.0; n * n], vec![0.0; n * n]);
+                inverse_dynamics(&model, &theta, &dtheta, &x, &environment, &mut w, &mut tau);
+                forward_dynamics(&model, &theta, &dtheta, &x, &environment, &mut w, &mut ddtheta);
+                bias_forces(&model, &theta, &dtheta, &environment, &mut w, &mut h);
+                velocity_product(&model, &theta, &dtheta, &mut w, &mut c);
+                mass_matrix(&model, &theta, &mut w, &mut M);
+                coriolis_matrix(&model, &theta, &dtheta, &mut w, &mut C);
+                [tau, ddtheta, h, c, M, C]
+            };
+            let portable = run(Workspace::portable(&model));
+            for (a, b) in run(Workspace::new(&model)).iter().zip(&portable) {
+                let scale = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-10 * scale));
+            }
+            // the portable path is the plain kernel, bit for bit
+            let mut tau = vec![0.0; n];
+            kernel::inverse_dynamics(&model, &theta, &dtheta, &x, &environment, &mut crate::Workspace::new(&model), &mut tau);
+            assert_eq!(tau, portable[0]);
+        }
+    }
+}
