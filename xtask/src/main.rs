@@ -31,7 +31,8 @@ usage: cargo xtask COMMAND
   test    build and run everything: Python environment, reference numbers, every test,
           the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
-  bench   the benchmarks";
+  bench   one state on one core beside Pinocchio, into benches/RESULTS.md;
+          bench --criterion: each kernel alone";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -39,7 +40,8 @@ fn main() -> ExitCode {
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["test"] => test(&workspace),
         ["check"] => check(&workspace),
-        ["bench"] => run_benches(&workspace),
+        ["bench"] => run_benches(&workspace, bench::run),
+        ["bench", "--criterion"] => run_benches(&workspace, bench::criterion),
         ["--help" | "-h" | "help"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS
@@ -85,8 +87,8 @@ fn check(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
-fn run_benches(workspace: &Workspace) -> ExitCode {
+fn run_benches(workspace: &Workspace, benches: fn(&Workspace) -> report::Outcome) -> ExitCode {
     let mut report = Report::default();
-    report.step("benchmarks", || bench::run(workspace));
+    report.step("benchmarks", || benches(workspace));
     report.finish()
 }

@@ -1,0 +1,88 @@
+//! Each kernel alone, by criterion: one state an iteration, going round the states.
+#![allow(missing_docs)] // criterion's main
+
+use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
+use mozzi::{Twist, body_jacobian, forward_kinematics, native};
+use mozzi_benches::{State, States, robots};
+use std::hint::black_box;
+use std::time::Duration;
+
+/// One kernel.
+fn bench<R>(group: &mut BenchmarkGroup<WallTime>, path: &str, states: &States, mut run: impl FnMut(State) -> R) {
+    let states: Vec<_> = states.iter().collect();
+    let mut round = states.iter().cycle();
+    group.bench_function(path, |b| b.iter(|| round.next().map(|&state| run(black_box(state)))));
+}
+
+fn kernels(criterion: &mut Criterion) {
+    for (name, model) in robots::all() {
+        let (states, n, environment) = (States::new(&model), model.n(), model.environment());
+        let frame = model.frames().last().expect("a frame").0;
+        let (mut x, mut M, mut J) = (vec![0.0; n], vec![0.0; n * n], vec![Twist::zero(); n]);
+        let mut group = |kernel: &str, run: &mut dyn FnMut(&mut BenchmarkGroup<WallTime>)| {
+            let mut group = criterion.benchmark_group(format!("{name}/{kernel}"));
+            group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+            run(&mut group);
+            group.finish();
+        };
+        let both = || {
+            let workspaces = [native::Workspace::new(&model), native::Workspace::portable(&model)];
+            workspaces.map(|workspace| (workspace.instruction_set(), workspace))
+        };
+        group("inverse_dynamics", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, ddtheta, _]| {
+                    native::inverse_dynamics(&model, theta, dtheta, ddtheta, &environment, &mut w, black_box(&mut x));
+                });
+            }
+        });
+        group("forward_dynamics", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, _, tau]| {
+                    native::forward_dynamics(&model, theta, dtheta, tau, &environment, &mut w, black_box(&mut x));
+                });
+            }
+        });
+        group("mass_matrix", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, ..]| {
+                    native::mass_matrix(&model, theta, &mut w, black_box(&mut M));
+                });
+            }
+        });
+        group("coriolis_matrix", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, ..]| {
+                    native::coriolis_matrix(&model, theta, dtheta, &mut w, black_box(&mut M));
+                });
+            }
+        });
+        group("bias_forces", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, ..]| {
+                    native::bias_forces(&model, theta, dtheta, &environment, &mut w, black_box(&mut x));
+                });
+            }
+        });
+        group("velocity_product", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, ..]| {
+                    native::velocity_product(&model, theta, dtheta, &mut w, black_box(&mut x));
+                });
+            }
+        });
+        group("body_jacobian", &mut |group| {
+            bench(group, "portable", &states, |[theta, ..]| body_jacobian(&model, theta, frame, black_box(&mut J)));
+        });
+        group("forward_kinematics", &mut |group| {
+            bench(group, "portable", &states, |[theta, ..]| forward_kinematics(&model, theta, frame));
+        });
+        group("closed_form", &mut |group| {
+            group.sample_size(20);
+            bench(group, "dense", &states, |[theta, dtheta, ..]| model.closed_form(theta, dtheta, &environment));
+        });
+    }
+}
+
+criterion_group!(benches, kernels);
+criterion_main!(benches);

@@ -1,0 +1,67 @@
+//! The robots: two arms and a body with a head and four limbs.
+
+use crate::random::Random;
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
+
+/// All of them, each with its name.
+///
+/// # Panics
+/// When one of them is broken.
+pub fn all() -> [(&'static str, Model); 3] {
+    [("Panda", panda()), ("UR5", ur5()), ("tree of 32", tree())]
+}
+
+/// The Panda arm: 7 joints, the fingers closed and locked.
+///
+/// # Panics
+/// When it is broken.
+pub fn panda() -> Model {
+    let panda = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");
+    panda.with_locked_joints(&[("panda_finger_joint1", 0.0)]).expect("it has fingers")
+}
+
+/// The UR5 arm: 6 joints.
+///
+/// # Panics
+/// When it is broken.
+pub fn ur5() -> Model {
+    mozzi_urdf::open("ur5").and_then(|robot| robot.build()).expect("an embedded robot")
+}
+
+/// A tree of 32 revolute joints: a trunk of 2, a head of 2, two arms and two legs of 7. The numbers are random, the
+/// axes along x, y and z in turn, as in most robots' files.
+///
+/// # Panics
+/// When it is broken.
+pub fn tree() -> Model {
+    let mut random = Random(32);
+    let mut robot = Description::new("tree").link("pelvis", body(&mut random));
+    let limbs = [("pelvis", "trunk", 2), ("trunk2", "head", 2), ("trunk2", "left_arm", 7), ("trunk2", "right_arm", 7)];
+    for (carrier, limb, joints) in limbs.into_iter().chain([("pelvis", "left_leg", 7), ("pelvis", "right_leg", 7)]) {
+        let mut parent = carrier.to_string();
+        for i in 1..=joints {
+            let child = format!("{limb}{i}");
+            let mut axis = [0.0; 3];
+            axis[i % 3] = 1.0;
+            let screw = ScrewAxis::new(axis, [0.0; 3]).expect("a unit axis");
+            let [roll, pitch, yaw] = random.vector();
+            let origin = SE3::new(SO3::from_rpy(roll, pitch, yaw), Vec3(random.vector()) * 0.3);
+            robot = robot.link(&child, body(&mut random)).joint(Joint::new(
+                format!("{child}_joint"),
+                parent,
+                &child,
+                origin,
+                JointKind::Screw(screw),
+            ));
+            parent = child;
+        }
+    }
+    robot.build().expect("a sound robot")
+}
+
+/// A body of 1 to 3 kg.
+fn body(random: &mut Random) -> SpatialInertia {
+    let moments = Sym3::diagonal(0.02, 0.02, 0.02) + Sym3::outer(Vec3(random.vector()), 0.01);
+    SpatialInertia::new(2.0 + random.number(), Vec3(random.vector()) * 0.1, moments)
+}
