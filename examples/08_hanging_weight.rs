@@ -40,9 +40,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("F_tip = ({}) in the hand's frame", row(&held_up.to_array()));
     agree("wrench and payload, at rest", &tau_wrench, &tau_payload, 1e-14);
     let J = model.body_jacobian(&theta, hand)?;
-    let sum: Vec<f64> =
-        model.gravity_forces(&theta)?.iter().zip(J.transpose_mul(held_up)).map(|(g, JtF)| g + JtF).collect();
-    agree("g + J_bᵀF", &sum, &tau_wrench, 1e-14);
+    let sum = model.gravity_forces(&theta)? + J.transpose_mul(held_up);
+    agree("g + J_bᵀF", sum.as_slice(), &tau_wrench, 1e-14);
 
     // moved: the difference is what accelerates the point mass, m p̈ at p
     let (dtheta, ddtheta) = ([0.4, -0.3, 0.6, 0.5, -0.8, 0.3, 0.9], [1.0, 0.5, -1.0, 2.0, 1.5, -0.5, 1.0]);
@@ -56,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let velocity = V.v + V.w.cross(p); // of the point, in {b}
     let acceleration = dV.v + dV.w.cross(p) + V.w.cross(velocity);
     let inertial = Wrench { m: p.cross(acceleration * mass), f: acceleration * mass };
-    let both: Vec<f64> = tau_wrench.iter().zip(J.transpose_mul(inertial)).map(|(tau, JtF)| tau + JtF).collect();
-    agree("wrench + J_bᵀ(p × mp̈, mp̈) and payload", &both, &tau_payload, 1e-14);
+    let both = &tau_wrench + J.transpose_mul(inertial);
+    agree("wrench + J_bᵀ(p × mp̈, mp̈) and payload", both.as_slice(), &tau_payload, 1e-14);
     Ok(())
 }

@@ -89,7 +89,7 @@ const CODES: [(&str, &str); 53] = [
     ),
     (
         "too_large",
-        "The file is larger than 64 MiB or has more than four million elements and texts. Such files are refused to bound time and memory.",
+        "The file is larger than 64 MiB or has more than two million elements and texts. Such files are refused to bound time and memory.",
     ),
     ("too_large_number", "A number is beyond the range of double precision."),
     (
@@ -98,7 +98,7 @@ const CODES: [(&str, &str); 53] = [
     ),
     (
         "too_many_namespaces",
-        "More than 64 namespaces hold at one place. No robot needs this; such files are refused to bound time and memory.",
+        "More than 64 namespaces hold at one place, or more than 4096 are declared. No robot needs this; such files are refused to bound time and memory.",
     ),
     ("unknown_attribute", "An attribute is not of URDF, and near no word of it. It is ignored; said once per kind."),
     (

@@ -11,6 +11,9 @@ pub(crate) const MOST_ATTRIBUTES: usize = 256;
 /// More namespaces that hold at one place are refused.
 pub(crate) const MOST_NAMESPACES: usize = 64;
 
+/// More declarations of namespaces are refused.
+pub(crate) const MOST_DECLARATIONS: usize = 4096;
+
 /// An element that was opened and not yet closed.
 struct Open {
     name: Range<usize>,
@@ -29,7 +32,7 @@ pub(crate) enum Unfinished {
 /// What is never closed, if anything is.
 pub(crate) fn scan(text: &str) -> Result<Option<Unfinished>, Finding> {
     let mut open: Vec<Open> = Vec::new();
-    let mut at = 0;
+    let (mut at, mut declarations) = (0, 0);
     while let Some(start) = text[at..].find('<').map(|k| at + k) {
         let rest = &text[start..];
         let (end, what) = if rest.starts_with("<!--") {
@@ -50,7 +53,8 @@ pub(crate) fn scan(text: &str) -> Result<Option<Unfinished>, Finding> {
         } else {
             let tag = Tag::read(text, start);
             let namespaces = tag.namespaces + open.last().map_or(0, |parent| parent.namespaces);
-            tag.check(namespaces, open.len() + 1)?;
+            declarations += tag.namespaces;
+            tag.check(namespaces, declarations, open.len() + 1)?;
             if !tag.closed {
                 open.push(Open { name: tag.name, namespaces });
             }
@@ -108,7 +112,7 @@ impl Tag {
         tag
     }
 
-    fn check(&self, namespaces: usize, depth: usize) -> Result<(), Finding> {
+    fn check(&self, namespaces: usize, declarations: usize, depth: usize) -> Result<(), Finding> {
         let error = |code, what: &str, found: usize, most: usize| {
             Err(Finding::error(code, self.name.clone(), format!("{found} {what}, expected at most {most}")))
         };
@@ -120,6 +124,10 @@ impl Tag {
         }
         if namespaces > MOST_NAMESPACES {
             return error("too_many_namespaces", "namespaces hold here", namespaces, MOST_NAMESPACES);
+        }
+        if declarations > MOST_DECLARATIONS {
+            let what = "namespaces are declared up to here";
+            return error("too_many_namespaces", what, declarations, MOST_DECLARATIONS);
         }
         Ok(())
     }
@@ -148,6 +156,7 @@ mod tests {
         assert!(scan(&"<a/>".repeat(100_000)).is_ok());
         assert_eq!(code(&format!("<a {}>", "b='' ".repeat(257))), "too_many_attributes");
         assert_eq!(code(&"<a xmlns:b='c'>".repeat(65)), "too_many_namespaces");
+        assert_eq!(code(&"<a xmlns:b='c'/>".repeat(4097)), "too_many_namespaces");
         assert_eq!(code("<?xml version='1.0'?><!DOCTYPE a>"), "document_type");
     }
 }

@@ -7,7 +7,7 @@ use crate::words::shown;
 use roxmltree::{Document, Error, ParsingOptions};
 
 /// More nodes (elements, texts, comments) are refused: a parsed node is some ten times its text.
-const MOST_NODES: u32 = 4_000_000;
+const MOST_NODES: u32 = 2_000_000;
 
 /// The parsed text, or the first error of its syntax.
 pub(crate) fn parse(source: &Source) -> Result<Document<'_>, Finding> {

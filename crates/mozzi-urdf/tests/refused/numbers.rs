@@ -1,6 +1,7 @@
 //! What is no number, or not one that can be.
 
 use super::{refused, warned};
+use mozzi_urdf::{Policy, parse_with};
 
 /// A robot of one moving link with this inertial.
 fn inertial(text: &str) -> &'static str {
@@ -85,4 +86,29 @@ fn a_link_is_judged_by_its_body() {
     let light = text.replace("ixx='1'", "ixx='0.01'").replace("iyy='1'", "iyy='0.01'").replace("izz='1'", "izz='0.01'");
     let broken = format!("{message}; the body that it is part of has a negative moment too").leak();
     refused(&[(light.leak(), "indefinite_inertia", broken)]);
+}
+
+#[test]
+fn lenient() {
+    let inertia = |zz: &str| format!("<mass value='1'/><§inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='{zz}'/>");
+    let load = |zz: &str| parse_with("a.urdf", inertial(&inertia(zz)).replace('§', ""), Policy::Lenient);
+    for (zz, moments) in [("3", [1.5, 1.5, 3.0]), ("-1", [0.0, 1.5, 1.5])] {
+        let robot = load(zz).expect("repaired");
+        let [warning] = robot.warnings.as_slice() else { panic!("{:#?}", robot.warnings) };
+        assert_eq!((warning.code(), warning.line(), warning.column()), ("mozzi::urdf::repaired_inertia", 4, 30));
+        let found = robot.description.links[1].inertia.verdict().principal_moments;
+        assert!(found.iter().zip(moments).all(|(found, expected)| (found - expected).abs() < 1e-14), "{found:?}");
+        if zz == "3" {
+            assert_eq!(
+                warning.to_string(),
+                "a.urdf:4:30: warning: link `b`: inertia: the principal moments about the centre of mass, 1.000000e0, \
+                 1.000000e0 and 3.000000e0 kg m², break the triangle inequality: the largest exceeds the sum of the others by \
+                 1.000e0; replaced by the nearest that a body can have, of the moments 1.500000e0, 1.500000e0 and 3.000000e0 kg \
+                 m²"
+            );
+        }
+    }
+    assert!(load("1").expect("sound").warnings.is_empty());
+    let negative = inertial(&inertia("1").replace("value='1'", "value='-1'")).replace('§', "");
+    assert!(parse_with("a.urdf", negative, Policy::Lenient).is_err());
 }

@@ -46,6 +46,8 @@ fn too_much() {
         (wide.leak(), "too_many_attributes", "257 attributes stand on this element, expected at most 256"),
         (spaces.leak(), "too_many_namespaces", "65 namespaces hold here, expected at most 64"),
     ]);
+    let long = format!("<robot name='a'><link name='§{}'/></robot>", "b".repeat(257));
+    refused(&[(long.leak(), "long_name", "link: name: has 257 bytes, expected at most 256")]);
     let large = parse("a.urdf", vec![b' '; (64 << 20) + 1]).expect_err("too large").to_string();
     assert!(large.ends_with("a.urdf:1:1: error: the file has 67108865 bytes, expected at most 67108864"), "{large}");
 }

@@ -148,9 +148,7 @@ fn the_books_lists_make_the_same_robot_in_every_form() {
     }
     // out again: the lists in centre-of-mass frames make the same robot once more
     let out = reference.screws();
-    let mut M = out.M.clone();
-    M.push(out.end_effector.clone().expect("named").1);
-    let again = Description::from_screws("again", HomeFrames::Base(&M), &out.G, Screws::Space(&out.S));
+    let again = Description::from_screws("again", HomeFrames::Base(&out.home_frames()), &out.G, Screws::Space(&out.S));
     let again = again.expect("lengths").build().expect("a sound robot");
     let again = again.inverse_dynamics(&theta, &dtheta, &ddtheta, &again.environment()).expect("lengths");
     assert!((&again - &tau).amax() < 1e-11 * tau.amax());

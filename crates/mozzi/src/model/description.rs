@@ -137,6 +137,12 @@ impl Description {
         }
     }
 
+    /// The same robot under another gravity, in base coordinates, m/s².
+    pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
     /// Adds a link, its inertia in its own frame.
     pub fn link(mut self, name: impl Into<String>, inertia: SpatialInertia) -> Self {
         self.links.push(Link { name: name.into(), inertia });

@@ -1,6 +1,7 @@
 //! Unit screw axes.
 
-use super::Twist;
+use super::{Twist, Wrench};
+use crate::lie::{Adjoint, LieBracket};
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use core::ops::Mul;
@@ -15,7 +16,7 @@ pub struct ScrewAxis<S = f64>(Twist<S>);
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1 (use ScrewAxis::normalize \
-     and scale this joint's θ by what it returns)"
+     and multiply this joint's θ, and divide its τ, by the size that it returns)"
 )]
 pub struct NotAScrew {
     /// ‖ω‖.
@@ -36,6 +37,14 @@ impl ScrewAxis<f64> {
         let unit = |norm: f64| (norm - 1.0).abs() <= 1e-12;
         let is_screw = linear.is_finite() && (unit(angular) || angular == 0.0 && unit(linear));
         if is_screw { Ok(ScrewAxis(twist)) } else { Err(NotAScrew { angular, linear }) }
+    }
+
+    /// From (ω, v) in one array, angular first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_array([a, b, c, x, y, z]: [f64; 6]) -> Result<Self, NotAScrew> {
+        Self::new([a, b, c], [x, y, z])
     }
 
     /// The unit screw axis A along a twist V, and the size k > 0 with V = k A: a joint that was described by V and θ is
@@ -87,6 +96,27 @@ impl<S: Scalar> ScrewAxis<S> {
     /// As a twist: 1 rad/s (or 1 m/s) about the screw.
     pub fn twist(self) -> Twist<S> {
         self.0
+    }
+
+    /// AᵀF: the torque or force along the joint.
+    pub fn dot(self, F: Wrench<S>) -> S {
+        self.0.dot(F)
+    }
+}
+
+/// `[Ad_T]` A.
+impl<S: Scalar> Mul<ScrewAxis<S>> for Adjoint<S> {
+    type Output = Twist<S>;
+    fn mul(self, A: ScrewAxis<S>) -> Twist<S> {
+        self * A.0
+    }
+}
+
+/// `[ad_V]` A.
+impl<S: Scalar> Mul<ScrewAxis<S>> for LieBracket<S> {
+    type Output = Twist<S>;
+    fn mul(self, A: ScrewAxis<S>) -> Twist<S> {
+        self * A.0
     }
 }
 

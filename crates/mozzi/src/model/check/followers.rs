@@ -5,6 +5,7 @@ use crate::model::description::{Joint, JointKind, Mimic};
 use crate::model::error::names;
 use alloc::collections::BTreeMap;
 use alloc::format;
+use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
