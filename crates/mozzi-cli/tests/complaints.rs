@@ -38,9 +38,13 @@ fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
     let said = String::from_utf8_lossy(&output.stderr).to_string();
     assert!(output.status.success() && said.contains("odd.urdf:1:") && said.contains("limit"), "{said}");
     let output = mozzi(&["check", &robot]);
-    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("1 warning"), "{output:?}");
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("2 warnings"), "{output:?}");
     assert_eq!(mozzi(&["check", &robot, "--strict"]).status.code(), Some(1));
     assert!(output.stderr.len() > said.len());
+    wrong(&["forward-dynamics", &robot], &["the mass matrix is singular at joint `j`"]);
+    let output = mozzi(&["terms", &robot, "--json"]);
+    let terms: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(terms["forward_dynamics"].is_null() && terms["inverse_dynamics"][0] == 0.0, "{terms}");
 }
 
 #[test]
@@ -48,6 +52,7 @@ fn wrong_numbers() {
     wrong(&["terms", "ur5", "--theta", "1,2,3"], &["--theta has 3 entries, expected 6", "elbow_joint"]);
     wrong(&["terms", "ur5", "--theta", "0,0,abc,0,0,0"], &["--theta: entry 3 is `abc`, expected a number"]);
     wrong(&["terms", "ur5", "--dtheta", "0,0,0,NaN,0,0"], &["--dtheta: entry 4 is `NaN`, expected a finite number"]);
+    wrong(&["terms", "ur5", "--theta", "0,0,,0,0,0"], &["--theta: entry 3 is ``, expected a number"]);
     wrong(&["terms", "ur5", "--gravity", "0,-9.81"], &["--gravity has 2 entries, expected 3: x, y, z"]);
     wrong(&["inverse-dynamics", "ur5", "--tip-wrench", "1"], &["--tip-wrench has 1 entry, expected 6", "m_x"]);
     wrong(&["simulate", "ur5", "--step", "-0.1"], &["step is -0.1", "positive"]);
