@@ -1,5 +1,8 @@
 //! What each code means, at more length.
 
+use crate::mjcf;
+use std::collections::BTreeSet;
+
 /// Code, without `mozzi::urdf::`, and explanation.
 const CODES: [(&str, &str); 53] = [
     (
@@ -134,13 +137,19 @@ const CODES: [(&str, &str); 53] = [
 
 /// What a code such as `mozzi::urdf::zero_axis`, or `zero_axis`, means.
 pub fn explain(code: &str) -> Option<&'static str> {
-    let short = code.strip_prefix("mozzi::urdf::").unwrap_or(code);
-    CODES.iter().find(|(known, _)| *known == short).map(|&(_, text)| text)
+    let look =
+        |codes: &[(&str, &'static str)], short| codes.iter().find(|(known, _)| *known == short).map(|&(_, text)| text);
+    match code.strip_prefix("mozzi::mjcf::") {
+        Some(short) => look(&mjcf::CODES, short).or_else(|| look(&CODES, short)),
+        None => {
+            let short = code.strip_prefix("mozzi::urdf::").unwrap_or(code);
+            look(&CODES, short).or_else(|| look(&mjcf::CODES, short))
+        }
+    }
 }
 
-/// All codes, without `mozzi::urdf::`, in alphabetical order.
+/// All codes, without `mozzi::urdf::` or `mozzi::mjcf::`, in alphabetical order.
 pub fn codes() -> impl Iterator<Item = &'static str> {
-    let mut codes: Vec<&str> = CODES.iter().map(|&(code, _)| code).collect();
-    codes.sort_unstable();
+    let codes: BTreeSet<&str> = CODES.iter().chain(&mjcf::CODES).map(|&(code, _)| code).collect();
     codes.into_iter()
 }
