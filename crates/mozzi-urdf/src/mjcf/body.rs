@@ -141,12 +141,15 @@ impl<'a> Model<'a> {
             }
             match self.mass_of(&item, geom.T, cx) {
                 Mass::Known(inertia) => sum += inertia,
+                // what the checks say of a mass that is not known is an echo
+                Mass::Wrong => place.report("mass"),
                 Mass::Mesh if is_static => self.ignored.mesh(&item),
                 Mass::Mesh => {
                     let help = "give the body an <inertial>, or the geom the mass 0; MuJoCo writes inertias into the file that \
                                 it saves with the compiler's saveinertial";
                     let message = "is a mesh, whose inertia would be needed: mozzi reads no meshes";
                     cx.findings.add(item.error("mesh_inertia", "mesh", message).help(help));
+                    place.report("mass");
                 }
             }
         }

@@ -17,6 +17,8 @@ pub(crate) enum Mass {
     Known(SpatialInertia),
     /// A mesh tells, which is not read.
     Mesh,
+    /// It cannot be read, which was reported.
+    Wrong,
 }
 
 impl Model<'_> {
@@ -32,7 +34,7 @@ impl Model<'_> {
             if x < 0.0 {
                 let message = format!("{name}: is {x}, expected at least 0");
                 cx.findings.add(item.error("negative_mass", name, &message));
-                return nothing;
+                return Mass::Wrong;
             }
         }
         let kind = item.word("type", &TYPES, cx).unwrap_or("sphere");
@@ -46,9 +48,9 @@ impl Model<'_> {
             let message = "shellinertia: is the inertia of a hollow body, which mozzi does not compute";
             let help = "give the body an <inertial>";
             cx.findings.add(item.error("unsupported_attribute", "shellinertia", message).help(help));
-            return nothing;
+            return Mass::Wrong;
         }
-        let Some((solid, frame)) = self.solid(item, kind, cx) else { return nothing };
+        let Some((solid, frame)) = self.solid(item, kind, cx) else { return Mass::Wrong };
         let inertia = match mass {
             Some([mass]) => solid.inertia(mass),
             None => solid.of_density(density),

@@ -32,9 +32,8 @@ impl Model<'_> {
             cx.findings.add(item.error("several_orientations", name, &message));
         }
         if diagonal == full {
-            let found = if full { "has both" } else { "has neither" };
-            let message =
-                format!("{}: {found} diaginertia and fullinertia, expected one of them", item.element.subject);
+            let found = if full { "has both diaginertia and" } else { "has neither diaginertia nor" };
+            let message = format!("{}: {found} fullinertia, expected one of them", item.element.subject);
             cx.findings.add(Finding::error("missing_attribute", item.element.span(), message));
         }
         let I = if let Some([xx, yy, zz, xy, xz, yz]) = item.vector::<6>("fullinertia", cx) {

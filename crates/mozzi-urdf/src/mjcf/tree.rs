@@ -8,6 +8,7 @@ use crate::words::shown;
 use mozzi::model::description::{self, JointKind};
 use mozzi::{Description, SE3, SpatialInertia};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// The name of an element, or what it is called without one.
 pub(crate) struct Name {
@@ -94,18 +95,31 @@ impl Tree {
         let (mut description, mut carriers) = (Description::new(name).with_gravity(gravity), Vec::new());
 
         let mut taken: BTreeSet<String> = self.links.iter().filter_map(|link| link.name.given.clone()).collect();
+        let mut renamed: Option<(Range<usize>, String, usize)> = None;
         for site in self.sites {
             let mut name = site.name;
             if taken.contains(&name) {
                 let other = free(&format!("{name}:site"), &taken);
-                let message = format!("site `{}`: a body has this name too; it is called `{other}` here", shown(&name));
-                let help = "bodies and sites are both frames, and need names of their own";
-                cx.findings.add(Finding::warning("renamed_site", site.place.span("name"), message).help(help));
+                renamed
+                    .get_or_insert_with(|| {
+                        let (site_name, other) = (shown(&name), shown(&other));
+                        (
+                            site.place.span("name"),
+                            format!("site `{site_name}`: a body has this name too; it is called `{other}` here"),
+                            0,
+                        )
+                    })
+                    .2 += 1;
                 name = other;
             }
             places.frames.push(site.place);
             carriers.push(site.link);
             description.frames.push(description::NamedFrame { name, link: String::new(), T: site.T });
+        }
+        if let Some((span, message, count)) = renamed {
+            let message = if count == 1 { message } else { format!("{message} (and {} more)", count - 1) };
+            let help = "bodies and sites are both frames here, so such a site is called after both";
+            cx.findings.add(Finding::warning("renamed_site", span, message).help(help));
         }
         taken.extend(description.frames.iter().map(|frame| frame.name.clone()));
         for link in self.links {
