@@ -38,9 +38,9 @@ impl NotANumber {
         match self {
             NotANumber::Comma => Some("numbers have a decimal point, and spaces between them: `0.5`, not `0,5`"),
             NotANumber::Macro => Some("this is a xacro file; expand it first: `xacro robot.xacro > robot.urdf`"),
-            NotANumber::Unit => {
-                Some("a number stands alone, without a unit: metres, radians, kilograms, seconds are meant")
-            }
+            NotANumber::Unit => Some(
+                "a number stands alone, without a unit: metres, radians (in MJCF what its compiler says), kilograms, seconds are meant",
+            ),
             _ => None,
         }
     }

@@ -38,11 +38,11 @@ fn help(problem: &Problem, description: &Description, suggestions: &mut usize) -
              units, the signs, and that the moments are about the centre of mass"
         }
         "indefinite_inertia" => {
-            "such a body would gain speed by being braked: check the signs of ixy, ixz, iyz and that the moments are about \
+            "such a body would gain speed by being braked: check the signs of its products and that the moments are about \
              the centre of mass; the lenient policy takes the nearest physical inertia instead"
         }
         "negative_mass" => "masses are in kilograms, at least 0",
-        "reversed_limits" => "exchange `lower` and `upper`",
+        "reversed_limits" => "exchange the two numbers",
         "loop_closure" => "cut the loop by removing one of its joints, if that is what you want to compute",
         "fixed_master" => "a joint can only follow a joint that moves",
         "duplicate_name" => "rename one of them",

@@ -2,6 +2,17 @@
 
 use mozzi_urdf::{Style, embedded, parse};
 
+/// A robot that mozzi brings along, or one of the two models of MuJoCo that are written for the tests.
+fn text(k: usize) -> &'static str {
+    const MODELS: [&str; 2] =
+        [include_str!("../../../oracles/test_bodies.xml"), include_str!("../../../oracles/test_compiler.xml")];
+    let k = k % (embedded::names().len() + MODELS.len());
+    match embedded::names().nth(k) {
+        Some(name) => embedded::text(name).expect("embedded").trim_end(),
+        None => MODELS[k - embedded::names().len()].trim_end(),
+    }
+}
+
 /// xorshift64*: the same numbers in every run.
 struct Random(u64);
 
@@ -33,11 +44,11 @@ fn answer(text: &[u8]) -> bool {
 
 #[test]
 fn truncated_anywhere() {
-    for name in embedded::names() {
-        let text = embedded::text(name).expect("embedded").trim_end().as_bytes();
+    for k in 0..7 {
+        let text = text(k).as_bytes();
         let mut random = Random(7);
         for _ in 0..60 {
-            assert!(!answer(&text[..random.below(text.len())]), "{name} without its end");
+            assert!(!answer(&text[..random.below(text.len())]), "{k} without its end");
         }
     }
 }
@@ -63,9 +74,8 @@ fn mutated_anywhere() {
         b"",
     ];
     let (mut random, mut accepted) = (Random(11), 0);
-    for round in 0..400 {
-        let name = embedded::names().nth(round % 5).expect("five");
-        let mut text = embedded::text(name).expect("embedded").as_bytes().to_vec();
+    for round in 0..560 {
+        let mut text = text(round).replace("<include file=\"parts/test_leg.xml\"/>", "").into_bytes();
         for _ in 0..1 + random.below(3) {
             let (at, piece) = (random.below(text.len()), pieces[random.below(pieces.len())]);
             let end = (at + random.below(4)).min(text.len());
@@ -73,12 +83,12 @@ fn mutated_anywhere() {
         }
         accepted += usize::from(answer(&text));
     }
-    assert!(accepted > 0 && accepted < 400, "{accepted}"); // in a comment, damage does no harm
+    assert!(accepted > 0 && accepted < 560, "{accepted}"); // in a comment, damage does no harm
 }
 
 #[test]
 fn nested_without_end() {
-    for start in ["<robot name='a'>", "<robot name='a'><link name='b'>"] {
+    for start in ["<robot name='a'>", "<robot name='a'><link name='b'>", "<mujoco>", "<mujoco><worldbody><body>"] {
         for piece in ["<a>", "<link name='a'>", "<!--", "<![CDATA[", "<a b='", "</a>", "<a xmlns:b='c'>", "<?"] {
             assert!(!answer(format!("{start}{}", piece.repeat(200_000)).as_bytes()), "{piece}");
         }
@@ -128,4 +138,26 @@ fn ten_thousand_links() {
         assert!(robot.warnings.is_empty());
         assert_eq!(robot.description.links.len(), 10_000);
     }
+}
+
+#[test]
+fn large_and_wrong_models_of_mujoco() {
+    let classes: String =
+        (0..5_000).map(|k| format!("<default class='class{k}'><joint axis='1 0 0'/></default>")).collect();
+    let bodies: String =
+        (0..20_000).map(|k| format!("<body name='b{k}'><joint class='clas{k}'/><geom size='{k}'/></body>")).collect();
+    let wrong = format!("<mujoco><default>{classes}</default><worldbody>{bodies}</worldbody></mujoco>");
+    let error = parse("wrong.xml", wrong).expect_err("no such classes");
+    assert_eq!(error.errors().count(), 1000);
+    // a class with many values inside many others
+    let deep = format!("{}{}", "<default class='d'>".repeat(200), "</default>".repeat(200));
+    let error = parse("deep.xml", format!("<mujoco><default>{deep}</default></mujoco>")).expect_err("one name");
+    assert!(error.errors().all(|error| error.code() == "mozzi::mjcf::duplicate_name"), "{error}");
+
+    let bodies: String = (0..10_000)
+        .map(|k| format!("<body name='b{k}'><joint name='j{k}'/><geom size='0.1'/><site name='b{k}'/></body>"))
+        .collect();
+    let robot = parse("large.xml", format!("<mujoco><worldbody>{bodies}</worldbody></mujoco>")).expect("a robot");
+    assert_eq!((robot.description.links.len(), robot.warnings.len()), (10_001, 1));
+    assert_eq!(robot.build().expect("a model").n(), 10_000);
 }

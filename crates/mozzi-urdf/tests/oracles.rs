@@ -181,6 +181,9 @@ fn compare_folder(folder: &Path) {
         assert_eq!(names.len(), model.n(), "{}", path.display());
         let order: Vec<usize> =
             names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
+        if oracle.get("mjcf").is_some() {
+            assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
+        }
         let mut worst = Worst::default();
         let states = oracle["states"].as_array().unwrap();
         states.iter().for_each(|state| compare(&model, &order, state, &mut worst));

@@ -13,6 +13,11 @@ use std::rc::Rc;
 /// The values of attributes, outermost class first.
 pub(crate) type Values<'a> = BTreeMap<&'static str, Vec<Value<'a>>>;
 
+/// Suggestions are searched among so many names.
+pub(crate) const MOST_SUGGESTED: usize = 100;
+/// Longer values are refused: what a class holds is read for each element that takes it.
+const LONGEST_VALUE: usize = 256;
+
 /// The place of a class among all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Class(usize);
@@ -72,9 +77,19 @@ impl<'a> Classes<'a> {
             }
             let values = Rc::make_mut(self.values[class.0].entry(tag).or_default());
             for &name in words.attributes {
-                if let Some(value) = child.attribute(name) {
-                    values.entry(name).or_default().push(value);
+                let Some(value) = child.attribute(name) else { continue };
+                if value.text.len() > LONGEST_VALUE {
+                    let found = value.text.len();
+                    let message =
+                        format!("{}: {name}: has {found} bytes, expected at most {LONGEST_VALUE}", child.subject);
+                    cx.findings.error("long_value", value.span, message);
+                    continue;
                 }
+                // of an outer class only the numbers beyond those of this one can still count
+                let values = values.entry(name).or_default();
+                let count = value.text.split_ascii_whitespace().count();
+                values.retain(|outer| outer.text.split_ascii_whitespace().count() > count);
+                values.push(value);
             }
         }
         for child in element.elements().filter(|child| child.name() == "default") {
@@ -98,7 +113,7 @@ impl<'a> Classes<'a> {
             return class;
         }
         let message = format!("{}: {attribute}: there is no default class `{}`", element.subject, shown(value.text));
-        let known = self.names.keys().map(String::as_str).take(1000);
+        let known = self.names.keys().map(String::as_str).take(MOST_SUGGESTED);
         let help = did_you_mean(value.text, known);
         cx.findings.add(Finding::error("unknown_class", value.span, message).maybe_help(help));
         otherwise

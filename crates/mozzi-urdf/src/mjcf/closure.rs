@@ -3,7 +3,7 @@
 
 use super::Model;
 use super::attributes::Item;
-use super::class::Class;
+use super::class::{Class, MOST_SUGGESTED};
 use super::words;
 use crate::context::Context;
 use crate::element::Element;
@@ -29,6 +29,9 @@ impl<'a> Model<'a> {
         for (section, child) in
             sections.iter().flat_map(|section| section.elements().map(move |child| (section, child)))
         {
+            if cx.findings.is_full() {
+                return;
+            }
             let name = child.attribute("name").map_or_else(String::new, |name| format!(" `{}`", shown(name.text)));
             let child = child.called(format!("{}: {}{name}", section.name(), child.name()));
             match section.name() {
@@ -79,7 +82,7 @@ impl<'a> Model<'a> {
         let [a0, a1, curved @ ..] = polynomial;
         let subject = &item.element.subject;
         let refuse = |what: &str| {
-            let message = format!("{subject}: {what}, which mozzi does not compute");
+            let message = format!("{subject}: {what}");
             let help = "expected a coupling of two joints by a straight line, polycoef=\"a b 0 0 0\"";
             Finding::error("unsupported_equality", item.element.span(), message).help(help)
         };
@@ -88,23 +91,23 @@ impl<'a> Model<'a> {
             let found = names.get(value.text).copied();
             if found.is_none() {
                 let message = format!("{subject}: {attribute}: there is no joint `{}`", shown(value.text));
-                let help = did_you_mean(value.text, names.keys().map(String::as_str).take(1000));
+                let help = did_you_mean(value.text, names.keys().map(String::as_str).take(MOST_SUGGESTED));
                 cx.findings.add(Finding::error("unknown_joint", value.span.clone(), message).maybe_help(help));
             }
             found.map(|found| (found, value))
         };
         let follower = find("joint1");
         if item.element.attribute("joint2").is_none() {
-            cx.findings.add(refuse("holds a joint where it is"));
+            cx.findings.add(refuse("holds a joint where it is, which mozzi does not compute"));
             return;
         }
         let (Some((y, _)), Some((x, master))) = (follower, find("joint2")) else { return };
         if curved != [0.0; 3] {
-            cx.findings.add(refuse("couples joints by a curve"));
+            cx.findings.add(refuse("couples joints by a curve, which mozzi does not compute"));
             return;
         }
         if self.tree.joints[y].joint.mimic.is_some() {
-            cx.findings.add(refuse("is the second that determines its joint1"));
+            cx.findings.add(refuse("its joint1 follows another already, expected one that it follows"));
             return;
         }
         let offset = self.tree.joints[y].reference + a0 - a1 * self.tree.joints[x].reference;

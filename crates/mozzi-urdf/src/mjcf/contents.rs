@@ -49,10 +49,13 @@ impl<'a> Model<'a> {
         contents: &mut Contents<'a>,
         cx: &mut Context,
     ) {
-        if is_too_deep(element, depth, cx) || cx.findings.is_full() {
+        if is_too_deep(element, depth, cx) {
             return;
         }
         for child in element.elements().filter(|child| !child.has_prefix()) {
+            if cx.findings.is_full() {
+                return;
+            }
             match child.name() {
                 tag @ ("joint" | "geom" | "site") => {
                     let item = self.classes.item(child, tag, class, cx);

@@ -1,7 +1,7 @@
 //! What each code means in MJCF, at more length, where URDF does not have it or means something else by it.
 
 /// Code, without `mozzi::mjcf::`, and explanation.
-pub(crate) const CODES: [(&str, &str); 27] = [
+pub(crate) const CODES: [(&str, &str); 28] = [
     (
         "actuator_armature",
         "An actuator has an inertia of its own, which MuJoCo adds to that of its joint, times the square of its gear. It would change the mass matrix, so it is not ignored. Give it as the joint's armature.",
@@ -26,6 +26,10 @@ pub(crate) const CODES: [(&str, &str); 27] = [
     (
         "include",
         "A file that the model includes cannot be read. Files are searched in the folder of the main file, also those that are named in an included file.",
+    ),
+    (
+        "long_value",
+        "A value in a default class is longer than 256 bytes. No attribute that is read here needs this; such files are refused to bound time.",
     ),
     ("loop_closure", "Two bodies are tied to each other, so that the bodies form a loop. mozzi computes trees."),
     (

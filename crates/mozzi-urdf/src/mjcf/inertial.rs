@@ -49,7 +49,12 @@ impl Model<'_> {
     pub fn bounded(&self, given: SpatialInertia) -> SpatialInertia {
         let (bound, mass) = (self.compiler.bound_inertia, given.mass.max(self.compiler.bound_mass));
         let verdict = given.verdict();
-        let is_low = verdict.principal_moments.iter().any(|&moment| moment < bound);
+        if given.mass < 0.0
+            || verdict.principal_moments.iter().any(|&moment| moment < -1e-12 * verdict.principal_moments[2])
+        {
+            return given; // an error is not repaired in silence
+        }
+        let is_low = bound > 0.0 && verdict.principal_moments.iter().any(|&moment| moment < bound);
         let is_unbalanced = self.compiler.balance && !verdict.is_physical();
         if mass == given.mass && !is_low && !is_unbalanced {
             return given;

@@ -122,8 +122,9 @@ impl Tree {
             cx.findings.add(Finding::warning("renamed_site", span, message).help(help));
         }
         taken.extend(description.frames.iter().map(|frame| frame.name.clone()));
+        let mut names = Names::new("body", taken);
         for link in self.links {
-            let name = settle(link.name, &mut taken);
+            let name = names.settle(link.name, &link.place, cx);
             description.links.push(description::Link { name, inertia: link.inertia });
             places.links.push(link.place);
         }
@@ -132,9 +133,9 @@ impl Tree {
         for (frame, carrier) in description.frames.iter_mut().zip(carriers) {
             frame.link = link(carrier);
         }
-        let mut taken = self.joints.iter().filter_map(|joint| joint.name.given.clone()).collect();
+        let mut names = Names::new("joint", self.joints.iter().filter_map(|joint| joint.name.given.clone()).collect());
         for joint in self.joints {
-            let name = settle(joint.name, &mut taken);
+            let name = names.settle(joint.name, &joint.place, cx);
             let (parent, child) = (link(joint.parent), link(joint.child));
             places.joints.push(joint.place);
             description.joints.push(description::Joint { name, parent, child, ..joint.joint });
@@ -143,12 +144,32 @@ impl Tree {
     }
 }
 
-fn settle(name: Name, taken: &mut BTreeSet<String>) -> String {
-    name.given.unwrap_or_else(|| {
-        let name = free(&name.otherwise, taken);
-        taken.insert(name.clone());
+/// The names of bodies or of joints, as they are given out.
+struct Names {
+    what: &'static str,
+    /// What the file gives, to whatever it is, and what was made up.
+    taken: BTreeSet<String>,
+    given: BTreeSet<String>,
+}
+
+impl Names {
+    fn new(what: &'static str, taken: BTreeSet<String>) -> Self {
+        Names { what, taken, given: BTreeSet::new() }
+    }
+
+    /// The name as it is given; where there is none, or, which is reported, where it is another's, one that is free.
+    fn settle(&mut self, name: Name, place: &Place, cx: &mut Context) -> String {
+        if let Some(given) = name.given {
+            if self.given.insert(given.clone()) {
+                return given;
+            }
+            let message = format!("{} `{}`: the name is taken, expected one of its own", self.what, shown(&given));
+            cx.findings.add(Finding::error("duplicate_name", place.span("name"), message).help("rename one of them"));
+        }
+        let name = free(&name.otherwise, &self.taken);
+        self.taken.insert(name.clone());
         name
-    })
+    }
 }
 
 /// A name that is not taken.

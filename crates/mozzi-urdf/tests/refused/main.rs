@@ -1,5 +1,6 @@
 //! Broken files are refused, at the right place, in the right words.
 mod meaning;
+mod mjcf;
 mod numbers;
 mod structure;
 mod syntax;
@@ -17,6 +18,11 @@ fn unmarked(text: &str) -> (String, usize, usize) {
     (format!("{before}{after}"), line, column)
 }
 
+/// The code with the language of the text.
+fn full(text: &str, code: &str) -> String {
+    format!("mozzi::{}::{code}", if text.contains("<mujoco") { "mjcf" } else { "urdf" })
+}
+
 /// Each case has exactly one error, as expected.
 fn refused(cases: &[Case]) {
     for &(text, code, message) in cases {
@@ -26,7 +32,7 @@ fn refused(cases: &[Case]) {
         let [found] = errors.as_slice() else { panic!("{text}\n{error}") };
         assert_eq!(
             (found.code(), found.to_string()),
-            (format!("mozzi::urdf::{code}").as_str(), format!("a.urdf:{line}:{column}: error: {message}")),
+            (full(&text, code).as_str(), format!("a.urdf:{line}:{column}: error: {message}")),
             "{text}"
         );
         known(&error);
@@ -41,7 +47,7 @@ fn warned(cases: &[Case]) {
         let [found] = robot.warnings.as_slice() else { panic!("{text}\n{:#?}", robot.warnings) };
         assert_eq!(
             (found.code(), found.to_string()),
-            (format!("mozzi::urdf::{code}").as_str(), format!("a.urdf:{line}:{column}: warning: {message}")),
+            (full(&text, code).as_str(), format!("a.urdf:{line}:{column}: warning: {message}")),
             "{text}"
         );
         let strict = parse_with("a.urdf", &text, Policy::Strict).expect_err("a warning");

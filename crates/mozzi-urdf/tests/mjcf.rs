@@ -1,0 +1,156 @@
+//! Models of MuJoCo: what becomes of joints, names, couplings and included files.
+#![allow(clippy::unwrap_used)]
+
+use mozzi::model::description::JointKind;
+use mozzi_urdf::{LoadError, Loaded, load, open, parse};
+use std::path::{Path, PathBuf};
+
+fn model(text: &str) -> Loaded {
+    parse("a.xml", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn joints_of_one_body_act_one_after_the_other() {
+    let robot = model(
+        "<mujoco model='two'><worldbody><body name='b' pos='0 0 1'><joint name='x' type='slide' axis='2 0 0' range='-1 1'/>\
+         <joint axis='0 1 0' pos='0 0 0.5' ref='90' range='0 180' armature='0.1' damping='0.2' frictionloss='0.3'/>\
+         <geom size='0.1'/><site name='tip'/><site/></body></worldbody></mujoco>",
+    );
+    assert!(robot.warnings.is_empty());
+    let d = robot.description;
+    let names = |list: &[&str]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(d.name, "two");
+    assert_eq!(d.links.iter().map(|link| link.name.clone()).collect::<Vec<_>>(), names(&["world", "b:x", "b"]));
+    assert_eq!(d.joints.iter().map(|joint| joint.name.clone()).collect::<Vec<_>>(), names(&["x", "joint1"]));
+    assert_eq!(d.frames.iter().map(|frame| frame.name.clone()).collect::<Vec<_>>(), names(&["tip"]));
+    let [x, turn] = d.joints.as_slice() else { panic!("two joints") };
+    assert_eq!((x.parent.as_str(), x.child.as_str(), x.kind.name()), ("world", "b:x", "prismatic"));
+    assert_eq!((turn.parent.as_str(), turn.child.as_str(), turn.kind.name()), ("b:x", "b", "revolute"));
+    assert_eq!(x.limits.position, Some([-1.0, 1.0]));
+    assert_eq!(turn.limits.position, Some([0.0, std::f64::consts::PI]));
+    assert_eq!((turn.armature, turn.damping, turn.friction), (0.1, 0.2, 0.3));
+    // at the position `ref` the body stands as the file says
+    let robot = d.build().unwrap();
+    let T = robot.forward_kinematics(&[0.0, std::f64::consts::FRAC_PI_2], robot.frame("tip").unwrap()).unwrap();
+    assert!((T.p - mozzi::Vec3([0.0, 0.0, 1.0])).norm() < 1e-15, "{T:?}");
+}
+
+#[test]
+fn what_is_switched_off_is_off() {
+    let text = "<mujoco><option gravity='0 0 -1'><flag gravity='disable' passive='disable' constraint='disable'/></option>\
+                <worldbody><body><joint name='a' damping='1' stiffness='2' frictionloss='3'/><joint name='b'/><geom size='1'/>\
+                </body></worldbody><equality><joint joint1='a' joint2='b'/></equality></mujoco>";
+    let robot = model(text);
+    assert_eq!(robot.warnings.len(), 1, "{:?}", robot.warnings);
+    assert_eq!(robot.description.gravity, [0.0; 3]);
+    let a = &robot.description.joints[0];
+    assert_eq!((a.damping, a.friction, &a.mimic), (0.0, 0.0, &None));
+}
+
+#[test]
+fn couplings_in_a_circle() {
+    let text = "<mujoco><worldbody><body><joint name='a'/><joint name='b'/><geom size='1'/></body></worldbody><equality>\
+                <joint joint1='a' joint2='b'/><joint joint1='b' joint2='a'/><joint joint1='b' joint2='a'/></equality></mujoco>";
+    assert_eq!(
+        parse("a.xml", text).unwrap_err().to_string(),
+        "a.xml is refused: 3 errors\n\
+         a.xml:1:131: error: joint `a`: mimic: following `b` leads back in a circle, expected a joint that follows none\n\
+         a.xml:1:161: error: joint `b`: mimic: following `a` leads back in a circle, expected a joint that follows none\n\
+         a.xml:1:166: error: equality: joint: its joint1 follows another already, expected one that it follows"
+    );
+}
+
+#[test]
+fn deep_trees() {
+    let nested =
+        |n: usize| format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(n), "</body>".repeat(n));
+    assert_eq!(model(&nested(254)).description.links.len(), 255);
+    assert_eq!(parse("a.xml", nested(255)).unwrap_err().diagnostics()[0].code(), "mozzi::mjcf::too_deep");
+}
+
+/// A folder of this test's own.
+fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(folder.join("parts")).unwrap();
+    for (file, text) in files {
+        std::fs::write(folder.join(file), text).unwrap();
+    }
+    folder
+}
+
+/// Loads the main file of a folder; what is wrong is told without the folder.
+fn main_of(folder: &Path) -> Result<Loaded, String> {
+    let tell = |error: LoadError| error.to_string().replace(&*folder.to_string_lossy(), ".");
+    load(folder.join("main.xml")).map_err(tell)
+}
+
+#[test]
+fn included_files_stand_where_they_are_named() {
+    let part = "<mujocoinclude><body name='b'><include file='parts/geom.xml'/></body><body name='c'/></mujocoinclude>";
+    let files = [
+        (
+            "main.xml",
+            "<mujoco><worldbody><body name='a'/><include file='parts/b.xml'/><body name='d'/></worldbody></mujoco>",
+        ),
+        ("parts/b.xml", part),
+        ("parts/geom.xml", "<any><geom size='1' mass='2'/><light/></any>"),
+    ];
+    let folder = folder("included", &files);
+    let robot = main_of(&folder).unwrap();
+    let names: Vec<&str> = robot.description.links.iter().map(|link| link.name.as_str()).collect();
+    assert_eq!(names, ["world", "a", "b", "c", "d"]);
+    assert_eq!(robot.description.links[2].inertia.mass, 2.0);
+    assert!(robot.description.joints.iter().all(|joint| joint.kind == JointKind::Fixed));
+    let [light] = robot.warnings.as_slice() else { panic!("{:?}", robot.warnings) };
+    assert!(light.file().ends_with("geom.xml") && light.line() == 1 && light.column() == 32, "{light}");
+    assert!(open(&folder.join("main.xml").to_string_lossy()).is_ok());
+}
+
+#[test]
+fn wrong_includes() {
+    let main = "<mujoco>\n<include file='parts/a.xml'/></mujoco>";
+    let cases = [
+        (
+            "missing",
+            "<x><include file='no.xml'/></x>",
+            "./parts/a.xml:1:19: error: include: `no.xml` cannot be read: No such file or directory (os error 2)",
+        ),
+        (
+            "cycle",
+            "<x><include file='parts/../parts/a.xml'/></x>",
+            "./parts/a.xml:1:19: error: include: `parts/../parts/a.xml` is included already, expected once at most",
+        ),
+        (
+            "main_again",
+            "<x><include file='main.xml'/></x>",
+            "./parts/a.xml:1:19: error: include: `main.xml` is included already, expected once at most",
+        ),
+        (
+            "folder",
+            "<x><include file='parts'/></x>",
+            "./parts/a.xml:1:19: error: include: `parts` cannot be read: it is no file",
+        ),
+        (
+            "network",
+            "<x><include file='https://x.org/a.xml'/></x>",
+            "./parts/a.xml:1:19: error: include: `https://x.org/a.xml` is not on this machine, expected a file",
+        ),
+        ("syntax", "<x>\n<body", "./parts/a.xml:2:1: error: the file ends inside a tag that opens here"),
+        ("empty", "", "./parts/a.xml:1:1: error: the file is empty, expected a <mujoco>"),
+        (
+            "content",
+            "<x>\n <worldbody><bodi/></worldbody></x>",
+            "./parts/a.xml:2:14: error: worldbody: has an element <bodi>, which MJCF does not know here",
+        ),
+    ];
+    for (name, part, message) in cases {
+        let folder = folder(name, &[("main.xml", main), ("parts/a.xml", part)]);
+        assert_eq!(main_of(&folder).unwrap_err(), format!("./main.xml is refused: 1 error\n{message}"));
+    }
+    let folder = folder("not_utf8", &[("main.xml", main)]);
+    std::fs::write(folder.join("parts/a.xml"), b"<x>\n\xff</x>").unwrap();
+    assert_eq!(
+        main_of(&folder).unwrap_err(),
+        "./main.xml is refused: 1 error\n./parts/a.xml:2:1: error: byte 4 of the text is 0xff, which is not UTF-8"
+    );
+}
