@@ -8,8 +8,8 @@ use crate::robot::{RobotArguments, end_effector};
 use crate::state::{StartArguments, TipArguments, environment, joint_values};
 use clap::{Args, ValueEnum};
 use mozzi::{
-    BodyFrame, ClosedForm, Environment, FrameId, Jacobian, Model, NewtonEuler, SE3, Task, TaskFrame,
-    TaskSpaceDynamics, Twist, Wrench,
+    BodyFrame, ClosedForm, Environment, FrameId, Jacobian, Model, NewtonEuler, SE3, Task, TaskFrame, TaskSpaceDynamics,
+    Twist, Wrench,
 };
 use nalgebra::{DMatrix, DVector};
 
