@@ -1,2 +1,111 @@
-//! The `mozzi` command line.
-fn main() {}
+//! `mozzi`: the dynamics of open-chain robots on the command line. Converts, checks, calls, names the error; every
+//! formula is the library's.
+
+mod columns;
+mod commands;
+mod failure;
+mod json;
+mod numbers;
+mod quantities;
+mod robot;
+mod samples;
+mod state;
+mod text;
+
+use clap::{Parser, Subcommand};
+use commands::{check, forward_dynamics, info, inverse_dynamics, screws, simulate, terms, tour};
+use failure::{Failure, Result};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Dynamics of open-chain robots, in the notation of Lynch & Park, Modern Robotics, chapter 8.
+///
+/// Without a subcommand: a tour on the UR5 arm. MODEL is a URDF file or the name of an embedded robot.
+#[derive(Parser, Debug)]
+#[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES, max_term_width = 104)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// What the robot consists of: joints, limits, links, masses, frames
+    Info(info::InfoArguments),
+    /// The robot as the book's lists: M_i, M_i-1,i, S_i, B_i, A_i, G_i
+    Screws(screws::ScrewsArguments),
+    /// Every quantity at one state: T, J, M, C, c, g, h, JᵀF, τ, θ̈, energies, Λ, η, …
+    Terms(terms::TermsArguments),
+    /// τ from θ, θ̇, θ̈: one state, or a table of states
+    #[command(after_help = TABLES)]
+    InverseDynamics(inverse_dynamics::InverseArguments),
+    /// θ̈ from θ, θ̇, τ: one state, or a table of states
+    #[command(after_help = TABLES)]
+    ForwardDynamics(forward_dynamics::ForwardArguments),
+    /// The motion from a state, under torques and a tip wrench
+    #[command(after_help = TABLES)]
+    Simulate(simulate::SimulateArguments),
+    /// Is the file a robot? All that is wrong or odd, with its place
+    Check(check::CheckArguments),
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  mozzi                                                 the tour
+  mozzi info panda                                      what a robot consists of
+  mozzi check my_robot.urdf                             what is wrong with a file
+  mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
+  mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
+  mozzi terms two_link_planar --theta 0.3,0.8 --task vx,vz
+  mozzi inverse-dynamics panda --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
+  mozzi inverse-dynamics ur5 --in motion.csv --out torques.csv
+  mozzi forward-dynamics ur5 --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
+  mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
+
+Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
+F_tip is what the robot applies to the environment, in the end effector's frame.
+Results go to standard output, all else to standard error.
+Exit codes: 0 done, 1 wrong input, 2 wrong usage.";
+
+const TABLES: &str = "\
+CSV files have a header and one row for each state; columns in any order:
+  t                                     time, s
+  theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_;
+                                        a joint by its number, or by its name: theta_elbow_joint
+  m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in its frame
+Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0.
+What one subcommand writes, the others read.";
+
+fn main() -> ExitCode {
+    let answer = run(&Arguments::parse());
+    let (text, code) = match answer {
+        Ok(text) => (text, ExitCode::SUCCESS),
+        Err(failure) => {
+            failure.say();
+            (if let Failure::Answered(text) = failure { text } else { String::new() }, ExitCode::from(1))
+        }
+    };
+    let mut output = std::io::stdout().lock();
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+        Ok(()) => code,
+        // who reads has seen enough
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => code,
+        Err(error) => {
+            Failure::wrong(format!("standard output cannot be written: {error}")).say();
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<String> {
+    match &arguments.command {
+        None => tour::run(),
+        Some(Command::Info(arguments)) => info::run(arguments),
+        Some(Command::Screws(arguments)) => screws::run(arguments),
+        Some(Command::Terms(arguments)) => terms::run(arguments),
+        Some(Command::InverseDynamics(arguments)) => inverse_dynamics::run(arguments),
+        Some(Command::ForwardDynamics(arguments)) => forward_dynamics::run(arguments),
+        Some(Command::Simulate(arguments)) => simulate::run(arguments),
+        Some(Command::Check(arguments)) => check::run(arguments),
+    }
+}

@@ -1,18 +1,44 @@
 //! What the readers of elements share.
 
 use crate::finding::Findings;
-use std::collections::BTreeSet;
+use crate::spelling::did_you_mean;
+use std::collections::BTreeMap;
 
-/// Findings so far, and the kinds of unknown things that were already named.
+/// Findings so far, and the kinds of unknown things that were met.
 #[derive(Default)]
 pub(crate) struct Context {
     pub findings: Findings,
-    kinds: BTreeSet<(String, String, &'static str)>,
+    kinds: BTreeMap<(String, String, &'static str), Option<String>>,
+}
+
+/// Something that is not known.
+pub(crate) enum Unknown {
+    /// Near a word that is: "did you mean `x`?"
+    Misspelled(String),
+    /// The first of its kind in such a parent.
+    First,
+    /// Not the first.
+    Again,
 }
 
 impl Context {
-    /// Is this the first of its kind in such a parent?
-    pub fn first_of_kind(&mut self, parent: &str, name: &str, what: &'static str) -> bool {
-        self.kinds.insert((parent.to_string(), name.to_string(), what))
+    /// What to make of a name that is not known, `what` it names, in such a parent.
+    pub fn unknown<'k>(
+        &mut self,
+        parent: &str,
+        name: &str,
+        what: &'static str,
+        known: impl IntoIterator<Item = &'k str>,
+    ) -> Unknown {
+        let kind = (parent.to_string(), name.to_string(), what);
+        match self.kinds.get(&kind) {
+            Some(Some(help)) => Unknown::Misspelled(help.clone()),
+            Some(None) => Unknown::Again,
+            None => {
+                let help = did_you_mean(name, known);
+                self.kinds.insert(kind, help.clone());
+                help.map_or(Unknown::First, Unknown::Misspelled)
+            }
+        }
     }
 }

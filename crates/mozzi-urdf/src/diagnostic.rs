@@ -2,13 +2,12 @@
 
 use crate::finding::Finding;
 use crate::source::{Position, Source};
-use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use mozzi::model::Severity;
 use std::fmt;
 use std::ops::Range;
 
-/// Something wrong with a file. Displays as `file:line:column: error: message`; as a [`miette::Diagnostic`] it also shows
-/// the line with a caret under the value.
+/// Something wrong with a file. Displays as `file:line:column: error: message`; [`pretty`](Self::pretty) shows the line
+/// with a mark under the value.
 #[derive(Clone)]
 pub struct Diagnostic {
     severity: Severity,
@@ -71,6 +70,11 @@ impl Diagnostic {
         &self.source.text[self.span.clone()]
     }
 
+    /// The whole text, for excerpts.
+    pub(crate) fn text(&self) -> &str {
+        &self.source.text
+    }
+
     pub(crate) fn into_error(self) -> Self {
         Diagnostic { severity: Severity::Error, ..self }
     }
@@ -93,47 +97,3 @@ impl fmt::Debug for Diagnostic {
 }
 
 impl std::error::Error for Diagnostic {}
-
-impl miette::Diagnostic for Diagnostic {
-    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(&self.code))
-    }
-
-    fn severity(&self) -> Option<miette::Severity> {
-        Some(match self.severity {
-            Severity::Error => miette::Severity::Error,
-            Severity::Warning => miette::Severity::Warning,
-        })
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        (!self.source.text.is_empty()).then_some(&self.source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, self.span.clone()))))
-    }
-}
-
-impl SourceCode for Source {
-    fn read_span<'a>(
-        &'a self,
-        span: &SourceSpan,
-        before: usize,
-        after: usize,
-    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let found = self.text.read_span(span, before, after)?;
-        Ok(Box::new(MietteSpanContents::new_named(
-            self.name.to_string(),
-            found.data(),
-            *found.span(),
-            found.line(),
-            found.column(),
-            found.line_count(),
-        )))
-    }
-}

@@ -1,13 +1,15 @@
 //! An element of the text: its attributes as words and numbers, its children by name, each misuse reported at its place.
 
-use crate::context::Context;
+use crate::context::{Context, Unknown};
 use crate::finding::Finding;
 use crate::number::{NotNumbers, numbers};
-use crate::spelling::did_you_mean;
 use crate::words::{Vocabulary, shown};
 use roxmltree::{Attribute, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
+
+/// Longer names are refused.
+const LONGEST_NAME: usize = 256;
 
 /// An element, and how messages call it: "joint `elbow`: origin".
 #[derive(Clone)]
@@ -89,6 +91,18 @@ impl<'a> Element<'a> {
         value
     }
 
+    /// A name that has to be there, and is not endless: names are repeated in messages.
+    pub fn required_name(&self, attribute: &str, cx: &mut Context) -> Option<Value<'a>> {
+        let value = self.required(attribute, cx)?;
+        if value.text.len() <= LONGEST_NAME {
+            return Some(value);
+        }
+        let found = value.text.len();
+        let message = format!("{}: {attribute}: has {found} bytes, expected at most {LONGEST_NAME}", self.subject);
+        cx.findings.error("long_name", value.span, message);
+        None
+    }
+
     /// N numbers of an attribute; None, and reported, when they are not.
     pub fn vector<const N: usize>(&self, name: &str, value: &Value<'a>, cx: &mut Context) -> Option<[f64; N]> {
         let error = match numbers::<N>(value.text) {
@@ -137,13 +151,17 @@ impl<'a> Element<'a> {
             }
             let (subject, span) = (&self.subject, attribute.range_qname());
             let message = format!("{subject}: has an attribute `{}`, which URDF does not know", shown(name));
-            let missing = words.attributes.iter().copied().filter(|&known| self.attribute(known).is_none());
-            if let Some(help) = did_you_mean(name, missing) {
-                cx.findings.add(Finding::error("misspelled_attribute", span, message).help(help));
-            } else if cx.first_of_kind(self.name(), name, "attribute") {
-                let known = crate::words::list(words.attributes);
-                let help = format!("it is ignored here and wherever it stands on <{}>; known are {known}", self.name());
-                cx.findings.add(Finding::warning("unknown_attribute", span, message).help(help));
+            match cx.unknown(self.name(), name, "attribute", words.attributes.iter().copied()) {
+                Unknown::Misspelled(help) => {
+                    cx.findings.add(Finding::error("misspelled_attribute", span, message).help(help));
+                }
+                Unknown::First => {
+                    let known = crate::words::list(words.attributes);
+                    let name = self.name();
+                    let help = format!("it is ignored here and wherever it stands on <{name}>; known are {known}");
+                    cx.findings.add(Finding::warning("unknown_attribute", span, message).help(help));
+                }
+                Unknown::Again => {}
             }
         }
     }
@@ -190,17 +208,21 @@ impl<'a> Element<'a> {
         }
         let message = format!("{}: has an element <{}>, which URDF does not know here", parent.subject, shown(name));
         let known = words.once.iter().chain(words.many).copied();
-        if let Some(help) = did_you_mean(name, known) {
-            cx.findings.add(Finding::error("misspelled_element", self.span(), message).help(help));
-        } else if cx.first_of_kind(parent.name(), name, "element") {
-            let help = format!("it is ignored here and wherever it stands in <{}>", parent.name());
-            cx.findings.add(Finding::warning("unknown_element", self.span(), message).help(help));
+        match cx.unknown(parent.name(), name, "element", known) {
+            Unknown::Misspelled(help) => {
+                cx.findings.add(Finding::error("misspelled_element", self.span(), message).help(help));
+            }
+            Unknown::First => {
+                let help = format!("it is ignored here and wherever it stands in <{}>", parent.name());
+                cx.findings.add(Finding::warning("unknown_element", self.span(), message).help(help));
+            }
+            Unknown::Again => {}
         }
     }
 
     fn check_text(&self, node: Node<'a, 'a>, cx: &mut Context) {
         let text = node.text().unwrap_or_default();
-        if !text.trim().is_empty() && cx.first_of_kind(self.name(), "", "text") {
+        if !text.trim().is_empty() && matches!(cx.unknown(self.name(), "", "text", []), Unknown::First) {
             let raw = &self.text[node.range()];
             let start = node.range().start + raw.len() - raw.trim_start().len();
             let message = format!("{}: has the text `{}`, expected only elements", self.subject, shown(text.trim()));

@@ -31,8 +31,8 @@ pub enum LoadError {
         file: String,
         /// Errors, and warnings beside them, in the order of the file; at most a thousand of each.
         diagnostics: Vec<Diagnostic>,
-        /// Found beyond those.
-        omitted: usize,
+        /// There were more: reading stopped after a thousand errors.
+        is_cut: bool,
     },
     /// The model could not be built from a description that was accepted.
     Build(mozzi::Error),
@@ -53,8 +53,7 @@ impl LoadError {
     }
 
     pub(crate) fn more(&self) -> usize {
-        let LoadError::Refused { omitted, .. } = self else { return 0 };
-        omitted + self.errors().count().saturating_sub(PRINTED)
+        self.errors().count().saturating_sub(PRINTED)
     }
 
     /// "robot.urdf is refused: 3 errors"
@@ -65,8 +64,9 @@ impl LoadError {
                 let known: Vec<&str> = embedded::names().collect();
                 format!("`{name}` is neither a file nor one of the robots {}", crate::words::list(&known))
             }
-            LoadError::Refused { file, omitted, .. } => match omitted + self.errors().count() {
+            LoadError::Refused { file, is_cut, .. } => match self.errors().count() {
                 1 => format!("{file} is refused: 1 error"),
+                n if *is_cut => format!("{file} is refused: more than {n} errors"),
                 n => format!("{file} is refused: {n} errors"),
             },
             LoadError::Build(error) => error.to_string(),

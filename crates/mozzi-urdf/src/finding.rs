@@ -50,8 +50,8 @@ pub(crate) struct Findings {
 pub(crate) struct Placed {
     pub diagnostics: Vec<Diagnostic>,
     pub errors: usize,
-    /// Errors found, but not kept.
-    pub omitted: usize,
+    /// Errors were found and not kept.
+    pub is_cut: bool,
 }
 
 impl Findings {
@@ -70,13 +70,18 @@ impl Findings {
         self.add(Finding::error(code, span, message));
     }
 
+    /// Enough to read no further.
+    pub fn is_full(&self) -> bool {
+        self.errors > MOST_FINDINGS
+    }
+
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
 
     /// Looks up every place in one pass.
     pub fn place(mut self, source: &Source) -> Placed {
-        let omitted = self.errors.saturating_sub(MOST_FINDINGS);
+        let is_cut = self.is_full();
         for finding in &mut self.kept {
             finding.span = source.clamp(finding.span.clone());
         }
@@ -86,6 +91,6 @@ impl Findings {
             let position = walker.advance(finding.span.start);
             Diagnostic::new(finding, position, source.clone())
         };
-        Placed { diagnostics: self.kept.into_iter().map(placed).collect(), errors: self.errors, omitted }
+        Placed { diagnostics: self.kept.into_iter().map(placed).collect(), errors: self.errors, is_cut }
     }
 }

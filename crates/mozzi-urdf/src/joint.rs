@@ -16,7 +16,7 @@ use mozzi::model::description::{Joint, JointKind, Limits, Mimic};
 pub(crate) fn read(element: &Element, cx: &mut Context) -> (Joint, Place) {
     let mut place = Place::new(element.span());
     let mut element = element.called("joint");
-    let value = element.required("name", cx);
+    let value = element.required_name("name", cx);
     let name = place.note("name", value);
     element.subject = format!("joint `{}`", shown(&name));
     element.check_attributes(&JOINT, cx);
@@ -89,7 +89,7 @@ fn read_end(name: &'static str, element: &Element, children: &Children, place: &
     };
     end.check_attributes(&PARENT, cx);
     end.check_children(&PARENT, cx);
-    let value = end.required("link", cx);
+    let value = end.required_name("link", cx);
     place.note(name, value)
 }
 
@@ -114,7 +114,7 @@ fn read_mimic(mimic: &Element, place: &mut Place, cx: &mut Context) -> Option<Mi
         None => Some(default),
     };
     let (ratio, offset) = (number("multiplier", 1.0), number("offset", 0.0));
-    let joint = mimic.required("joint", cx)?;
+    let joint = mimic.required_name("joint", cx)?;
     place.set("mimic", joint.span);
     Some(Mimic { joint: joint.text.to_string(), ratio: ratio?, offset: offset? })
 }

@@ -3,6 +3,21 @@
 //! Nothing is guessed in silence. What is wrong is an error, all errors of one run are reported together; what is odd is
 //! a warning; what is right is never mentioned.
 //!
+//! # What is refused, and what is said
+//! Measured on the 69 robots of `example-robot-data` 6.0.0: 66 load, 39 of them without a word; three are refused, for a
+//! follower of a joint that does not exist, for negative moments of inertia, and for having no links.
+//!
+//! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
+//!   namespaces) silent, other unknown ones a warning once per kind.
+//! - An axis that is not of length 1 is a direction, with a warning beyond 10⁻³; positions stay radians or metres.
+//! - A missing limit is a warning, and no limit; limits do not enter the dynamics.
+//! - An inertia that breaks the triangle inequality is computed as given, with a warning. A negative principal moment is an
+//!   error if the rigid body of all links fixed to each other has one, a warning otherwise.
+//! - [`Policy::Strict`] makes errors of all warnings, [`Policy::Lenient`] repairs inertias, and says so.
+//!
+//! Time and memory are bounded for any input: 64 MiB, two million elements and texts, 256 levels, 256 attributes on an
+//! element, 64 namespaces at one place, names of 256 bytes, a thousand errors; no document type, no entities.
+//!
 //! ```
 //! let robot = mozzi_urdf::open("ur5")?; // or a path
 //! assert!(robot.warnings.is_empty());
@@ -24,6 +39,7 @@ mod diagnostic;
 mod element;
 pub mod embedded;
 mod error;
+mod explain;
 mod finding;
 mod joint;
 mod limit;
@@ -33,17 +49,21 @@ mod origin;
 mod places;
 mod pretty;
 mod problem;
+mod repair;
 mod robot;
 mod scan;
 mod source;
 mod spelling;
 mod syntax;
 mod words;
+mod write;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;
+pub use explain::{codes, explain};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
+pub use write::{NotUrdf, write};
 
 use context::Context;
 use element::Element;
@@ -81,6 +101,8 @@ pub enum Policy {
     /// Errors are refused, warnings are said.
     #[default]
     Default,
+    /// An inertia that no body can have is replaced by the nearest that one can have; this is said as a warning.
+    Lenient,
 }
 
 /// Reads a file.
@@ -123,8 +145,8 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, LoadErro
 pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Result<Loaded, LoadError> {
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
-    let description = if findings.has_errors() { None } else { read(&source, &mut findings) };
-    let Placed { mut diagnostics, errors, omitted } = findings.place(&source);
+    let description = if findings.has_errors() { None } else { read(&source, policy, &mut findings) };
+    let Placed { mut diagnostics, errors, is_cut } = findings.place(&source);
     if policy == Policy::Strict {
         diagnostics = diagnostics.into_iter().map(Diagnostic::into_error).collect();
     }
@@ -132,7 +154,7 @@ pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Re
         Some(description) if errors == 0 && (policy != Policy::Strict || diagnostics.is_empty()) => {
             Ok(Loaded { description, warnings: diagnostics })
         }
-        _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, omitted }),
+        _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, is_cut }),
     }
 }
 
@@ -157,7 +179,7 @@ pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
 }
 
 /// From text to a description, all findings noted.
-fn read(source: &Source, findings: &mut Findings) -> Option<Description> {
+fn read(source: &Source, policy: Policy, findings: &mut Findings) -> Option<Description> {
     let document = match syntax::parse(source) {
         Ok(document) => document,
         Err(finding) => {
@@ -170,7 +192,10 @@ fn read(source: &Source, findings: &mut Findings) -> Option<Description> {
     let root = Element::new(document.root_element(), &source.text, "robot".to_string());
     let result = robot::read(&root, &mut cx);
     *findings = cx.findings;
-    let (description, places): (Description, Places) = result?;
+    let (mut description, places): (Description, Places) = result?;
+    if policy == Policy::Lenient {
+        repair::inertias(&mut description, &places, findings);
+    }
     problem::findings(&description, &places).into_iter().for_each(|finding| findings.add(finding));
     Some(description)
 }

@@ -14,7 +14,7 @@ use mozzi::{SE3, SpatialInertia};
 pub(crate) fn read(element: &Element, cx: &mut Context) -> (Link, Place) {
     let mut place = Place::new(element.span());
     let mut element = element.called("link");
-    let value = element.required("name", cx);
+    let value = element.required_name("name", cx);
     let name = place.note("name", value);
     element.subject = format!("link `{}`", shown(&name));
     element.check_attributes(&LINK, cx);

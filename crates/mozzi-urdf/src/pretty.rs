@@ -1,10 +1,15 @@
-//! The report for people: the line of the file, a caret under the value, and how to mend it.
+//! The report for people: the line of the file, a mark under the value, and how to mend it.
 
 use crate::diagnostic::Diagnostic;
 use crate::error::{LoadError, PRINTED};
-use miette::{GraphicalReportHandler, GraphicalTheme};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents};
+use miette::{SourceCode, SourceSpan, SpanContents};
 use mozzi::model::Severity;
-use std::fmt::Write;
+use std::fmt::{self, Write};
+use std::ops::Range;
+
+/// Of longer lines only a part is shown.
+const LONG: usize = 400;
 
 /// How a report is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +37,7 @@ impl Diagnostic {
     /// The report for people.
     pub fn pretty(&self, style: Style) -> String {
         let mut text = String::new();
-        match style.handler().render_report(&mut text, self) {
+        match style.handler().render_report(&mut text, &View::new(self)) {
             Ok(()) => text,
             Err(_) => self.to_string(),
         }
@@ -53,5 +58,92 @@ impl LoadError {
             more => write!(text, "{}, {more} of them not shown", self.headline()),
         };
         text
+    }
+}
+
+/// A diagnostic as the report sees it.
+struct View<'d> {
+    diagnostic: &'d Diagnostic,
+    /// The part of the text that is shown, its first line from 0, and what is marked in it.
+    shown: Range<usize>,
+    first_line: usize,
+    marked: Range<usize>,
+}
+
+impl<'d> View<'d> {
+    /// The lines around the place; of a long line, the part around it.
+    fn new(diagnostic: &'d Diagnostic) -> Self {
+        let (text, span, line) = (diagnostic.text(), diagnostic.span(), diagnostic.line() - 1);
+        let start_of_line = |at: usize| text[..at].rfind('\n').map_or(0, |k| k + 1);
+        let end_of_line = |at: usize| text[at..].find('\n').map_or(text.len(), |k| at + k);
+        let (start, end) = (start_of_line(span.start), end_of_line(span.start));
+        let before = start_of_line(start.saturating_sub(1));
+        let after = end_of_line((end + 1).min(text.len()));
+        let (shown, first_line) = if after - before <= LONG {
+            (before..after, line - usize::from(before < start))
+        } else if end - start <= LONG {
+            (start..end, line)
+        } else {
+            let from = text.ceil_char_boundary(span.start.saturating_sub(LONG / 4)).max(start);
+            (from..text.floor_char_boundary(span.start + LONG / 4).min(end), line)
+        };
+        View { diagnostic, marked: span.start..span.end.min(shown.end).max(span.start), shown, first_line }
+    }
+}
+
+impl fmt::Display for View<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.diagnostic.message())
+    }
+}
+
+impl fmt::Debug for View<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl std::error::Error for View<'_> {}
+
+impl miette::Diagnostic for View<'_> {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(self.diagnostic.code()))
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.diagnostic.severity() {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.diagnostic.help().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(self)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, self.marked.clone()))))
+    }
+}
+
+impl SourceCode for View<'_> {
+    fn read_span<'a>(
+        &'a self,
+        _: &SourceSpan,
+        before: usize,
+        _: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        // the report asks with no lines before it for the place itself, then for what to show
+        let (shown, line, column) = match before {
+            0 => (self.marked.clone(), self.diagnostic.line() - 1, self.diagnostic.column() - 1),
+            _ => (self.shown.clone(), self.first_line, 0),
+        };
+        let text = &self.diagnostic.text()[shown.clone()];
+        let (name, count) = (self.diagnostic.file().to_string(), text.lines().count());
+        Ok(Box::new(MietteSpanContents::new_named(name, text.as_bytes(), shown.into(), line, column, count)))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::finding::Finding;
 use crate::places::Places;
-use crate::spelling::did_you_mean;
+use crate::spelling::{did_you_mean, longer_name};
 use mozzi::Description;
 use mozzi::model::{Element, Problem};
 
@@ -57,13 +57,15 @@ fn suggestion(problem: &Problem, description: &Description, suggestions: &mut us
     let joint = description.joints.get(i)?;
     let count = description.links.len().max(description.joints.len());
     *suggestions = suggestions.checked_sub(1).filter(|_| count <= MOST_NAMES)?;
-    let links = description.links.iter().map(|link| link.name.as_str());
+    let links = || description.links.iter().map(|link| link.name.as_str());
+    let others = || description.joints.iter().map(|joint| joint.name.as_str()).filter(|&name| name != joint.name);
+    let near = |name: &str| match problem.code {
+        "unknown_link" => did_you_mean(name, links()).or_else(|| longer_name(name, links())),
+        _ => did_you_mean(name, others()).or_else(|| longer_name(name, others())),
+    };
     match problem.attribute {
-        "parent" => did_you_mean(&joint.parent, links),
-        "child" => did_you_mean(&joint.child, links),
-        _ => {
-            let others = description.joints.iter().map(|joint| joint.name.as_str());
-            did_you_mean(&joint.mimic.as_ref()?.joint, others.filter(|&name| name != joint.name))
-        }
+        "parent" => near(&joint.parent),
+        "child" => near(&joint.child),
+        _ => near(&joint.mimic.as_ref()?.joint),
     }
 }

@@ -9,7 +9,8 @@ use crate::words::{ROBOT, shown};
 use crate::{joint, link};
 use mozzi::Description;
 
-/// Links and joints in the order of the file, and their places. None when the file is no URDF at all.
+/// Links and joints in the order of the file, and their places. None when the file is no URDF at all, or
+/// wrong throughout.
 pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Places)> {
     if root.name() != "robot" {
         cx.findings.add(wrong_root(root));
@@ -17,9 +18,12 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
     }
     root.check_attributes(&ROBOT, cx);
     let mut places = Places { robot: Place::new(root.span()), ..Places::default() };
-    let name = root.required("name", cx);
+    let name = root.required_name("name", cx);
     let mut description = Description::new(places.robot.note("name", name));
     for child in root.elements().filter(|child| !child.has_prefix()) {
+        if cx.findings.is_full() {
+            return None;
+        }
         match child.name() {
             "link" => {
                 let (link, place) = link::read(&child, cx);

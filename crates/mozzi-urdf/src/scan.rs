@@ -11,49 +11,61 @@ pub(crate) const MOST_ATTRIBUTES: usize = 256;
 /// More namespaces that hold at one place are refused.
 pub(crate) const MOST_NAMESPACES: usize = 64;
 
+/// More declarations of namespaces are refused.
+pub(crate) const MOST_DECLARATIONS: usize = 4096;
+
 /// An element that was opened and not yet closed.
 struct Open {
     name: Range<usize>,
     namespaces: usize,
 }
 
-/// The innermost element that is never closed, if there is one.
-pub(crate) fn scan(text: &str) -> Result<Option<Range<usize>>, Finding> {
+/// What is open where the text ends.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Unfinished {
+    /// Something that is no element, and which: "a comment".
+    Piece(Range<usize>, &'static str),
+    /// The innermost element, by its name's place.
+    Element(Range<usize>),
+}
+
+/// What is never closed, if anything is.
+pub(crate) fn scan(text: &str) -> Result<Option<Unfinished>, Finding> {
     let mut open: Vec<Open> = Vec::new();
-    let mut at = 0;
-    let last = |open: Vec<Open>| Ok(open.into_iter().next_back().map(|element| element.name));
+    let (mut at, mut declarations) = (0, 0);
     while let Some(start) = text[at..].find('<').map(|k| at + k) {
         let rest = &text[start..];
-        let end = if rest.starts_with("<!--") {
-            after(text, start + 4, "-->")
+        let (end, what) = if rest.starts_with("<!--") {
+            (after(text, start + 4, "-->"), "a comment")
         } else if rest.starts_with("<![CDATA[") {
-            after(text, start, "]]>")
+            (after(text, start, "]]>"), "a CDATA section")
         } else if rest.starts_with("<?") {
-            after(text, start, "?>")
+            (after(text, start, "?>"), "a declaration")
         } else if let Some(declaration) = rest.strip_prefix("<!") {
             if declaration.get(..7).is_some_and(|word| word.eq_ignore_ascii_case("doctype")) {
                 let message = "the file has a document type (<!DOCTYPE>), expected none: entities are not expanded";
                 return Err(Finding::error("document_type", start..start + 9, message).help("remove the declaration"));
             }
-            after(text, start, ">")
+            (after(text, start, ">"), "a declaration")
         } else if rest.starts_with("</") {
             open.pop();
-            after(text, start, ">")
+            (after(text, start, ">"), "a tag")
         } else {
             let tag = Tag::read(text, start);
             let namespaces = tag.namespaces + open.last().map_or(0, |parent| parent.namespaces);
-            tag.check(namespaces, open.len() + 1)?;
+            declarations += tag.namespaces;
+            tag.check(namespaces, declarations, open.len() + 1)?;
             if !tag.closed {
                 open.push(Open { name: tag.name, namespaces });
             }
-            tag.end
+            (tag.end, "a tag")
         };
         match end {
             Some(end) => at = end,
-            None => return last(open),
+            None => return Ok(Some(Unfinished::Piece(start..start + 1, what))),
         }
     }
-    last(open)
+    Ok(open.pop().map(|element| Unfinished::Element(element.name)))
 }
 
 fn after(text: &str, from: usize, pattern: &str) -> Option<usize> {
@@ -100,7 +112,7 @@ impl Tag {
         tag
     }
 
-    fn check(&self, namespaces: usize, depth: usize) -> Result<(), Finding> {
+    fn check(&self, namespaces: usize, declarations: usize, depth: usize) -> Result<(), Finding> {
         let error = |code, what: &str, found: usize, most: usize| {
             Err(Finding::error(code, self.name.clone(), format!("{found} {what}, expected at most {most}")))
         };
@@ -113,6 +125,10 @@ impl Tag {
         if namespaces > MOST_NAMESPACES {
             return error("too_many_namespaces", "namespaces hold here", namespaces, MOST_NAMESPACES);
         }
+        if declarations > MOST_DECLARATIONS {
+            let what = "namespaces are declared up to here";
+            return error("too_many_namespaces", what, declarations, MOST_DECLARATIONS);
+        }
         Ok(())
     }
 }
@@ -121,18 +137,15 @@ impl Tag {
 mod tests {
     use super::*;
 
-    fn unclosed(text: &str) -> Option<&str> {
-        scan(text).expect("within the bounds").map(|span| &text[span])
-    }
-
     #[test]
     fn finds_what_is_never_closed() {
-        assert_eq!(unclosed("<a><b x='>'/><!-- <c> --></a>"), None);
-        assert_eq!(unclosed("<a><bä x='1'><![CDATA[</bä>]]>"), Some("bä"));
-        assert_eq!(unclosed("<a><b"), Some("b"));
-        assert_eq!(unclosed("<a><!-- "), Some("a"));
-        assert_eq!(unclosed(""), None);
-        assert_eq!(unclosed("<"), Some(""));
+        let unfinished = |text: &str| scan(text).expect("within the bounds");
+        assert_eq!(unfinished("<a><b x='>'/><!-- <c> --></a>"), None);
+        assert_eq!(unfinished("<a><b x='1'><![CDATA[</b>]]>"), Some(Unfinished::Element(4..5)));
+        assert_eq!(unfinished("<a><b"), Some(Unfinished::Piece(3..4, "a tag")));
+        assert_eq!(unfinished("<a b='"), Some(Unfinished::Piece(0..1, "a tag")));
+        assert_eq!(unfinished("<a><!-- <b>"), Some(Unfinished::Piece(3..4, "a comment")));
+        assert_eq!(unfinished(""), None);
     }
 
     #[test]
@@ -143,6 +156,7 @@ mod tests {
         assert!(scan(&"<a/>".repeat(100_000)).is_ok());
         assert_eq!(code(&format!("<a {}>", "b='' ".repeat(257))), "too_many_attributes");
         assert_eq!(code(&"<a xmlns:b='c'>".repeat(65)), "too_many_namespaces");
+        assert_eq!(code(&"<a xmlns:b='c'/>".repeat(4097)), "too_many_namespaces");
         assert_eq!(code("<?xml version='1.0'?><!DOCTYPE a>"), "document_type");
     }
 }

@@ -14,6 +14,14 @@ pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) 
     known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(|&(d, _)| d).map(|(_, known)| known)
 }
 
+/// A name that was given without what others put before it.
+pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    let is_longer = |known: &&str| {
+        name.len() > 2 && known.strip_suffix(name).is_some_and(|start| start.ends_with(['_', '/', '-', '.']))
+    };
+    known.into_iter().find(is_longer).map(|known| format!("did you mean `{known}`?"))
+}
+
 /// "did you mean `x`?"
 pub(crate) fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(word, known).map(|word| format!("did you mean `{word}`?"))
@@ -51,5 +59,7 @@ mod tests {
         assert_eq!(nearest("gravity", ["inertial", "visual", "collision"]), None);
         assert_eq!(nearest("D", ["damping"]), None);
         assert_eq!(distance("", "abc"), 3);
+        let longer = longer_name("index_q1", ["index", "Left_index_q1"]);
+        assert_eq!(longer.as_deref(), Some("did you mean `Left_index_q1`?"));
     }
 }

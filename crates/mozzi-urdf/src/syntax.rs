@@ -1,26 +1,25 @@
 //! The XML parser's complaints, at their places and in our words.
 
 use crate::finding::Finding;
-use crate::scan::scan;
+use crate::scan::{Unfinished, scan};
 use crate::source::Source;
 use crate::words::shown;
 use roxmltree::{Document, Error, ParsingOptions};
-use std::ops::Range;
 
 /// More nodes (elements, texts, comments) are refused: a parsed node is some ten times its text.
-const MOST_NODES: u32 = 4_000_000;
+const MOST_NODES: u32 = 2_000_000;
 
 /// The parsed text, or the first error of its syntax.
 pub(crate) fn parse(source: &Source) -> Result<Document<'_>, Finding> {
     if source.text.trim().is_empty() {
         return Err(Finding::error("empty", 0..0, "the file is empty, expected a <robot>"));
     }
-    let unclosed = scan(&source.text)?;
+    let unfinished = scan(&source.text)?;
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(&source.text, options).map_err(|error| explain(source, error, unclosed))
+    Document::parse_with_options(&source.text, options).map_err(|error| explain(source, error, unfinished))
 }
 
-fn explain(source: &Source, error: Error, unclosed: Option<Range<usize>>) -> Finding {
+fn explain(source: &Source, error: Error, unfinished: Option<Unfinished>) -> Finding {
     let at = |pos: roxmltree::TextPos| {
         let start = source.offset(pos.row as usize, pos.col as usize);
         let rest = &source.text[start.min(source.text.len())..];
@@ -28,17 +27,21 @@ fn explain(source: &Source, error: Error, unclosed: Option<Range<usize>>) -> Fin
         start..start + first
     };
     let syntax = |span, message: String| Finding::error("syntax", span, message);
+    let is_end = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream)
+        || at(error.pos()).start >= source.text.trim_end().len();
+    match unfinished {
+        Some(Unfinished::Piece(span, what))
+            if is_end || matches!(error, Error::InvalidString(..)) && at(error.pos()).start >= span.start =>
+        {
+            return syntax(span, format!("the file ends inside {what} that opens here")).help("is the file complete?");
+        }
+        Some(Unfinished::Element(span)) if is_end => {
+            let message = format!("the file ends before <{}> is closed", shown(&source.text[span.clone()]));
+            return syntax(span, message).help("is the file complete?");
+        }
+        _ => {}
+    }
     match error {
-        Error::UnclosedRootNode | Error::UnexpectedEndOfStream => match unclosed {
-            Some(span) => {
-                let name = shown(&source.text[span.clone()]);
-                syntax(span, format!("the file ends before <{name}> is closed")).help("is the file complete?")
-            }
-            None => {
-                let end = source.text.trim_end().len();
-                syntax(end..end, "the file ends in the middle".to_string()).help("is the file complete?")
-            }
-        },
         Error::NoRootNode => syntax(0..0, "the file has no element, expected a <robot>".to_string()),
         Error::UnexpectedCloseTag(expected, found, pos) => {
             let (expected, found) = (shown(&expected), shown(&found));
@@ -59,16 +62,20 @@ fn explain(source: &Source, error: Error, unclosed: Option<Range<usize>>) -> Fin
         Error::MalformedEntityReference(pos) => {
             syntax(at(pos), "`&` begins no entity here".to_string()).help("`&` is written `&amp;`")
         }
-        Error::InvalidAttributeValue(pos) => syntax(at(pos), "`<` stands inside an attribute's value".to_string())
-            .help("is a closing quote missing before it? `<` itself is written `&lt;`"),
-        Error::NodesLimitReached => {
-            return Finding::error(
-                "too_large",
-                0..0,
-                format!("the file has more than {MOST_NODES} elements and texts"),
-            );
+        Error::InvalidAttributeValue(pos) | Error::InvalidChar(b'"' | b'\'', b'<', pos) => {
+            syntax(at(pos), "`<` stands inside an attribute's value".to_string())
+                .help("is a closing quote missing before it? `<` itself is written `&lt;`")
         }
-        Error::DtdDetected => return Finding::error("document_type", 0..0, "the file has a document type"),
+        Error::InvalidChar(expected, found, pos) => {
+            syntax(at(pos), format!("expected `{}`, found `{}`", expected as char, found as char))
+        }
+        Error::InvalidChar2(expected, found, pos) => {
+            syntax(at(pos), format!("expected {expected}, found `{}`", found as char))
+        }
+        Error::NodesLimitReached => {
+            Finding::error("too_large", 0..0, format!("the file has more than {MOST_NODES} elements and texts"))
+        }
+        Error::DtdDetected => Finding::error("document_type", 0..0, "the file has a document type"),
         other => {
             // the parser's own words, without the position that they end in
             let (pos, text) = (other.pos(), other.to_string());

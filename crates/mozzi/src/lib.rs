@@ -1,6 +1,37 @@
-//! Dynamics of open-chain robots in the screw notation of Lynch and Park.
+//! Dynamics of open-chain robots in the screw notation of Lynch and Park, *Modern Robotics*:
+//!
+//! > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇)
+//!
+//! ```
+//! use mozzi::{Description, HomeFrames, SE3, ScrewAxis, Screws, Solid};
+//!
+//! // a 2R arm of two rods, 1 m and 1 kg each, turning about y; frames at the centres of mass
+//! let rod = Solid::Box([1.0, 0.02, 0.02]).inertia(1.0);
+//! let home = [0.5, 1.5, 2.0].map(|x| SE3::translation([x, 0.0, 0.0])); // M_1, M_2, and the tip's
+//! let S = [0.0, 1.0].map(|x| ScrewAxis::from_line([0.0, -1.0, 0.0], [x, 0.0, 0.0], 0.0).expect("unit"));
+//! let model = Description::from_screws("arm", HomeFrames::Base(&home), &[rod; 2], Screws::Space(&S))?.build()?;
+//!
+//! let (theta, dtheta, ddtheta) = ([0.3, -0.5], [1.0, 0.2], [0.0, 2.0]);
+//! let environment = model.environment(); // gravity −9.81 along z, base at rest, nothing touched
+//! let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment)?;
+//! let again = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment)?;
+//! assert!((again[1] - 2.0).abs() < 1e-12);
+//! # Ok::<(), mozzi::Error>(())
+//! ```
+//!
+//! - Robots: [`Description`] (from screw lists, by hand, or from a file with `mozzi-urdf`), built into a [`Model`].
+//! - Quantities: methods of [`Model`], which check their arguments, allocate and answer with nalgebra's types; or the functions
+//!   of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number, which allocate nothing; or [`native`], the
+//!   kernels on `f64` with the machine's instruction set, for control loops.
+//! - To look at: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
+//! - In time: [`simulation`].
+//!
+//! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is
+//! positive. Without the default feature `std` the crate is `no_std` with `alloc` and takes square roots from the feature `libm`.
 #![cfg_attr(not(feature = "std"), no_std)]
+
 extern crate alloc;
+
 mod api;
 pub mod dynamics;
 pub mod kinematics;
@@ -10,16 +41,21 @@ pub mod model;
 #[cfg(feature = "std")]
 pub mod native;
 pub mod scalar;
+pub mod simulation;
 pub mod spatial;
 mod task_space;
 #[cfg(test)]
 mod testing;
+
 pub use api::{BodyFrame, NewtonEuler};
 pub use dynamics::*;
 pub use kinematics::*;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
-pub use model::{Description, Environment, Error, Frame, FrameId, Model, Workspace};
+pub use model::{Description, Environment, Error, Frame, FrameId, HomeFrames, Model, Screws, Workspace};
+pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
+pub use simulation::Trajectory;
+pub use spatial::solids::Solid;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 pub use task_space::{Task, TaskFrame, TaskSpaceDynamics};

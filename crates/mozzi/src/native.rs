@@ -93,8 +93,8 @@ macro_rules! entry {
                 Inner::Plain(workspace) => kernel::$name(model, $($in,)* $($environment,)? workspace, $out),
                 Inner::Fused(workspace, _applied) => {
                     $(let $environment = &fused_environment($environment, _applied);)?
-                    // SAFETY: the variant exists only where the processor has AVX2 and FMA.
                     #[allow(unused_unsafe)] // no target feature elsewhere
+                    // SAFETY: the variant exists only where the processor has AVX2 and FMA.
                     unsafe { entry(model, $(fused($in),)* $($environment,)? workspace, fused_mut($out)) }
                 }
             }
@@ -176,7 +176,15 @@ mod tests {
             }
             // the portable path is the plain kernel, bit for bit
             let mut tau = vec![0.0; n];
-            kernel::inverse_dynamics(&model, &theta, &dtheta, &x, &environment, &mut crate::Workspace::new(&model), &mut tau);
+            kernel::inverse_dynamics(
+                &model,
+                &theta,
+                &dtheta,
+                &x,
+                &environment,
+                &mut crate::Workspace::new(&model),
+                &mut tau,
+            );
             assert_eq!(tau, portable[0]);
         }
     }

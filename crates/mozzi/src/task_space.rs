@@ -69,6 +69,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<TaskSpaceDynamics, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
+        self.check_frame(task.frame)?;
         let distinct = (1..task.rows.len()).all(|k| !task.rows[..k].contains(&task.rows[k]));
         if task.rows.is_empty() || task.rows.iter().any(|&row| row > 5) || !distinct {
             let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
@@ -116,5 +117,78 @@ impl Model<f64> {
         let Lambda = mobility.inverse();
         let eta = mobility.solve(&(&J * factors.solve(&h) - &dJ_dtheta));
         Ok(TaskSpaceDynamics { Lambda, eta, J, dJ_dtheta })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{state, tree};
+
+    /// A chain of this many joints whose tip can move in all six directions.
+    fn chain(n: usize) -> Model {
+        let serial = |model: &Model| model.links.iter().enumerate().all(|(k, link)| link.parent == k);
+        (0..1000).map(|seed| tree(seed, n, 0)).find(serial).expect("one of a thousand trees is a chain")
+    }
+
+    #[test]
+    fn six_joints_give_the_books_formulas() {
+        let model = chain(6);
+        let [theta, dtheta, ddtheta] = state(&model, 8);
+        let (frame, environment) = (model.end_effector().expect("named"), model.environment());
+        for coordinates in [TaskFrame::Body, TaskFrame::Space] {
+            let found = model
+                .task_space_dynamics(&theta, &dtheta, Task::all(frame, coordinates), &environment)
+                .expect("regular");
+            let (M, h) = (
+                model.mass_matrix(&theta).expect("lengths"),
+                model.bias_forces(&theta, &dtheta, &environment).expect("lengths"),
+            );
+            let inverse = found.J.clone().try_inverse().expect("regular");
+            let (Lambda, J) = (inverse.transpose() * M * &inverse, &found.J);
+            assert!((&found.Lambda - &Lambda).amax() < 1e-9 * Lambda.amax());
+            let eta = inverse.transpose() * h - &Lambda * &found.dJ_dtheta;
+            assert!((&found.eta - &eta).amax() < 1e-9 * (eta.amax() + (Lambda * &found.dJ_dtheta).amax()));
+            // 𝓕 = Λ𝒱̇ + η with 𝒱̇ = J̇θ̇ + Jθ̈ gives τ = Jᵀ𝓕
+            let dV = &found.dJ_dtheta + J * DVector::from_column_slice(&ddtheta);
+            let tau = J.transpose() * found.wrench(&dV);
+            let mut expected = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+            for j in 0..6 {
+                expected[j] -= crate::dynamics::joint_friction(&model, j, dtheta[j]);
+            }
+            assert!((&tau - &expected).amax() < 1e-9 * expected.amax());
+        }
+    }
+
+    #[test]
+    fn a_redundant_robot_accelerates_its_task_as_the_consistent_dynamics_say() {
+        let model = chain(9);
+        let [theta, dtheta, _] = state(&model, 9);
+        let (frame, environment) = (model.end_effector().expect("named"), model.environment());
+        let task = Task { frame, coordinates: TaskFrame::Body, rows: &[3, 5, 1] };
+        let found = model.task_space_dynamics(&theta, &dtheta, task, &environment).expect("regular");
+        // τ = Jᵀ(Λa + η) (+ friction, which h leaves out) moves the task's rows with 𝒱̇ = a
+        let a = DVector::from_vec(vec![0.3, -1.0, 2.0]);
+        let mut tau = found.J.transpose() * found.wrench(&a);
+        for j in 0..model.n() {
+            tau[j] += crate::dynamics::joint_friction(&model, j, dtheta[j]);
+        }
+        let ddtheta = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment).expect("regular");
+        let moved = &found.J * ddtheta + &found.dJ_dtheta;
+        assert!((&moved - &a).amax() < 1e-9 * (1.0 + found.dJ_dtheta.amax()), "{moved} {a}");
+    }
+
+    #[test]
+    fn a_singular_task_answers_with_its_singular_values() {
+        let model = chain(4);
+        let [theta, dtheta, _] = state(&model, 3);
+        let (frame, environment) = (model.end_effector().expect("named"), model.environment());
+        let error = model.task_space_dynamics(&theta, &dtheta, Task::all(frame, TaskFrame::Body), &environment);
+        let Err(Error::SingularTask { singular_values, .. }) = error else { panic!("six directions by four joints") };
+        assert_eq!((singular_values.len(), singular_values[4]), (6, 0.0));
+        let bad = Task { frame, coordinates: TaskFrame::Body, rows: &[3, 3] };
+        let message =
+            model.task_space_dynamics(&theta, &dtheta, bad, &environment).expect_err("twice the same").to_string();
+        assert!(message.starts_with("the task's rows is [3, 3], expected distinct row numbers"), "{message}");
     }
 }

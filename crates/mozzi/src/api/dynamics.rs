@@ -19,6 +19,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
+        self.check_environment(environment)?;
         Ok(self.vector(|w, tau| kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, w, tau)))
     }
 
@@ -28,6 +29,7 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn bias_forces(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
+        self.check_environment(environment)?;
         Ok(self.vector(|w, h| kernel::bias_forces(self, theta, dtheta, environment, w, h)))
     }
 
@@ -55,7 +57,17 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn tip_forces(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [])?;
+        applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))?;
         Ok(self.vector(|w, tau| kernel::tip_forces(self, theta, applied, w, tau)))
+    }
+
+    /// f(θ̇) = d θ̇ + μ sgn θ̇ of each joint, with sgn 0 = 0.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn joint_friction(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.check_velocities([("dtheta", dtheta)])?;
+        Ok(DVector::from_fn(self.n(), |j, _| kernel::joint_friction(self, j, dtheta[j])))
     }
 
     /// M(θ): see [`mass_matrix`](kernel::mass_matrix()).

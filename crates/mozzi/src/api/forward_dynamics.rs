@@ -21,6 +21,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("tau", tau)])?;
+        self.check_environment(environment)?;
         let (mut workspace, mut ddtheta) = (Workspace::new(self), vec![0.0; self.n()]);
         kernel::forward_dynamics(self, theta, dtheta, tau, environment, &mut workspace, &mut ddtheta);
         self.check_pivots(theta, &mut workspace)?;
@@ -40,6 +41,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("tau", tau)])?;
+        self.check_environment(environment)?;
         let (n, mut workspace) = (self.n(), Workspace::new(self));
         let (mut M, mut ddtheta) = (vec![0.0; n * n], vec![0.0; n]);
         kernel::forward_dynamics_by_mass_matrix(
@@ -69,6 +71,7 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<DVector<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("tau", tau)])?;
+        self.check_environment(environment)?;
         let (n, rest) = (self.n(), Environment::with_gravity(crate::Vec3::zero()));
         let zero = vec![0.0; n];
         let h_and_friction = self.inverse_dynamics(theta, dtheta, &zero, environment)?;

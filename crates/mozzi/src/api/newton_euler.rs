@@ -47,6 +47,7 @@ impl Model<f64> {
         frame: BodyFrame,
     ) -> Result<NewtonEuler, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
+        self.check_environment(environment)?;
         let (mut workspace, mut tau) = (Workspace::new(self), vec![0.0; self.n()]);
         kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
         let Workspace { V, dV, F, .. } = workspace;
@@ -65,5 +66,53 @@ impl Model<f64> {
             base_reaction: F[0] + G * dV[0] - V[0].ad().transpose() * (G * V[0]),
             tau: DVector::from_vec(tau),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{state, tree, twist, wrench};
+
+    #[test]
+    fn the_recursion_equals_the_stacked_equations() {
+        for (links, followers) in [(4, 0), (11, 3)] {
+            let model = tree(links as u64, links, followers);
+            let [theta, dtheta, ddtheta] = state(&model, 1);
+            let tip = model.end_effector().expect("named");
+            let environment = Environment {
+                base_twist: twist(1),
+                base_acceleration: twist(2),
+                applied: &[(tip, wrench(3))],
+                ..model.environment()
+            };
+            let form = model.closed_form(&theta, &dtheta, &environment).expect("lengths");
+            let found =
+                model.newton_euler(&theta, &dtheta, &ddtheta, &environment, BodyFrame::CenterOfMass).expect("lengths");
+            let ddtheta = DVector::from_column_slice(&ddtheta);
+            let stacked = |list: Vec<[f64; 6]>| DVector::from_vec(list.concat());
+            let close = |a: DVector<f64>, b: &DVector<f64>| assert!((&a - b).amax() < 1e-11 * b.amax());
+            close(stacked(found.twists.iter().map(|V| V.to_array()).collect()), &form.V);
+            close(stacked(found.accelerations.iter().map(|V| V.to_array()).collect()), &form.accelerations(&ddtheta));
+            close(stacked(found.wrenches.iter().map(|F| F.to_array()).collect()), &form.wrenches(&ddtheta));
+        }
+    }
+
+    #[test]
+    fn at_rest_the_base_carries_the_whole_weight() {
+        let model = tree(6, 8, 0);
+        let [theta, _, _] = state(&model, 6);
+        let zero = vec![0.0; model.n()];
+        let found = model.newton_euler(&theta, &zero, &zero, &model.environment(), BodyFrame::Link).expect("lengths");
+        let mass: f64 = model.description().links.iter().map(|link| link.inertia.mass).sum();
+        assert!((found.base_reaction.f + model.gravity() * mass).norm() < 1e-11 * mass * model.gravity().norm());
+        // and a link's twist is its frame's body Jacobian times θ̇
+        let [theta, dtheta, ddtheta] = state(&model, 7);
+        let found =
+            model.newton_euler(&theta, &dtheta, &ddtheta, &model.environment(), BodyFrame::Link).expect("lengths");
+        for (joint, V) in model.moving_joints().zip(&found.twists) {
+            let J = model.body_jacobian(&theta, model.frame(&joint.child).expect("a link")).expect("lengths");
+            assert!((&J * &dtheta[..] - *V).norm() < 1e-12 * (1.0 + V.norm()));
+        }
     }
 }

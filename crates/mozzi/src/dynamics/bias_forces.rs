@@ -5,6 +5,7 @@ use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
+use alloc::vec::Vec;
 
 /// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction. Wrenches in `environment.applied` and a
 /// base that moves are counted in, where they are given.
@@ -22,7 +23,9 @@ pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     h: &mut [S],
 ) {
-    with_zeros(workspace, |zero, workspace| newton_euler(model, theta, dtheta, zero, environment, workspace, h));
+    let zero = take_zeros(workspace);
+    newton_euler(model, theta, dtheta, &zero, environment, workspace, h);
+    workspace.vector = zero;
 }
 
 /// c(θ, θ̇), the Coriolis and centripetal forces, quadratic in θ̇; base at rest.
@@ -56,8 +59,7 @@ pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     g: &mut [S],
 ) {
-    let environment = Environment::with_gravity(gravity);
-    with_zeros(workspace, |zero, workspace| newton_euler(model, theta, zero, zero, &environment, workspace, g));
+    rest(model, theta, &Environment::with_gravity(gravity), workspace, g);
 }
 
 /// JᵀF: what the joints must carry for the wrenches that frames apply to the environment, each in its frame's
@@ -76,14 +78,27 @@ pub fn tip_forces<S: Scalar + From<C>, C: Scalar>(
     tau: &mut [S],
 ) {
     let environment = Environment { applied, ..Environment::with_gravity(Vec3::zero()) };
-    with_zeros(workspace, |zero, workspace| newton_euler(model, theta, zero, zero, &environment, workspace, tau));
+    rest(model, theta, &environment, workspace, tau);
 }
 
-/// Lends n zeros out of the workspace.
+/// Inverse dynamics at rest.
 #[inline(always)]
-fn with_zeros<S: Scalar>(workspace: &mut Workspace<S>, run: impl FnOnce(&[S], &mut Workspace<S>)) {
+fn rest<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    tau: &mut [S],
+) {
+    let zero = take_zeros(workspace);
+    newton_euler(model, theta, &zero, &zero, environment, workspace, tau);
+    workspace.vector = zero;
+}
+
+/// n zeros, lent by the workspace: to be given back.
+#[inline(always)]
+fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
     let mut zero = core::mem::take(&mut workspace.vector);
     zero.fill(S::zero());
-    run(&zero, workspace);
-    workspace.vector = zero;
+    zero
 }

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 /// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first.
 ///
 /// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
-/// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
+/// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
 #[derive(Clone, Debug)]
 pub struct ClosedForm {
     /// 𝒜, 6N × n: the screw axes on the block diagonal; a follower's stands in its master's column, times its ratio.
@@ -50,6 +50,7 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn closed_form(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<ClosedForm, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
+        self.check_environment(environment)?;
         let (lists, N, n) = (self.screws(), self.moving_links(), self.n());
         let mut form = ClosedForm {
             A: DMatrix::zeros(6 * N, n),
@@ -115,7 +116,7 @@ impl ClosedForm {
         &self.L * &self.A
     }
 
-    /// The book's matrix before θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + [ad_𝒱]ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ less twice this
+    /// The book's matrix before θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + `[ad_𝒱]`ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ less twice this
     /// matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
     pub fn factor_of_c(&self) -> DMatrix<f64> {
         let inner = &self.G * &self.L * &self.ad_Adtheta * &self.W + self.ad_V.transpose() * &self.G;
@@ -142,7 +143,7 @@ impl ClosedForm {
         &self.L * (&self.A * ddtheta - &self.ad_Adtheta * (&self.W * &self.V + &self.V_base) + &self.dV_base)
     }
 
-    /// 𝓕 = ℒᵀ(𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip), 6N.
+    /// 𝓕 = ℒᵀ(𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip), 6N.
     pub fn wrenches(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
         let own = &self.G * self.accelerations(ddtheta) - self.ad_V.transpose() * &self.G * &self.V + &self.F_tip;
         self.L.transpose() * own
@@ -159,7 +160,7 @@ impl ClosedForm {
         -(&X + X.transpose())
     }
 
-    /// The Coriolis matrix of the Christoffel symbols, C = 𝒜ᵀℒᵀ(½(𝒢[ad_𝒱] − [ad_𝒱]ᵀ𝒢 + H(𝒢𝒱)) − 𝒢ℒ[ad_𝒜θ̇]𝒲)ℒ𝒜 with
+    /// The Coriolis matrix of the Christoffel symbols, C = 𝒜ᵀℒᵀ(½(𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 + H(𝒢𝒱)) − 𝒢ℒ[ad_𝒜θ̇]𝒲)ℒ𝒜 with
     /// H(m, f) = `[[−[m], −[f]], [−[f], 0]]`: Cθ̇ = c and Ṁ = C + Cᵀ; base at rest.
     pub fn coriolis_matrix(&self) -> DMatrix<f64> {
         let momenta = &self.G * &self.V;

@@ -260,6 +260,12 @@ fn a_wrong_length_is_named() {
     let model = tree(1, 3, 0);
     let error = model.inverse_dynamics(&[0.0; 3], &[0.0; 2], &[0.0; 3], &model.environment()).expect_err("two rates");
     assert_eq!(error.to_string(), "dtheta has 2 entries, expected 3");
+    let stranger = tree(9, 12, 0).end_effector().expect("named");
+    let environment = Environment { applied: &[(stranger, wrench(1))], ..model.environment() };
+    let error =
+        model.bias_forces(&[0.0; 3], &[0.0; 3], &environment).expect_err("a frame of another model").to_string();
+    assert!(error.starts_with("the frame is number 16 of another model"), "{error}");
+    assert!(model.body_jacobian(&[0.0; 3], stranger).is_err());
 }
 
 #[test]
@@ -321,5 +327,36 @@ fn random_states_many() {
         let M = model.mass_matrix(&theta).expect("lengths");
         assert!(M.clone().cholesky().is_some(), "M is positive definite");
         assert_eq!(M, M.transpose());
+    }
+}
+
+#[test]
+fn a_recording_plays_back_bit_for_bit() {
+    use crate::scalar::recorded::{Recorded, play};
+    for (seed, followers) in [(1, 0), (2, 2)] {
+        let model = tree(seed, 6, followers);
+        let n = model.n();
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let input = |k: usize| (0..n).map(|j| Recorded::input(k * n + j)).collect::<alloc::vec::Vec<_>>();
+        let (q, dq, ddq) = (input(0), input(1), input(2));
+        let zero = Recorded::Constant(0.0);
+        let (mut tau, mut found, mut M) = (alloc::vec![zero; n], alloc::vec![zero; n], alloc::vec![zero; n * n]);
+        let mut w = Workspace::<Recorded>::new(&model);
+        let environment = model.environment::<Recorded>();
+        kernel::inverse_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut tau);
+        kernel::forward_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut found);
+        kernel::coriolis_matrix(&model, &q, &dq, &mut w, &mut M);
+        let value = play(&[&theta[..], &dtheta, &ddtheta].concat());
+        let played = |list: &[Recorded]| list.iter().map(|&x| value(x)).collect::<alloc::vec::Vec<f64>>();
+        let environment = model.environment();
+        assert_eq!(
+            played(&tau),
+            model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths").as_slice()
+        );
+        assert_eq!(
+            played(&found),
+            model.forward_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("regular").as_slice()
+        );
+        assert_eq!(played(&M), model.coriolis_matrix(&theta, &dtheta).expect("lengths").transpose().as_slice());
     }
 }

@@ -6,6 +6,7 @@ use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
 use core::ops::Mul;
+use nalgebra::{DMatrix, DVector};
 
 /// The n columns of a Jacobian: 𝒱 = Jθ̇, τ = JᵀF.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,17 +20,23 @@ impl<S: Scalar> Mul<&[S]> for &Jacobian<S> {
     }
 }
 
-impl<S: Scalar> Jacobian<S> {
-    /// τ = JᵀF.
-    pub fn transpose_mul(&self, F: Wrench<S>) -> Vec<S> {
-        self.0.iter().map(|column| column.dot(F)).collect()
+impl Mul<&DVector<f64>> for &Jacobian<f64> {
+    type Output = Twist;
+    /// 𝒱 = Jθ̇.
+    fn mul(self, dtheta: &DVector<f64>) -> Twist {
+        twist_of(&self.0, dtheta.as_slice())
     }
 }
 
 impl Jacobian<f64> {
+    /// τ = JᵀF.
+    pub fn transpose_mul(&self, F: Wrench) -> DVector<f64> {
+        DVector::from_iterator(self.0.len(), self.0.iter().map(|column| column.dot(F)))
+    }
+
     /// The 6 × n matrix, angular rows first.
-    pub fn matrix(&self) -> nalgebra::DMatrix<f64> {
-        nalgebra::DMatrix::from_fn(6, self.0.len(), |row, column| self.0[column].to_array()[row])
+    pub fn matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(6, self.0.len(), |row, column| self.0[column].to_array()[row])
     }
 }
 

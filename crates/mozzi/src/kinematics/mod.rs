@@ -5,6 +5,9 @@ mod jacobian;
 mod jacobian_derivative;
 mod jacobian_rate;
 
+#[cfg(test)]
+mod tests;
+
 pub use forward::{forward_kinematics, frame_poses};
 pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
 pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};

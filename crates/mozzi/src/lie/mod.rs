@@ -1,6 +1,7 @@
 //! The groups SO(3) and SE(3), their adjoint maps, and the only small-angle code.
 
 mod adjoint;
+mod rpy;
 mod se3;
 pub(crate) mod series;
 mod so3;

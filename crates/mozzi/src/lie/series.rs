@@ -98,6 +98,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::excessive_precision)] // twenty digits of each
     fn reference_values() {
         // 40-digit values, rounded
         for (theta, a, b, c, d) in [

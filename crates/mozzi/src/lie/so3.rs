@@ -194,6 +194,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::approx_constant)] // on purpose
     fn what_is_no_rotation_is_refused_with_numbers() {
         let mirror = Mat3::from_rows([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]);
         assert!(SO3::from_matrix(mirror).is_err());

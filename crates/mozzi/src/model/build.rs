@@ -61,7 +61,7 @@ fn normal_form(description: Description) -> Model {
             };
         }
         let Frame { slot, T } = frames[link];
-        inertias[slot] += description.links[link].inertia.congruence(T.inverse().Ad());
+        inertias[slot] += description.links[link].inertia.seen_from(T);
         stack
             .extend(joints_of[link].iter().rev().map(|&i| (link_index[description.joints[i].child.as_str()], Some(i))));
     }

@@ -31,6 +31,13 @@ pub struct Link {
     pub inertia: SpatialInertia,
 }
 
+/// Its name.
+impl AsRef<str> for Link {
+    fn as_ref(&self) -> &str {
+        &self.name
+    }
+}
+
 /// A joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
@@ -63,6 +70,13 @@ pub enum JointKind {
     Fixed,
     /// About and along a unit screw axis, in the child link's frame: revolute, prismatic or helical.
     Screw(ScrewAxis),
+}
+
+/// Its name.
+impl AsRef<str> for Joint {
+    fn as_ref(&self) -> &str {
+        &self.name
+    }
 }
 
 impl JointKind {
@@ -121,6 +135,12 @@ impl Description {
             end_effector: None,
             gravity: [0.0, 0.0, -9.81],
         }
+    }
+
+    /// The same robot under another gravity, in base coordinates, m/s².
+    pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
+        self.gravity = gravity;
+        self
     }
 
     /// Adds a link, its inertia in its own frame.

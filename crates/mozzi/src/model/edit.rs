@@ -16,7 +16,7 @@ impl Model<f64> {
     pub fn with_payload(&self, frame: FrameId, inertia: SpatialInertia) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         let (link, T) = self.link_of(frame);
-        robot.links[link].inertia += inertia.congruence(T.inverse().Ad());
+        robot.links[link].inertia += inertia.seen_from(T);
         robot.build()
     }
 

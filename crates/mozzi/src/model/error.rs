@@ -76,6 +76,25 @@ pub enum Error {
         /// The positions.
         theta: Vec<f64>,
     },
+    /// A simulated state leaves the numbers.
+    #[error(
+        "the simulation blew up: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of {step_size} s; \
+         a smaller step may help"
+    )]
+    Diverged {
+        /// "theta", "dtheta" or "ddtheta".
+        quantity: &'static str,
+        /// The joint.
+        joint: String,
+        /// Infinite, NaN, or so large (10¹⁵⁰) that energies are.
+        value: f64,
+        /// Steps are counted from 1; 0 is the start.
+        step: usize,
+        /// Seconds.
+        time: f64,
+        /// Seconds.
+        step_size: f64,
+    },
     /// An argument outside its domain.
     #[error("{what} is {found}, expected {expected}")]
     BadArgument {

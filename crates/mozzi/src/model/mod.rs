@@ -9,6 +9,7 @@ mod error;
 mod frame;
 mod link;
 mod screws;
+mod traverse;
 mod workspace;
 
 use crate::linalg::{Vec3, ldlt::Pattern};
@@ -139,25 +140,5 @@ impl<C: Scalar> Model<C> {
                 self.n()
             );
         }
-    }
-
-    /// Moving links with their slots and constants as `S`, base to tips.
-    #[inline(always)]
-    pub(crate) fn outward<S: Scalar + From<C>>(&self) -> impl Iterator<Item = (usize, Link<S>)> {
-        self.links.iter().enumerate().map(|(k, link)| (k + 1, link.lift()))
-    }
-
-    /// Moving links with their slots and constants as `S`, tips to base.
-    #[inline(always)]
-    pub(crate) fn inward<S: Scalar + From<C>>(&self) -> impl Iterator<Item = (usize, Link<S>)> {
-        self.links.iter().enumerate().rev().map(|(k, link)| (k + 1, link.lift()))
-    }
-
-    /// The moving links from a slot's own down to the base.
-    #[inline(always)]
-    pub(crate) fn to_base<S: Scalar + From<C>>(&self, slot: usize) -> impl Iterator<Item = (usize, Link<S>)> {
-        core::iter::successors(Some(slot), |&i| Some(self.links[i.checked_sub(1)?].parent))
-            .take_while(|&i| i > 0)
-            .map(|i| (i, self.links[i - 1].lift()))
     }
 }

@@ -105,6 +105,13 @@ pub struct ScrewLists {
     pub B: Vec<ScrewAxis>,
 }
 
+impl ScrewLists {
+    /// M_1 … M_N, and M_{n+1} where there is an end effector: of a serial chain, what [`HomeFrames::Base`] takes.
+    pub fn home_frames(&self) -> Vec<SE3> {
+        self.M.iter().copied().chain(self.end_effector.as_ref().map(|(_, M)| *M)).collect()
+    }
+}
+
 impl Model<f64> {
     /// The book's M_i, S_i, B_i, A_i and 𝒢_i of this model.
     pub fn screws(&self) -> ScrewLists {

@@ -122,6 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::type_complexity)] // a table of functions
     fn every_function_has_its_derivative() {
         let functions: [(&str, fn(Dual) -> Dual); 6] = [
             ("sin", |x| x.sin_cos().0),

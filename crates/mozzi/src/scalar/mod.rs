@@ -3,6 +3,8 @@
 mod dual;
 mod float;
 mod fused;
+#[cfg(test)]
+pub(crate) mod recorded;
 mod sin_cos;
 
 pub use dual::Dual;

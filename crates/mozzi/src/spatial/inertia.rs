@@ -56,6 +56,11 @@ impl<S: Scalar> SpatialInertia<S> {
         }
     }
 
+    /// The same body's inertia seen from another frame {a}: with this one in {b}, T = `T_ab`.
+    pub fn seen_from(self, T_ab: SE3<S>) -> Self {
+        self.congruence(T_ab.inverse().Ad())
+    }
+
     /// The rate of 𝒢, in the coordinates of a frame at rest that the body's frame passes at the twist V:
     /// −𝒢`[ad_V]` − `[ad_V]`ᵀ𝒢. Its mass is 0 and its first moment the body's linear momentum.
     #[inline(always)]

@@ -3,6 +3,7 @@
 mod articulated_inertia;
 mod inertia;
 mod joint_axis;
+mod nearest_physical;
 mod screw_axis;
 pub mod solids;
 mod twist;

@@ -1,6 +1,7 @@
 //! Unit screw axes.
 
-use super::Twist;
+use super::{Twist, Wrench};
+use crate::lie::{Adjoint, LieBracket};
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use core::ops::Mul;
@@ -15,7 +16,7 @@ pub struct ScrewAxis<S = f64>(Twist<S>);
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1 (use ScrewAxis::normalize \
-     and scale this joint's θ by what it returns)"
+     and multiply this joint's θ, and divide its τ, by the size that it returns)"
 )]
 pub struct NotAScrew {
     /// ‖ω‖.
@@ -38,16 +39,25 @@ impl ScrewAxis<f64> {
         if is_screw { Ok(ScrewAxis(twist)) } else { Err(NotAScrew { angular, linear }) }
     }
 
+    /// From (ω, v) in one array, angular first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_array([a, b, c, x, y, z]: [f64; 6]) -> Result<Self, NotAScrew> {
+        Self::new([a, b, c], [x, y, z])
+    }
+
     /// The unit screw axis A along a twist V, and the size k > 0 with V = k A: a joint that was described by V and θ is
     /// described by A and kθ, and its torque by τ/k.
     ///
     /// # Errors
-    /// [`NotAScrew`] when V is 0 or not finite.
+    /// [`NotAScrew`] when V is 0, or too large for the squares of its components.
     pub fn normalize(V: Twist) -> Result<(Self, f64), NotAScrew> {
         let (angular, linear) = (V.w.norm(), V.v.norm());
         let size = if angular > 0.0 { angular } else { linear };
         let axis = ScrewAxis(V * (1.0 / size));
-        if size > 0.0 && axis.0.norm().is_finite() { Ok((axis, size)) } else { Err(NotAScrew { angular, linear }) }
+        let is_screw = size > 0.0 && size.is_finite() && axis.0.norm().is_finite();
+        if is_screw { Ok((axis, size)) } else { Err(NotAScrew { angular, linear }) }
     }
 
     /// The turn about the line through `point` with the unit direction `axis`, sliding `pitch` metres per radian.
@@ -88,6 +98,27 @@ impl<S: Scalar> ScrewAxis<S> {
     pub fn twist(self) -> Twist<S> {
         self.0
     }
+
+    /// AᵀF: the torque or force along the joint.
+    pub fn dot(self, F: Wrench<S>) -> S {
+        self.0.dot(F)
+    }
+}
+
+/// `[Ad_T]` A.
+impl<S: Scalar> Mul<ScrewAxis<S>> for Adjoint<S> {
+    type Output = Twist<S>;
+    fn mul(self, A: ScrewAxis<S>) -> Twist<S> {
+        self * A.0
+    }
+}
+
+/// `[ad_V]` A.
+impl<S: Scalar> Mul<ScrewAxis<S>> for LieBracket<S> {
+    type Output = Twist<S>;
+    fn mul(self, A: ScrewAxis<S>) -> Twist<S> {
+        self * A.0
+    }
 }
 
 /// A θ̇: the twist of the joint's rate; or A θ, for the exponential.
@@ -122,5 +153,6 @@ mod tests {
         let (A, k) = ScrewAxis::normalize(V).expect("a screw");
         assert!((A * k - V).norm() < 1e-15 && (A.twist().w.norm() - 1.0).abs() < 1e-15);
         assert!(ScrewAxis::normalize(Twist::zero()).is_err());
+        assert!(ScrewAxis::normalize(Twist::from_array([1e200, 1e200, 0.0, 0.0, 0.0, 0.0])).is_err());
     }
 }

@@ -4,16 +4,17 @@ use super::SpatialInertia;
 use crate::linalg::{Sym3, Vec3};
 use core::f64::consts::PI;
 
-/// A homogeneous solid, centred at its frame's origin. Metres. Composites are sums of moved solids:
-/// `solid.inertia(m).congruence(T_solid_frame.Ad()) + …`.
+/// A homogeneous solid, centred at its frame's origin. Metres. Composites are sums of solids, each seen from the whole's
+/// frame: `solid.inertia(m).seen_from(T_whole_solid) + …`.
 ///
 /// ```
-/// use mozzi::{SE3, spatial::solids::Solid};
+/// use mozzi::{SE3, Solid};
 /// // a dumbbell: the exercise 8.2
 /// let ball = Solid::Sphere { radius: 0.1 }.of_density(7500.0);
 /// let bar = Solid::Cylinder { radius: 0.02, length: 0.2 }.of_density(7500.0);
-/// // frame {a} of the whole seen from each ball: the balls stand at z = ±0.2
-/// let whole = bar + ball.congruence(SE3::translation([0.0, 0.0, -0.2]).Ad()) + ball.congruence(SE3::translation([0.0, 0.0, 0.2]).Ad());
+/// // the balls stand at z = ±0.2
+/// let [above, below] = [0.2, -0.2].map(|z| ball.seen_from(SE3::translation([0.0, 0.0, z])));
+/// let whole = bar + above + below;
 /// assert!((whole.mass - 64.717).abs() < 1e-3);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,218 @@
+//! `mozzi info`: what the robot consists of.
+
+use crate::failure::Result;
+use crate::json;
+use crate::robot::{RobotArguments, Units};
+use crate::text::{Page, column, column_of_some, column_within, largest, rows_of, scalar, table, tuple};
+use clap::Args;
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, Error, Model, SE3, SpatialInertia};
+use serde_json::{Value, json};
+
+#[derive(Args, Debug)]
+pub struct InfoArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+}
+
+pub fn run(arguments: &InfoArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    let poses = model.frame_poses(&vec![0.0; model.nq()])?;
+    Ok(if arguments.robot.json { json::print(&object(&model, &poses)) } else { page(&model, &poses) })
+}
+
+fn total_mass(robot: &Description) -> f64 {
+    robot.links.iter().map(|link| link.inertia.mass).sum()
+}
+
+/// Revolute, continuous, prismatic, helical or fixed.
+pub fn kind(joint: &Joint) -> &'static str {
+    match joint.kind.name() {
+        "revolute" if joint.limits.position.is_none() => "continuous",
+        name => name,
+    }
+}
+
+pub fn headline(model: &Model) -> String {
+    let robot = model.description();
+    let plural = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+    let followers = model.moving_links() - model.n();
+    let coupled = if followers == 0 { String::new() } else { format!(" and {}", plural(followers, "follower")) };
+    format!(
+        "{}: {}{coupled}, {}, {} kg",
+        robot.name,
+        plural(model.n(), "independent joint"),
+        plural(robot.links.len(), "link"),
+        scalar(total_mass(robot)),
+    )
+}
+
+/// Gravity, and where a wrench acts.
+pub fn surroundings(model: &Model) -> String {
+    let tip = match model.end_effector() {
+        Ok(frame) => model.frame_name(frame).to_string(),
+        Err(Error::NoEndEffector { leaves }) => match leaves.get(..5) {
+            Some(some) if leaves.len() > 5 => format!("to be named, such as {}, …", some.join(", ")),
+            _ => format!("to be named, such as {}", leaves.join(", ")),
+        },
+        Err(error) => error.to_string(),
+    };
+    format!("gravity: {} m/s²; end effector: {tip}", tuple(&model.gravity().0))
+}
+
+fn page(model: &Model, poses: &[SE3]) -> String {
+    let (robot, units) = (model.description(), Units::of(model));
+    let mut page = Page::default();
+    page.line(headline(model)).line(surroundings(model));
+    page.title("joints").lines(&joints(model));
+    page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.position, units.rate(1), units.force)]);
+    let fixed: Vec<&Joint> = robot.joints.iter().filter(|joint| joint.kind == JointKind::Fixed).collect();
+    if !fixed.is_empty() {
+        page.title("fixed joints, folded into the links that carry them");
+        let rows: Vec<Vec<String>> =
+            fixed.iter().map(|joint| vec![joint.name.clone(), format!("{} → {}", joint.parent, joint.child)]).collect();
+        page.lines(&table(&rows, "l"));
+    }
+    page.title("links: mass [kg], centre of mass in the link's frame [m]").lines(&masses(robot));
+    page.title("links: inertia about the centre of mass, along the axes of the link's frame [kg m²]");
+    page.lines(&inertias(robot));
+    page.title("frames at θ = 0: origin in the base frame [m], turned by ω̂θ [rad]").lines(&frames(model, poses));
+    page.end()
+}
+
+fn joints(model: &Model) -> Vec<String> {
+    let list: Vec<&Joint> = model.moving_joints().collect();
+    let mut j = 0;
+    let number = |joint: &Joint| match &joint.mimic {
+        Some(_) => String::new(),
+        None => {
+            j += 1;
+            j.to_string()
+        }
+    };
+    let of =
+        |pick: fn(&Joint) -> Option<f64>| column_of_some(&list.iter().map(|joint| pick(joint)).collect::<Vec<_>>());
+    let text = |pick: &dyn Fn(&Joint) -> String| list.iter().map(|joint| pick(joint)).collect::<Vec<_>>();
+    let follows = |joint: &Joint| match &joint.mimic {
+        Some(mimic) => format!("{} · {} + {}", scalar(mimic.ratio), mimic.joint, scalar(mimic.offset)),
+        None => String::new(),
+    };
+    let mut columns = vec![
+        ("", list.iter().copied().map(number).collect::<Vec<_>>()),
+        ("joint", text(&|joint| joint.name.clone())),
+        ("type", text(&|joint| kind(joint).to_string())),
+        ("moves", text(&|joint| joint.child.clone())),
+        ("lowest", of(|joint| joint.limits.position.map(|[low, _]| low))),
+        ("highest", of(|joint| joint.limits.position.map(|[_, high]| high))),
+        ("speed", of(|joint| joint.limits.velocity)),
+        ("effort", of(|joint| joint.limits.effort)),
+        ("damping", of(|joint| (joint.damping != 0.0).then_some(joint.damping))),
+        ("friction", of(|joint| (joint.friction != 0.0).then_some(joint.friction))),
+        ("rotor", of(|joint| (joint.armature != 0.0).then_some(joint.armature))),
+        ("follows", text(&follows)),
+    ];
+    columns.retain(|(name, cells)| *name == "joint" || cells.iter().any(|cell| !cell.is_empty() && cell != "–"));
+    let align: String = columns
+        .iter()
+        .map(|(name, _)| if ["joint", "type", "moves", "follows"].contains(name) { 'l' } else { 'r' })
+        .collect();
+    let columns = columns.into_iter().map(|(name, cells)| [vec![name.to_string()], cells].concat()).collect();
+    table(&rows_of(columns), &align)
+}
+
+type Pick = fn(&SpatialInertia) -> f64;
+
+fn masses(robot: &Description) -> Vec<String> {
+    let c: [(&str, Pick); 4] = [
+        ("mass", |G| G.mass),
+        ("c_x", |G| G.center_of_mass().0[0]),
+        ("c_y", |G| G.center_of_mass().0[1]),
+        ("c_z", |G| G.center_of_mass().0[2]),
+    ];
+    of_links(robot, &c)
+}
+
+fn inertias(robot: &Description) -> Vec<String> {
+    let I: [(&str, Pick); 6] = [
+        ("I_xx", |G| G.about_center_of_mass().xx),
+        ("I_yy", |G| G.about_center_of_mass().yy),
+        ("I_zz", |G| G.about_center_of_mass().zz),
+        ("I_xy", |G| G.about_center_of_mass().xy),
+        ("I_xz", |G| G.about_center_of_mass().xz),
+        ("I_yz", |G| G.about_center_of_mass().yz),
+    ];
+    of_links(robot, &I)
+}
+
+fn of_links(robot: &Description, picks: &[(&str, Pick)]) -> Vec<String> {
+    let mut columns =
+        vec![[vec!["link".to_string()], robot.links.iter().map(|link| link.name.clone()).collect()].concat()];
+    for (name, pick) in picks {
+        let values: Vec<f64> = robot.links.iter().map(|link| pick(&link.inertia)).collect();
+        columns.push([vec![name.to_string()], column(&values)].concat());
+    }
+    table(&rows_of(columns), "lr")
+}
+
+fn frames(model: &Model, poses: &[SE3]) -> Vec<String> {
+    let names: Vec<String> = model.frames().map(|(_, name)| name.to_string()).collect();
+    let origins: Vec<[f64; 3]> = poses.iter().map(|T| T.p.0).collect();
+    let turns: Vec<[f64; 3]> = poses.iter().map(|T| T.R.log().0).collect();
+    let mut columns = vec![[vec!["frame".to_string()], names].concat()];
+    for (heads, rows) in [(["x", "y", "z"], origins), (["about x", "about y", "about z"], turns)] {
+        let most = largest(rows.as_flattened());
+        for (k, head) in heads.iter().enumerate() {
+            let values: Vec<f64> = rows.iter().map(|row| row[k]).collect();
+            columns.push([vec![head.to_string()], column_within(&values, most)].concat());
+        }
+    }
+    table(&rows_of(columns), "lr")
+}
+
+fn object(model: &Model, poses: &[SE3]) -> Value {
+    let robot = model.description();
+    let joint = |joint: &Joint| {
+        json!({
+            "name": joint.name,
+            "type": kind(joint),
+            "parent": joint.parent,
+            "child": joint.child,
+            "screw_axis": match joint.kind {
+                JointKind::Screw(A) => Some(json::vector(&A.twist().to_array())),
+                JointKind::Fixed => None,
+            },
+            "origin": json::pose(joint.origin),
+            "limits": {
+                "position": joint.limits.position.map(|limits| json::vector(&limits)),
+                "velocity": joint.limits.velocity,
+                "effort": joint.limits.effort,
+            },
+            "damping": joint.damping,
+            "friction": joint.friction,
+            "armature": joint.armature,
+            "mimic": joint.mimic.as_ref().map(|mimic| json!({
+                "joint": mimic.joint, "ratio": mimic.ratio, "offset": mimic.offset,
+            })),
+        })
+    };
+    json!({
+        "robot": robot.name,
+        "n": model.n(),
+        "nq": model.nq(),
+        "moving_links": model.moving_links(),
+        "total_mass": total_mass(robot),
+        "gravity": json::vector(&model.gravity().0),
+        "end_effector": model.end_effector().ok().map(|frame| model.frame_name(frame)),
+        "independent_joints": model.joint_names().collect::<Vec<_>>(),
+        "joints": robot.joints.iter().map(joint).collect::<Value>(),
+        "links": robot.links.iter().map(|link| json!({
+            "name": link.name,
+            "mass": link.inertia.mass,
+            "center_of_mass": json::vector(&link.inertia.center_of_mass().0),
+            "rotational_inertia": json::rows(link.inertia.about_center_of_mass().to_mat3().rows()),
+        })).collect::<Value>(),
+        "frames": model.frames().zip(poses).map(|((_, name), &T)| json!({
+            "name": name, "home": json::pose(T),
+        })).collect::<Value>(),
+    })
+}

@@ -1,0 +1,15 @@
+//! One file for each subcommand: convert, check, call, name the error.
+
+pub mod check;
+pub mod forward_dynamics;
+pub mod info;
+pub mod inverse_dynamics;
+pub mod python;
+pub mod screws;
+pub mod simulate;
+pub mod stacked;
+pub mod terms;
+pub mod terms_json;
+pub mod terms_text;
+pub mod tour;
+pub mod trajectories;

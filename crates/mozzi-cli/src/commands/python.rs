@@ -1,0 +1,51 @@
+//! A robot's lists as Python, in the shapes of the Modern Robotics package.
+
+use mozzi::model::ScrewLists;
+use mozzi::{Model, SE3, ScrewAxis};
+
+pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
+    let robot = &model.description().name;
+    let last = match lists.M.last() {
+        Some(M_n) => M_n.inverse() * tip, // M_{n,n+1}
+        None => tip,
+    };
+    let poses: Vec<String> = lists.M_relative.iter().chain([&last]).map(|T| nested(&T.to_matrix())).collect();
+    let inertias: Vec<String> = lists.G.iter().map(|G| nested(&G.to_matrix())).collect();
+    let names: Vec<String> = lists.joints.iter().map(|name| format!("{name:?}")).collect();
+    [
+        format!(
+            "# {robot}: the lists of Modern Robotics, chapter 8; angular first, SI units, frames at centres of mass"
+        ),
+        "import numpy as np".to_string(),
+        String::new(),
+        format!("joints = [{}]", names.join(", ")),
+        format!("g = np.array({})", flat(&model.gravity().0)),
+        "# M_{i-1,i} of the links, then the end effector's".to_string(),
+        format!("Mlist = np.array([\n{},\n])", poses.join(",\n")),
+        "# spatial inertias".to_string(),
+        format!("Glist = np.array([\n{},\n])", inertias.join(",\n")),
+        "# screw axes as columns: in the base frame, and in the end effector's".to_string(),
+        format!("Slist = np.array([\n{},\n]).T", axes(&lists.S)),
+        format!("Blist = np.array([\n{},\n]).T", axes(&lists.B)),
+        "# the end effector at theta = 0, seen from the base".to_string(),
+        format!("M = np.array(\n{}\n)", nested(&tip.to_matrix())),
+        String::new(),
+        "# import modern_robotics as mr".to_string(),
+        "# tau = mr.InverseDynamics(theta, dtheta, ddtheta, g, Ftip, Mlist, Glist, Slist)".to_string(),
+        String::new(),
+    ]
+    .join("\n")
+}
+
+fn flat(values: &[f64]) -> String {
+    // {:?} is the shortest text that reads back as the same number
+    format!("[{}]", values.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "))
+}
+
+fn nested<const C: usize>(rows: &[[f64; C]]) -> String {
+    format!("    [{}]", rows.iter().map(|row| flat(row)).collect::<Vec<_>>().join(",\n     "))
+}
+
+fn axes(list: &[ScrewAxis]) -> String {
+    list.iter().map(|A| format!("    {}", flat(&A.twist().to_array()))).collect::<Vec<_>>().join(",\n")
+}

@@ -1,0 +1,117 @@
+//! `mozzi screws`: the robot as the book's lists.
+
+use super::{info, python, terms_json};
+use crate::failure::{Failure, Result};
+use crate::json;
+use crate::numbers::TWIST;
+use crate::robot::RobotArguments;
+use crate::text::{Page, beside, column, constants, rows_of, table, twists};
+use clap::Args;
+use mozzi::model::ScrewLists;
+use mozzi::{Model, SE3, ScrewAxis};
+
+#[derive(Args, Debug)]
+pub struct ScrewsArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    /// Print Python literals for NumPy and the Modern Robotics package: Mlist, Glist, Slist, Blist, M
+    #[arg(long, conflicts_with = "json")]
+    python: bool,
+}
+
+pub fn run(arguments: &ScrewsArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    let lists = model.screws();
+    if arguments.robot.json {
+        return Ok(json::print(&terms_json::screws(&lists)));
+    }
+    if !arguments.python {
+        return Ok(page(&model, &lists));
+    }
+    let serial = lists.parents.iter().enumerate().all(|(i, &parent)| parent == i);
+    if !serial || model.is_coupled() {
+        return Err(Failure::wrong(format!(
+            "--python: `{}` has {}, and the Modern Robotics package knows serial chains of independent joints only; \
+             --json prints the lists of any robot",
+            model.description().name,
+            if serial { "joints that follow others" } else { "branches" }
+        )));
+    }
+    model.end_effector()?; // or an error that names the candidates
+    let tip = lists.end_effector.as_ref().map_or(SE3::identity(), |&(_, T)| T);
+    Ok(python::literals(&model, &lists, tip))
+}
+
+/// Each moving link's screw in a table: number, joint, six entries.
+pub fn axes(lists: &ScrewLists, axes: &[ScrewAxis]) -> Vec<String> {
+    let twists = twists(&axes.iter().map(|A| A.twist()).collect::<Vec<_>>());
+    let mut cells =
+        vec![[["i", "joint"].as_slice(), &TWIST].concat().into_iter().map(String::from).collect::<Vec<_>>()];
+    for ((i, joint), twist) in (1..).zip(&lists.joints).zip(twists) {
+        cells.push([vec![i.to_string(), joint.clone()], twist].concat());
+    }
+    table(&cells, "rlr")
+}
+
+/// Mass, where the home frame is, and the rotational inertia's diagonal in a table.
+pub fn masses(lists: &ScrewLists) -> Vec<String> {
+    let of = |name: &str, pick: &dyn Fn(usize) -> f64| {
+        [vec![name.to_string()], column(&(0..lists.links.len()).map(pick).collect::<Vec<_>>())].concat()
+    };
+    let numbers: Vec<String> =
+        std::iter::once("i".to_string()).chain((1..=lists.links.len()).map(|i| i.to_string())).collect();
+    let columns = vec![
+        numbers,
+        [vec!["link".to_string()], lists.links.clone()].concat(),
+        of("m", &|i| lists.G[i].mass),
+        of("p_x", &|i| lists.M[i].p.0[0]),
+        of("p_y", &|i| lists.M[i].p.0[1]),
+        of("p_z", &|i| lists.M[i].p.0[2]),
+        of("I_xx", &|i| lists.G[i].I.xx),
+        of("I_yy", &|i| lists.G[i].I.yy),
+        of("I_zz", &|i| lists.G[i].I.zz),
+    ];
+    table(&rows_of(columns), "rlr")
+}
+
+fn page(model: &Model, lists: &ScrewLists) -> String {
+    let mut page = Page::default();
+    page.line(info::headline(model)).line(info::surroundings(model));
+    page.line("Frame {i} is at the centre of mass of moving link i (with all that is fixed to it), oriented as the link's frame.");
+    page.line("A screw axis is (ω, v), angular first: ω the turn's axis, v how the point at the frame's origin moves at 1 rad/s.");
+    if lists.parents.iter().enumerate().any(|(i, &parent)| parent != i) {
+        page.line("The robot branches: the parent of each link is");
+        let parents =
+            lists.parents.iter().enumerate().map(|(i, parent)| format!("{}←{parent}", i + 1)).collect::<Vec<_>>();
+        page.lines(&[parents.join("  ")]);
+    }
+    page.title("S_i: screw axes in the base frame, at θ = 0").lines(&axes(lists, &lists.S));
+    match &lists.end_effector {
+        Some((name, _)) => {
+            page.title(&format!("B_i: the same in the end-effector frame {name}")).lines(&axes(lists, &lists.B));
+        }
+        None => {
+            page.title("B_i").lines(&["left out: name the frame by --end-effector".to_string()]);
+        }
+    }
+    page.title("A_i = [Ad_M_i⁻¹] S_i: the same in their own links' frames").lines(&axes(lists, &lists.A));
+    let poses = |symbol: &dyn Fn(usize) -> String, list: &[SE3]| {
+        let blocks: Vec<_> = list.iter().enumerate().map(|(i, T)| (symbol(i), constants(T.to_matrix()))).collect();
+        beside(&blocks)
+    };
+    page.title("M_i: home frames {i} seen from the base, [R p], m")
+        .lines(&poses(&|i| format!("M_{}", i + 1), &lists.M));
+    if let Some((name, T)) = &lists.end_effector {
+        page.lines(&beside(&[(format!("M: the end effector {name}"), constants(T.to_matrix()))]));
+    }
+    let relative = |i: usize| format!("M_{},{}", lists.parents[i], i + 1);
+    page.title("M_i-1,i: home frames seen from the one before, m").lines(&poses(&relative, &lists.M_relative));
+    let inertias: Vec<_> = lists
+        .G
+        .iter()
+        .enumerate()
+        .map(|(i, G)| (format!("G_{}, {}", i + 1, lists.links[i]), constants(G.to_matrix())))
+        .collect();
+    page.title("G_i: spatial inertias in frames {i}, kg m² and kg").lines(&beside(&inertias));
+    page.end()
+}

@@ -1,0 +1,154 @@
+//! `mozzi` alone: a tour of the library on the UR5, whose every number is computed here and now.
+
+use super::terms::Terms;
+use super::terms_text::{jacobian, pose, state, sum, task, wrench};
+use super::{info, screws, simulate};
+use crate::columns::save;
+use crate::failure::{Failure, Result};
+use crate::text::{Page, about, beside, matrix, table};
+use mozzi::simulation::{Method, Options, Zero};
+use mozzi::{Environment, Model, TaskFrame, Trajectory, Wrench};
+use nalgebra::DVector;
+
+const ROBOT: &str = "ur5";
+/// The state that is shown.
+const THETA: [f64; 6] = [0.0, -1.2, 1.5, 0.3, 1.1, 0.0];
+const DTHETA: [f64; 6] = [0.5, -0.3, 0.4, 0.2, -0.6, 1.0];
+const DDTHETA: [f64; 6] = [1.0, 0.5, -1.0, 2.0, 0.0, -0.5];
+const F_TIP: [f64; 6] = [0.0, 0.0, 0.5, 0.0, 0.0, 20.0];
+/// Of the fall.
+const SECONDS: f64 = 2.0;
+const STEPS: usize = 2000;
+
+pub fn run() -> Result<String> {
+    let model = mozzi_urdf::open(ROBOT)?.build()?;
+    let mut page = Page::default();
+    page.line("mozzi: every term of a robot's dynamics, in the words of Lynch & Park, Modern Robotics, chapter 8");
+    page.line(format!("{}; {}", info::headline(&model), info::surroundings(&model)));
+    robot(&model, &mut page);
+    one_state(&model, &mut page)?;
+    fall(&model, &mut page)?;
+    page.title("next");
+    page.lines(&[
+        "mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0 --stacked   all of this at a state of yours, and 𝒜 𝒢 𝒲 ℒ"
+            .to_string(),
+        "mozzi info my_robot.urdf                                 a robot of yours; mozzi check says what is wrong"
+            .to_string(),
+        "mozzi simulate panda --torque gravity-compensation       motors that hold the arm's weight".to_string(),
+        "mozzi --help                                             all subcommands, by example".to_string(),
+    ]);
+    Ok(page.end())
+}
+
+fn robot(model: &Model, page: &mut Page) {
+    let lists = model.screws();
+    page.title("1  a robot is a list of screws and a list of masses");
+    page.lines(&[
+        "At θ = 0, in base coordinates: joint i at 1 rad/s moves what hangs on it at the twist S_i = (ω, v),"
+            .to_string(),
+    ]);
+    page.lines(&["ω in rad/s, and v in m/s of the point at the base's origin. Six numbers are angular first, always."
+        .to_string()]);
+    page.lines(&screws::axes(&lists, &lists.S));
+    page.lines(&[
+        "Mass m [kg], centre of mass p [m], inertia about it [kg m²], in frame {i} at the centre of mass:".to_string()
+    ]);
+    page.lines(&screws::masses(&lists));
+}
+
+fn one_state(model: &Model, page: &mut Page) -> Result<()> {
+    let applied = [(model.end_effector()?, Wrench::from_array(F_TIP))];
+    let environment = Environment { applied: &applied, ..model.environment() };
+    let mut terms = Terms::at(model, [THETA.to_vec(), DTHETA.to_vec(), DDTHETA.to_vec()], &environment)?;
+    terms.add_task(None, TaskFrame::Body, &environment)?;
+    page.title("2  every term of its dynamics, at one state").lines(&state(&terms)).lines(&wrench(&terms));
+    if let Some(tip) = &terms.tip {
+        page.lines(&beside(&[
+            ("J_b(θ): V_b = J_b θ̇, the tip's twist, and τ = J_bᵀF".into(), jacobian(&tip.J_b)),
+            ("T_sb(θ): where the tip is, [R p]".into(), pose(tip.T_sb)),
+        ]));
+    }
+    page.lines(&beside(&[
+        ("M(θ), mass matrix [kg m²]".into(), matrix(&terms.M)),
+        ("C(θ, θ̇), Coriolis: C θ̇ = c, Ṁ = C + Cᵀ".into(), matrix(&terms.C)),
+    ]));
+    page.blank().line("  The equation of motion, τ = M θ̈ + c + g + JᵀF_tip + f, term by term:").lines(&sum(&terms));
+    let tau = model.closed_form(&THETA, &DTHETA, &environment)?.inverse_dynamics(&DVector::from_column_slice(&DDTHETA));
+    let error = (&tau - &terms.tau).amax();
+    let mut checks =
+        vec![format!("The book's closed form, by dense stacked matrices, gives the same τ to {error:.0e} N m")];
+    if let Some(ddtheta) = &terms.forward_dynamics {
+        let error = (ddtheta - DVector::from_column_slice(&DDTHETA)).amax();
+        checks.push(format!("and forward dynamics, in O(n), takes τ back to θ̈ to {error:.0e} rad/s²."));
+    }
+    checks.push(format!(
+        "Kinetic energy ½ θ̇ᵀMθ̇ = {:.4} J, potential energy −Σ m gᵀp = {:.4} J.",
+        terms.kinetic_energy, terms.potential_energy
+    ));
+    page.lines(&checks);
+    let mut lines = vec!["Seen from the tip, in its frame, F = Λ V̇ + η:".to_string()];
+    lines.extend(task(&terms).into_iter().skip(1));
+    page.lines(&lines);
+    Ok(())
+}
+
+fn fall(model: &Model, page: &mut Page) -> Result<()> {
+    page.title("3  a fall: motors off, from rest at the same θ, for 2 s in steps of 1 ms");
+    let options = |method| Options { method, ..Options::new(SECONDS, STEPS) };
+    let mut motions = Vec::new();
+    for method in [Method::SemiImplicitEuler, Method::RungeKutta4] {
+        let options = options(method);
+        motions.push((method, simulate::simulate(model, &THETA, &[0.0; 6], Zero, &options)?));
+    }
+    if let Some((method, motion)) = motions.last() {
+        page.lines(&[format!(
+            "by {}; K kinetic, P potential energy, drift of K + P; the joints' limits stop nothing:",
+            method.name()
+        )]);
+        page.lines(&simulate::rows(motion, 8));
+    }
+    page.blank().lines(&drifts(&motions));
+    let file = format!("mozzi-fall-{ROBOT}.csv");
+    save(&file, &csv(&motions))?;
+    let path = std::path::absolute(&file).map_err(|error| Failure::wrong(format!("{file}: {error}")))?;
+    let rows: usize = motions.iter().map(|(_, motion)| motion.len()).sum();
+    page.lines(&[format!("The table, {rows} rows with t, θ, θ̇, θ̈, τ, energies: {}", path.display())]);
+    Ok(())
+}
+
+/// Method by method: order, largest drift.
+fn drifts(motions: &[(Method, Trajectory)]) -> Vec<String> {
+    let mut cells = vec![
+        ["method", "order", "largest energy drift", "of the largest K", "|θ − θ of the last| at 2 s"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    let best = motions.last().map(|(_, motion)| motion.last().theta.to_vec()).unwrap_or_default();
+    for (method, motion) in motions {
+        let (drift, scale) = (motion.largest_drift(), motion.largest_kinetic_energy());
+        let away = motion.last().theta.iter().zip(&best).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        cells.push(vec![
+            method.name().to_string(),
+            method.order().to_string(),
+            format!("{} J", about(drift)),
+            about(drift / scale),
+            if away == 0.0 { "–".to_string() } else { format!("{} rad", about(away)) },
+        ]);
+    }
+    table(&cells, "lr")
+}
+
+/// One table: a column that names the method, then those of `mozzi simulate`.
+fn csv(motions: &[(Method, Trajectory)]) -> String {
+    let mut text = String::new();
+    for (method, motion) in motions {
+        let table = simulate::columns(motion).text();
+        let mut lines = table.lines();
+        let header = lines.next().unwrap_or_default();
+        if text.is_empty() {
+            text = format!("method,{header}\n");
+        }
+        lines.for_each(|line| text.push_str(&format!("{},{line}\n", method.name())));
+    }
+    text
+}

@@ -1,0 +1,109 @@
+//! Tables in, tables out: what inverse and forward dynamics share.
+
+use crate::columns::{Columns, save};
+use crate::failure::{Failure, Result};
+use crate::json;
+use crate::numbers::WRENCH;
+use crate::samples::Samples;
+use clap::Args;
+use mozzi::{FrameId, Model, Wrench};
+use serde_json::{Map, Value};
+
+#[derive(Args, Debug, Default)]
+pub struct TableArguments {
+    /// States in a CSV file, one in each row, instead of by flags ("-": standard input)
+    #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["theta", "dtheta", "tip_wrench"])]
+    pub input: Option<String>,
+    /// Where the table goes [default: standard output]
+    #[arg(long = "out", value_name = "FILE.csv", requires = "input")]
+    pub output: Option<String>,
+}
+
+/// One row of a table: a state and what is applied.
+pub struct Row<'a> {
+    pub theta: &'a [f64],
+    pub dtheta: &'a [f64],
+    /// θ̈ or τ.
+    pub given: &'a [f64],
+    pub applied: Vec<(FrameId, Wrench)>,
+}
+
+/// A table's states, each with a vector that is computed from it: `given` and `result` are "ddtheta" or "tau".
+pub fn run(
+    model: &Model,
+    arguments: &TableArguments,
+    as_json: bool,
+    (given, result, quantity): (&str, &str, &str),
+    compute: impl Fn(&Row) -> std::result::Result<Vec<f64>, mozzi::Error>,
+) -> Result<String> {
+    let file = arguments.input.as_deref().unwrap_or("-");
+    let samples = Samples::read(file, model)?;
+    let (n, count) = (model.n(), samples.lines.len());
+    let theta = samples.need(&samples.theta, "theta_1 …")?;
+    let zeros = || vec![vec![0.0; n]; count];
+    let dtheta = samples.dtheta.clone().unwrap_or_else(zeros);
+    let given_rows = match given {
+        "tau" => samples.need(&samples.tau, "tau_1 …")?.clone(),
+        _ => samples.ddtheta.clone().unwrap_or_else(zeros),
+    };
+    let tip = match &samples.tip_wrench {
+        Some(_) => Some(model.end_effector()?),
+        None => None,
+    };
+    let mut results = Vec::new();
+    for row in 0..count {
+        let applied = tip.zip(samples.tip_wrench.as_ref()).map(|(tip, list)| (tip, list[row]));
+        let state = Row {
+            theta: &theta[row],
+            dtheta: &dtheta[row],
+            given: &given_rows[row],
+            applied: applied.into_iter().collect(),
+        };
+        let place = |error| Failure::wrong(format!("{}: {error}", samples.place(row)));
+        results.push(compute(&state).map_err(place)?);
+    }
+
+    if as_json {
+        let lists = |rows: &[Vec<f64>]| rows.iter().map(|row| json::vector(row)).collect::<Value>();
+        let mut object = Map::new();
+        object.insert("robot".into(), model.description().name.clone().into());
+        object.insert("joints".into(), model.joint_names().map(Value::from).collect());
+        if let Some(t) = &samples.t {
+            object.insert("t".into(), json::vector(t));
+        }
+        object.insert("theta".into(), lists(theta));
+        object.insert("dtheta".into(), lists(&dtheta));
+        object.insert(given.into(), lists(&given_rows));
+        if let Some(list) = &samples.tip_wrench {
+            object.insert("F_tip".into(), list.iter().map(|F| json::vector(&F.to_array())).collect());
+        }
+        object.insert(quantity.into(), lists(&results));
+        let text = json::print(&Value::Object(object));
+        return finish(arguments.output.as_deref(), text, count);
+    }
+    let mut table = Columns::default();
+    if let Some(t) = &samples.t {
+        table.add("t", t.clone());
+    }
+    table.add_group("theta", n, theta);
+    table.add_group("dtheta", n, &dtheta);
+    table.add_group(given, n, &given_rows);
+    if let Some(list) = &samples.tip_wrench {
+        for (k, name) in WRENCH.iter().enumerate() {
+            table.add(*name, list.iter().map(|F| F.to_array()[k]).collect());
+        }
+    }
+    table.add_group(result, n, &results);
+    finish(arguments.output.as_deref(), table.text(), count)
+}
+
+/// To the file, saying so, or to standard output.
+fn finish(output: Option<&str>, text: String, rows: usize) -> Result<String> {
+    match output {
+        None | Some("-") => Ok(text),
+        Some(file) => {
+            save(file, &text)?;
+            Ok(format!("{rows} states written to {file}\n"))
+        }
+    }
+}

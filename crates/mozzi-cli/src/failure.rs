@@ -1,0 +1,65 @@
+//! Why a command has no result.
+
+use mozzi_urdf::{Diagnostic, LoadError, Style};
+use std::io::{IsTerminal, Write};
+
+#[derive(Debug)]
+pub enum Failure {
+    /// A sentence: what, its value, its place, what was expected.
+    Wrong(String),
+    /// The robot's file is wrong.
+    Load(Box<LoadError>),
+    /// The answer, on standard output, is that something is wrong.
+    Answered(String),
+}
+
+pub type Result<T> = std::result::Result<T, Failure>;
+
+impl Failure {
+    pub fn wrong(sentence: impl Into<String>) -> Self {
+        Failure::Wrong(sentence.into())
+    }
+
+    /// Says on standard error what is wrong.
+    pub fn say(&self) {
+        match self {
+            Failure::Wrong(sentence) => write(&format!("error: {sentence}\n")),
+            Failure::Load(error) if error.diagnostics().is_empty() => write(&format!("error: {error}\n")),
+            Failure::Load(error) => write(&(error.pretty(style()) + "\n")),
+            Failure::Answered(_) => {}
+        }
+    }
+}
+
+/// To standard error; where that is closed, nobody wants to know.
+pub fn write(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// A diagnostic with its place in the file, on standard error.
+pub fn say(diagnostic: &Diagnostic) {
+    write(&diagnostic.pretty(style()));
+}
+
+/// Colours where standard error is a terminal that is not asked to do without (see no-color.org).
+fn style() -> Style {
+    let plain = !std::io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some();
+    if plain { Style::Unicode } else { Style::Color }
+}
+
+/// Something to know, on standard error.
+pub fn note(text: &str) {
+    write(&format!("note: {text}\n"));
+}
+
+impl From<mozzi::Error> for Failure {
+    fn from(error: mozzi::Error) -> Self {
+        Failure::Wrong(error.to_string())
+    }
+}
+
+impl From<LoadError> for Failure {
+    fn from(error: LoadError) -> Self {
+        Failure::Load(Box::new(error))
+    }
+}

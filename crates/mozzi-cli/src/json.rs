@@ -1,0 +1,69 @@
+//! Values as JSON. Matrices are lists of rows; a number that is none (NaN, infinity) is null, as JSON has no name for it.
+
+use mozzi::{Jacobian, SE3};
+use nalgebra::{DMatrix, DVector};
+use serde_json::Value;
+
+pub fn vector(values: &[f64]) -> Value {
+    values.iter().copied().map(Value::from).collect()
+}
+
+pub fn dvector(values: &DVector<f64>) -> Value {
+    vector(values.as_slice())
+}
+
+pub fn matrix(M: &DMatrix<f64>) -> Value {
+    M.row_iter().map(|row| row.iter().copied().map(Value::from).collect::<Value>()).collect()
+}
+
+pub fn rows<const R: usize, const C: usize>(rows: [[f64; C]; R]) -> Value {
+    rows.iter().map(|row| vector(row)).collect()
+}
+
+pub fn pose(T: SE3) -> Value {
+    rows(T.to_matrix())
+}
+
+pub fn jacobian(J: &Jacobian) -> Value {
+    matrix(&J.matrix())
+}
+
+/// An object over lines: a list without lists or objects in it is one line.
+pub fn print(value: &Value) -> String {
+    let mut text = String::new();
+    write(value, 0, &mut text);
+    text.push('\n');
+    text
+}
+
+fn write(value: &Value, depth: usize, text: &mut String) {
+    let nested = |value: &Value| matches!(value, Value::Array(list) if !list.is_empty()) || value.is_object();
+    let mut lines = |open: char, close: char, entries: Vec<(String, &Value)>| {
+        text.push(open);
+        for (k, (name, entry)) in entries.iter().enumerate() {
+            text.push_str(if k == 0 { "\n" } else { ",\n" });
+            text.push_str(&"  ".repeat(depth + 1));
+            text.push_str(name);
+            write(entry, depth + 1, text);
+        }
+        text.push('\n');
+        text.push_str(&"  ".repeat(depth));
+        text.push(close);
+    };
+    match value {
+        Value::Object(map) if !map.is_empty() => {
+            lines(
+                '{',
+                '}',
+                map.iter().map(|(name, entry)| (format!("{}: ", Value::from(name.as_str())), entry)).collect(),
+            );
+        }
+        Value::Array(list) if list.iter().any(nested) => {
+            lines('[', ']', list.iter().map(|entry| (String::new(), entry)).collect());
+        }
+        Value::Array(list) => {
+            text.push_str(&format!("[{}]", list.iter().map(Value::to_string).collect::<Vec<_>>().join(", ")));
+        }
+        other => text.push_str(&other.to_string()),
+    }
+}

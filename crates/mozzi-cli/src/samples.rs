@@ -1,0 +1,168 @@
+//! Tables of numbers in CSV files: one row for each time, columns by name.
+//!
+//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…` with the number of a joint (from 1) or its
+//! name, or `m_x m_y m_z f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order.
+
+use crate::failure::{Failure, Result};
+use crate::numbers::{WRENCH, number};
+use mozzi::{Model, Wrench};
+use std::io::Read;
+
+/// What `mozzi simulate` writes beside the groups; read and not used.
+pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_work", "friction_loss", "applied_work"];
+
+/// The groups of columns.
+const GROUPS: [&str; 4] = ["theta", "dtheta", "ddtheta", "tau"];
+
+/// A file's numbers by group; each `None` where the file has no such columns.
+#[derive(Debug, Default)]
+pub struct Samples {
+    pub file: String,
+    /// The line of each row in the file.
+    pub lines: Vec<u64>,
+    pub t: Option<Vec<f64>>,
+    pub theta: Option<Vec<Vec<f64>>>,
+    pub dtheta: Option<Vec<Vec<f64>>>,
+    pub ddtheta: Option<Vec<Vec<f64>>>,
+    pub tau: Option<Vec<Vec<f64>>>,
+    pub tip_wrench: Option<Vec<Wrench>>,
+}
+
+impl Samples {
+    /// Reads a file, or standard input where it is called `-`.
+    pub fn read(file: &str, model: &Model) -> Result<Self> {
+        let cannot = |error: std::io::Error| Failure::wrong(format!("{file} cannot be read: {error}"));
+        let input: Box<dyn Read> = match file {
+            "-" => Box::new(std::io::stdin().lock()),
+            path => Box::new(std::fs::File::open(path).map_err(cannot)?),
+        };
+        let name = if file == "-" { "standard input" } else { file };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
+        let header: Vec<String> = match reader.headers() {
+            Ok(header) => header.iter().map(|cell| cell.trim_start_matches('\u{feff}').to_string()).collect(),
+            Err(error) => return Err(csv_failure(name, &error)),
+        };
+        let places = Places::find(name, &header, model)?;
+        let mut samples = Samples { file: name.to_string(), ..Samples::default() };
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|error| csv_failure(name, &error))?;
+            let line = record.position().map_or(0, |position| position.line());
+            let mut row = vec![0.0; header.len()];
+            for column in places.all() {
+                let place = format!("{name}:{line}: column {} (`{}`)", column + 1, header[column]);
+                row[column] = number(place, record.get(column).unwrap_or_default())?;
+            }
+            rows.push(row);
+            samples.lines.push(line);
+        }
+        if rows.is_empty() {
+            return Err(Failure::wrong(format!("{name} has no rows below its header")));
+        }
+        let pick = |columns: &Vec<usize>| rows.iter().map(|row| columns.iter().map(|&c| row[c]).collect()).collect();
+        samples.t = places.t.map(|c| rows.iter().map(|row| row[c]).collect());
+        [samples.theta, samples.dtheta, samples.ddtheta, samples.tau] =
+            places.groups.each_ref().map(|g| g.as_ref().map(pick));
+        samples.tip_wrench =
+            places.wrench.map(|columns| rows.iter().map(|row| Wrench::from_array(columns.map(|c| row[c]))).collect());
+        Ok(samples)
+    }
+
+    /// "table.csv:7", the place of a row.
+    pub fn place(&self, row: usize) -> String {
+        format!("{}:{}", self.file, self.lines.get(row).copied().unwrap_or(0))
+    }
+
+    /// A group that a command cannot do without.
+    pub fn need<'a, T>(&self, group: &'a Option<T>, columns: &str) -> Result<&'a T> {
+        group
+            .as_ref()
+            .ok_or_else(|| Failure::wrong(format!("{} has no column {columns}, which is needed here", self.file)))
+    }
+}
+
+/// Which column is what.
+struct Places {
+    t: Option<usize>,
+    groups: [Option<Vec<usize>>; 4],
+    wrench: Option<[usize; 6]>,
+}
+
+impl Places {
+    fn find(file: &str, header: &[String], model: &Model) -> Result<Self> {
+        let joints: Vec<&str> = model.joint_names().collect();
+        let mut groups: [Vec<Option<usize>>; 4] = GROUPS.map(|_| vec![None; joints.len()]);
+        let (mut t, mut wrench) = ([None], [None; 6]);
+        for (column, name) in header.iter().enumerate() {
+            let place: Option<&mut Option<usize>> = if name == "t" {
+                t.first_mut()
+            } else if let Some(k) = WRENCH.iter().position(|known| known == name) {
+                wrench.get_mut(k)
+            } else if ENERGIES.contains(&name.as_str()) || name == "method" {
+                continue;
+            } else {
+                GROUPS.iter().zip(&mut groups).find_map(|(group, places)| {
+                    let joint = name.strip_prefix(group)?.strip_prefix('_')?;
+                    let by_number = joint.parse::<usize>().ok().and_then(|j| j.checked_sub(1));
+                    places.get_mut(joints.iter().position(|known| *known == joint).or(by_number)?)
+                })
+            };
+            let Some(place) = place else {
+                return Err(Failure::wrong(format!(
+                    "{file}:1: column {} is called `{name}`, expected t, {}, or {}, with joints from 1 to {} or by name \
+                     ({})",
+                    column + 1,
+                    GROUPS.map(|group| format!("{group}_1 …")).join(", "),
+                    WRENCH.join(" "),
+                    joints.len(),
+                    joints.join(", ")
+                )));
+            };
+            if let Some(first) = place.replace(column) {
+                let (first, second) = (first + 1, column + 1);
+                return Err(Failure::wrong(format!("{file}:1: columns {first} and {second} both give `{name}`")));
+            }
+        }
+        let whole = |names: &dyn Fn(usize) -> String, places: &[Option<usize>]| {
+            let found: Vec<usize> = places.iter().flatten().copied().collect();
+            match places.iter().position(Option::is_none) {
+                None => Ok(Some(found)),
+                Some(_) if found.is_empty() => Ok(None),
+                Some(k) => Err(Failure::wrong(format!(
+                    "{file}:1: column {} is missing; of its group there are {} of {}",
+                    names(k),
+                    found.len(),
+                    places.len()
+                ))),
+            }
+        };
+        let mut found = [const { None }; 4];
+        for ((found, group), places) in found.iter_mut().zip(GROUPS).zip(&groups) {
+            *found = whole(&|k| format!("{group}_{}", k + 1), places)?;
+        }
+        let wrench = whole(&|k| WRENCH[k].to_string(), &wrench)?;
+        Ok(Places { t: t[0], groups: found, wrench: wrench.and_then(|columns| columns.try_into().ok()) })
+    }
+
+    fn all(&self) -> impl Iterator<Item = usize> {
+        self.t
+            .into_iter()
+            .chain(self.groups.iter().flatten().flatten().copied())
+            .chain(self.wrench.into_iter().flatten())
+    }
+}
+
+fn csv_failure(file: &str, error: &csv::Error) -> Failure {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            let columns = if *len == 1 { "column" } else { "columns" };
+            Failure::wrong(format!("{file}:{line}: {len} {columns}, expected {expected_len} as in the header"))
+        }
+        csv::ErrorKind::Utf8 { pos, err } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            Failure::wrong(format!("{file}:{line}: column {} is no text (UTF-8)", err.field() + 1))
+        }
+        _ => Failure::wrong(format!("{file}: {error}")),
+    }
+}

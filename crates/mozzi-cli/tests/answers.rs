@@ -1,0 +1,179 @@
+//! Each subcommand answers, in text and in JSON.
+#![allow(non_snake_case)]
+
+mod common;
+
+use common::{assert_close, json, mozzi, numbers, rows, text, times};
+
+const STATE: [&str; 8] = [
+    "--theta",
+    "-0.1,-1.2,1.5,0.3,1.1,0",
+    "--dtheta",
+    "0.5,-0.3,0.4,0.2,-0.6,1",
+    "--ddtheta",
+    "1,0.5,-1,2,0,-0.5",
+    "--tip-wrench",
+    "0.1,-0.2,0.5,3,-4,20",
+];
+
+#[test]
+fn help_names_every_subcommand_and_gives_examples() {
+    let help = text(&["--help"]);
+    let all = ["info", "screws", "terms", "inverse-dynamics", "forward-dynamics", "simulate", "check"];
+    for name in all {
+        assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
+        assert!(help.contains(&format!("mozzi {name} ")), "an example of {name}");
+        assert!(text(&[name, "--help"]).contains("MODEL"));
+    }
+    assert!(text(&["inverse-dynamics", "--help"]).contains("theta_1 … theta_n"));
+}
+
+#[test]
+fn info_tells_joints_limits_masses_and_frames() {
+    let page = text(&["info", "ur5"]);
+    for word in ["shoulder_pan_joint", "revolute", "6.2831853", "150", "20.9939 kg", "8.393", "tool0", "-9.81"] {
+        assert!(page.contains(word), "{word} in {page}");
+    }
+    let robot = json(&["info", "panda"]);
+    assert_eq!((robot["n"].as_u64(), robot["moving_links"].as_u64()), (Some(8), Some(9)));
+    assert!(robot["end_effector"].is_null());
+    let follower = robot["joints"].as_array().expect("joints").iter().find(|joint| !joint["mimic"].is_null());
+    assert_eq!(follower.expect("a follower")["mimic"]["ratio"], 1.0);
+    assert!(json(&["info", "ur5", "--gravity", "0,0,-1.62"])["gravity"][2] == -1.62);
+}
+
+#[test]
+fn screws_are_the_books_lists() {
+    let page = text(&["screws", "two_link_planar"]);
+    for word in ["S_i", "B_i", "A_i", "M_1,2", "G_2"] {
+        assert!(page.contains(word), "{word} in {page}");
+    }
+    let lists = json(&["screws", "two_link_planar"]);
+    assert_eq!(rows(&lists["S"]), [[0.0, -1.0, 0.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0, 0.0, -0.5]]);
+    assert_eq!(numbers(&lists["M"][1][0]), [1.0, 0.0, 0.0, 0.9]);
+    assert_eq!(lists["G"][0][3][3], 2.0);
+    assert_eq!(lists["parents"].as_array().map(Vec::len), Some(2));
+    assert!(json(&["screws", "panda"])["B"].is_null());
+}
+
+#[test]
+fn screws_are_python_that_reads_back() {
+    let python = text(&["screws", "ur5", "--python"]);
+    let list = |name: &str| {
+        let start = python.find(&format!("{name} = np.array(")).expect("the list") + name.len() + 12;
+        let length = python[start..].find("\n)").or(python[start..].find("\n])").map(|k| k + 2)).expect("its end");
+        // JSON allows no comma after the last entry
+        let literal = python[start..start + length].trim().replace(",\n]", "\n]");
+        serde_json::from_str::<serde_json::Value>(&literal).unwrap_or_else(|error| panic!("{name}: {error}: {literal}"))
+    };
+    assert!(python.starts_with("# ur5"));
+    let lists = json(&["screws", "ur5"]);
+    let end = |name: &str| python.find(&format!("{name} = ")).expect("the list");
+    assert!(end("Mlist") < end("Glist") && end("Glist") < end("Slist") && python.contains("]).T"));
+    assert_eq!(list("M"), lists["end_effector"]["M"]);
+}
+
+#[test]
+fn terms_satisfy_the_equation_of_motion() {
+    let found = json(&[&["terms", "ur5"], &STATE[..]].concat());
+    let of = |name: &str| numbers(&found[name]);
+    let ddtheta = of("ddtheta");
+    let mut tau = times(&rows(&found["mass_matrix"]), &ddtheta);
+    for name in ["bias_forces", "tip_forces", "joint_friction"] {
+        tau = tau.iter().zip(of(name)).map(|(a, b)| a + b).collect();
+    }
+    assert_close(&tau, &of("inverse_dynamics"), 1e-12);
+    let h: Vec<f64> = of("velocity_product").iter().zip(of("gravity_forces")).map(|(c, g)| c + g).collect();
+    assert_close(&h, &of("bias_forces"), 1e-12);
+    assert_close(&times(&rows(&found["coriolis_matrix"]), &of("dtheta")), &of("velocity_product"), 1e-12);
+    assert_close(&of("forward_dynamics"), &ddtheta, 1e-10);
+    assert_close(&times(&rows(&found["body_jacobian"]), &of("dtheta")), &of("V_b"), 1e-14);
+    assert_eq!(rows(&found["task_space_dynamics"]["Lambda"]).len(), 6);
+    assert_eq!(found["newton_euler"]["twists"].as_array().map(Vec::len), Some(6));
+    assert!(found["closed_form"].is_null());
+
+    let tau: Vec<String> = of("inverse_dynamics").iter().map(f64::to_string).collect();
+    let by_tau = json(&[&["terms", "ur5"], &STATE[..4], &["--tau", &tau.join(",")], &STATE[6..]].concat());
+    assert_close(&numbers(&by_tau["ddtheta"]), &ddtheta, 1e-10);
+}
+
+#[test]
+fn terms_show_every_quantity_and_the_stacked_matrices() {
+    let page = text(&[&["terms", "ur5"], &STATE[..], &["--stacked"]].concat());
+    let words = ["T_sb", "J_b", "J̇_s", "M(θ)", "Ṁ", "C(θ, θ̇)", "velocity_product", "gravity_forces", "bias_forces"];
+    let more =
+        ["tip_forces", "kinetic_energy", "Λ", "η", "V̇_i", "𝒜", "𝒢", "𝒲", "ℒ", "[ad_𝒱]", "[ad_𝒜θ̇]", "𝒱_base", "36 × 36"];
+    for word in words.iter().chain(&more) {
+        assert!(page.contains(word), "{word} in {page}");
+    }
+    let found = json(&[&["terms", "ur5"], &STATE[..], &["--stacked"]].concat());
+    let form = &found["closed_form"];
+    assert_eq!((rows(&form["A"]).len(), rows(&form["L"]).len(), numbers(&form["F"]).len()), (36, 36, 36));
+    assert_close(&numbers(&form["inverse_dynamics"]), &numbers(&found["inverse_dynamics"]), 1e-11);
+    for (a, b) in rows(&form["mass_matrix"]).iter().zip(rows(&found["mass_matrix"])) {
+        assert_close(a, &b, 1e-13);
+    }
+}
+
+#[test]
+fn what_needs_an_end_effector_is_null_with_a_note() {
+    let output = mozzi(&["terms", "panda", "--json"]);
+    assert!(output.status.success());
+    let note = String::from_utf8_lossy(&output.stderr).to_string();
+    assert!(note.contains("`panda_hand_tcp`") && note.contains("left out"), "{note}");
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(found["body_jacobian"].is_null() && found["task_space_dynamics"].is_null());
+    assert_eq!(rows(&found["mass_matrix"]).len(), 8);
+    let named = json(&["terms", "panda", "--end-effector", "panda_hand_tcp", "--theta", "0,0.5,0,-1.5,0,2,0,0.02"]);
+    assert_eq!(rows(&named["body_jacobian"]).len(), 6);
+    assert_eq!(rows(&named["forward_kinematics"]).len(), 4);
+}
+
+#[test]
+fn a_planar_task_has_its_rows() {
+    let arguments = ["terms", "two_link_planar", "--theta", "0.3,0.8", "--task", "vx,vz"];
+    let found = json(&arguments);
+    assert_eq!(rows(&found["task_space_dynamics"]["Lambda"]).len(), 2);
+    assert_eq!(numbers(&found["task_space_dynamics"]["rows"]), [3.0, 5.0]);
+    assert!(text(&arguments).contains("rows v_x v_z"));
+}
+
+#[test]
+fn forward_dynamics_undoes_inverse_dynamics_in_three_ways() {
+    let inverse = json(&[&["inverse-dynamics", "ur5"], &STATE[..]].concat());
+    let tau: Vec<String> = numbers(&inverse["inverse_dynamics"]).iter().map(f64::to_string).collect();
+    for by in ["articulated-body", "mass-matrix", "inverse-dynamics"] {
+        let tau = tau.join(",");
+        let arguments = [&["forward-dynamics", "ur5", "--by", by], &STATE[..4], &STATE[6..], &["--tau", &tau]].concat();
+        assert_close(&numbers(&json(&arguments)["forward_dynamics"]), &[1.0, 0.5, -1.0, 2.0, 0.0, -0.5], 1e-10);
+    }
+    assert!(text(&["inverse-dynamics", "ur5"]).contains("inverse_dynamics"));
+    assert!(text(&["forward-dynamics", "ur5"]).contains("forward_dynamics"));
+}
+
+#[test]
+fn simulate_tells_the_motion_and_its_energy() {
+    for (method, name, most) in
+        [("euler", "Euler", 1.0), ("semi-implicit-euler", "semi-implicit Euler", 1.0), ("rk4", "Runge-Kutta 4", 1e-5)]
+    {
+        let arguments = ["simulate", "double_pendulum", "--theta", "1,-0.5", "--time", "0.5", "--method", method];
+        let page = text(&arguments);
+        assert!(page.contains(name) && page.contains("500 steps of 0.001 s") && page.contains("drift"), "{page}");
+        let motion = json(&arguments);
+        assert_eq!((numbers(&motion["t"]).len(), rows(&motion["theta"]).len()), (501, 501));
+        assert!(motion["largest_drift"].as_f64().expect("a number") < most);
+    }
+    let arguments = ["simulate", "ur5", "--torque", "gravity-compensation", "--theta", "0,-1,1,0,0,0", "--time", "0.1"];
+    for row in rows(&json(&arguments)["theta"]) {
+        assert_close(&row, &[0.0, -1.0, 1.0, 0.0, 0.0, 0.0], 1e-12);
+    }
+    let few = json(&["simulate", "ur5", "--time", "0.1", "--step", "0.01", "--record-every", "5"]);
+    assert_close(&numbers(&few["t"]), &[0.0, 0.05, 0.1], 1e-15);
+}
+
+#[test]
+fn check_says_that_a_robot_is_one() {
+    assert!(text(&["check", "ur5"]).contains("no warnings"));
+    let report = json(&["check", "ur5"]);
+    assert_eq!((&report["ok"], report["diagnostics"].as_array().map(Vec::len)), (&true.into(), Some(0)));
+}

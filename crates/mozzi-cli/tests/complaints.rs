@@ -1,0 +1,109 @@
+//! What is wrong is said in a sentence, with what was found and expected, and by the exit code.
+
+mod common;
+
+use common::{complaint, file, folder, mozzi};
+
+/// Exit code 1, and a sentence with these words.
+fn wrong(arguments: &[&str], words: &[&str]) {
+    let (code, message) = complaint(arguments);
+    assert_eq!(code, 1, "{arguments:?}: {message}");
+    for word in words {
+        assert!(message.contains(word), "{word} in {message}");
+    }
+    assert!(!message.contains("panicked"), "{message}");
+}
+
+#[test]
+fn wrong_robots() {
+    wrong(&["info", "ur6"], &["`ur6`", "ur5", "panda"]);
+    let folder = folder("wrong_robots");
+    let robot = file(&folder, "arm.urdf", "<robot name='arm'>\n<link name='a'><intertial/></link></robot>");
+    wrong(&["info", &robot], &["arm.urdf", "intertial", "2:"]);
+    wrong(&["check", &robot], &["arm.urdf", "intertial"]);
+    let output = mozzi(&["check", &robot, "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&report["ok"], &report["diagnostics"][0]["line"]), (&false.into(), &2.into()));
+    assert!(report["error"].as_str().is_some_and(|text| text.contains("refused")), "{report}");
+}
+
+#[test]
+fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
+    let folder = folder("odd_robots");
+    let joint = "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>";
+    let robot =
+        file(&folder, "odd.urdf", &format!("<robot name='odd'><link name='a'/><link name='b'/>{joint}</robot>"));
+    let output = mozzi(&["info", &robot, "--json"]);
+    let said = String::from_utf8_lossy(&output.stderr).to_string();
+    assert!(output.status.success() && said.contains("odd.urdf:1:") && said.contains("limit"), "{said}");
+    let output = mozzi(&["check", &robot]);
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("2 warnings"), "{output:?}");
+    assert_eq!(mozzi(&["check", &robot, "--strict"]).status.code(), Some(1));
+    assert!(output.stderr.len() > said.len());
+    wrong(&["forward-dynamics", &robot], &["the mass matrix is singular at joint `j`"]);
+    let output = mozzi(&["terms", &robot, "--json"]);
+    let terms: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(terms["forward_dynamics"].is_null() && terms["inverse_dynamics"][0] == 0.0, "{terms}");
+}
+
+#[test]
+fn wrong_numbers() {
+    wrong(&["terms", "ur5", "--theta", "1,2,3"], &["--theta has 3 entries, expected 6", "elbow_joint"]);
+    wrong(&["terms", "ur5", "--theta", "0,0,abc,0,0,0"], &["--theta: entry 3 is `abc`, expected a number"]);
+    wrong(&["terms", "ur5", "--dtheta", "0,0,0,NaN,0,0"], &["--dtheta: entry 4 is `NaN`, expected a finite number"]);
+    wrong(&["terms", "ur5", "--theta", "0,0,,0,0,0"], &["--theta: entry 3 is ``, expected a number"]);
+    wrong(&["terms", "ur5", "--gravity", "0,-9.81"], &["--gravity has 2 entries, expected 3: x, y, z"]);
+    wrong(&["inverse-dynamics", "ur5", "--tip-wrench", "1"], &["--tip-wrench has 1 entry, expected 6", "m_x"]);
+    wrong(&["simulate", "ur5", "--step", "-0.1"], &["step is -0.1", "positive"]);
+    wrong(&["simulate", "ur5", "--time", "soon"], &["--time is `soon`, expected a number"]);
+}
+
+#[test]
+fn wrong_frames_and_tasks() {
+    wrong(&["terms", "panda", "--tip-wrench", "0,0,0,0,0,1"], &["has to be named", "panda_hand_tcp"]);
+    wrong(&["terms", "ur5", "--end-effector", "hand"], &["no frame `hand`", "`tool0`"]);
+    wrong(&["screws", "panda", "--python"], &["serial chains"]);
+    wrong(&["screws", "panda", "--python", "--end-effector", "panda_hand_tcp"], &["serial chains"]);
+    wrong(&["terms", "ur5", "--task", "vx,vw"], &["no row `vw`", "wx, wy, wz"]);
+    wrong(&["terms", "ur5", "--task", "wx,vx"], &["singular"]);
+}
+
+#[test]
+fn wrong_tables() {
+    let folder = folder("wrong_tables");
+    let table = |name: &str, text: &str| file(&folder, name, text);
+    let with = |path: &str, words: &[&str]| wrong(&["inverse-dynamics", "two_link_planar", "--in", path], words);
+    with("no/such/file.csv", &["no/such/file.csv cannot be read"]);
+    with(&table("a.csv", "theta_1,theta_2\n0,0\n1,x\n"), &["a.csv:3: column 2 (`theta_2`) is `x`, expected a number"]);
+    with(&table("b.csv", "theta_1,theta_2\n0,inf\n"), &["b.csv:2: column 2 (`theta_2`)", "finite"]);
+    with(&table("c.csv", "theta_1,theta_2\n0,0\n0\n"), &["c.csv:3: 1 column, expected 2"]);
+    with(&table("d.csv", "theta_1\n0\n"), &["d.csv:1: column theta_2 is missing"]);
+    with(&table("e.csv", "theta_1,theta_2,speed\n0,0,0\n"), &["e.csv:1: column 3 is called `speed`", "dtheta_1"]);
+    with(&table("f.csv", "theta_1,theta_2,theta_joint2\n0,0,0\n"), &["f.csv:1", "columns 2 and 3"]);
+    with(&table("g.csv", "theta_1,theta_2\n"), &["g.csv has no rows"]);
+    with(&table("h.csv", "t\n0\n"), &["h.csv has no column theta_1"]);
+    with(&table("i.csv", "theta_1,theta_3\n0,0\n"), &["i.csv:1: column 2 is called `theta_3`"]);
+    let torque = table("j.csv", "t,tau_1,tau_2\n0,0,0\n0,1,1\n");
+    wrong(&["simulate", "two_link_planar", "--torque", &torque], &["j.csv:3: t is 0 after 0"]);
+    let states = table("k.csv", "theta_1,theta_2\n0,0\n");
+    wrong(&["forward-dynamics", "two_link_planar", "--in", &states], &["no column tau_1"]);
+    let nowhere = folder.join("none").join("x.csv");
+    let nowhere = nowhere.to_str().expect("text");
+    wrong(&["inverse-dynamics", "two_link_planar", "--in", &states, "--out", nowhere], &["cannot be written"]);
+}
+
+#[test]
+fn wrong_usage_is_told_apart() {
+    for arguments in [
+        &["inform", "ur5"][..],
+        &["terms"],
+        &["simulate", "ur5", "--method", "verlet"],
+        &["terms", "ur5", "--tau", "0", "--ddtheta", "0"],
+        &["inverse-dynamics", "ur5", "--in", "a.csv", "--theta", "0"],
+        &["inverse-dynamics", "ur5", "--out", "a.csv"],
+    ] {
+        let (code, message) = complaint(arguments);
+        assert_eq!(code, 2, "{arguments:?}: {message}");
+    }
+}

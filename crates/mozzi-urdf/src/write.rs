@@ -1,0 +1,179 @@
+//! Back to URDF text.
+
+use mozzi::model::description::{Joint, JointKind, Link};
+use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
+use std::fmt::{self, Write};
+
+/// What of a description URDF has no words for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotUrdf {
+    /// Each with its element: "joint `a`: a helical joint".
+    pub reasons: Vec<String>,
+}
+
+impl fmt::Display for NotUrdf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "URDF has no words for {}", self.reasons.join(", nor for "))
+    }
+}
+
+impl std::error::Error for NotUrdf {}
+
+/// The URDF text of a robot. Read again it gives the same description, numbers to rounding (inertias go through the
+/// centre of mass, orientations through roll, pitch and yaw).
+///
+/// # Errors
+/// [`NotUrdf`] with all that would be lost: helical joints, axes beside the child's frame, armature, further frames, a
+/// named end effector, gravity other than (0, 0, −9.81), control characters in names.
+pub fn write(description: &Description) -> Result<String, NotUrdf> {
+    let reasons = not_urdf(description);
+    if !reasons.is_empty() {
+        return Err(NotUrdf { reasons });
+    }
+    let mut text = String::new();
+    // writing to a String cannot fail
+    let _ = robot(&mut text, description);
+    Ok(text)
+}
+
+fn not_urdf(d: &Description) -> Vec<String> {
+    let mut reasons = Vec::new();
+    for joint in &d.joints {
+        let name = &joint.name;
+        match joint.kind {
+            JointKind::Screw(A) if !A.is_prismatic() && A.twist().v != Vec3::zero() => {
+                reasons.push(match joint.kind.name() {
+                    "helical" => format!("joint `{name}`: a helical joint"),
+                    _ => format!("joint `{name}`: an axis that misses the child's frame"),
+                });
+            }
+            _ => {}
+        }
+        if joint.armature != 0.0 {
+            reasons.push(format!("joint `{name}`: armature {}", joint.armature));
+        }
+        let infinite = |limit: Option<f64>| limit.is_some_and(|x| !x.is_finite());
+        let bounds = joint.limits.position.unwrap_or_default();
+        if infinite(joint.limits.velocity) || infinite(joint.limits.effort) || !bounds.iter().all(|x| x.is_finite()) {
+            reasons.push(format!("joint `{name}`: an infinite limit"));
+        }
+    }
+    let names = d.links.iter().map(|link| &link.name).chain(d.joints.iter().map(|joint| &joint.name)).chain([&d.name]);
+    let is_control =
+        |c: char| c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{fffe}' | '\u{ffff}');
+    reasons.extend(names.filter(|name| name.contains(is_control)).map(|name| format!("the name {name:?}")));
+    reasons.extend(d.frames.iter().map(|frame| format!("frame `{}`", frame.name)));
+    reasons.extend(d.end_effector.iter().map(|name| format!("the end effector `{name}`")));
+    if d.gravity != [0.0, 0.0, -9.81] {
+        reasons.push(format!("gravity {:?}", d.gravity));
+    }
+    reasons
+}
+
+fn robot(text: &mut String, d: &Description) -> fmt::Result {
+    writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(&d.name))?;
+    for each in &d.links {
+        link(text, each)?;
+    }
+    for each in &d.joints {
+        joint(text, each)?;
+    }
+    text.write_str("</robot>\n")
+}
+
+fn link(text: &mut String, link: &Link) -> fmt::Result {
+    let (name, G) = (escaped(&link.name), link.inertia);
+    if G == SpatialInertia::zero() {
+        return writeln!(text, "  <link name=\"{name}\"/>");
+    }
+    let (c, I) = (G.center_of_mass(), G.about_center_of_mass());
+    writeln!(text, "  <link name=\"{name}\">\n    <inertial>")?;
+    origin(text, "      ", SE3::translation(c.0))?;
+    writeln!(text, "      <mass value=\"{:?}\"/>", G.mass)?;
+    let [xx, xy, xz, yy, yz, zz] = [I.xx, I.xy, I.xz, I.yy, I.yz, I.zz];
+    writeln!(
+        text,
+        "      <inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/>"
+    )?;
+    text.write_str("    </inertial>\n  </link>\n")
+}
+
+fn joint(text: &mut String, joint: &Joint) -> fmt::Result {
+    let is_bounded = joint.limits.position.is_some();
+    let kind = match joint.kind {
+        JointKind::Fixed => "fixed",
+        JointKind::Screw(A) if A.is_prismatic() => "prismatic",
+        JointKind::Screw(_) if is_bounded => "revolute",
+        JointKind::Screw(_) => "continuous",
+    };
+    writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name))?;
+    writeln!(text, "    <parent link=\"{}\"/>", escaped(&joint.parent))?;
+    writeln!(text, "    <child link=\"{}\"/>", escaped(&joint.child))?;
+    origin(text, "    ", joint.origin)?;
+    if let JointKind::Screw(A) = joint.kind {
+        writeln!(text, "    <axis xyz=\"{}\"/>", triple(direction(A)))?;
+        limit(text, joint)?;
+    }
+    if joint.damping != 0.0 || joint.friction != 0.0 {
+        writeln!(text, "    <dynamics damping=\"{:?}\" friction=\"{:?}\"/>", joint.damping, joint.friction)?;
+    }
+    if let Some(mimic) = &joint.mimic {
+        let (master, ratio, offset) = (escaped(&mimic.joint), mimic.ratio, mimic.offset);
+        writeln!(text, "    <mimic joint=\"{master}\" multiplier=\"{ratio:?}\" offset=\"{offset:?}\"/>")?;
+    }
+    text.write_str("  </joint>\n")
+}
+
+fn limit(text: &mut String, joint: &Joint) -> fmt::Result {
+    let limits = joint.limits;
+    let [lower, upper] = limits.position.map_or([None; 2], |bounds| bounds.map(Some));
+    let given = [("lower", lower), ("upper", upper), ("effort", limits.effort), ("velocity", limits.velocity)];
+    if given.iter().all(|(_, value)| value.is_none()) {
+        return Ok(());
+    }
+    text.write_str("    <limit")?;
+    for (name, value) in given {
+        if let Some(value) = value {
+            write!(text, " {name}=\"{value:?}\"")?;
+        }
+    }
+    text.write_str("/>\n")
+}
+
+/// Nothing for the identity.
+fn origin(text: &mut String, indent: &str, T: SE3) -> fmt::Result {
+    let mut attributes = String::new();
+    if T.p != Vec3::zero() {
+        write!(attributes, " xyz=\"{}\"", triple(T.p))?;
+    }
+    if T.R != SE3::identity().R {
+        write!(attributes, " rpy=\"{}\"", triple(Vec3(T.R.to_rpy())))?;
+    }
+    if attributes.is_empty() { Ok(()) } else { writeln!(text, "{indent}<origin{attributes}/>") }
+}
+
+fn direction(A: ScrewAxis) -> Vec3 {
+    if A.is_prismatic() { A.twist().v } else { A.twist().w }
+}
+
+fn triple(v: Vec3) -> String {
+    let [x, y, z] = v.0;
+    format!("{x:?} {y:?} {z:?}")
+}
+
+/// As an attribute's value.
+fn escaped(name: &str) -> String {
+    let mut text = String::new();
+    for c in name.chars() {
+        match c {
+            '&' => text.push_str("&amp;"),
+            '<' => text.push_str("&lt;"),
+            '"' => text.push_str("&quot;"),
+            '\n' => text.push_str("&#10;"),
+            '\r' => text.push_str("&#13;"),
+            '\t' => text.push_str("&#9;"),
+            c => text.push(c),
+        }
+    }
+    text
+}

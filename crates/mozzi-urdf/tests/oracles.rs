@@ -1,0 +1,180 @@
+//! mozzi against Pinocchio and MuJoCo on real robots: the committed numbers of `oracles/`, and, where the environment
+//! variable MOZZI_ORACLES names a folder made by `oracles/make.py`, a hundred states of every robot in it.
+//!
+//! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
+#![allow(clippy::unwrap_used)]
+
+use mozzi::{Environment, FrameId, Model, Wrench};
+use nalgebra::{DMatrix, DVector};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Nothing may be further off than this many ε.
+const BOUND: f64 = 1000.0;
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn vector(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+fn matrix(value: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(vector).collect();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
+}
+fn column(v: &[f64]) -> DMatrix<f64> {
+    DMatrix::from_column_slice(v.len(), 1, v)
+}
+fn largest_square(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |m: f64, x| m.max(x * x))
+}
+
+/// The robot of a file of oracles, without friction and armature.
+fn model(oracle: &Value) -> Model {
+    let path = match oracle.get("urdf_path").and_then(Value::as_str) {
+        Some(path) => PathBuf::from(path),
+        None => repository().join(oracle["urdf"].as_str().unwrap()),
+    };
+    let mut robot = mozzi_urdf::load(&path).unwrap_or_else(|error| panic!("{error}")).description;
+    for joint in &mut robot.joints {
+        (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
+    }
+    robot.end_effector = Some(oracle["tip_frame"].as_str().unwrap().into());
+    robot.build().unwrap()
+}
+
+/// The worst normalised error of each quantity.
+#[derive(Default)]
+struct Worst(BTreeMap<&'static str, f64>);
+
+impl Worst {
+    fn add(&mut self, what: &'static str, found: &DMatrix<f64>, reference: &DMatrix<f64>, terms: f64) {
+        assert_eq!(found.shape(), reference.shape(), "{what}");
+        let scale = terms.max(reference.amax());
+        let error = (found - reference).amax() / (f64::EPSILON * if scale > 0.0 { scale } else { 1.0 });
+        let worst = self.0.entry(what).or_insert(0.0);
+        // NaN must not hide
+        *worst = if error >= *worst || error.is_nan() { error } else { *worst };
+    }
+}
+
+/// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's joints.
+fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
+    let n = model.n();
+    let mine = |key: &str| {
+        let theirs = vector(&state[key]);
+        let mut list = vec![0.0; n];
+        order.iter().enumerate().for_each(|(k, &j)| list[j] = theirs[k]);
+        list
+    };
+    let theirs = |v: DVector<f64>| column(&order.iter().map(|&j| v[j]).collect::<Vec<_>>());
+    let both = |M: DMatrix<f64>| DMatrix::from_fn(n, n, |i, j| M[(order[i], order[j])]);
+    let columns = |J: mozzi::Jacobian| J.matrix().select_columns(order);
+    let (theta, dtheta, ddtheta, tau) = (mine("theta"), mine("dtheta"), mine("ddtheta"), mine("tau"));
+    let (environment, tip) = (model.environment(), model.end_effector().unwrap());
+    let list = |key: &str| column(&vector(&state[key]));
+    let has = |key: &str| state.get(key).is_some();
+
+    let M = matrix(&state["mass_matrix"]);
+    let quadratic = M.amax() * largest_square(&dtheta); // size of what c is made of
+    let g = model.gravity_forces(&theta).unwrap().amax();
+    let total = M.amax() * largest_square(&ddtheta).sqrt() + quadratic + g;
+    worst.add("M", &both(model.mass_matrix(&theta).unwrap()), &M, 0.0);
+    let found = model.bias_forces(&theta, &dtheta, &environment).unwrap();
+    worst.add("h", &theirs(found), &list("bias_forces"), quadratic + g);
+    let found = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).unwrap();
+    worst.add("τ", &theirs(found), &list("inverse_dynamics"), total);
+    if has("velocity_product") {
+        worst.add("c", &theirs(model.velocity_product(&theta, &dtheta).unwrap()), &list("velocity_product"), quadratic);
+        worst.add("g", &theirs(model.gravity_forces(&theta).unwrap()), &list("gravity_forces"), 0.0);
+    }
+    if has("coriolis_matrix") {
+        let C = model.coriolis_matrix(&theta, &dtheta).unwrap();
+        worst.add("C", &both(C), &matrix(&state["coriolis_matrix"]), quadratic.max(M.amax()));
+        let dM = model.mass_matrix_rate(&theta, &dtheta).unwrap();
+        worst.add("Ṁ", &both(dM), &matrix(&state["mass_matrix_rate"]), quadratic.max(M.amax()));
+    }
+    if has("forward_dynamics") {
+        // backward: the torque that mozzi's accelerations need by the oracle's M and h, against the torque given
+        let found = theirs(model.forward_dynamics(&theta, &dtheta, &tau, &environment).unwrap());
+        let needed = &M * &found + list("bias_forces");
+        worst.add("θ̈", &needed, &list("tau"), M.amax() * found.amax() + quadratic + g);
+    }
+    let pose = model.forward_kinematics(&theta, tip).unwrap().to_matrix();
+    worst.add("T", &DMatrix::from_fn(4, 4, |i, j| pose[i][j]), &matrix(&state["pose"]), 0.0);
+    let J = matrix(&state["space_jacobian"]);
+    worst.add("J_s", &columns(model.space_jacobian(&theta, tip).unwrap()), &J, 0.0);
+    worst.add("J_b", &columns(model.body_jacobian(&theta, tip).unwrap()), &matrix(&state["body_jacobian"]), J.amax());
+    if has("space_jacobian_rate") {
+        let rate = J.amax() * J.amax() * largest_square(&dtheta).sqrt();
+        let found = columns(model.space_jacobian_rate(&theta, &dtheta, tip).unwrap());
+        worst.add("J̇_s", &found, &matrix(&state["space_jacobian_rate"]), rate);
+        let found = columns(model.body_jacobian_rate(&theta, &dtheta, tip).unwrap());
+        worst.add("J̇_b", &found, &matrix(&state["body_jacobian_rate"]), rate);
+    }
+    if has("F_tip") {
+        let F: [f64; 6] = vector(&state["F_tip"]).try_into().unwrap();
+        let applied: [(FrameId, Wrench); 1] = [(tip, Wrench::from_array(F))];
+        let size = J.amax() * largest_square(&F).sqrt();
+        worst.add("JᵀF", &theirs(model.tip_forces(&theta, &applied).unwrap()), &list("tip_forces"), size);
+        let pushing = Environment { applied: &applied, ..environment };
+        let found = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &pushing).unwrap();
+        worst.add("τ, F", &theirs(found), &list("inverse_dynamics_with_tip"), total + size);
+    }
+    let number = |key: &str| column(&[state[key].as_f64().unwrap()]);
+    let kinetic = model.kinetic_energy(&theta, &dtheta).unwrap();
+    worst.add("K", &column(&[kinetic]), &number("kinetic_energy"), 0.0);
+    if has("potential_energy") {
+        // m g times the reach, of which the energies are differences
+        let mass: f64 = model.description().links.iter().map(|link| link.inertia.mass).sum();
+        let potential = column(&[model.potential_energy(&theta).unwrap()]);
+        worst.add("P", &potential, &number("potential_energy"), 9.81 * mass * (1.0 + J.amax()));
+    }
+}
+
+/// Every file of a folder; a line for each robot, and the worst of all.
+fn compare_folder(folder: &Path) {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| {
+        let name = path.file_name().unwrap().to_string_lossy();
+        name.ends_with(".json") && (name.starts_with("pinocchio_") || name.starts_with("mujoco_"))
+    });
+    files.sort();
+    assert!(!files.is_empty(), "no oracles in {}", folder.display());
+    let mut failed = Vec::new();
+    for path in files {
+        let oracle: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let model = model(&oracle);
+        let names: Vec<&str> =
+            oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+        assert_eq!(names.len(), model.n(), "{}", path.display());
+        let order: Vec<usize> =
+            names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
+        let mut worst = Worst::default();
+        let states = oracle["states"].as_array().unwrap();
+        states.iter().for_each(|state| compare(&model, &order, state, &mut worst));
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let text: Vec<String> = worst.0.iter().map(|(what, error)| format!("{what} {error:.1}")).collect();
+        println!("{name:<34} n {:>3}, {:>3} states: {}", model.n(), states.len(), text.join(", "));
+        if worst.0.values().any(|error| !(*error < BOUND)) {
+            failed.push(name);
+        }
+    }
+    assert!(failed.is_empty(), "normalised errors above {BOUND} (or NaN): {failed:?}");
+}
+
+#[test]
+fn committed_numbers() {
+    println!("worst normalised errors, in ε:");
+    compare_folder(&repository().join("oracles"));
+}
+
+#[test]
+fn a_hundred_states_of_real_robots() {
+    match std::env::var_os("MOZZI_ORACLES") {
+        Some(folder) => compare_folder(Path::new(&folder)),
+        None => println!("skipped: MOZZI_ORACLES names no folder (cargo xtask test makes one)"),
+    }
+}

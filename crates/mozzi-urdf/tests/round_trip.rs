@@ -1,0 +1,88 @@
+//! What is written is read again as it was.
+
+use mozzi::model::Element;
+use mozzi::{Description, ScrewAxis, Vec3};
+use mozzi_urdf::{embedded, open, parse, write};
+
+/// The largest difference of numbers, against their size; panics where something else differs.
+fn difference(a: &Description, b: &Description) -> f64 {
+    let mut largest = 0.0_f64;
+    let mut compare = |a: &[f64], b: &[f64]| {
+        let scale = a.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
+        largest = a.iter().zip(b).fold(largest, |m, (x, y)| m.max((x - y).abs() / scale));
+    };
+    assert_eq!((a.links.len(), a.joints.len()), (b.links.len(), b.joints.len()));
+    for (a, b) in a.links.iter().zip(&b.links) {
+        assert_eq!(a.name, b.name);
+        compare(a.inertia.to_matrix().as_flattened(), b.inertia.to_matrix().as_flattened());
+    }
+    for (a, b) in a.joints.iter().zip(&b.joints) {
+        compare(a.origin.to_matrix().as_flattened(), b.origin.to_matrix().as_flattened());
+        compare(&axis(a), &axis(b));
+        // all else is equal to the last digit
+        let same = mozzi::model::description::Joint { origin: a.origin, kind: a.kind, ..b.clone() };
+        assert_eq!(*a, same);
+    }
+    largest
+}
+
+fn axis(joint: &mozzi::model::description::Joint) -> [f64; 6] {
+    match joint.kind {
+        mozzi::model::description::JointKind::Fixed => [0.0; 6],
+        mozzi::model::description::JointKind::Screw(A) => A.twist().to_array(),
+    }
+}
+
+fn round_trip(name: &str) {
+    let robot = open(name).expect(name);
+    let text = write(&robot.description).expect("from URDF");
+    let again = parse("again.urdf", &text).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let found = difference(&robot.description, &again.description);
+    assert!(found < 1e-14, "{name}: {found:e}");
+}
+
+#[test]
+fn the_robots_that_mozzi_brings_along() {
+    embedded::names().for_each(round_trip);
+}
+
+#[test]
+fn published_robots() {
+    let Ok(folder) = std::env::var("MOZZI_ROBOTS") else {
+        eprintln!("skipped: MOZZI_ROBOTS does not name the folder of example-robot-data");
+        return;
+    };
+    for file in [
+        "talos_data/robots/talos_reduced.urdf",
+        "tiago_description/robots/tiago.urdf",
+        "icub_description/robots/icub.urdf",
+    ] {
+        round_trip(&format!("{folder}/{file}"));
+    }
+}
+
+#[test]
+fn odd_names() {
+    let description = Description::new("a \"b\" <c> & 'd'\n\té").link("<l>", mozzi::SpatialInertia::zero());
+    assert!(description.check().iter().all(|problem| problem.element != Element::Robot));
+    let again = parse("a.urdf", write(&description).expect("URDF")).expect("a robot").description;
+    assert_eq!(again, description);
+}
+
+#[test]
+fn what_would_be_lost_is_refused() {
+    let mut description = open("ur5").expect("embedded").description;
+    description.gravity = [0.0, 0.0, -1.62];
+    description.joints[1].armature = 0.5;
+    let screw = ScrewAxis::from_line([0.0, 0.0, 1.0], [0.0; 3], 0.1).expect("unit");
+    description.joints[2].kind = mozzi::model::description::JointKind::Screw(screw);
+    assert!(screw.twist().v != Vec3::zero());
+    let message = write(&description).expect_err("not URDF").to_string();
+    let [first, second] = [&description.joints[1].name, &description.joints[2].name];
+    assert_eq!(
+        message,
+        format!(
+            "URDF has no words for joint `{first}`: armature 0.5, nor for joint `{second}`: a helical joint, nor for gravity [0.0, 0.0, -1.62]"
+        )
+    );
+}

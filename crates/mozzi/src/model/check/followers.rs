@@ -1,0 +1,87 @@
+//! Every follower follows a joint that moves, and not itself.
+
+use super::{Element, Report, Severity};
+use crate::model::description::{Joint, JointKind, Mimic};
+use crate::model::error::names;
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+
+impl Report<'_> {
+    /// Every follower follows a joint that moves, and not itself.
+    pub(super) fn followers(&mut self, joints: &BTreeMap<&str, Element>) {
+        let d = self.description;
+        let master = |i: usize| {
+            let mimic = d.joints[i].mimic.as_ref()?;
+            match joints.get(mimic.joint.as_str()) {
+                Some(&Element::Joint(k)) => Some(k),
+                _ => None,
+            }
+        };
+        let circular = circular(d.joints.len(), master);
+        for (i, joint) in d.joints.iter().enumerate() {
+            let (Some(mimic), element) = (&joint.mimic, Element::Joint(i)) else { continue };
+            if !(mimic.ratio.is_finite() && mimic.offset.is_finite()) {
+                let message = format!("ratio {} and offset {}, expected finite numbers", mimic.ratio, mimic.offset);
+                self.error(element, "mimic", "not_finite", message);
+            }
+            let Some(k) = master(i) else {
+                let message = format!("there is no joint `{}`, expected one of {}", mimic.joint, names(&d.joints));
+                self.error(element, "mimic", "unknown_joint", message);
+                continue;
+            };
+            if joint.kind == JointKind::Fixed {
+                let message = format!("follows `{}`, but is fixed: it does not move", mimic.joint);
+                self.add(Severity::Warning, element, "mimic", "fixed_follower", message);
+            } else if d.joints[k].kind == JointKind::Fixed {
+                self.error(
+                    element,
+                    "mimic",
+                    "fixed_master",
+                    format!("joint `{}` is fixed, expected one that moves", mimic.joint),
+                );
+            }
+            if circular[i] {
+                let message =
+                    format!("following `{}` leads back in a circle, expected a joint that follows none", mimic.joint);
+                self.error(element, "mimic", "circular_mimic", message);
+            } else if let Some(message) = contradiction(joint, mimic, &d.joints[k]) {
+                self.add(Severity::Warning, element, "mimic", "contradictory_limits", message);
+            }
+        }
+    }
+}
+
+/// Which joints lead into a circle; each joint is walked over twice at most.
+fn circular(n: usize, master: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
+    let (mut known, mut circular) = (vec![false; n], vec![false; n]);
+    let mut walked = vec![n; n]; // from which joint this one was last walked over
+    for start in 0..n {
+        let (mut path, mut at, mut in_circle) = (Vec::new(), Some(start), false);
+        while let Some(i) = at {
+            if known[i] || walked[i] == start {
+                in_circle = !known[i] || circular[i];
+                break;
+            }
+            walked[i] = start;
+            path.push(i);
+            at = master(i);
+        }
+        for i in path {
+            (known[i], circular[i]) = (true, in_circle);
+        }
+    }
+    circular
+}
+
+/// Says that no position of the master keeps both joints within their limits.
+fn contradiction(joint: &Joint, mimic: &Mimic, master: &Joint) -> Option<String> {
+    let ([low, high], [a, b]) = (joint.limits.position?, master.limits.position?);
+    let (x, y) = (mimic.ratio * a + mimic.offset, mimic.ratio * b + mimic.offset);
+    let (x, y) = (x.min(y), x.max(y));
+    (y < low || high < x).then(|| {
+        format!("moves from {x} to {y} as `{}` moves within its limits, but its own are {low} and {high}", mimic.joint)
+    })
+}

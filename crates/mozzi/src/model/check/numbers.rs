@@ -1,0 +1,73 @@
+//! Finite numbers, masses and frictions of the right sign.
+
+use super::{Element, Report};
+use crate::spatial::SpatialInertia;
+use alloc::format;
+use alloc::string::ToString;
+
+/// Are all ten numbers finite, and those that are made of them?
+pub(super) fn is_finite(inertia: &SpatialInertia) -> bool {
+    inertia.to_matrix().as_flattened().iter().all(|x| x.is_finite())
+}
+
+impl Report<'_> {
+    /// Finite numbers, masses and frictions of the right sign.
+    pub(super) fn numbers(&mut self) {
+        let d = self.description;
+        if !d.gravity.iter().all(|x| x.is_finite()) {
+            self.error(Element::Robot, "gravity", "not_finite", format!("is {:?}, expected finite numbers", d.gravity));
+        }
+        for (i, link) in d.links.iter().enumerate() {
+            let (mass, element) = (link.inertia.mass, Element::Link(i));
+            if !is_finite(&link.inertia) {
+                self.error(element, "inertia", "not_finite", "has entries that are not finite".to_string());
+            } else if mass < 0.0 {
+                self.error(element, "mass", "negative_mass", format!("is {mass} kg, expected at least 0"));
+            }
+        }
+        for (i, joint) in d.joints.iter().enumerate() {
+            let element = Element::Joint(i);
+            if !joint.origin.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
+                self.error(element, "origin", "not_finite", "has entries that are not finite".to_string());
+            }
+            for (attribute, x) in
+                [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)]
+            {
+                if !(x >= 0.0 && x.is_finite()) {
+                    self.error(
+                        element,
+                        attribute,
+                        "negative_friction",
+                        format!("is {x}, expected a finite number, at least 0"),
+                    );
+                }
+            }
+            if let Some([low, high]) = joint.limits.position
+                && !(low <= high)
+            {
+                self.error(
+                    element,
+                    "limits",
+                    "reversed_limits",
+                    format!("go from {low} to {high}, expected the lower first"),
+                );
+            }
+            for (attribute, limit) in [("velocity limit", joint.limits.velocity), ("effort limit", joint.limits.effort)]
+            {
+                if limit.is_some_and(|x| !(x >= 0.0)) {
+                    self.error(
+                        element,
+                        attribute,
+                        "negative_limit",
+                        format!("is {}, expected at least 0", limit.unwrap_or_default()),
+                    );
+                }
+            }
+        }
+        for (i, frame) in d.frames.iter().enumerate() {
+            if !frame.T.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
+                self.error(Element::Frame(i), "T", "not_finite", "has entries that are not finite".to_string());
+            }
+        }
+    }
+}

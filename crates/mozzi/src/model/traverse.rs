@@ -1,0 +1,72 @@
+//! The ways over a tree: base to tips, tips to base, and from one link to the base.
+//!
+//! Iterators of our own, and not closures, so that a kernel's whole body is compiled for the instruction set of the entry
+//! that it is inlined into.
+
+use super::{Link, Model};
+use crate::scalar::Scalar;
+use core::marker::PhantomData;
+
+/// Moving links with their slots, constants as `S`.
+pub(crate) struct Traverse<'m, C, S, Order> {
+    links: &'m [Link<C>],
+    /// The slot that comes next in `Order`; 0 ends the ways that lead inward.
+    slot: usize,
+    types: PhantomData<(S, Order)>,
+}
+
+pub(crate) struct Outward;
+pub(crate) struct Inward;
+pub(crate) struct ToBase;
+
+impl<C: Scalar> Model<C> {
+    /// Base to tips.
+    #[inline(always)]
+    pub(crate) fn outward<S>(&self) -> Traverse<'_, C, S, Outward> {
+        Traverse { links: &self.links, slot: 1, types: PhantomData }
+    }
+
+    /// Tips to base.
+    #[inline(always)]
+    pub(crate) fn inward<S>(&self) -> Traverse<'_, C, S, Inward> {
+        Traverse { links: &self.links, slot: self.links.len(), types: PhantomData }
+    }
+
+    /// A slot's link, its parent, and so on down to the base.
+    #[inline(always)]
+    pub(crate) fn to_base<S>(&self, slot: usize) -> Traverse<'_, C, S, ToBase> {
+        Traverse { links: &self.links, slot, types: PhantomData }
+    }
+}
+
+impl<C: Scalar, S: Scalar + From<C>> Iterator for Traverse<'_, C, S, Outward> {
+    type Item = (usize, Link<S>);
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let link = self.links.get(self.slot - 1)?;
+        self.slot += 1;
+        Some((self.slot - 1, link.lift()))
+    }
+}
+
+impl<C: Scalar, S: Scalar + From<C>> Iterator for Traverse<'_, C, S, Inward> {
+    type Item = (usize, Link<S>);
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let slot = self.slot;
+        let link = self.links.get(slot.wrapping_sub(1))?;
+        self.slot -= 1;
+        Some((slot, link.lift()))
+    }
+}
+
+impl<C: Scalar, S: Scalar + From<C>> Iterator for Traverse<'_, C, S, ToBase> {
+    type Item = (usize, Link<S>);
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let slot = self.slot;
+        let link = self.links.get(slot.wrapping_sub(1))?;
+        self.slot = link.parent;
+        Some((slot, link.lift()))
+    }
+}
