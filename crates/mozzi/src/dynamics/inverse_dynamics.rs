@@ -1,6 +1,7 @@
 //! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
 
 use super::joint_friction::joint_friction;
+use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
@@ -41,16 +42,16 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
+    joint_transforms(model, theta, workspace);                                            // T_{i,i−1}(θ) (8.50)
     let Workspace { T, V, dV, F, .. } = workspace;
 
     // base: at its given twist, accelerating against gravity; nothing hangs from it yet
     (V[0], dV[0], F[0]) = (environment.base_twist, environment.proper_base_acceleration(), Wrench::zero());
 
-    // base to tips: configuration, twist and acceleration of each link, and the wrench that its motion needs
+    // base to tips: twist and acceleration of each link, and the wrench that its motion needs
     for (i, link) in model.outward::<S>() {
         let (A, G, parent) = (link.A, link.G, link.parent);
         let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
-        T[i]  = link.transform(theta);                                                    // T_{i,i−1} = e^{−[A]q} M_{i,i−1}
         let Ad = T[i].Ad();
         V[i]  = Ad * V[parent] + A * dq;                                                  // (8.51)
         dV[i] = Ad * dV[parent] + V[i].ad() * (A * dq) + A * ddq;                         // (8.52)

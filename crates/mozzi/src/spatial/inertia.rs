@@ -2,7 +2,7 @@
 
 use super::{ArticulatedInertia, Twist, Wrench};
 use crate::lie::{Adjoint, SE3};
-use crate::linalg::{Mat3, Sym3, Vec3, linear_space};
+use crate::linalg::{Mat3, Skew, Sym3, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::fmt;
 use core::ops::Mul;
@@ -48,7 +48,7 @@ impl<S: Scalar> SpatialInertia<S> {
         let (SE3 { R, p }, Rt) = (Ad.0, Ad.0.R.matrix().transpose());
         let shifted = p.mul_add(-self.mass, self.mc);
         // I about p: I + [mc − mp][p] + [p][mc], whose upper triangle is taken
-        let steiner = Mat3::hat(shifted) * Mat3::hat(p) + Mat3::hat(p) * Mat3::hat(self.mc);
+        let steiner = Skew(shifted) * Skew(p) + Skew(p) * Skew(self.mc);
         SpatialInertia {
             mass: self.mass,
             mc: R.inverse_mul(shifted),
@@ -65,7 +65,7 @@ impl<S: Scalar> SpatialInertia<S> {
     /// −𝒢`[ad_V]` − `[ad_V]`ᵀ𝒢. Its mass is 0 and its first moment the body's linear momentum.
     #[inline(always)]
     pub fn rate(self, V: Twist<S>) -> Self {
-        let (W, I, v, mc) = (Mat3::hat(V.w), self.I.to_mat3(), Mat3::hat(V.v), Mat3::hat(self.mc));
+        let (W, I, v, mc) = (Skew(V.w), self.I.to_mat3(), Skew(V.v), Skew(self.mc));
         SpatialInertia { mass: S::zero(), mc: (self * V).f, I: Sym3::upper(W * I - I * W - (v * mc + mc * v)) }
     }
 
@@ -86,7 +86,7 @@ impl<S: Scalar> Mul<Twist<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
     #[inline(always)]
     fn mul(self, V: Twist<S>) -> Wrench<S> {
-        Wrench { m: self.I * V.w + self.mc.cross(V.v), f: V.v.mul_add(self.mass, V.w.cross(self.mc)) }
+        Wrench { m: self.mc.cross_add(V.v, self.I * V.w), f: V.v.mul_add(self.mass, V.w.cross(self.mc)) }
     }
 }
 
