@@ -199,3 +199,8 @@ fn read(source: &Source, policy: Policy, findings: &mut Findings) -> Option<Desc
     problem::findings(&description, &places).into_iter().for_each(|finding| findings.add(finding));
     Some(description)
 }
+
+/// The README's example, run with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
