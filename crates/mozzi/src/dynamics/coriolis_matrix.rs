@@ -46,10 +46,10 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
         let mut F3 = (dGA - HA) * half;                                      // … and times A
         C[j * n + j] += A.dot(F1);
         let mut k = i;
-        loop {
+        while model.links[k - 1].parent > 0 {
             let Ad = T[k].Ad().transpose();
             (F1, F2, F3) = (Ad * F1, Ad * F2, Ad * F3);
-            k = match model.links[k - 1].parent { 0 => break, parent => parent };
+            k = model.links[k - 1].parent;
             let below = model.links[k - 1].lift::<S>();
             C[below.j * n + j] += below.ratio * (below.A * F1);
             C[j * n + below.j] += dV[k].dot(F2) + below.ratio * (below.A * F3);

@@ -34,9 +34,9 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
         let mut F = G_c[i] * link.A * link.ratio;                            // 𝒢ᶜ A
         M[j * n + j] += link.ratio * (link.A * F);
         let mut k = i;
-        loop {
+        while model.links[k - 1].parent > 0 {
             F = T[k].Ad().transpose() * F;                                   // seen from the link below
-            k = match model.links[k - 1].parent { 0 => break, parent => parent };
+            k = model.links[k - 1].parent;
             let below = model.links[k - 1].lift::<S>();
             let entry = below.ratio * (below.A * F);
             M[j * n + below.j] += entry;
