@@ -1,5 +1,6 @@
 //! One thing wrong with a file: what, where, how bad, how to mend it.
 
+use crate::explain::remedy;
 use crate::finding::Finding;
 use crate::source::{Position, Source};
 use mozzi::model::Severity;
@@ -22,6 +23,7 @@ pub struct Diagnostic {
 impl Diagnostic {
     pub(crate) fn new(finding: Finding, position: Position, source: Source) -> Self {
         let Finding { severity, code, span, message, help } = finding;
+        let help = help.or_else(|| remedy(code).map(str::to_string));
         Diagnostic { severity, code: format!("mozzi::urdf::{code}"), message, position, span, help, source }
     }
 

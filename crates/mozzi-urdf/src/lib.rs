@@ -60,7 +60,7 @@ mod write;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;
-pub use explain::{codes, explain};
+pub use explain::{codes, explain, remedy};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
 pub use write::{NotUrdf, write};

@@ -183,24 +183,32 @@ impl InertiaVerdict {
 
 impl fmt::Display for InertiaVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [a, b, c] = self.principal_moments;
+        let [a, b, c] = self.principal_moments.map(Rounded);
         match self.problem {
-            None => write!(f, "physical: mass {} kg, principal moments {a:.6e}, {b:.6e}, {c:.6e} kg m²", self.mass),
+            None => write!(f, "physical: mass {} kg, principal moments {a}, {b}, {c} kg m²", self.mass),
             Some(InertiaProblem::NotFinite) => write!(f, "not finite"),
             Some(InertiaProblem::NegativeMass) => write!(f, "the mass is {} kg, expected at least 0", self.mass),
             Some(InertiaProblem::NegativeMoment) => {
-                write!(
-                    f,
-                    "the smallest principal moment about the centre of mass is {a:.6e} kg m², expected at least 0"
-                )
+                write!(f, "the smallest principal moment about the centre of mass is {a} kg m², expected at least 0")
             }
             Some(InertiaProblem::Triangle) => write!(
                 f,
-                "the principal moments about the centre of mass, {a:.6e}, {b:.6e} and {c:.6e} kg m², break the triangle inequality: \
-                 the largest exceeds the sum of the others by {:.3e}",
-                c - (a + b)
+                "the principal moments about the centre of mass, {a}, {b} and {c} kg m², break the triangle inequality: \
+                 the largest exceeds the sum of the others by {}",
+                Rounded(c.0 - (a.0 + b.0))
             ),
         }
+    }
+}
+
+/// A number as people read it: six digits, with an exponent where there would be many zeros.
+pub struct Rounded(pub f64);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded = alloc::format!("{:.5e}", self.0).parse::<f64>().unwrap_or(self.0);
+        let is_plain = rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs());
+        if is_plain { write!(f, "{rounded}") } else { write!(f, "{rounded:e}") }
     }
 }
 
@@ -280,8 +288,8 @@ mod tests {
         assert!(at([1.0, 2.0, 3.0], [0.0, 1.0, 1.0]).is_physical(), "a rod");
         assert!(at([0.0; 3], [1.0, 2.0, 3.0]).is_physical(), "a plate");
         let text = |v: InertiaVerdict| alloc::format!("{v}");
-        assert!(text(at([0.0; 3], [1.0, 2.0, 3.1])).contains("exceeds the sum of the others by 1.000e-1"));
-        assert!(text(at([0.0; 3], [-1e-6, 1.0, 1.0])).contains("-1.000000e-6"));
+        assert!(text(at([0.0; 3], [1.0, 2.0, 3.1])).contains("exceeds the sum of the others by 0.1"));
+        assert!(text(at([0.0; 3], [-1e-6, 1.0, 1.0])).contains("is -1e-6 kg m²"));
         assert!(!SpatialInertia::point_mass(-1.0, Vec3::zero()).verdict().is_physical());
         assert!(!SpatialInertia::point_mass(f64::NAN, Vec3::zero()).verdict().is_physical());
     }
