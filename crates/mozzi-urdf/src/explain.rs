@@ -4,7 +4,7 @@
 type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // a code in three lines
-const CODES: [Entry; 52] = [
+const CODES: [Entry; 56] = [
     ("circular_mimic",
         "A joint that follows another (mimic) follows, over one or more steps, itself. Its position is then defined by nothing.",
         "let one of the joints follow none"),
@@ -17,6 +17,9 @@ const CODES: [Entry; 52] = [
     ("decimal_comma",
         "A number contains a comma. Numbers have a decimal point, and the numbers of a vector are separated by spaces.",
         "numbers have a decimal point, and spaces between them: `0.5`, not `0,5`"),
+    ("degrees",
+        "An angle is a whole number beyond two turns, as angles in degrees are. Angles are in radians; it is computed as given.",
+        "angles are in radians: 90 degrees are 1.5708"),
     ("document_type",
         "The file declares a document type. Its entities could expand without bound or read other files, so such files are refused. URDF needs no document type.",
         "remove the declaration"),
@@ -38,6 +41,15 @@ const CODES: [Entry; 52] = [
     ("fixed_master",
         "A joint follows a fixed joint, which never moves.",
         "follow a joint that moves, or make this one fixed too"),
+    ("implausible_inertia",
+        "The moments of inertia are far too large for the mass: the radius of gyration is more than 10 m, and more than ten times the longest distance in the robot. It is computed as given.",
+        "moments are in kg m²: those in kg mm² are a million times larger"),
+    ("implausible_length",
+        "A joint, or a centre of mass, is more than 50 m from the frame that it is given in. It is computed as given. Said once, of the farthest.",
+        "lengths are in metres: 300 mm are 0.3"),
+    ("implausible_mass",
+        "A mass of more than 5 kg is so close to its centre of mass that no matter is so dense, judged by the moments of inertia; or there are moments without a mass. It is computed as given.",
+        "masses are in kilograms, moments in kg m²; a body that has one has the other"),
     ("indefinite_inertia",
         "The inertia of a rigid body has a negative principal moment about its centre of mass: turning about that axis would have a negative kinetic energy, and forward dynamics would mean nothing. It is judged by the whole body of links that are fixed to each other. Usual reasons: a wrong sign of ixy, ixz or iyz, or moments given about the link's origin and not about the centre of mass.",
         "such a body would gain speed by being braked: check the signs of ixy, ixz, iyz and that the moments are about the centre of mass; the lenient policy takes the nearest physical inertia instead"),
