@@ -2,6 +2,7 @@
 
 use crate::failure::{self, Result};
 use crate::numbers::array;
+use crate::robot_json;
 use clap::Args;
 use mozzi::{FrameId, Model};
 use mozzi_urdf::{LoadError, Loaded, Policy, embedded};
@@ -37,7 +38,7 @@ impl PolicyArguments {
     }
 
     /// As [`open`](Self::open), saying what is odd: each repair, and some of the warnings.
-    pub fn load(&self, name_or_path: &str) -> Result<Loaded> {
+    fn load(&self, name_or_path: &str) -> Result<Loaded> {
         let loaded = self.open(name_or_path)?;
         let (repairs, warnings): (Vec<_>, Vec<_>) =
             loaded.warnings.iter().partition(|warning| warning.code().contains("::repaired_"));
@@ -48,6 +49,14 @@ impl PolicyArguments {
             failure::note(&format!("{count} warnings in all; `mozzi check {name_or_path}` shows them"));
         }
         Ok(loaded)
+    }
+
+    /// The robot of a file of any kind.
+    pub fn model(&self, name_or_path: &str) -> Result<Model> {
+        if Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json") {
+            return Ok(robot_json::read(name_or_path)?.build()?);
+        }
+        Ok(self.load(name_or_path)?.build()?)
     }
 }
 
@@ -71,7 +80,7 @@ pub struct RobotArguments {
 impl RobotArguments {
     /// Loads the robot, saying what is odd about it.
     pub fn load(&self) -> Result<Model> {
-        let mut model = self.policy.load(&self.model)?.build()?;
+        let mut model = self.policy.model(&self.model)?;
         if let Some(text) = &self.gravity {
             model = model.with_gravity(array("--gravity", text, ["x", "y", "z"])?)?;
         }
