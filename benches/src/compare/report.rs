@@ -64,7 +64,7 @@ pub fn text(tables: &[Table], peer: Option<&Peer>) -> String {
   without them.
 - {version}, `{flags}`; of `Convention::WORLD` and `LOCAL` the faster. Its mass matrix is the upper triangle alone.
 - Both get the robot by numbers, armature and friction zero, and the same {} random states. One process on one
-  processor; in each round everything runs once over all states, in turn.
+  processor; in each round everything runs over all states, in turn, once untimed and once timed.
 - Nanoseconds for one evaluation: least of all rounds / median. Ratio: Pinocchio's time over mozzi's with FMA, of the
   least / of the medians. Difference: the largest between the two results at any state, over the result's largest
   entry, checked before anything is timed.

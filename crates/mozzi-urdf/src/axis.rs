@@ -19,14 +19,12 @@ pub(crate) fn read(kind: &str, axis: Option<&Element>, joint: &Element, cx: &mut
     let given = Vec3(axis.vector::<3>("xyz", &value, cx)?);
     let Some((screw, length)) = screw(kind, given) else {
         let message = format!("{}: axis: is `{}`, expected a direction", joint.subject, value.text.trim());
-        let help = "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`";
-        cx.findings.add(Finding::error("zero_axis", value.span, message).help(help));
+        cx.findings.add(Finding::error("zero_axis", value.span, message));
         return None;
     };
     if (length - 1.0).abs() > SLACK {
         let message = format!("{}: axis: `{}` has the length {length}, expected 1", joint.subject, value.text.trim());
-        let help = "only its direction is used: the joint's position stays in radians or metres";
-        cx.findings.add(Finding::warning("non_unit_axis", value.span, message).help(help));
+        cx.findings.add(Finding::warning("non_unit_axis", value.span, message));
     }
     Some(screw)
 }

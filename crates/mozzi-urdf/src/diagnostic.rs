@@ -1,6 +1,7 @@
 //! One thing wrong with a file: what, where, how bad, how to mend it.
 
 use crate::dialect::Dialect;
+use crate::explain::remedy;
 use crate::finding::Finding;
 use crate::source::{Position, Source};
 use mozzi::model::Severity;
@@ -23,7 +24,9 @@ pub struct Diagnostic {
 impl Diagnostic {
     pub(crate) fn new(finding: Finding, position: Position, source: Source, dialect: Dialect) -> Self {
         let Finding { severity, code, span, message, help } = finding;
-        Diagnostic { severity, code: format!("{}{code}", dialect.prefix()), message, position, span, help, source }
+        let code = format!("{}{code}", dialect.prefix());
+        let help = help.or_else(|| remedy(&code).map(str::to_string));
+        Diagnostic { severity, code, message, position, span, help, source }
     }
 
     /// Error (the file is refused) or warning (it is loaded).

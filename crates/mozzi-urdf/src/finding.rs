@@ -71,6 +71,11 @@ impl Findings {
         self.add(Finding::error(code, span, message));
     }
 
+    /// How many errors so far.
+    pub fn errors(&self) -> usize {
+        self.errors
+    }
+
     /// Enough to read no further.
     pub fn is_full(&self) -> bool {
         self.errors > MOST_FINDINGS

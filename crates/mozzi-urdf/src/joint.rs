@@ -19,8 +19,12 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> (Joint, Place) {
     let value = element.required_name("name", cx);
     let name = place.note("name", value);
     element.subject = format!("joint `{}`", shown(&name));
+    let before = cx.findings.errors();
     element.check_attributes(&JOINT, cx);
     let children = element.check_children(&JOINT, cx);
+    if cx.findings.errors() > before {
+        place.report("limits"); // a misspelled <limit> is not a missing one
+    }
 
     let parent = read_end("parent", &element, &children, &mut place, cx);
     let child = read_end("child", &element, &children, &mut place, cx);

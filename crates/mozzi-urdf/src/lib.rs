@@ -1,4 +1,4 @@
-//! Reads robot descriptions in URDF: text in, [`Description`] out, and diagnostics that point at the place.
+//! Reads robot descriptions in URDF, and in MuJoCo's MJCF (see [`mjcf`]): text in, [`Description`] out, and diagnostics that point at the place.
 //!
 //! Nothing is guessed in silence. What is wrong is an error, all errors of one run are reported together; what is odd is
 //! a warning; what is right is never mentioned.
@@ -63,7 +63,7 @@ mod write;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;
-pub use explain::{codes, explain};
+pub use explain::{codes, explain, remedy};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
 pub use write::{NotUrdf, write};
@@ -217,3 +217,8 @@ fn finish(mut description: Description, places: &Places, policy: Policy, finding
     problem::findings(&description, places).into_iter().for_each(|finding| findings.add(finding));
     description
 }
+
+/// The README's example, run with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -21,7 +21,7 @@ pub(crate) fn read(
     cx: &mut Context,
 ) -> Limits {
     let Some(limit) = limit else {
-        if kind != "continuous" {
+        if kind != "continuous" && !place.has_reported("limits") {
             let message = format!("{}: has no <limit>, expected one on a {kind} joint", joint.subject);
             let help = match kind {
                 "revolute" => "it is taken as unlimited; a joint that turns freely is of type `continuous`",
@@ -31,7 +31,9 @@ pub(crate) fn read(
         }
         return Limits::default();
     };
+    let before = cx.findings.errors();
     limit.check_attributes(&LIMIT, cx);
+    let is_misspelled = cx.findings.errors() > before;
     limit.check_children(&LIMIT, cx);
     for (name, attribute) in [("lower", "limits"), ("velocity", "velocity limit"), ("effort", "effort limit")] {
         if let Some(value) = limit.attribute(name) {
@@ -48,6 +50,9 @@ pub(crate) fn read(
         return Limits { position: None, velocity: velocity.1, effort: effort.1 };
     }
     let mut missing = |name: &str, help: &str| {
+        if is_misspelled {
+            return;
+        }
         let message = format!("{}: has no attribute `{name}`, expected one on a {kind} joint", limit.subject);
         cx.findings.add(Finding::warning("missing_limit", limit.span(), message).help(help));
     };

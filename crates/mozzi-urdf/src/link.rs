@@ -17,8 +17,12 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> (Link, Place) {
     let value = element.required_name("name", cx);
     let name = place.note("name", value);
     element.subject = format!("link `{}`", shown(&name));
+    let before = cx.findings.errors();
     element.check_attributes(&LINK, cx);
     let children = element.check_children(&LINK, cx);
+    if cx.findings.errors() > before {
+        ["mass", "inertia"].into_iter().for_each(|attribute| place.report(attribute)); // a misspelled <inertial> is not a missing one
+    }
     let inertia = children.get("inertial").and_then(|inertial| read_inertial(inertial, &mut place, cx));
     (Link { name, inertia: inertia.unwrap_or_else(SpatialInertia::zero) }, place)
 }

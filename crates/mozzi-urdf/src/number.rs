@@ -36,11 +36,10 @@ impl NotANumber {
 
     pub fn help(self) -> Option<&'static str> {
         match self {
-            NotANumber::Comma => Some("numbers have a decimal point, and spaces between them: `0.5`, not `0,5`"),
             NotANumber::Macro => Some("this is a xacro file; expand it first: `xacro robot.xacro > robot.urdf`"),
-            NotANumber::Unit => Some(
-                "a number stands alone, without a unit: metres, radians (in MJCF what its compiler says), kilograms, seconds are meant",
-            ),
+            NotANumber::Unit => {
+                Some("a number stands alone, without a unit: metres, radians, kilograms, seconds are meant")
+            }
             _ => None,
         }
     }
@@ -55,6 +54,9 @@ impl fmt::Display for NotANumber {
         })
     }
 }
+
+/// What people write behind a number.
+const UNITS: [&str; 14] = ["kg", "g", "m", "cm", "mm", "rad", "deg", "°", "n", "nm", "n*m", "rad/s", "m/s", "kg*m^2"];
 
 /// A number: digits with an optional sign, point and exponent, nothing else.
 pub(crate) fn number(word: &str) -> Result<f64, NotANumber> {
@@ -72,6 +74,7 @@ pub(crate) fn number(word: &str) -> Result<f64, NotANumber> {
     } else if word.contains(',') && word.bytes().all(|b| b.is_ascii_digit() || b"+-.,eE".contains(&b)) {
         NotANumber::Comma
     } else if bare.starts_with(|c: char| c.is_ascii_digit()) && bare.ends_with(|c: char| c.is_alphabetic() || c == '°')
+        || UNITS.contains(&bare.as_str())
     {
         NotANumber::Unit
     } else {
@@ -128,6 +131,7 @@ mod tests {
             ("${pi/2}", NotANumber::Macro),
             ("1.0abc", NotANumber::Unit),
             ("90°", NotANumber::Unit),
+            ("kg", NotANumber::Unit),
             ("0x10", NotANumber::Nonsense),
             ("1-2", NotANumber::Nonsense),
             ("--1", NotANumber::Nonsense),

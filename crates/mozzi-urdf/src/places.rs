@@ -58,6 +58,8 @@ pub(crate) struct Places {
     pub links: Vec<Place>,
     pub joints: Vec<Place>,
     pub frames: Vec<Place>,
+    /// Links or joints are missing, for a reason that was reported.
+    pub is_partial: bool,
 }
 
 impl Places {
@@ -80,9 +82,9 @@ impl Places {
         self.of(element).has_reported(attribute)
     }
 
-    /// Is some name missing, so that the tree cannot be judged?
-    pub fn names_are_missing(&self) -> bool {
+    /// Is some name or element missing, so that the tree cannot be judged?
+    pub fn tree_is_partial(&self) -> bool {
         let missing = |place: &Place| ["name", "parent", "child"].iter().any(|name| place.has_reported(name));
-        self.links.iter().chain(&self.joints).any(missing)
+        self.is_partial || self.links.iter().chain(&self.joints).any(missing)
     }
 }

@@ -12,7 +12,7 @@ const MOST_NAMES: usize = 2000;
 
 /// The findings of [`Description::check`], without echoes of what was reported before.
 pub(crate) fn findings(description: &Description, places: &Places) -> Vec<Finding> {
-    let is_cut = places.names_are_missing();
+    let is_cut = places.tree_is_partial();
     let mut suggestions = MOST_SUGGESTIONS;
     let is_echo = |problem: &Problem| {
         let of_the_tree = ["several_bases", "unreachable_link", "no_base", "unknown_link", "unknown_joint"];
@@ -25,35 +25,14 @@ pub(crate) fn findings(description: &Description, places: &Places) -> Vec<Findin
             code: problem.code,
             span: places.span(problem.element, problem.attribute),
             message: problem.to_string(),
-            help: help(&problem, description, &mut suggestions),
+            help: suggestion(&problem, description, &mut suggestions),
         })
         .collect()
 }
 
-fn help(problem: &Problem, description: &Description, suggestions: &mut usize) -> Option<String> {
-    let fixed = match problem.code {
-        "unknown_link" | "unknown_joint" => return suggestion(problem, description, suggestions),
-        "unphysical_inertia" => {
-            "it is computed as given; of a rigid body each principal moment is at most the sum of the other two: check the \
-             units, the signs, and that the moments are about the centre of mass"
-        }
-        "indefinite_inertia" => {
-            "such a body would gain speed by being braked: check the signs of its products and that the moments are about \
-             the centre of mass; the lenient policy takes the nearest physical inertia instead"
-        }
-        "negative_mass" => "masses are in kilograms, at least 0",
-        "reversed_limits" => "exchange the two numbers",
-        "loop_closure" => "cut the loop by removing one of its joints, if that is what you want to compute",
-        "fixed_master" => "a joint can only follow a joint that moves",
-        "duplicate_name" => "rename one of them",
-        _ => return None,
-    };
-    Some(fixed.to_string())
-}
-
 /// The nearest name of a link or joint that there is.
 fn suggestion(problem: &Problem, description: &Description, suggestions: &mut usize) -> Option<String> {
-    let Element::Joint(i) = problem.element else { return None };
+    let (Element::Joint(i), "unknown_link" | "unknown_joint") = (problem.element, problem.code) else { return None };
     let joint = description.joints.get(i)?;
     let count = description.links.len().max(description.joints.len());
     *suggestions = suggestions.checked_sub(1).filter(|_| count <= MOST_NAMES)?;

@@ -4,6 +4,7 @@ use crate::finding::{Finding, Findings};
 use crate::places::Places;
 use mozzi::Description;
 use mozzi::model::Element;
+use mozzi::spatial::Rounded;
 
 /// Replaces each inertia that no body can have by the nearest that one can.
 pub(crate) fn inertias(description: &mut Description, places: &Places, findings: &mut Findings) {
@@ -12,15 +13,13 @@ pub(crate) fn inertias(description: &mut Description, places: &Places, findings:
         let Some(nearest) = link.inertia.nearest_physical().filter(|nearest| *nearest != link.inertia) else {
             continue;
         };
-        let [a, b, c] = nearest.verdict().principal_moments;
+        let [a, b, c] = nearest.verdict().principal_moments.map(Rounded);
         let message = format!(
-            "link `{}`: inertia: {verdict}; replaced by the nearest that a body can have, of the moments {a:.6e}, {b:.6e} and \
-             {c:.6e} kg m²",
+            "link `{}`: inertia: {verdict}; replaced by the nearest that a body can have, of the moments {a}, {b} and {c} kg m²",
             link.name
         );
         let span = places.span(Element::Link(i), "inertia");
-        let help = "the lenient policy repairs this; mend the file to be sure of what is computed";
-        findings.add(Finding::warning("repaired_inertia", span, message).help(help));
+        findings.add(Finding::warning("repaired_inertia", span, message));
         link.inertia = nearest;
     }
 }

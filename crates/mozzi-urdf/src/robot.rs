@@ -43,7 +43,9 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
             _ => {}
         }
     }
+    let before = cx.findings.errors();
     root.check_children(&ROBOT, cx);
+    places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
     Some((description, places))
 }
 

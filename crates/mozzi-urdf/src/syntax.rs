@@ -49,18 +49,23 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
         _ => {}
     }
     match error {
-        Error::NoRootNode => syntax(0..0, format!("the file has no element, expected a <{}>", dialect.root())),
+        Error::NoRootNode => {
+            let message = format!("the file has no element, expected a <{}>", dialect.root());
+            syntax(0..0, message).help("is it the right file?")
+        }
         Error::UnexpectedCloseTag(expected, found, pos) => {
             let (expected, found) = (shown(&expected), shown(&found));
             syntax(at(pos), format!("</{found}> closes <{expected}>, expected </{expected}>"))
+                .help(format!("is a </{expected}> missing before it, or a `/` in <{expected} …/>?"))
         }
         Error::UnknownNamespace(prefix, pos) => {
             let prefix = shown(&prefix);
             syntax(at(pos), format!("the prefix `{prefix}:` is not declared"))
-                .help(format!("declare it on the root: <{} xmlns:{prefix}=\"…\">", dialect.root()))
+                .help(format!("declare it on the {root}: <{root} xmlns:{prefix}=\"…\">", root = dialect.root()))
         }
         Error::DuplicatedAttribute(name, pos) => {
             syntax(at(pos), format!("the attribute `{}` stands twice on one element", shown(&name)))
+                .help("keep the one that is meant")
         }
         Error::UnknownEntityReference(name, pos) => {
             let message = format!("the entity `&{};` is not known, and no entities are expanded", shown(&name));
@@ -73,11 +78,23 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
             syntax(at(pos), "`<` stands inside an attribute's value".to_string())
                 .help("is a closing quote missing before it? `<` itself is written `&lt;`")
         }
+        Error::UnknownToken(pos) => {
+            let rest = &source.text[at(pos).start..];
+            let word = shown(rest.split(['\n', '>']).next().unwrap_or_default().trim());
+            match rest.starts_with('<') {
+                true => syntax(at(pos), "a second root element begins here, expected the file's end".to_string())
+                    .help("a file holds one robot; is a closing tag too many before it?"),
+                false => syntax(at(pos), format!("found `{word}`, expected an element"))
+                    .help("is it a URDF? It begins with <robot name=\"…\">"),
+            }
+        }
         Error::InvalidChar(expected, found, pos) => {
             syntax(at(pos), format!("expected `{}`, found `{}`", expected as char, found as char))
         }
         Error::InvalidChar2(expected, found, pos) => {
-            syntax(at(pos), format!("expected {expected}, found `{}`", found as char))
+            let help = "values stand in quotes: <mass value=\"1\"/>";
+            let error = syntax(at(pos), format!("expected {expected}, found `{}`", found as char));
+            if expected == "a quote" { error.help(help) } else { error }
         }
         Error::NodesLimitReached => {
             Finding::error("too_large", 0..0, format!("the file has more than {MOST_NODES} elements and texts"))

@@ -16,7 +16,8 @@ pub(crate) const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], 
 pub(crate) const ROBOT: Vocabulary = Vocabulary {
     attributes: &["name", "version"],
     many: &["link", "joint"],
-    silent: &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco"],
+    // a loop_joint is refused where links and joints are read
+    silent: &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco", "loop_joint"],
     ..NOTHING
 };
 pub(crate) const LINK: Vocabulary = Vocabulary {

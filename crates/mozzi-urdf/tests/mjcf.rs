@@ -51,6 +51,8 @@ fn what_is_switched_off_is_off() {
 fn couplings_in_a_circle() {
     let text = "<mujoco><worldbody><body><joint name='a'/><joint name='b'/><geom size='1'/></body></worldbody><equality>\
                 <joint joint1='a' joint2='b'/><joint joint1='b' joint2='a'/><joint joint1='b' joint2='a'/></equality></mujoco>";
+    let code = parse("a.xml", text).unwrap_err().diagnostics()[0].code().to_string();
+    assert_eq!(code, "mozzi::mjcf::circular_mimic");
     assert_eq!(
         parse("a.xml", text).unwrap_err().to_string(),
         "a.xml is refused: 3 errors\n\
@@ -145,6 +147,10 @@ fn wrong_includes() {
     ];
     for (name, part, message) in cases {
         let folder = folder(name, &[("main.xml", main), ("parts/a.xml", part)]);
+        let code = load(folder.join("main.xml")).unwrap_err().diagnostics()[0].code().to_string();
+        if message.contains("already") {
+            assert_eq!(code, "mozzi::mjcf::repeated_include");
+        }
         assert_eq!(main_of(&folder).unwrap_err(), format!("./main.xml is refused: 1 error\n{message}"));
     }
     let folder = folder("not_utf8", &[("main.xml", main)]);

@@ -27,7 +27,7 @@
 //! - In time: [`simulation`].
 //!
 //! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is
-//! positive. Without the default feature `std` the crate is `no_std` with `alloc` and takes square roots from the feature `libm`.
+//! positive. Without the default feature `std` the crate is `no_std` with `alloc`, and takes elementary functions from `libm`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;

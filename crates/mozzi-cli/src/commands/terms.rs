@@ -8,8 +8,8 @@ use crate::robot::{RobotArguments, end_effector};
 use crate::state::{StartArguments, TipArguments, environment, joint_values};
 use clap::{Args, ValueEnum};
 use mozzi::{
-    BodyFrame, ClosedForm, Environment, FrameId, Jacobian, Model, NewtonEuler, SE3, SpatialInertia, Task, TaskFrame,
-    TaskSpaceDynamics, Twist, Wrench,
+    BodyFrame, ClosedForm, Environment, FrameId, Jacobian, Model, NewtonEuler, SE3, Task, TaskFrame, TaskSpaceDynamics,
+    Twist, Wrench,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -137,7 +137,7 @@ impl<'m> Terms<'m> {
             g: model.gravity_forces(&theta)?,
             h: model.bias_forces(&theta, &dtheta, &model.environment())?,
             tip_forces: model.tip_forces(&theta, environment.applied)?,
-            friction: friction(model, &theta, &dtheta)?,
+            friction: model.joint_friction(&dtheta)?,
             tau,
             forward_dynamics,
             kinetic_energy: model.kinetic_energy(&theta, &dtheta)?,
@@ -200,12 +200,4 @@ fn row(name: &str) -> Result<usize> {
     found.ok_or_else(|| {
         Failure::wrong(format!("--task: there is no row `{name}`, expected some of {}", names.join(", ")))
     })
-}
-
-/// f(θ̇): the inverse dynamics of the same robot without mass.
-fn friction(model: &Model, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>> {
-    let mut robot = model.description().clone();
-    robot.links.iter_mut().for_each(|link| link.inertia = SpatialInertia::zero());
-    let massless = robot.build()?;
-    Ok(massless.inverse_dynamics(theta, dtheta, &vec![0.0; model.n()], &massless.environment())?)
 }

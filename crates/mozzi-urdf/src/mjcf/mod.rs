@@ -37,6 +37,7 @@ mod tree;
 mod words;
 
 pub(crate) use explain::CODES;
+pub use explain::codes;
 
 use crate::context::Context;
 use crate::dialect::Dialect;

@@ -58,7 +58,7 @@ fn joints() {
         (
             joint(TURNS, "<mimic joint='§j'/>"),
             "circular_mimic",
-            "joint `j`: mimic: following `j` leads back in a circle, expected a joint that follows none",
+            "joint `j`: mimic: follows itself, `j`, expected another joint",
         ),
         (
             joint(TURNS, "<mimic joint='§k'/>"),

@@ -190,7 +190,7 @@ fn words_and_numbers() {
         (
             body!("<joint/><inertial mass='1' diaginertia='§1 -1 1'/>"),
             "indefinite_inertia",
-            "link `b`: inertia: the smallest principal moment about the centre of mass is -1.000000e0 kg m², expected at least 0",
+            "link `b`: inertia: the smallest principal moment about the centre of mass is -1 kg m², expected at least 0",
         ),
         (
             "<mujoco><worldbody><§body quat='1 0 0 0' euler='0 0 0'/></worldbody></mujoco>",
@@ -274,6 +274,28 @@ fn words_and_numbers() {
 }
 
 #[test]
+fn every_code_is_reached_and_explained() {
+    // each stands in a case of this file, or of the one on included files
+    let tests = [include_str!("mjcf.rs"), include_str!("../mjcf.rs")].concat();
+    for code in mozzi_urdf::mjcf::codes() {
+        assert!(
+            tests.contains(&format!("\"{code}\"")) || tests.contains(&format!("\"mozzi::mjcf::{code}\"")),
+            "{code}"
+        );
+        let full = format!("mozzi::mjcf::{code}");
+        assert!(mozzi_urdf::explain(&full).is_some() && mozzi_urdf::remedy(&full).is_some());
+    }
+    let long = format!("<mujoco><default><joint axis='§{}1'/></default></mujoco>", "0 ".repeat(200));
+    refused(&[(long.leak(), "long_value", "mujoco: default: joint: axis: has 401 bytes, expected at most 256")]);
+    warned(&[(
+        "<mujoco><worldbody><body name='b'><joint name='p' range='0 1'/><joint name='q' axis='1 0 0' range='0 1'/><geom size='1'/>\
+         </body></worldbody><equality><joint joint1='p' joint2='§q' polycoef='5 1'/></equality></mujoco>",
+        "contradictory_limits",
+        "joint `p`: mimic: moves from 5 to 5.017453292519943 as `q` moves within its limits, but its own are 0 and 0.017453292519943295",
+    )]);
+}
+
+#[test]
 fn what_is_left_out_is_said() {
     warned(&[
         (
@@ -310,7 +332,7 @@ fn what_is_left_out_is_said() {
         (
             body!("<joint/><inertial mass='1' diaginertia='§1 1 3'/>"),
             "unphysical_inertia",
-            "link `b`: inertia: the principal moments about the centre of mass, 1.000000e0, 1.000000e0 and 3.000000e0 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1.000e0",
+            "link `b`: inertia: the principal moments about the centre of mass, 1, 1 and 3 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1",
         ),
     ]);
 }
@@ -321,6 +343,8 @@ fn what_is_right_and_has_no_place_is_listed() {
                 </body></worldbody><actuator><motor joint='j'/></actuator><sensor/><keyframe/><visual/></mujoco>";
     for policy in [Policy::Default, Policy::Strict] {
         let robot = parse_with("a.xml", text, policy).expect("a model");
+        let is_known = |code: &str| ["mozzi::mjcf::ignored_element", "mozzi::mjcf::renamed_site"].contains(&code);
+        assert!(robot.warnings.iter().all(|warning| is_known(warning.code())));
         let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
         assert_eq!(
             said,

@@ -8,7 +8,7 @@ fn broken_xml() {
     refused(&[
         ("§", "empty", "the file is empty, expected a <robot>"),
         ("§ \n\n ", "empty", "the file is empty, expected a <robot>"),
-        ("§hello", "syntax", "unknown token"),
+        ("§hello", "syntax", "found `hello`, expected an element"),
         ("<robot name='a'>\n  <§link name='b'>\n", "syntax", "the file ends before <link> is closed"),
         ("<robot name='a'>\n  §<link name='b", "syntax", "the file ends inside a tag that opens here"),
         ("<robot name='a'>§<!-- never </robot>", "syntax", "the file ends inside a comment that opens here"),
@@ -25,7 +25,11 @@ fn broken_xml() {
         ("<robot name='a>\n §<link name='b'/>\n</robot>", "syntax", "`<` stands inside an attribute's value"),
         ("<robot name=§a/>", "syntax", "expected a quote, found `a`"),
         ("<robot name§/>", "syntax", "expected `=`, found `/`"),
-        ("<robot name='a'/>\n§<robot name='b'/>", "syntax", "unknown token"),
+        (
+            "<robot name='a'/>\n§<robot name='b'/>",
+            "syntax",
+            "a second root element begins here, expected the file's end",
+        ),
         (
             "<?xml version='1.0'?>\n§<!DOCTYPE robot [<!ENTITY a 'b'>]>\n<robot name='&a;'/>",
             "document_type",

@@ -61,6 +61,15 @@ impl Model<f64> {
         Ok(self.vector(|w, tau| kernel::tip_forces(self, theta, applied, w, tau)))
     }
 
+    /// f(θ̇) = d θ̇ + μ sgn θ̇ of each joint, with sgn 0 = 0.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn joint_friction(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.check_velocities([("dtheta", dtheta)])?;
+        Ok(DVector::from_fn(self.n(), |j, _| kernel::joint_friction(self, j, dtheta[j])))
+    }
+
     /// M(θ): see [`mass_matrix`](kernel::mass_matrix()).
     ///
     /// # Errors

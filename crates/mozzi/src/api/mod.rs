@@ -18,13 +18,17 @@ impl Model<f64> {
         theta: &[f64],
         velocities: [(&'static str, &[f64]); K],
     ) -> Result<(), Error> {
-        let (q, v) =
-            ([("theta", theta.len(), self.nq())], velocities.map(|(what, slice)| (what, slice.len(), self.n())));
-        match q.into_iter().chain(v).find(|(_, found, expected)| found != expected) {
-            Some((what, found, expected)) => Err(Error::WrongLength { what, found, expected }),
-            None => Ok(()),
-        }
+        check_length("theta", theta, self.nq())?;
+        self.check_velocities(velocities)
     }
+
+    pub(crate) fn check_velocities<const K: usize>(
+        &self,
+        velocities: [(&'static str, &[f64]); K],
+    ) -> Result<(), Error> {
+        velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
+    }
+
     /// A frame of this model, not of a larger one.
     pub(crate) fn check_frame(&self, frame: FrameId) -> Result<(), Error> {
         let frames = self.frames().len();
@@ -38,4 +42,9 @@ impl Model<f64> {
     pub(crate) fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
         environment.applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))
     }
+}
+
+fn check_length(what: &'static str, slice: &[f64], expected: usize) -> Result<(), Error> {
+    let found = slice.len();
+    if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
 }

@@ -1,5 +1,6 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
+use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
@@ -24,13 +25,13 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     let n = model.n();
     model.assert_lengths(theta.len(), [dtheta.len()]);
     assert!(C.len() == n * n, "C has {} entries, expected n² = {}", C.len(), n * n);
+    joint_transforms(model, theta, workspace);
     let Workspace { T, V, dV, F: P, G_c, dG_c, .. } = workspace;
     let half = S::from_f64(0.5);
 
     C.fill(S::zero());
     V[0] = Twist::zero();
     for (i, link) in model.outward::<S>() {
-        T[i]    = link.transform(theta);
         V[i]    = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
         dV[i]   = V[i].ad() * (link.A * link.ratio);                         // rate of A, per unit of θ̇_j
         G_c[i]  = link.G;
@@ -45,10 +46,10 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
         let mut F3 = (dGA - HA) * half;                                      // … and times A
         C[j * n + j] += A.dot(F1);
         let mut k = i;
-        loop {
+        while model.links[k - 1].parent > 0 {
             let Ad = T[k].Ad().transpose();
             (F1, F2, F3) = (Ad * F1, Ad * F2, Ad * F3);
-            k = match model.links[k - 1].parent { 0 => break, parent => parent };
+            k = model.links[k - 1].parent;
             let below = model.links[k - 1].lift::<S>();
             C[below.j * n + j] += below.ratio * (below.A * F1);
             C[j * n + below.j] += dV[k].dot(F2) + below.ratio * (below.A * F3);

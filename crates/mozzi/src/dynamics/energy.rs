@@ -1,5 +1,6 @@
 //! Kinetic and potential energy.
 
+use crate::kinematics::joint_transforms;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
@@ -18,11 +19,12 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>,
 ) -> S {
     model.assert_lengths(theta.len(), [dtheta.len()]);
-    let V = &mut workspace.V;
+    joint_transforms(model, theta, workspace);
+    let Workspace { T, V, .. } = workspace;
     V[0] = base_twist;
     let mut twice = S::zero();
     for (i, link) in model.outward::<S>() {
-        V[i] = link.transform(theta).Ad() * V[link.parent] + link.A * link.rate(dtheta);
+        V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
         twice += V[i].dot(link.G * V[i]);
     }
     for (&armature, &rate) in model.armature.iter().zip(dtheta) {

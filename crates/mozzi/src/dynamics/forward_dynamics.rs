@@ -2,6 +2,7 @@
 
 use super::joint_friction::joint_friction;
 use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
+use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 
@@ -43,13 +44,13 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
+    joint_transforms(model, theta, workspace);
     let Workspace { T, V, dV, F, G_hat, U, u, pivots, .. } = workspace;
     (V[0], dV[0]) = (environment.base_twist, environment.proper_base_acceleration());
 
     // base to tips: twists, and what each link's motion needs at no acceleration
     for (i, link) in model.outward::<S>() {
         let (A, G, dq) = (link.A, link.G, link.rate(dtheta));
-        T[i]  = link.transform(theta);
         V[i]  = T[i].Ad() * V[link.parent] + A * dq;
         dV[i] = V[i].ad() * (A * dq);                                        // velocity-product acceleration
         F[i]  = -(V[i].ad().transpose() * (G * V[i]));

@@ -1,6 +1,7 @@
 //! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
 
 use super::joint_friction::joint_friction;
+use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
@@ -41,19 +42,23 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
+    joint_transforms(model, theta, workspace);                                            // T_{i,i−1}(θ) (8.50)
     let Workspace { T, V, dV, F, .. } = workspace;
 
     // base: at its given twist, accelerating against gravity; nothing hangs from it yet
     (V[0], dV[0], F[0]) = (environment.base_twist, environment.proper_base_acceleration(), Wrench::zero());
 
-    // base to tips: configuration, twist and acceleration of each link, and the wrench that its motion needs
+    // base to tips: twist and acceleration of each link
     for (i, link) in model.outward::<S>() {
-        let (A, G, parent) = (link.A, link.G, link.parent);
+        let (A, parent) = (link.A, link.parent);
         let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
-        T[i]  = link.transform(theta);                                                    // T_{i,i−1} = e^{−[A]q} M_{i,i−1}
         let Ad = T[i].Ad();
         V[i]  = Ad * V[parent] + A * dq;                                                  // (8.51)
         dV[i] = Ad * dV[parent] + V[i].ad() * (A * dq) + A * ddq;                         // (8.52)
+    }
+    // what each link's motion needs: no link waits for another
+    for (i, link) in model.outward::<S>() {
+        let G = link.G;
         F[i]  = G * dV[i] - V[i].ad().transpose() * (G * V[i]);                           // (8.53), its own part
     }
     for &(frame, F_b) in environment.applied {

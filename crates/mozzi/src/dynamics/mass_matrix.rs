@@ -1,5 +1,6 @@
 //! The mass matrix: composite rigid bodies (Walker and Orin 1982; Featherstone 2008, section 6.2).
 
+use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 
@@ -18,6 +19,7 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     let n = model.n();
     model.assert_lengths(theta.len(), []);
     assert!(M.len() == n * n, "M has {} entries, expected n² = {}", M.len(), n * n);
+    joint_transforms(model, theta, workspace);
     let Workspace { T, G_c, .. } = workspace;
 
     M.fill(S::zero());
@@ -25,7 +27,6 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
         M[j * n + j] = S::from(armature);
     }
     for (i, link) in model.outward::<S>() {
-        T[i]   = link.transform(theta);
         G_c[i] = link.G;
     }
     for (i, link) in model.inward::<S>() {
@@ -33,9 +34,9 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
         let mut F = G_c[i] * link.A * link.ratio;                            // 𝒢ᶜ A
         M[j * n + j] += link.ratio * (link.A * F);
         let mut k = i;
-        loop {
+        while model.links[k - 1].parent > 0 {
             F = T[k].Ad().transpose() * F;                                   // seen from the link below
-            k = match model.links[k - 1].parent { 0 => break, parent => parent };
+            k = model.links[k - 1].parent;
             let below = model.links[k - 1].lift::<S>();
             let entry = below.ratio * (below.A * F);
             M[j * n + below.j] += entry;

@@ -19,7 +19,6 @@ pub use coriolis_matrix::{coriolis_matrix, mass_matrix_rate};
 pub use energy::{kinetic_energy, potential_energy};
 pub use forward_dynamics::forward_dynamics;
 pub use inverse_dynamics::inverse_dynamics;
-#[cfg(test)]
-pub(crate) use joint_friction::joint_friction;
+pub use joint_friction::joint_friction;
 pub use mass_matrix::mass_matrix;
 pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;

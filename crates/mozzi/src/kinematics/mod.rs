@@ -4,9 +4,12 @@ mod forward;
 mod jacobian;
 mod jacobian_derivative;
 mod jacobian_rate;
+mod joint_transforms;
 
 #[cfg(test)]
 mod tests;
+
+pub(crate) use joint_transforms::joint_transforms;
 
 pub use forward::{forward_kinematics, frame_poses};
 pub use jacobian::{Jacobian, body_jacobian, space_jacobian};

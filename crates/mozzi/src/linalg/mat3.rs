@@ -1,6 +1,6 @@
 //! 3 × 3 matrices.
 
-use super::{Vec3, linear_space};
+use super::{Skew, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::ops::Mul;
 
@@ -46,8 +46,7 @@ impl<S: Scalar> Mat3<S> {
     /// `[w]`, with `[w]` v = w × v.
     #[inline(always)]
     pub fn hat(w: Vec3<S>) -> Self {
-        let ([x, y, z], o) = (w.0, S::zero());
-        Mat3::from_rows([[o, -z, y], [z, o, -x], [-y, x, o]])
+        Skew(w).to_mat3()
     }
 
     /// w of the skew-symmetric part: `[w]` = (B − Bᵀ)/2.

@@ -2,10 +2,12 @@
 
 pub(crate) mod ldlt;
 mod mat3;
+mod skew;
 mod sym3;
 mod vec3;
 
 pub use mat3::Mat3;
+pub(crate) use skew::Skew;
 pub use sym3::Sym3;
 pub use vec3::Vec3;
 

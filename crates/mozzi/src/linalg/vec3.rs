@@ -36,6 +36,17 @@ impl<S: Scalar> Vec3<S> {
         Vec3([ay.mul_add(bz, -(az * by)), az.mul_add(bx, -(ax * bz)), ax.mul_add(by, -(ay * bx))])
     }
 
+    /// a × b + c.
+    #[inline(always)]
+    pub fn cross_add(self, b: Self, c: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (self.0, b.0, c.0);
+        Vec3([
+            ay.mul_add(bz, (-az).mul_add(by, cx)),
+            az.mul_add(bx, (-ax).mul_add(bz, cy)),
+            ax.mul_add(by, (-ay).mul_add(bx, cz)),
+        ])
+    }
+
     /// k a + b.
     #[inline(always)]
     pub fn mul_add(self, k: S, b: Self) -> Self {

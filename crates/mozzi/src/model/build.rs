@@ -103,6 +103,7 @@ fn normal_form(description: Description) -> Model {
             pattern: Pattern::new(joints.len(), links.iter().map(|link| (link.parent, link.j))),
             coupled: joints.len() < links.len(),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
+            base,
             moving_joints,
             joints,
             end_effector,

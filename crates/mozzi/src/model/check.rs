@@ -4,6 +4,7 @@ mod bodies;
 mod followers;
 mod numbers;
 mod tree;
+mod units;
 
 use super::description::Description;
 use super::error::names;
@@ -135,6 +136,7 @@ impl Description {
         let tree = report.tree(link);
         report.inertias(tree.as_ref());
         report.followers(&joints);
+        report.units();
         for (i, frame) in self.frames.iter().enumerate() {
             if link(&frame.link).is_none() {
                 report.error(Element::Frame(i), "link", "unknown_link", unknown_link(self, &frame.link));

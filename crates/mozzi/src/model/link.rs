@@ -52,10 +52,28 @@ impl<C: Scalar> Link<C> {
         }
     }
 
-    /// T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1} with q = ratio · θ + offset.
+    /// The joint's own variable, q = ratio · θ + offset.
+    #[inline(always)]
+    fn own(&self, theta: &[C]) -> C {
+        self.ratio.mul_add(theta[self.q], self.offset)
+    }
+
+    /// T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1}.
     #[inline(always)]
     pub fn transform(&self, theta: &[C]) -> SE3<C> {
-        self.A.transform(self.ratio.mul_add(theta[self.q], self.offset), self.M)
+        self.transform_with(self.sin_cos(theta), theta)
+    }
+
+    /// T_{i,i−1}(θ), given the sine and cosine of the joint's angle.
+    #[inline(always)]
+    pub fn transform_with(&self, sin_cos: (C, C), theta: &[C]) -> SE3<C> {
+        self.A.transform(sin_cos, self.own(theta), self.M)
+    }
+
+    /// The sine and cosine of the joint's angle.
+    #[inline(always)]
+    pub fn sin_cos(&self, theta: &[C]) -> (C, C) {
+        self.A.sin_cos(self.own(theta))
     }
 
     /// The joint's own rate, ratio · θ̇; likewise its acceleration.

@@ -8,6 +8,7 @@ mod environment;
 mod error;
 mod frame;
 mod link;
+mod provenance;
 mod screws;
 mod traverse;
 mod workspace;
@@ -24,6 +25,7 @@ pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
 pub(crate) use link::Link;
+pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub use workspace::Workspace;
 
@@ -52,6 +54,8 @@ pub struct Model<C = f64> {
 #[derive(Debug)]
 pub(crate) struct Structure {
     pub description: Description,
+    /// The link of the description that no joint moves.
+    pub base: usize,
     /// The joint of the description that moves slot i, at i − 1.
     pub moving_joints: Vec<usize>,
     /// The link of the description that it moves.

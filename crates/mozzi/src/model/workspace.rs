@@ -11,6 +11,8 @@ use alloc::vec::Vec;
 /// Memory for the kernels, without meaning between calls. Slot 0 is the base, slot i moving link i.
 #[derive(Clone, Debug)]
 pub struct Workspace<S = f64> {
+    /// Sine and cosine of each joint's angle.
+    pub(crate) sin_cos: Vec<(S, S)>,
     /// T_{i,i−1}.
     pub(crate) T: Vec<SE3<S>>,
     pub(crate) V: Vec<Twist<S>>,
@@ -40,6 +42,7 @@ impl<S: Scalar> Workspace<S> {
         let (slots, n) = (model.links.len() + 1, model.n());
         let o = S::zero();
         Workspace {
+            sin_cos: vec![(o, o); slots],
             T: vec![SE3::identity(); slots],
             V: vec![Twist::zero(); slots],
             dV: vec![Twist::zero(); slots],
@@ -60,6 +63,7 @@ impl<S: Scalar> Workspace<S> {
         let nan = S::from_f64(f64::NAN);
         let (V, F, T) = (Twist::from_array([nan; 6]), Wrench::from_array([nan; 6]), SE3::identity().map(|_: S| nan));
         let G = SpatialInertia { mass: nan, mc: Vec3([nan; 3]), I: crate::Sym3::zero().map(|_: S| nan) };
+        self.sin_cos.fill((nan, nan));
         self.T.fill(T);
         self.V.fill(V);
         self.dV.fill(V);

@@ -15,7 +15,7 @@ mod elementary {
     from_std!(f64: core::primitive::f64, f32: core::primitive::f32);
 }
 
-#[cfg(all(not(feature = "std"), feature = "libm"))]
+#[cfg(not(feature = "std"))]
 mod elementary {
     pub mod f64 {
         pub use libm::{atan2, sqrt, tanh};
@@ -31,9 +31,6 @@ mod elementary {
     }
 }
 
-#[cfg(not(any(feature = "std", feature = "libm")))]
-compile_error!("mozzi takes square roots and trigonometry from `std` or from `libm`: enable one of these features");
-
 macro_rules! float {
     ($($f:ident),*) => { $(
         impl Scalar for $f {
@@ -48,7 +45,9 @@ macro_rules! float {
             fn tanh(self) -> Self { elementary::$f::tanh(self) }
             #[inline(always)]
             fn sgn(self) -> Self {
-                if self > 0.0 { 1.0 } else if self < 0.0 { -1.0 } else { self * 0.0 }
+                // without a branch on the sign, which no processor predicts
+                let sign = i8::from(self > 0.0) - i8::from(self < 0.0);
+                if self.is_nan() { self } else { $f::from(sign) }
             }
         }
         impl Real for $f {

@@ -46,8 +46,12 @@ macro_rules! sin_cos {
                 let half = 0.5 * z;
                 let one = 1.0 - half;
                 let cos = one + (((1.0 - one) - half) + mul_add(z * z, c, -(r * tail)));
-                let (a, b) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
-                (if quadrant & 2 == 0 { a } else { -a }, if (quadrant + 1) & 2 == 0 { b } else { -b })
+                // exchange in odd quadrants, then the signs, on the bits
+                let (s, c) = (sin.to_bits(), cos.to_bits());
+                let exchange = (s ^ c) & (quadrant & 1).wrapping_neg();
+                let sign = |q| (q & 2) << (8 * size_of::<$f>() - 2);
+                let negative = sign(quadrant.wrapping_add(1));
+                ($f::from_bits(s ^ exchange ^ sign(quadrant)), $f::from_bits(c ^ exchange ^ negative))
             }
         }
     };

@@ -2,7 +2,7 @@
 
 use super::{JointAxis, SpatialInertia, Twist, Wrench};
 use crate::lie::Adjoint;
-use crate::linalg::{Mat3, Sym3, linear_space};
+use crate::linalg::{Mat3, Skew, Sym3, linear_space};
 use crate::scalar::Scalar;
 use core::ops::Mul;
 
@@ -31,7 +31,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     /// `[Ad_T]`ᵀ Ĝ `[Ad_T]`.
     #[inline(always)]
     pub fn congruence(self, Ad: Adjoint<S>) -> Self {
-        let (P, Rt) = (Mat3::hat(Ad.0.p), Ad.0.R.matrix().transpose());
+        let (P, Rt) = (Skew(Ad.0.p), Ad.0.R.matrix().transpose());
         // [Ad] = [[1, 0], [P, 1]] diag(R, R): fold P, of which Pᵀ = −P, then turn
         let H = self.H - P * self.M.to_mat3();
         let I = self.I + Sym3::upper(H * P + (self.H * P).transpose());

@@ -2,7 +2,7 @@
 
 use super::{ArticulatedInertia, Twist, Wrench};
 use crate::lie::{Adjoint, SE3};
-use crate::linalg::{Mat3, Sym3, Vec3, linear_space};
+use crate::linalg::{Mat3, Skew, Sym3, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::fmt;
 use core::ops::Mul;
@@ -48,7 +48,7 @@ impl<S: Scalar> SpatialInertia<S> {
         let (SE3 { R, p }, Rt) = (Ad.0, Ad.0.R.matrix().transpose());
         let shifted = p.mul_add(-self.mass, self.mc);
         // I about p: I + [mc − mp][p] + [p][mc], whose upper triangle is taken
-        let steiner = Mat3::hat(shifted) * Mat3::hat(p) + Mat3::hat(p) * Mat3::hat(self.mc);
+        let steiner = Skew(shifted) * Skew(p) + Skew(p) * Skew(self.mc);
         SpatialInertia {
             mass: self.mass,
             mc: R.inverse_mul(shifted),
@@ -65,7 +65,7 @@ impl<S: Scalar> SpatialInertia<S> {
     /// −𝒢`[ad_V]` − `[ad_V]`ᵀ𝒢. Its mass is 0 and its first moment the body's linear momentum.
     #[inline(always)]
     pub fn rate(self, V: Twist<S>) -> Self {
-        let (W, I, v, mc) = (Mat3::hat(V.w), self.I.to_mat3(), Mat3::hat(V.v), Mat3::hat(self.mc));
+        let (W, I, v, mc) = (Skew(V.w), self.I.to_mat3(), Skew(V.v), Skew(self.mc));
         SpatialInertia { mass: S::zero(), mc: (self * V).f, I: Sym3::upper(W * I - I * W - (v * mc + mc * v)) }
     }
 
@@ -86,7 +86,7 @@ impl<S: Scalar> Mul<Twist<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
     #[inline(always)]
     fn mul(self, V: Twist<S>) -> Wrench<S> {
-        Wrench { m: self.I * V.w + self.mc.cross(V.v), f: V.v.mul_add(self.mass, V.w.cross(self.mc)) }
+        Wrench { m: self.mc.cross_add(V.v, self.I * V.w), f: V.v.mul_add(self.mass, V.w.cross(self.mc)) }
     }
 }
 
@@ -183,24 +183,32 @@ impl InertiaVerdict {
 
 impl fmt::Display for InertiaVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [a, b, c] = self.principal_moments;
+        let [a, b, c] = self.principal_moments.map(Rounded);
         match self.problem {
-            None => write!(f, "physical: mass {} kg, principal moments {a:.6e}, {b:.6e}, {c:.6e} kg m²", self.mass),
+            None => write!(f, "physical: mass {} kg, principal moments {a}, {b}, {c} kg m²", self.mass),
             Some(InertiaProblem::NotFinite) => write!(f, "not finite"),
             Some(InertiaProblem::NegativeMass) => write!(f, "the mass is {} kg, expected at least 0", self.mass),
             Some(InertiaProblem::NegativeMoment) => {
-                write!(
-                    f,
-                    "the smallest principal moment about the centre of mass is {a:.6e} kg m², expected at least 0"
-                )
+                write!(f, "the smallest principal moment about the centre of mass is {a} kg m², expected at least 0")
             }
             Some(InertiaProblem::Triangle) => write!(
                 f,
-                "the principal moments about the centre of mass, {a:.6e}, {b:.6e} and {c:.6e} kg m², break the triangle inequality: \
-                 the largest exceeds the sum of the others by {:.3e}",
-                c - (a + b)
+                "the principal moments about the centre of mass, {a}, {b} and {c} kg m², break the triangle inequality: \
+                 the largest exceeds the sum of the others by {}",
+                Rounded(c.0 - (a.0 + b.0))
             ),
         }
+    }
+}
+
+/// A number as people read it: six digits, with an exponent where there would be many zeros.
+pub struct Rounded(pub f64);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded = alloc::format!("{:.5e}", self.0).parse::<f64>().unwrap_or(self.0);
+        let is_plain = rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs());
+        if is_plain { write!(f, "{rounded}") } else { write!(f, "{rounded:e}") }
     }
 }
 
@@ -280,8 +288,8 @@ mod tests {
         assert!(at([1.0, 2.0, 3.0], [0.0, 1.0, 1.0]).is_physical(), "a rod");
         assert!(at([0.0; 3], [1.0, 2.0, 3.0]).is_physical(), "a plate");
         let text = |v: InertiaVerdict| alloc::format!("{v}");
-        assert!(text(at([0.0; 3], [1.0, 2.0, 3.1])).contains("exceeds the sum of the others by 1.000e-1"));
-        assert!(text(at([0.0; 3], [-1e-6, 1.0, 1.0])).contains("-1.000000e-6"));
+        assert!(text(at([0.0; 3], [1.0, 2.0, 3.1])).contains("exceeds the sum of the others by 0.1"));
+        assert!(text(at([0.0; 3], [-1e-6, 1.0, 1.0])).contains("is -1e-6 kg m²"));
         assert!(!SpatialInertia::point_mass(-1.0, Vec3::zero()).verdict().is_physical());
         assert!(!SpatialInertia::point_mass(f64::NAN, Vec3::zero()).verdict().is_physical());
     }

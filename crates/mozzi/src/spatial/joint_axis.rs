@@ -21,10 +21,15 @@ pub(crate) struct JointTwist<S> {
 }
 
 impl<S: Scalar> JointAxis<S> {
-    /// e^{−`[A]`q} M: turn M by −aq about z, and slide it by −bq along z.
+    /// (sin aq, cos aq).
     #[inline(always)]
-    pub fn transform(self, q: S, M: SE3<S>) -> SE3<S> {
-        let (s, c) = (self.a * q).sin_cos();
+    pub fn sin_cos(self, q: S) -> (S, S) {
+        (self.a * q).sin_cos()
+    }
+
+    /// e^{−`[A]`q} M: turn M by −aq about z, given [`sin_cos`](Self::sin_cos), and slide it by −bq along z.
+    #[inline(always)]
+    pub fn transform(self, (s, c): (S, S), q: S, M: SE3<S>) -> SE3<S> {
         let ([px, py, pz], R) = (M.p.0, M.R.matrix());
         SE3 {
             R: SO3(Mat3 { x: R.y.mul_add(s, R.x * c), y: R.x.mul_add(-s, R.y * c), z: R.z }),
@@ -88,7 +93,7 @@ mod tests {
         let (V, M, q) = (twist(1), SE3::exp(twist(2)), 0.7);
         for (a, b) in [(1.0, 0.0), (0.0, 1.0), (1.0, 0.3)] {
             let A = JointAxis { a, b };
-            assert!(distance(A.transform(q, M), SE3::exp(A.twist() * -q) * M) < 1e-15);
+            assert!(distance(A.transform(A.sin_cos(q), q, M), SE3::exp(A.twist() * -q) * M) < 1e-15);
             assert!((V.ad() * (A * q) - V.ad() * (A.twist() * q)).norm() < 1e-15);
             assert!((V + A * q - (V + A.twist() * q)).norm() == 0.0);
         }

@@ -10,7 +10,7 @@ mod twist;
 mod wrench;
 
 pub use articulated_inertia::ArticulatedInertia;
-pub use inertia::{InertiaVerdict, SpatialInertia};
+pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};
 pub use twist::Twist;

@@ -51,12 +51,13 @@ impl ScrewAxis<f64> {
     /// described by A and kθ, and its torque by τ/k.
     ///
     /// # Errors
-    /// [`NotAScrew`] when V is 0 or not finite.
+    /// [`NotAScrew`] when V is 0, or too large for the squares of its components.
     pub fn normalize(V: Twist) -> Result<(Self, f64), NotAScrew> {
         let (angular, linear) = (V.w.norm(), V.v.norm());
         let size = if angular > 0.0 { angular } else { linear };
         let axis = ScrewAxis(V * (1.0 / size));
-        if size > 0.0 && axis.0.norm().is_finite() { Ok((axis, size)) } else { Err(NotAScrew { angular, linear }) }
+        let is_screw = size > 0.0 && size.is_finite() && axis.0.norm().is_finite();
+        if is_screw { Ok((axis, size)) } else { Err(NotAScrew { angular, linear }) }
     }
 
     /// The turn about the line through `point` with the unit direction `axis`, sliding `pitch` metres per radian.
@@ -152,5 +153,6 @@ mod tests {
         let (A, k) = ScrewAxis::normalize(V).expect("a screw");
         assert!((A * k - V).norm() < 1e-15 && (A.twist().w.norm() - 1.0).abs() < 1e-15);
         assert!(ScrewAxis::normalize(Twist::zero()).is_err());
+        assert!(ScrewAxis::normalize(Twist::from_array([1e200, 1e200, 0.0, 0.0, 0.0, 0.0])).is_err());
     }
 }

@@ -44,8 +44,11 @@ impl Report<'_> {
                 );
             }
             if circular[i] {
-                let message =
-                    format!("following `{}` leads back in a circle, expected a joint that follows none", mimic.joint);
+                let message = if k == i {
+                    format!("follows itself, `{}`, expected another joint", mimic.joint)
+                } else {
+                    format!("following `{}` leads back in a circle, expected a joint that follows none", mimic.joint)
+                };
                 self.error(element, "mimic", "circular_mimic", message);
             } else if let Some(message) = contradiction(joint, mimic, &d.joints[k]) {
                 self.add(Severity::Warning, element, "mimic", "contradictory_limits", message);

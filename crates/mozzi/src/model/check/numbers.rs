@@ -20,7 +20,9 @@ impl Report<'_> {
         for (i, link) in d.links.iter().enumerate() {
             let (mass, element) = (link.inertia.mass, Element::Link(i));
             if !is_finite(&link.inertia) {
-                self.error(element, "inertia", "not_finite", "has entries that are not finite".to_string());
+                let message =
+                    "is not finite, computed from mass, centre of mass and moments: one of them is not, or too large";
+                self.error(element, "inertia", "not_finite", message.to_string());
             } else if mass < 0.0 {
                 self.error(element, "mass", "negative_mass", format!("is {mass} kg, expected at least 0"));
             }

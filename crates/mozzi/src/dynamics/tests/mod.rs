@@ -1,13 +1,15 @@
 //! The kernels against the closed form, against each other, and against the identities of mechanics, on random trees.
 
+mod numbers;
+
 use crate::model::{Environment, Model, Workspace};
-use crate::testing::{Random, state, tree, twist, wrench};
+use crate::testing::{state, tree, twist, wrench};
 use crate::{Dual, Scalar, dynamics as kernel};
 use nalgebra::{DMatrix, DVector};
 
 const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12, 4), (20, 0)];
 
-fn models() -> impl Iterator<Item = (u64, Model)> {
+pub fn models() -> impl Iterator<Item = (u64, Model)> {
     TREES.iter().enumerate().flat_map(|(k, &(links, followers))| {
         (0..4).map(move |s| (10 * k as u64 + s, tree(10 * k as u64 + s, links, followers)))
     })
@@ -15,11 +17,11 @@ fn models() -> impl Iterator<Item = (u64, Model)> {
 
 /// |a − b| over ε times the size of the terms.
 #[track_caller]
-fn close(a: &DMatrix<f64>, b: &DMatrix<f64>, scale: f64, bound: f64, what: &str) {
+pub fn close(a: &DMatrix<f64>, b: &DMatrix<f64>, scale: f64, bound: f64, what: &str) {
     let error = (a - b).amax() / (f64::EPSILON * scale.max(a.amax()).max(b.amax()));
     assert!(error < bound, "{what}: normalised error {error}");
 }
-fn column(v: &DVector<f64>) -> DMatrix<f64> {
+pub fn column(v: &DVector<f64>) -> DMatrix<f64> {
     DMatrix::from_column_slice(v.len(), 1, v.as_slice())
 }
 
@@ -183,124 +185,6 @@ fn energies_and_power() {
 }
 
 #[test]
-fn the_workspace_has_no_meaning_between_calls() {
-    for (seed, model) in models() {
-        let [theta, dtheta, ddtheta] = state(&model, seed);
-        let (n, environment) = (model.n(), model.environment());
-        let run = |workspace: &mut Workspace, clean: bool| {
-            let mut all = alloc::vec::Vec::new();
-            let mut out = alloc::vec![0.0; n];
-            let mut square = alloc::vec![0.0; n * n];
-            let poison = |w: &mut Workspace| {
-                if !clean {
-                    w.poison()
-                }
-            };
-            poison(workspace);
-            kernel::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
-            all.extend_from_slice(&out);
-            poison(workspace);
-            kernel::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
-            all.extend_from_slice(&out);
-            poison(workspace);
-            kernel::gravity_forces(&model, &theta, environment.gravity, workspace, &mut out);
-            all.extend_from_slice(&out);
-            poison(workspace);
-            kernel::mass_matrix(&model, &theta, workspace, &mut square);
-            all.extend_from_slice(&square);
-            poison(workspace);
-            kernel::coriolis_matrix(&model, &theta, &dtheta, workspace, &mut square);
-            all.extend_from_slice(&square);
-            poison(workspace);
-            all.push(kernel::kinetic_energy(&model, &theta, &dtheta, crate::Twist::zero(), workspace));
-            poison(workspace);
-            all.push(kernel::potential_energy(&model, &theta, environment.gravity, workspace));
-            all
-        };
-        let clean = run(&mut Workspace::new(&model), true);
-        assert_eq!(clean, run(&mut Workspace::new(&model), false));
-        assert!(clean.iter().all(|x| x.is_finite()));
-    }
-}
-
-#[test]
-fn nan_in_nan_out() {
-    let model = tree(3, 5, 0);
-    let [mut theta, dtheta, tau] = state(&model, 3);
-    theta[2] = f64::NAN;
-    let found = model.forward_dynamics(&theta, &dtheta, &tau, &model.environment()).expect("NaN is no error");
-    assert!(found.iter().any(|x| x.is_nan()));
-}
-
-#[test]
-fn f32_runs_on_the_same_source() {
-    let model = tree(4, 6, 1);
-    let [theta, dtheta, ddtheta] = state(&model, 4);
-    let small = |x: &[f64]| x.iter().map(|&x| x as f32).collect::<alloc::vec::Vec<f32>>();
-    let single = model.map(f32::from_f64);
-    let mut tau = alloc::vec![0.0_f32; model.n()];
-    let workspace = &mut Workspace::<f32>::new(&single);
-    kernel::inverse_dynamics(
-        &single,
-        &small(&theta),
-        &small(&dtheta),
-        &small(&ddtheta),
-        &single.environment(),
-        workspace,
-        &mut tau,
-    );
-    let reference = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment()).expect("lengths");
-    let error =
-        tau.iter().zip(reference.iter()).fold(0.0_f64, |m, (&a, b)| m.max((f64::from(a) - b).abs())) / reference.amax();
-    assert!(error < 100.0 * f64::from(f32::EPSILON), "{error}");
-}
-
-#[test]
-fn a_wrong_length_is_named() {
-    let model = tree(1, 3, 0);
-    let error = model.inverse_dynamics(&[0.0; 3], &[0.0; 2], &[0.0; 3], &model.environment()).expect_err("two rates");
-    assert_eq!(error.to_string(), "dtheta has 2 entries, expected 3");
-    let stranger = tree(9, 12, 0).end_effector().expect("named");
-    let environment = Environment { applied: &[(stranger, wrench(1))], ..model.environment() };
-    let error =
-        model.bias_forces(&[0.0; 3], &[0.0; 3], &environment).expect_err("a frame of another model").to_string();
-    assert!(error.starts_with("the frame is number 16 of another model"), "{error}");
-    assert!(model.body_jacobian(&[0.0; 3], stranger).is_err());
-}
-
-#[test]
-fn a_massless_tip_is_a_singular_mass_matrix() {
-    use crate::model::description::{Joint, JointKind};
-    use crate::{Description, SE3, ScrewAxis, SpatialInertia};
-    let z = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit"));
-    let build = |armature: f64| {
-        let origin = SE3::exp(twist(1));
-        let mut last = Joint::new("last", "arm", "tip", origin, z);
-        last.armature = armature;
-        Description::new("robot")
-            .link("base", SpatialInertia::zero())
-            .link("arm", crate::testing::inertia(1))
-            .link("tip", SpatialInertia::zero())
-            .joint(Joint::new("first", "base", "arm", origin, z))
-            .joint(last)
-            .build()
-            .expect("a sound robot")
-    };
-    let model = build(0.0);
-    let (x, environment) = ([0.1, 0.2], model.environment());
-    for result in [
-        model.forward_dynamics(&x, &x, &x, &environment),
-        model.forward_dynamics_by_mass_matrix(&x, &x, &x, &environment),
-        model.forward_dynamics_by_inverse_dynamics(&x, &x, &x, &environment),
-    ] {
-        let message = result.expect_err("nothing to accelerate").to_string();
-        assert!(message.contains("singular at joint `last`"), "{message}");
-    }
-    let model = build(0.01);
-    assert!(model.forward_dynamics(&x, &x, &x, &model.environment()).is_ok());
-}
-
-#[test]
 fn a_hanging_weight_pulls_as_its_wrench_does() {
     use crate::{Mat3, Vec3};
     // a weight glued to the tip, against the wrench that the robot must apply to hold it
@@ -319,44 +203,20 @@ fn a_hanging_weight_pulls_as_its_wrench_does() {
 }
 
 #[test]
-fn random_states_many() {
-    let model = tree(42, 10, 0);
-    let mut random = Random(7);
-    for _ in 0..50 {
-        let theta = random.vector(10, 3.0);
-        let M = model.mass_matrix(&theta).expect("lengths");
-        assert!(M.clone().cholesky().is_some(), "M is positive definite");
-        assert_eq!(M, M.transpose());
-    }
-}
-
-#[test]
-fn a_recording_plays_back_bit_for_bit() {
-    use crate::scalar::recorded::{Recorded, play};
-    for (seed, followers) in [(1, 0), (2, 2)] {
-        let model = tree(seed, 6, followers);
-        let n = model.n();
-        let [theta, dtheta, ddtheta] = state(&model, seed);
-        let input = |k: usize| (0..n).map(|j| Recorded::input(k * n + j)).collect::<alloc::vec::Vec<_>>();
-        let (q, dq, ddq) = (input(0), input(1), input(2));
-        let zero = Recorded::Constant(0.0);
-        let (mut tau, mut found, mut M) = (alloc::vec![zero; n], alloc::vec![zero; n], alloc::vec![zero; n * n]);
-        let mut w = Workspace::<Recorded>::new(&model);
-        let environment = model.environment::<Recorded>();
-        kernel::inverse_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut tau);
-        kernel::forward_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut found);
-        kernel::coriolis_matrix(&model, &q, &dq, &mut w, &mut M);
-        let value = play(&[&theta[..], &dtheta, &ddtheta].concat());
-        let played = |list: &[Recorded]| list.iter().map(|&x| value(x)).collect::<alloc::vec::Vec<f64>>();
-        let environment = model.environment();
-        assert_eq!(
-            played(&tau),
-            model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths").as_slice()
-        );
-        assert_eq!(
-            played(&found),
-            model.forward_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("regular").as_slice()
-        );
-        assert_eq!(played(&M), model.coriolis_matrix(&theta, &dtheta).expect("lengths").transpose().as_slice());
+fn the_mass_matrix_is_the_sum_over_links_of_jacobians_and_inertias() {
+    // M = Σ J_ibᵀ 𝒢_i J_ib + armature, with the kernels' body Jacobians of the centre-of-mass frames
+    for (seed, model) in models() {
+        let [theta, _, _] = state(&model, seed);
+        let lists = model.screws();
+        let mut sum = DMatrix::from_diagonal(&DVector::from_column_slice(&model.armature));
+        for (slot, G) in (1..=model.moving_links()).zip(&lists.G) {
+            let link = model.frame(&lists.links[slot - 1]).expect("a link");
+            let T = model.link_frame(slot).inverse() * model.body_frame(slot);
+            let J = model.with_frame("{i}", link, T).expect("a new name");
+            let J = J.body_jacobian(&theta, J.frame("{i}").expect("just added")).expect("lengths").matrix();
+            let G = DMatrix::from_row_slice(6, 6, G.to_matrix().as_flattened());
+            sum += J.transpose() * G * &J;
+        }
+        close(&model.mass_matrix(&theta).expect("lengths"), &sum, 0.0, 300.0, "Σ JᵀGJ");
     }
 }

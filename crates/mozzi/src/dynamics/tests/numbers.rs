@@ -1,0 +1,191 @@
+//! The kernels on odd numbers and odd robots: NaN, f32, recordings, poisoned memory, singular and extreme masses.
+
+use super::{close, column, models};
+use crate::model::{Environment, Workspace};
+use crate::testing::{Random, state, tree, twist, wrench};
+use crate::{Scalar, dynamics as kernel};
+use nalgebra::DVector;
+
+#[test]
+fn the_workspace_has_no_meaning_between_calls() {
+    for (seed, model) in models() {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let (n, environment) = (model.n(), model.environment());
+        let run = |workspace: &mut Workspace, clean: bool| {
+            let mut all = alloc::vec::Vec::new();
+            let mut out = alloc::vec![0.0; n];
+            let mut square = alloc::vec![0.0; n * n];
+            let poison = |w: &mut Workspace| {
+                if !clean {
+                    w.poison()
+                }
+            };
+            poison(workspace);
+            kernel::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
+            all.extend_from_slice(&out);
+            poison(workspace);
+            kernel::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
+            all.extend_from_slice(&out);
+            poison(workspace);
+            kernel::gravity_forces(&model, &theta, environment.gravity, workspace, &mut out);
+            all.extend_from_slice(&out);
+            poison(workspace);
+            kernel::mass_matrix(&model, &theta, workspace, &mut square);
+            all.extend_from_slice(&square);
+            poison(workspace);
+            kernel::coriolis_matrix(&model, &theta, &dtheta, workspace, &mut square);
+            all.extend_from_slice(&square);
+            poison(workspace);
+            all.push(kernel::kinetic_energy(&model, &theta, &dtheta, crate::Twist::zero(), workspace));
+            poison(workspace);
+            all.push(kernel::potential_energy(&model, &theta, environment.gravity, workspace));
+            all
+        };
+        let clean = run(&mut Workspace::new(&model), true);
+        assert_eq!(clean, run(&mut Workspace::new(&model), false));
+        assert!(clean.iter().all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn nan_in_nan_out() {
+    let model = tree(3, 5, 0);
+    let [mut theta, dtheta, tau] = state(&model, 3);
+    theta[2] = f64::NAN;
+    let found = model.forward_dynamics(&theta, &dtheta, &tau, &model.environment()).expect("NaN is no error");
+    assert!(found.iter().any(|x| x.is_nan()));
+}
+
+#[test]
+fn f32_runs_on_the_same_source() {
+    let model = tree(4, 6, 1);
+    let [theta, dtheta, ddtheta] = state(&model, 4);
+    let small = |x: &[f64]| x.iter().map(|&x| x as f32).collect::<alloc::vec::Vec<f32>>();
+    let single = model.map(f32::from_f64);
+    let mut tau = alloc::vec![0.0_f32; model.n()];
+    let workspace = &mut Workspace::<f32>::new(&single);
+    kernel::inverse_dynamics(
+        &single,
+        &small(&theta),
+        &small(&dtheta),
+        &small(&ddtheta),
+        &single.environment(),
+        workspace,
+        &mut tau,
+    );
+    let reference = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment()).expect("lengths");
+    let error =
+        tau.iter().zip(reference.iter()).fold(0.0_f64, |m, (&a, b)| m.max((f64::from(a) - b).abs())) / reference.amax();
+    assert!(error < 100.0 * f64::from(f32::EPSILON), "{error}");
+}
+
+#[test]
+fn a_wrong_length_is_named() {
+    let model = tree(1, 3, 0);
+    let error = model.inverse_dynamics(&[0.0; 3], &[0.0; 2], &[0.0; 3], &model.environment()).expect_err("two rates");
+    assert_eq!(error.to_string(), "dtheta has 2 entries, expected 3");
+    let stranger = tree(9, 12, 0).end_effector().expect("named");
+    let environment = Environment { applied: &[(stranger, wrench(1))], ..model.environment() };
+    let error =
+        model.bias_forces(&[0.0; 3], &[0.0; 3], &environment).expect_err("a frame of another model").to_string();
+    assert!(error.starts_with("the frame is number 16 of another model"), "{error}");
+    assert!(model.body_jacobian(&[0.0; 3], stranger).is_err());
+}
+
+#[test]
+fn a_massless_tip_is_a_singular_mass_matrix() {
+    use crate::model::description::{Joint, JointKind};
+    use crate::{Description, SE3, ScrewAxis, SpatialInertia};
+    let z = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit"));
+    let build = |armature: f64| {
+        let origin = SE3::exp(twist(1));
+        let mut last = Joint::new("last", "arm", "tip", origin, z);
+        last.armature = armature;
+        Description::new("robot")
+            .link("base", SpatialInertia::zero())
+            .link("arm", crate::testing::inertia(1))
+            .link("tip", SpatialInertia::zero())
+            .joint(Joint::new("first", "base", "arm", origin, z))
+            .joint(last)
+            .build()
+            .expect("a sound robot")
+    };
+    let model = build(0.0);
+    let (x, environment) = ([0.1, 0.2], model.environment());
+    for result in [
+        model.forward_dynamics(&x, &x, &x, &environment),
+        model.forward_dynamics_by_mass_matrix(&x, &x, &x, &environment),
+        model.forward_dynamics_by_inverse_dynamics(&x, &x, &x, &environment),
+    ] {
+        let message = result.expect_err("nothing to accelerate").to_string();
+        assert!(message.contains("singular at joint `last`"), "{message}");
+    }
+    let model = build(0.01);
+    assert!(model.forward_dynamics(&x, &x, &x, &model.environment()).is_ok());
+}
+
+#[test]
+fn random_states_many() {
+    let model = tree(42, 10, 0);
+    let mut random = Random(7);
+    for _ in 0..50 {
+        let theta = random.vector(10, 3.0);
+        let M = model.mass_matrix(&theta).expect("lengths");
+        assert!(M.clone().cholesky().is_some(), "M is positive definite");
+        assert_eq!(M, M.transpose());
+    }
+}
+
+#[test]
+fn a_recording_plays_back_bit_for_bit() {
+    use crate::scalar::recorded::{Recorded, play};
+    for (seed, followers) in [(1, 0), (2, 2)] {
+        let model = tree(seed, 6, followers);
+        let n = model.n();
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let input = |k: usize| (0..n).map(|j| Recorded::input(k * n + j)).collect::<alloc::vec::Vec<_>>();
+        let (q, dq, ddq) = (input(0), input(1), input(2));
+        let zero = Recorded::Constant(0.0);
+        let (mut tau, mut found, mut M) = (alloc::vec![zero; n], alloc::vec![zero; n], alloc::vec![zero; n * n]);
+        let mut w = Workspace::<Recorded>::new(&model);
+        let environment = model.environment::<Recorded>();
+        kernel::inverse_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut tau);
+        kernel::forward_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut found);
+        kernel::coriolis_matrix(&model, &q, &dq, &mut w, &mut M);
+        let value = play(&[&theta[..], &dtheta, &ddtheta].concat());
+        let played = |list: &[Recorded]| list.iter().map(|&x| value(x)).collect::<alloc::vec::Vec<f64>>();
+        let environment = model.environment();
+        assert_eq!(
+            played(&tau),
+            model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths").as_slice()
+        );
+        assert_eq!(
+            played(&found),
+            model.forward_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("regular").as_slice()
+        );
+        assert_eq!(played(&M), model.coriolis_matrix(&theta, &dtheta).expect("lengths").transpose().as_slice());
+    }
+}
+
+#[test]
+fn extreme_mass_ratios() {
+    use crate::model::Description;
+    // every other link ten orders of magnitude lighter than the one before, or heavier
+    for heavier in [1.0e10, 1.0e-10] {
+        let mut robot: Description = tree(8, 10, 0).description().clone();
+        for (i, link) in robot.links.iter_mut().enumerate().filter(|(i, _)| i % 2 == 0) {
+            link.inertia = link.inertia * if i > 0 { heavier } else { 1.0 };
+        }
+        robot.joints.iter_mut().for_each(|joint| joint.armature = 0.0);
+        let model = robot.build().expect("a sound robot");
+        let [theta, dtheta, ddtheta] = state(&model, 8);
+        let environment = model.environment();
+        let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+        let form = model.closed_form(&theta, &dtheta, &environment).expect("lengths");
+        close(&column(&tau), &column(&form.inverse_dynamics(&DVector::from_column_slice(&ddtheta))), 0.0, 1000.0, "τ");
+        let found = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment).expect("regular");
+        let again = model.inverse_dynamics(&theta, &dtheta, found.as_slice(), &environment).expect("lengths");
+        let scale = model.mass_matrix(&theta).expect("lengths").amax() * found.amax();
+        close(&column(&again), &column(&tau), scale, 1000.0, "FD∘ID");
+    }
+}
