@@ -1,4 +1,5 @@
-//! Reads robot descriptions in URDF, and in MuJoCo's MJCF (see [`mjcf`]): text in, [`Description`] out, and diagnostics that point at the place.
+//! Reads robot descriptions in URDF, and in MuJoCo's MJCF (see [`mjcf`]): text in, [`Description`] out, and diagnostics
+//! that point at the place.
 //!
 //! Nothing is guessed in silence. What is wrong is an error, all errors of one run are reported together; what is odd is
 //! a warning; what is right is never mentioned.

@@ -61,7 +61,7 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
         Error::UnknownNamespace(prefix, pos) => {
             let prefix = shown(&prefix);
             syntax(at(pos), format!("the prefix `{prefix}:` is not declared"))
-                .help(format!("declare it on the {root}: <{root} xmlns:{prefix}=\"…\">", root = dialect.root()))
+                .help(format!("declare it on the root: <{} xmlns:{prefix}=\"…\">", dialect.root()))
         }
         Error::DuplicatedAttribute(name, pos) => {
             syntax(at(pos), format!("the attribute `{}` stands twice on one element", shown(&name)))
