@@ -8,12 +8,13 @@ mod json;
 mod numbers;
 mod quantities;
 mod robot;
+mod robot_json;
 mod samples;
 mod state;
 mod text;
 
 use clap::{Parser, Subcommand};
-use commands::{check, forward_dynamics, info, inverse_dynamics, screws, simulate, terms, tour};
+use commands::{check, convert, explain, forward_dynamics, info, inverse_dynamics, screws, simulate, terms, tour};
 use failure::{Failure, Result};
 use std::io::Write;
 use std::process::ExitCode;
@@ -47,6 +48,10 @@ enum Command {
     Simulate(simulate::SimulateArguments),
     /// Is the file a robot? All that is wrong or odd, with its place
     Check(check::CheckArguments),
+    /// The same robot in another file: URDF, JSON, or Python for NumPy
+    Convert(convert::ConvertArguments),
+    /// What the code of a diagnostic means, such as mozzi::urdf::zero_axis
+    Explain(explain::ExplainArguments),
 }
 
 const EXAMPLES: &str = "\
@@ -54,6 +59,10 @@ Examples:
   mozzi                                                 the tour
   mozzi info panda                                      what a robot consists of
   mozzi check my_robot.urdf                             what is wrong with a file
+  mozzi check my_robot.urdf --format json               the same, a JSON object a line
+  mozzi explain zero_axis                               what a diagnostic's code means
+  mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; reads back
+  mozzi terms my_robot.urdf --lenient                   with inertias repaired; --strict: warnings are errors
   mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
   mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
   mozzi terms two_link_planar --theta 0.3,0.8 --task vx,vz
@@ -107,5 +116,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::ForwardDynamics(arguments)) => forward_dynamics::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Convert(arguments)) => convert::run(arguments),
+        Some(Command::Explain(arguments)) => explain::run(arguments),
     }
 }

@@ -2,11 +2,63 @@
 
 use crate::failure::{self, Result};
 use crate::numbers::array;
+use crate::robot_json;
 use clap::Args;
 use mozzi::{FrameId, Model};
+use mozzi_urdf::{LoadError, Loaded, Policy, embedded};
+use std::path::Path;
 
 /// More are counted: `mozzi check` shows them, each with its place.
 const WARNINGS: usize = 3;
+
+/// How strictly the robot's file is read.
+#[derive(Args, Debug)]
+pub struct PolicyArguments {
+    /// Call warnings errors
+    #[arg(long)]
+    strict: bool,
+    /// Repair what can be repaired, such as an inertia that no body can have; each repair is told
+    #[arg(long, conflicts_with = "strict")]
+    lenient: bool,
+}
+
+impl PolicyArguments {
+    /// An embedded robot by its name, or a file.
+    pub fn open(&self, name_or_path: &str) -> std::result::Result<Loaded, LoadError> {
+        let policy = match (self.strict, self.lenient) {
+            (true, _) => Policy::Strict,
+            (_, true) => Policy::Lenient,
+            _ => Policy::Default,
+        };
+        match embedded::text(name_or_path) {
+            Some(text) => mozzi_urdf::parse_with(&format!("{name_or_path}.urdf"), text, policy),
+            None if Path::new(name_or_path).exists() => mozzi_urdf::load_with(name_or_path, policy),
+            None => mozzi_urdf::open(name_or_path), // says what there is
+        }
+    }
+
+    /// As [`open`](Self::open), saying what is odd: each repair, and some of the warnings.
+    fn load(&self, name_or_path: &str) -> Result<Loaded> {
+        let loaded = self.open(name_or_path)?;
+        let (repairs, warnings): (Vec<_>, Vec<_>) =
+            loaded.warnings.iter().partition(|warning| warning.code().contains("::repaired_"));
+        let said = repairs.iter().chain(warnings.iter().take(WARNINGS));
+        said.for_each(|warning| failure::write(&format!("{warning}\n")));
+        if warnings.len() > WARNINGS {
+            let count = loaded.warnings.len();
+            failure::note(&format!("{count} warnings in all; `mozzi check {name_or_path}` shows them"));
+        }
+        Ok(loaded)
+    }
+
+    /// The robot of a file of any kind.
+    pub fn model(&self, name_or_path: &str) -> Result<Model> {
+        if Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json") {
+            return Ok(robot_json::read(name_or_path)?.build()?);
+        }
+        Ok(self.load(name_or_path)?.build()?)
+    }
+}
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
@@ -21,18 +73,14 @@ pub struct RobotArguments {
     /// Print one JSON object, every digit of every number, instead of text
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    policy: PolicyArguments,
 }
 
 impl RobotArguments {
     /// Loads the robot, saying what is odd about it.
     pub fn load(&self) -> Result<Model> {
-        let loaded = mozzi_urdf::open(&self.model)?;
-        let warnings = &loaded.warnings;
-        warnings.iter().take(WARNINGS).for_each(|warning| failure::write(&format!("{warning}\n")));
-        if warnings.len() > WARNINGS {
-            failure::note(&format!("{} warnings in all; `mozzi check {}` shows them", warnings.len(), self.model));
-        }
-        let mut model = loaded.build()?;
+        let mut model = self.policy.model(&self.model)?;
         if let Some(text) = &self.gravity {
             model = model.with_gravity(array("--gravity", text, ["x", "y", "z"])?)?;
         }

@@ -21,11 +21,56 @@ fn wrong_robots() {
     let robot = file(&folder, "arm.urdf", "<robot name='arm'>\n<link name='a'><intertial/></link></robot>");
     wrong(&["info", &robot], &["arm.urdf", "intertial", "2:"]);
     wrong(&["check", &robot], &["arm.urdf", "intertial"]);
-    let output = mozzi(&["check", &robot, "--json"]);
-    assert_eq!(output.status.code(), Some(1));
-    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!((&report["ok"], &report["diagnostics"][0]["line"]), (&false.into(), &2.into()));
-    assert!(report["error"].as_str().is_some_and(|text| text.contains("refused")), "{report}");
+    for flags in [&["--json"][..], &["--format", "json"]] {
+        let output = mozzi(&[&["check", &robot], flags].concat());
+        assert_eq!(output.status.code(), Some(1));
+        let lines = String::from_utf8(output.stdout).expect("text");
+        let found: serde_json::Value = serde_json::from_str(lines.lines().next().expect("a line")).expect("JSON");
+        let keys: Vec<&String> = found.as_object().expect("an object").keys().collect();
+        assert_eq!(keys, ["severity", "code", "message", "file", "line", "column", "help"]);
+        assert_eq!((&found["severity"], &found["line"], &found["column"]), (&"error".into(), &2.into(), &17.into()));
+        assert_eq!(found["code"], "mozzi::urdf::misspelled_element");
+    }
+    let nowhere = mozzi(&["check", "nowhere.urdf", "--json"]);
+    let found: serde_json::Value = serde_json::from_slice(&nowhere.stdout).expect("one line of JSON");
+    assert_eq!(
+        (nowhere.status.code(), &found["file"], found["line"].is_null()),
+        (Some(1), &"nowhere.urdf".into(), true)
+    );
+}
+
+#[test]
+fn policies_are_of_every_command() {
+    let folder = folder("policies");
+    let inertia = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
+    let joint = "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>";
+    let text = format!("<robot name='odd'><link name='a'/><link name='b'>{inertia}</link>{joint}</robot>");
+    let robot = file(&folder, "odd.urdf", &text);
+    for command in ["check", "info", "terms", "inverse-dynamics"] {
+        let said = |flag: &str| {
+            let output = mozzi(&[command, &robot, flag]);
+            (output.status.code(), String::from_utf8(output.stderr).expect("text"))
+        };
+        let (code, message) = said("--strict");
+        assert!(code == Some(1) && message.contains("inertia"), "{command}: {message}");
+        let (code, message) = said("--lenient");
+        assert!(code == Some(0) && message.contains("replaced by the nearest"), "{command}: {message}");
+    }
+    assert_eq!(complaint(&["info", &robot, "--strict", "--lenient"]).0, 2);
+    let repaired = common::json(&["info", &robot, "--lenient"]);
+    assert_eq!(repaired["links"][1]["rotational_inertia"][0][0], 1.5);
+}
+
+#[test]
+fn codes_are_explained() {
+    let all = common::text(&["explain"]);
+    assert!(all.contains("\n  zero_axis\n") && all.contains("\n  missing_limit\n"), "{all}");
+    let page = common::text(&["explain", "zero_axis"]);
+    assert!(page.starts_with("mozzi::urdf::zero_axis\n\n") && page.contains("no direction"), "{page}");
+    assert_eq!(common::text(&["explain", "mozzi::urdf::zero_axis"]), page);
+    wrong(&["explain", "zero-axes"], &["`zero-axes` is not the code", "did you mean `zero_axis`?"]);
+    wrong(&["explain", "mozzi::urdf::mising_limits"], &["did you mean `missing_limit`?"]);
+    wrong(&["explain", "xyz"], &["`mozzi explain` lists them"]);
 }
 
 #[test]
@@ -38,7 +83,7 @@ fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
     let said = String::from_utf8_lossy(&output.stderr).to_string();
     assert!(output.status.success() && said.contains("odd.urdf:1:") && said.contains("limit"), "{said}");
     let output = mozzi(&["check", &robot]);
-    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("2 warnings"), "{output:?}");
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stderr).contains("2 warnings"), "{output:?}");
     assert_eq!(mozzi(&["check", &robot, "--strict"]).status.code(), Some(1));
     assert!(output.stderr.len() > said.len());
     wrong(&["forward-dynamics", &robot], &["the mass matrix is singular at joint `j`"]);

@@ -30,7 +30,7 @@ pub(crate) fn read(kind: &str, axis: Option<&Element>, joint: &Element, cx: &mut
 }
 
 /// The unit screw along a direction, and the direction's length.
-fn screw(kind: &str, given: Vec3) -> Option<(ScrewAxis, f64)> {
+pub(crate) fn screw(kind: &str, given: Vec3) -> Option<(ScrewAxis, f64)> {
     // lengths whose square overflows or vanishes are scaled first
     let largest = given.0.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let scale = if largest > 0.0 && !(1e-100..1e100).contains(&largest) { largest } else { 1.0 };

@@ -1,13 +1,18 @@
 //! What the readers of elements share.
 
+use crate::dialect::Dialect;
 use crate::finding::Findings;
 use crate::spelling::did_you_mean;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Findings so far, and the kinds of unknown things that were met.
 #[derive(Default)]
 pub(crate) struct Context {
     pub findings: Findings,
+    /// The language of the text.
+    pub dialect: Dialect,
+    /// Places of values that were found to be no numbers: a default may be used often, and is reported once.
+    pub unreadable: BTreeSet<usize>,
     kinds: BTreeMap<(String, String, &'static str), Option<String>>,
 }
 
@@ -22,6 +27,11 @@ pub(crate) enum Unknown {
 }
 
 impl Context {
+    /// Nothing met yet but what was found before.
+    pub fn new(findings: Findings, dialect: Dialect) -> Self {
+        Context { findings, dialect, ..Context::default() }
+    }
+
     /// What to make of a name that is not known, `what` it names, in such a parent.
     pub fn unknown<'k>(
         &mut self,

@@ -1,5 +1,6 @@
 //! One thing wrong with a file: what, where, how bad, how to mend it.
 
+use crate::dialect::Dialect;
 use crate::explain::remedy;
 use crate::finding::Finding;
 use crate::source::{Position, Source};
@@ -21,10 +22,10 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    pub(crate) fn new(finding: Finding, position: Position, source: Source) -> Self {
+    pub(crate) fn new(finding: Finding, position: Position, source: Source, dialect: Dialect) -> Self {
         let Finding { severity, code, span, message, help } = finding;
         let help = help.or_else(|| remedy(code).map(str::to_string));
-        Diagnostic { severity, code: format!("mozzi::urdf::{code}"), message, position, span, help, source }
+        Diagnostic { severity, code: format!("{}{code}", dialect.prefix()), message, position, span, help, source }
     }
 
     /// Error (the file is refused) or warning (it is loaded).
@@ -32,7 +33,7 @@ impl Diagnostic {
         self.severity
     }
 
-    /// For programs, such as `mozzi::urdf::zero_axis`; see [`explain`](crate::explain).
+    /// For programs, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::explain).
     pub fn code(&self) -> &str {
         &self.code
     }

@@ -3,6 +3,7 @@
 use crate::context::{Context, Unknown};
 use crate::finding::Finding;
 use crate::number::{NotNumbers, numbers};
+use crate::pages::Pages;
 use crate::words::{Vocabulary, shown};
 use roxmltree::{Attribute, Node};
 use std::collections::BTreeMap;
@@ -15,7 +16,8 @@ const LONGEST_NAME: usize = 256;
 #[derive(Clone)]
 pub(crate) struct Element<'a> {
     node: Node<'a, 'a>,
-    text: &'a str,
+    pages: &'a Pages<'a>,
+    page: usize,
     pub subject: String,
 }
 
@@ -30,8 +32,8 @@ pub(crate) struct Value<'a> {
 pub(crate) type Children<'a> = BTreeMap<&'static str, Element<'a>>;
 
 impl<'a> Element<'a> {
-    pub fn new(node: Node<'a, 'a>, text: &'a str, subject: String) -> Self {
-        Element { node, text, subject }
+    pub fn new(node: Node<'a, 'a>, pages: &'a Pages<'a>, page: usize, subject: String) -> Self {
+        Element { node, pages, page, subject }
     }
 
     /// The same, called otherwise.
@@ -41,7 +43,16 @@ impl<'a> Element<'a> {
 
     /// The name as written, with its prefix.
     pub fn written_name(&self) -> &'a str {
-        &self.text[self.span()]
+        self.raw(&self.span())
+    }
+
+    fn raw(&self, span: &Range<usize>) -> &'a str {
+        self.pages.text(span).unwrap_or_default()
+    }
+
+    /// A place of this element's text among all.
+    fn place(&self, span: Range<usize>) -> Range<usize> {
+        self.pages.source(self.page).place(span)
     }
 
     /// The name without prefix.
@@ -52,26 +63,31 @@ impl<'a> Element<'a> {
     /// The place of the name in the start tag.
     pub fn span(&self) -> Range<usize> {
         let start = self.node.range().start + 1;
-        let rest = self.text.get(start..).unwrap_or_default();
+        let rest = self.pages.source(self.page).text.get(start..).unwrap_or_default();
         let ends = |c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>');
-        start..start + rest.find(ends).unwrap_or(rest.len())
+        self.place(start..start + rest.find(ends).unwrap_or(rest.len()))
     }
 
     /// A child, called after this element.
-    fn child(&self, node: Node<'a, 'a>) -> Element<'a> {
+    fn child(&self, node: Node<'a, 'a>, page: usize) -> Element<'a> {
         let subject = format!("{}: {}", self.subject, shown(node.tag_name().name()));
-        Element { node, text: self.text, subject }
+        Element { node, pages: self.pages, page, subject }
+    }
+
+    /// All children, and their pages.
+    fn children(&self) -> impl Iterator<Item = (Node<'a, 'a>, usize)> + use<'a> {
+        self.pages.children(self.node, self.page)
     }
 
     /// All children that are elements.
     pub fn elements(&self) -> impl Iterator<Item = Element<'a>> {
-        self.node.children().filter(Node::is_element).map(|node| self.child(node))
+        self.children().filter(|(node, _)| node.is_element()).map(|(node, page)| self.child(node, page))
     }
 
     /// An attribute, if it is there.
     pub fn attribute(&self, name: &str) -> Option<Value<'a>> {
         let found = self.node.attributes().find(|attribute| attribute.name() == name && !self.is_foreign(attribute))?;
-        Some(Value { text: found.value(), span: found.range_value() })
+        Some(Value { text: found.value(), span: self.place(found.range_value()) })
     }
 
     /// An attribute that has to be there.
@@ -105,10 +121,17 @@ impl<'a> Element<'a> {
 
     /// N numbers of an attribute; None, and reported, when they are not.
     pub fn vector<const N: usize>(&self, name: &str, value: &Value<'a>, cx: &mut Context) -> Option<[f64; N]> {
-        let error = match numbers::<N>(value.text) {
-            Ok(vector) => return Some(vector),
-            Err(error) => error,
-        };
+        match numbers::<N>(value.text) {
+            Ok(vector) => Some(vector),
+            Err(error) => {
+                self.report_numbers(name, value, error, cx);
+                None
+            }
+        }
+    }
+
+    /// Says why a value is not the numbers that it should be.
+    pub fn report_numbers(&self, name: &str, value: &Value<'a>, error: NotNumbers, cx: &mut Context) {
         let subject = &self.subject;
         cx.findings.add(match error {
             NotNumbers::Count { found, expected } => {
@@ -120,7 +143,7 @@ impl<'a> Element<'a> {
             }
             NotNumbers::Word { span, word, why } => {
                 // the word's own place, unless an entity shifts what follows it
-                let is_raw = self.text.get(value.span.clone()) == Some(value.text) && !span.is_empty();
+                let is_raw = self.pages.text(&value.span) == Some(value.text) && !span.is_empty();
                 let at = if is_raw {
                     value.span.start + span.start..value.span.start + span.end
                 } else {
@@ -133,7 +156,6 @@ impl<'a> Element<'a> {
                 Finding::error(why.code(), at, message).maybe_help(why.help().map(str::to_string))
             }
         });
-        None
     }
 
     /// The number of an attribute, if it is there and is one.
@@ -149,8 +171,9 @@ impl<'a> Element<'a> {
             if words.attributes.contains(&name) || words.silent.contains(&name) {
                 continue;
             }
-            let (subject, span) = (&self.subject, attribute.range_qname());
-            let message = format!("{subject}: has an attribute `{}`, which URDF does not know", shown(name));
+            let (subject, span) = (&self.subject, self.place(attribute.range_qname()));
+            let language = cx.dialect.name();
+            let message = format!("{subject}: has an attribute `{}`, which {language} does not know", shown(name));
             match cx.unknown(self.name(), name, "attribute", words.attributes.iter().copied()) {
                 Unknown::Misspelled(help) => {
                     cx.findings.add(Finding::error("misspelled_attribute", span, message).help(help));
@@ -170,14 +193,14 @@ impl<'a> Element<'a> {
     /// elements and stray text are warnings once per kind.
     pub fn check_children(&self, words: &Vocabulary, cx: &mut Context) -> Children<'a> {
         let mut children = Children::new();
-        for node in self.node.children() {
+        for (node, page) in self.children() {
             if node.is_text() {
-                self.check_text(node, cx);
+                self.child(node, page).check_text(self, cx);
             }
             if !node.is_element() {
                 continue;
             }
-            let child = self.child(node);
+            let child = self.child(node, page);
             if let Some(&name) = words.once.iter().find(|&&known| known == child.name() && !child.has_prefix()) {
                 if children.contains_key(name) {
                     let message = format!("{}: has a second <{name}>, expected one", self.subject);
@@ -206,7 +229,8 @@ impl<'a> Element<'a> {
         if words.many.contains(&name) || words.silent.contains(&name) {
             return;
         }
-        let message = format!("{}: has an element <{}>, which URDF does not know here", parent.subject, shown(name));
+        let (language, subject) = (cx.dialect.name(), &parent.subject);
+        let message = format!("{subject}: has an element <{}>, which {language} does not know here", shown(name));
         let known = words.once.iter().chain(words.many).copied();
         match cx.unknown(parent.name(), name, "element", known) {
             Unknown::Misspelled(help) => {
@@ -220,13 +244,15 @@ impl<'a> Element<'a> {
         }
     }
 
-    fn check_text(&self, node: Node<'a, 'a>, cx: &mut Context) {
-        let text = node.text().unwrap_or_default();
-        if !text.trim().is_empty() && matches!(cx.unknown(self.name(), "", "text", []), Unknown::First) {
-            let raw = &self.text[node.range()];
-            let start = node.range().start + raw.len() - raw.trim_start().len();
-            let message = format!("{}: has the text `{}`, expected only elements", self.subject, shown(text.trim()));
-            let help = format!("it is ignored here and wherever text stands in <{}>", self.name());
+    /// Reports a text in the parent that is more than white space.
+    fn check_text(&self, parent: &Element<'a>, cx: &mut Context) {
+        let text = self.node.text().unwrap_or_default();
+        if !text.trim().is_empty() && matches!(cx.unknown(parent.name(), "", "text", []), Unknown::First) {
+            let place = self.place(self.node.range());
+            let raw = self.raw(&place);
+            let start = place.start + raw.len() - raw.trim_start().len();
+            let message = format!("{}: has the text `{}`, expected only elements", parent.subject, shown(text.trim()));
+            let help = format!("it is ignored here and wherever text stands in <{}>", parent.name());
             let span = start..start + raw.trim().len();
             cx.findings.add(Finding::warning("stray_text", span, message).help(help));
         }
@@ -238,6 +264,6 @@ impl<'a> Element<'a> {
     }
 
     fn is_foreign(&self, attribute: &Attribute) -> bool {
-        self.text.get(attribute.range_qname()).is_some_and(|name| name.contains(':'))
+        self.raw(&self.place(attribute.range_qname())).contains(':')
     }
 }

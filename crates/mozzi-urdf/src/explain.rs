@@ -1,5 +1,8 @@
 //! What each code means, and how to mend what it says.
 
+use crate::mjcf;
+use std::collections::BTreeSet;
+
 /// A code, without `mozzi::urdf::`; what it means; how to mend it.
 type Entry = (&'static str, &'static str, &'static str);
 
@@ -175,24 +178,40 @@ const CODES: [Entry; 56] = [
         "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`"),
 ];
 
-fn entry(code: &str) -> Option<&'static Entry> {
-    let short = code.strip_prefix("mozzi::urdf::").unwrap_or(code);
-    CODES.iter().find(|(known, ..)| *known == short)
+/// Meaning and remedy of a code; MJCF's own codes have their remedy in the meaning.
+fn entry(code: &str) -> Option<(&'static str, Option<&'static str>)> {
+    let urdf =
+        |short| CODES.iter().find(|(known, ..)| *known == short).map(|&(_, meaning, remedy)| (meaning, Some(remedy)));
+    let mjcf = |short| mjcf::CODES.iter().find(|(known, _)| *known == short).map(|&(_, meaning)| (meaning, None));
+    match code.strip_prefix("mozzi::mjcf::") {
+        Some(short) => mjcf(short).or_else(|| urdf(short)),
+        None => {
+            let short = code.strip_prefix("mozzi::urdf::").unwrap_or(code);
+            urdf(short).or_else(|| mjcf(short))
+        }
+    }
 }
 
 /// What a code such as `mozzi::urdf::zero_axis`, or `zero_axis`, means.
 pub fn explain(code: &str) -> Option<&'static str> {
-    entry(code).map(|&(_, meaning, _)| meaning)
+    entry(code).map(|(meaning, _)| meaning)
 }
 
 /// How to mend what a code says; what a diagnostic's help says where its place says nothing more precise.
 pub fn remedy(code: &str) -> Option<&'static str> {
-    entry(code).map(|&(.., remedy)| remedy)
+    entry(code).and_then(|(_, remedy)| remedy)
 }
 
-/// All codes, without `mozzi::urdf::`, in alphabetical order.
+/// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; MJCF shares them where it can.
 pub fn codes() -> impl Iterator<Item = &'static str> {
-    let mut codes: Vec<&str> = CODES.iter().map(|&(code, ..)| code).collect();
-    codes.sort_unstable();
-    codes.into_iter()
+    sorted(CODES.iter().map(|&(code, ..)| code))
+}
+
+/// The codes that MJCF alone has, without `mozzi::mjcf::`, in alphabetical order.
+pub fn mjcf_codes() -> impl Iterator<Item = &'static str> {
+    sorted(mjcf::CODES.iter().map(|&(code, _)| code).filter(|code| CODES.iter().all(|(known, ..)| known != code)))
+}
+
+fn sorted(codes: impl Iterator<Item = &'static str>) -> impl Iterator<Item = &'static str> {
+    codes.collect::<BTreeSet<_>>().into_iter()
 }

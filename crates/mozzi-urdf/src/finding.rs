@@ -1,6 +1,7 @@
 //! What a reader noticed, before its place is looked up.
 
 use crate::diagnostic::Diagnostic;
+use crate::dialect::Dialect;
 use crate::source::{Source, Walker};
 use mozzi::model::Severity;
 use std::ops::Range;
@@ -84,18 +85,27 @@ impl Findings {
         self.errors > 0
     }
 
-    /// Looks up every place in one pass.
-    pub fn place(mut self, source: &Source) -> Placed {
+    /// All of them, further on by some bytes.
+    pub fn moved(self, by: usize) -> impl Iterator<Item = Finding> {
+        let moved = move |span: Range<usize>| span.start + by..span.end + by;
+        self.kept.into_iter().map(move |finding| Finding { span: moved(finding.span), ..finding })
+    }
+
+    /// Looks up every place in one pass over the texts, which stand one after the other.
+    pub fn place(mut self, sources: &[Source], dialect: Dialect) -> Placed {
         let is_cut = self.is_full();
-        for finding in &mut self.kept {
-            finding.span = source.clamp(finding.span.clone());
-        }
         self.kept.sort_by_key(|finding| finding.span.start);
-        let mut walker = Walker::new(&source.text);
-        let placed = |finding: Finding| {
-            let position = walker.advance(finding.span.start);
-            Diagnostic::new(finding, position, source.clone())
-        };
-        Placed { diagnostics: self.kept.into_iter().map(placed).collect(), errors: self.errors, is_cut }
+        let (mut diagnostics, mut kept) = (Vec::new(), self.kept.into_iter().peekable());
+        for (i, source) in sources.iter().enumerate() {
+            let end = sources.get(i + 1).map_or(usize::MAX, |next| next.base);
+            let mut walker = Walker::new(&source.text);
+            while let Some(mut finding) = kept.next_if(|finding| finding.span.start < end) {
+                let local = |place: usize| place.saturating_sub(source.base);
+                finding.span = source.clamp(local(finding.span.start)..local(finding.span.end));
+                let position = walker.advance(finding.span.start);
+                diagnostics.push(Diagnostic::new(finding, position, source.clone(), dialect));
+            }
+        }
+        Placed { diagnostics, errors: self.errors, is_cut }
     }
 }

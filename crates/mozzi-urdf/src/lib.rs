@@ -36,6 +36,7 @@ mod axis;
 mod bytes;
 mod context;
 mod diagnostic;
+mod dialect;
 mod element;
 pub mod embedded;
 mod error;
@@ -44,8 +45,10 @@ mod finding;
 mod joint;
 mod limit;
 mod link;
+pub mod mjcf;
 mod number;
 mod origin;
+mod pages;
 mod places;
 mod pretty;
 mod problem;
@@ -60,15 +63,16 @@ mod write;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;
-pub use explain::{codes, explain, remedy};
+pub use explain::{codes, explain, mjcf_codes, remedy};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
 pub use write::{NotUrdf, write};
 
 use context::Context;
-use element::Element;
+use dialect::Dialect;
 use finding::{Findings, Placed};
 use mozzi::{Description, Model};
+use pages::Pages;
 use places::Places;
 use source::Source;
 use std::io::Read;
@@ -125,7 +129,7 @@ pub fn load_with(path: impl AsRef<Path>, policy: Policy) -> Result<Loaded, LoadE
         file.take(bytes::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)
     });
     match read {
-        Ok(_) => parse_with(&path.to_string_lossy(), &bytes, policy),
+        Ok(_) => parse_in(path.parent(), &path.to_string_lossy(), &bytes, policy),
         Err(source) => Err(LoadError::File { path: path.to_path_buf(), source }),
     }
 }
@@ -143,17 +147,33 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, LoadErro
 /// # Errors
 /// As [`parse`].
 pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Result<Loaded, LoadError> {
+    parse_in(None, file_name, text.as_ref(), policy)
+}
+
+/// Reads a text; what it includes is searched in a folder.
+fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], policy: Policy) -> Result<Loaded, LoadError> {
     let mut findings = Findings::default();
-    let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
-    let description = if findings.has_errors() { None } else { read(&source, policy, &mut findings) };
-    let Placed { mut diagnostics, errors, is_cut } = findings.place(&source);
+    let source = Source::new(file_name, bytes::read(text, &mut findings));
+    let dialect = Dialect::of(&source.text);
+    let (mut sources, mut description) = (vec![source], None);
+    if !findings.has_errors() {
+        let mut cx = Context::new(findings, dialect);
+        let result = match dialect {
+            Dialect::Urdf => read_urdf(&sources[0], &mut cx),
+            Dialect::Mjcf => mjcf::read(&mut sources, folder, &mut cx),
+        };
+        findings = cx.findings;
+        description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));
+    }
+    let Placed { mut diagnostics, errors, is_cut } = findings.place(&sources, dialect);
+    let is_refused = |diagnostic: &Diagnostic| policy == Policy::Strict && !mjcf::is_list(diagnostic.code());
+    let refused = errors > 0 || diagnostics.iter().any(is_refused);
     if policy == Policy::Strict {
-        diagnostics = diagnostics.into_iter().map(Diagnostic::into_error).collect();
+        let strictly = |found| if is_refused(&found) { found.into_error() } else { found };
+        diagnostics = diagnostics.into_iter().map(strictly).collect();
     }
     match description {
-        Some(description) if errors == 0 && (policy != Policy::Strict || diagnostics.is_empty()) => {
-            Ok(Loaded { description, warnings: diagnostics })
-        }
+        Some(description) if !refused => Ok(Loaded { description, warnings: diagnostics }),
         _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, is_cut }),
     }
 }
@@ -178,26 +198,24 @@ pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
     }
 }
 
-/// From text to a description, all findings noted.
-fn read(source: &Source, policy: Policy, findings: &mut Findings) -> Option<Description> {
-    let document = match syntax::parse(source) {
-        Ok(document) => document,
+/// From a text of URDF to a description, all findings noted.
+fn read_urdf(source: &Source, cx: &mut Context) -> Option<(Description, Places)> {
+    match syntax::parse(source, Dialect::Urdf) {
+        Ok(document) => robot::read(&Pages::single(source, document).root("robot")?, cx),
         Err(finding) => {
-            findings.add(finding);
-            return None;
+            cx.findings.add(finding);
+            None
         }
-    };
-    let mut cx = Context::default();
-    std::mem::swap(&mut cx.findings, findings);
-    let root = Element::new(document.root_element(), &source.text, "robot".to_string());
-    let result = robot::read(&root, &mut cx);
-    *findings = cx.findings;
-    let (mut description, places): (Description, Places) = result?;
-    if policy == Policy::Lenient {
-        repair::inertias(&mut description, &places, findings);
     }
-    problem::findings(&description, &places).into_iter().for_each(|finding| findings.add(finding));
-    Some(description)
+}
+
+/// The repairs of the policy, and what the library's own checks say.
+fn finish(mut description: Description, places: &Places, policy: Policy, findings: &mut Findings) -> Description {
+    if policy == Policy::Lenient {
+        repair::inertias(&mut description, places, findings);
+    }
+    problem::findings(&description, places).into_iter().for_each(|finding| findings.add(finding));
+    description
 }
 
 /// The README's example, run with the documentation's tests.

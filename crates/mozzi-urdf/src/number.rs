@@ -84,6 +84,16 @@ pub(crate) fn number(word: &str) -> Result<f64, NotANumber> {
 
 /// Exactly N numbers, separated by white space.
 pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], NotNumbers> {
+    let (values, found) = up_to::<N>(text)?;
+    match found {
+        0 if N == 1 => Err(NotNumbers::Word { span: 0..text.len(), word: String::new(), why: NotANumber::Empty }),
+        _ if found == N => Ok(values),
+        _ => Err(NotNumbers::Count { found, expected: N }),
+    }
+}
+
+/// The first N of the numbers of a text, zeros after them where they are fewer, and how many they are.
+pub(crate) fn up_to<const N: usize>(text: &str) -> Result<([f64; N], usize), NotNumbers> {
     let is_space = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n');
     let start = |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
     let (mut values, mut found) = ([0.0; N], 0);
@@ -101,11 +111,7 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], NotNumbers
         }
         found += 1;
     }
-    match found {
-        0 if N == 1 => Err(NotNumbers::Word { span: 0..text.len(), word: String::new(), why: NotANumber::Empty }),
-        _ if found == N => Ok(values),
-        _ => Err(NotNumbers::Count { found, expected: N }),
-    }
+    Ok((values, found))
 }
 
 #[cfg(test)]

@@ -40,6 +40,12 @@ impl Place {
         }
     }
 
+    /// The span of an attribute's value; of the element itself where there is none.
+    pub fn span(&self, attribute: &str) -> Range<usize> {
+        let found = self.attributes.iter().find(|(known, _)| *known == attribute);
+        found.map_or(&self.element, |(_, span)| span).clone()
+    }
+
     pub fn has_reported(&self, attribute: &str) -> bool {
         self.reported.contains(&attribute)
     }
@@ -53,6 +59,7 @@ pub(crate) struct Places {
     pub joints: Vec<Place>,
     /// Links or joints are missing, for a reason that was reported.
     pub is_partial: bool,
+    pub frames: Vec<Place>,
 }
 
 impl Places {
@@ -60,16 +67,15 @@ impl Places {
         let place = match element {
             Element::Link(i) => self.links.get(i),
             Element::Joint(i) => self.joints.get(i),
-            Element::Robot | Element::Frame(_) => None,
+            Element::Frame(i) => self.frames.get(i),
+            Element::Robot => None,
         };
         place.unwrap_or(&self.robot)
     }
 
     /// The span of an attribute's value; of the element itself where there is none.
     pub fn span(&self, element: Element, attribute: &str) -> Range<usize> {
-        let place = self.of(element);
-        let found = place.attributes.iter().find(|(known, _)| *known == attribute);
-        found.map_or(&place.element, |(_, span)| span).clone()
+        self.of(element).span(attribute)
     }
 
     pub fn has_reported(&self, element: Element, attribute: &str) -> bool {

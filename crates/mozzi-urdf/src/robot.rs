@@ -52,7 +52,6 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
 fn wrong_root(root: &Element) -> Finding {
     let message = format!("the root element is <{}>, expected <robot>", shown(root.written_name()));
     let help = match root.name() {
-        "mujoco" | "mujocoinclude" => Some("this is a MuJoCo model (MJCF), not a URDF".to_string()),
         "sdf" => Some("this is an SDF model, not a URDF".to_string()),
         other => did_you_mean(other, ["robot"]),
     };

@@ -8,6 +8,8 @@ use std::sync::Arc;
 pub(crate) struct Source {
     pub name: Arc<str>,
     pub text: Arc<str>,
+    /// The place of its first byte among all texts of a robot.
+    pub base: usize,
 }
 
 /// A place in a text, both counted from 1, columns in characters.
@@ -19,7 +21,17 @@ pub(crate) struct Position {
 
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
-        Source { name: name.into(), text: text.into() }
+        Source { name: name.into(), text: text.into(), base: 0 }
+    }
+
+    /// The same, after other texts.
+    pub fn at(self, base: usize) -> Self {
+        Source { base, ..self }
+    }
+
+    /// A place of this text among all.
+    pub fn place(&self, span: Range<usize>) -> Range<usize> {
+        span.start + self.base..span.end + self.base
     }
 
     /// The byte of a line and column, as the XML parser counts them; the end of the text when it is shorter.

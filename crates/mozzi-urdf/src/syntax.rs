@@ -1,5 +1,6 @@
 //! The XML parser's complaints, at their places and in our words.
 
+use crate::dialect::Dialect;
 use crate::finding::Finding;
 use crate::scan::{Unfinished, scan};
 use crate::source::Source;
@@ -10,16 +11,22 @@ use roxmltree::{Document, Error, ParsingOptions};
 const MOST_NODES: u32 = 2_000_000;
 
 /// The parsed text, or the first error of its syntax.
-pub(crate) fn parse(source: &Source) -> Result<Document<'_>, Finding> {
+pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
     if source.text.trim().is_empty() {
-        return Err(Finding::error("empty", 0..0, "the file is empty, expected a <robot>"));
+        let message = format!("the file is empty, expected a <{}>", dialect.root());
+        return Err(Finding::error("empty", source.place(0..0), message));
     }
-    let unfinished = scan(&source.text)?;
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(&source.text, options).map_err(|error| explain(source, error, unfinished))
+    parse_text(source, dialect).map_err(|finding| Finding { span: source.place(finding.span.clone()), ..finding })
 }
 
-fn explain(source: &Source, error: Error, unfinished: Option<Unfinished>) -> Finding {
+/// The same, places counted from the text's beginning.
+fn parse_text(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
+    let unfinished = scan(&source.text)?;
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(&source.text, options).map_err(|error| explain(source, dialect, error, unfinished))
+}
+
+fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<Unfinished>) -> Finding {
     let at = |pos: roxmltree::TextPos| {
         let start = source.offset(pos.row as usize, pos.col as usize);
         let rest = &source.text[start.min(source.text.len())..];
@@ -43,7 +50,8 @@ fn explain(source: &Source, error: Error, unfinished: Option<Unfinished>) -> Fin
     }
     match error {
         Error::NoRootNode => {
-            syntax(0..0, "the file has no element, expected a <robot>".to_string()).help("is it the right file?")
+            let message = format!("the file has no element, expected a <{}>", dialect.root());
+            syntax(0..0, message).help("is it the right file?")
         }
         Error::UnexpectedCloseTag(expected, found, pos) => {
             let (expected, found) = (shown(&expected), shown(&found));
@@ -53,7 +61,7 @@ fn explain(source: &Source, error: Error, unfinished: Option<Unfinished>) -> Fin
         Error::UnknownNamespace(prefix, pos) => {
             let prefix = shown(&prefix);
             syntax(at(pos), format!("the prefix `{prefix}:` is not declared"))
-                .help(format!("declare it on the robot: <robot xmlns:{prefix}=\"…\">"))
+                .help(format!("declare it on the root: <{} xmlns:{prefix}=\"…\">", dialect.root()))
         }
         Error::DuplicatedAttribute(name, pos) => {
             syntax(at(pos), format!("the attribute `{}` stands twice on one element", shown(&name)))

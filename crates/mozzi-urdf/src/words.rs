@@ -11,7 +11,7 @@ pub(crate) struct Vocabulary {
     pub silent: &'static [&'static str],
 }
 
-const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], many: &[], silent: &[] };
+pub(crate) const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], many: &[], silent: &[] };
 
 pub(crate) const ROBOT: Vocabulary = Vocabulary {
     attributes: &["name", "version"],

@@ -1,69 +1,86 @@
 //! `mozzi check`: is the file a robot, and what is odd about it?
 
 use super::info;
-use crate::failure::{Failure, Result, say};
-use crate::json;
-use clap::Args;
-use mozzi_urdf::{Diagnostic, Severity};
+use crate::failure::{self, Failure, Result};
+use crate::robot::PolicyArguments;
+use clap::{Args, ValueEnum};
+use mozzi_urdf::{Diagnostic, LoadError, Severity};
 use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct CheckArguments {
-    /// A URDF file, or the name of an embedded robot
+    /// A robot's file, or the name of an embedded robot
     model: String,
-    /// Call warnings errors
-    #[arg(long)]
-    strict: bool,
-    /// Print one JSON object instead of text
-    #[arg(long)]
+    /// Text with excerpts on standard error, or one JSON object a line on standard output for each diagnostic
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// The same as --format json
+    #[arg(long, conflicts_with = "format")]
     json: bool,
+    #[command(flatten)]
+    policy: PolicyArguments,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
 }
 
 pub fn run(arguments: &CheckArguments) -> Result<String> {
-    match mozzi_urdf::open(&arguments.model) {
-        Ok(loaded) => {
-            let warnings = loaded.warnings.clone();
-            let fine = warnings.is_empty() || !arguments.strict;
-            let model = loaded.build()?;
-            if arguments.json {
-                let text = json::print(&object(&arguments.model, fine, &warnings, None));
-                return if fine { Ok(text) } else { Err(Failure::Answered(text)) };
-            }
-            warnings.iter().for_each(say);
-            let count = match warnings.len() {
-                0 => "no warnings".to_string(),
-                1 => "1 warning".to_string(),
-                many => format!("{many} warnings"),
-            };
-            let verdict = if fine { "is a robot that can be computed" } else { "is refused, as --strict asks" };
-            let text = format!("{} {verdict}, {count}: {}\n", arguments.model, info::headline(&model));
-            if fine { Ok(text) } else { Err(Failure::Answered(text)) }
-        }
-        Err(error) if arguments.json => {
-            let headline = error.to_string().lines().next().unwrap_or_default().to_string();
-            let report = object(&arguments.model, false, error.diagnostics(), Some(headline));
-            Err(Failure::Answered(json::print(&report)))
-        }
-        Err(error) => Err(error.into()),
+    let name = &arguments.model;
+    let answer = arguments.policy.open(name);
+    if arguments.json || arguments.format == Format::Json {
+        return match answer {
+            Ok(loaded) => Ok(lines(&loaded.warnings)),
+            Err(error) if error.diagnostics().is_empty() => Err(Failure::Answered(no_place(name, &error))),
+            Err(error) => Err(Failure::Answered(lines(error.diagnostics()))),
+        };
     }
+    let loaded = answer?;
+    loaded.warnings.iter().for_each(failure::say);
+    let count = match loaded.warnings.len() {
+        0 => "no warnings".to_string(),
+        1 => "1 warning".to_string(),
+        many => format!("{many} warnings"),
+    };
+    let model = loaded.build()?;
+    failure::write(&format!("{name} is a robot that can be computed, {count}: {}\n", info::headline(&model)));
+    Ok(String::new())
 }
 
-fn object(model: &str, fine: bool, diagnostics: &[Diagnostic], error: Option<String>) -> Value {
-    let diagnostic = |found: &Diagnostic| {
-        json!({
-            "severity": match found.severity() { Severity::Error => "error", Severity::Warning => "warning" },
+fn lines(diagnostics: &[Diagnostic]) -> String {
+    let line = |found: &Diagnostic| {
+        let severity = match found.severity() {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        line(json!({
+            "severity": severity,
             "code": found.code(),
+            "message": found.message(),
             "file": found.file(),
             "line": found.line(),
             "column": found.column(),
-            "message": found.message(),
             "help": found.help(),
-        })
+        }))
     };
-    json!({
-        "model": model,
-        "ok": fine,
-        "error": error,
-        "diagnostics": diagnostics.iter().map(diagnostic).collect::<Value>(),
-    })
+    diagnostics.iter().map(line).collect()
+}
+
+/// There is no file to point at.
+fn no_place(name: &str, error: &LoadError) -> String {
+    line(json!({
+        "severity": "error",
+        "code": null,
+        "message": error.to_string(),
+        "file": name,
+        "line": null,
+        "column": null,
+        "help": null,
+    }))
+}
+
+fn line(object: Value) -> String {
+    format!("{object}\n")
 }

@@ -1,6 +1,8 @@
 //! One file for each subcommand: convert, check, call, name the error.
 
 pub mod check;
+pub mod convert;
+pub mod explain;
 pub mod forward_dynamics;
 pub mod info;
 pub mod inverse_dynamics;

@@ -1,6 +1,7 @@
 //! `mozzi screws`: the robot as the book's lists.
 
-use super::{info, python, terms_json};
+use super::python::literals;
+use super::{info, terms_json};
 use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::TWIST;
@@ -28,18 +29,24 @@ pub fn run(arguments: &ScrewsArguments) -> Result<String> {
     if !arguments.python {
         return Ok(page(&model, &lists));
     }
+    python(&model)
+}
+
+/// The robot as Python's literals.
+pub fn python(model: &Model) -> Result<String> {
+    let lists = model.screws();
     let serial = lists.parents.iter().enumerate().all(|(i, &parent)| parent == i);
     if !serial || model.is_coupled() {
         return Err(Failure::wrong(format!(
-            "--python: `{}` has {}, and the Modern Robotics package knows serial chains of independent joints only; \
-             --json prints the lists of any robot",
+            "Python: `{}` has {}, and the Modern Robotics package knows serial chains of independent joints only; \
+             JSON has the lists of any robot",
             model.description().name,
             if serial { "joints that follow others" } else { "branches" }
         )));
     }
     model.end_effector()?; // or an error that names the candidates
     let tip = lists.end_effector.as_ref().map_or(SE3::identity(), |&(_, T)| T);
-    Ok(python::literals(&model, &lists, tip))
+    Ok(literals(model, &lists, tip))
 }
 
 /// Each moving link's screw in a table: number, joint, six entries.

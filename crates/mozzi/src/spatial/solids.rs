@@ -21,6 +21,13 @@ use core::f64::consts::PI;
 pub enum Solid {
     /// A box with these edge lengths along x, y, z.
     Box([f64; 3]),
+    /// A cylinder along z with a half ball on either end.
+    Capsule {
+        /// m.
+        radius: f64,
+        /// Of the cylinder alone: m.
+        length: f64,
+    },
     /// A circular cylinder along z.
     Cylinder {
         /// m.
@@ -42,6 +49,7 @@ impl Solid {
     pub fn volume(self) -> f64 {
         match self {
             Solid::Box([x, y, z]) => x * y * z,
+            Solid::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
             Solid::Cylinder { radius, length } => PI * radius * radius * length,
             Solid::Ellipsoid([a, b, c]) => 4.0 / 3.0 * PI * a * b * c,
             Solid::Sphere { radius } => 4.0 / 3.0 * PI * radius * radius * radius,
@@ -53,6 +61,16 @@ impl Solid {
         // means of x², y², z² over the solid
         let [x, y, z] = match self {
             Solid::Box(edges) => edges.map(|e| e * e / 12.0),
+            Solid::Capsule { radius, length } => {
+                // parts of the whole, 1 for none where both vanish; of a half ball, z has the mean 3r/8 and z² the mean r²/5
+                let (cylinder, ball) = (length, 4.0 / 3.0 * radius);
+                let whole = if cylinder + ball > 0.0 { cylinder + ball } else { 1.0 };
+                let half = length / 2.0;
+                let mean = |in_cylinder: f64, in_ball: f64| (cylinder * in_cylinder + ball * in_ball) / whole;
+                let x = mean(radius * radius / 4.0, radius * radius / 5.0);
+                let ends = half * half + 0.75 * half * radius + radius * radius / 5.0;
+                [x, x, mean(half * half / 3.0, ends)]
+            }
             Solid::Cylinder { radius, length } => {
                 [radius * radius / 4.0, radius * radius / 4.0, length * length / 12.0]
             }
@@ -94,8 +112,11 @@ mod tests {
     #[test]
     fn against_the_integrals() {
         type Inside = fn(f64, f64, f64) -> bool;
-        let cases: [(Solid, [f64; 3], Inside); 4] = [
+        let cases: [(Solid, [f64; 3], Inside); 5] = [
             (Solid::Box([0.2, 0.4, 0.6]), [0.1, 0.2, 0.3], |_, _, _| true),
+            (Solid::Capsule { radius: 0.3, length: 1.0 }, [0.3, 0.3, 0.8], |x, y, z| {
+                x * x + y * y + (z.abs() - 0.5).max(0.0).powi(2) <= 0.09
+            }),
             (Solid::Cylinder { radius: 0.3, length: 1.0 }, [0.3, 0.3, 0.5], |x, y, _| x * x + y * y <= 0.09),
             (Solid::Ellipsoid([0.3, 0.2, 0.5]), [0.3, 0.2, 0.5], |x, y, z| {
                 x * x / 0.09 + y * y / 0.04 + z * z / 0.25 <= 1.0

@@ -1,0 +1,64 @@
+//! A robot written and read again is the same robot.
+
+mod common;
+
+use common::{assert_close, complaint, file, folder, json, rows, text};
+
+const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracles/test_tree.urdf");
+
+#[test]
+fn from_urdf_to_json_to_urdf_the_dynamics_stay() {
+    let folder = folder("convert");
+    for (name, input) in [("ur5", "ur5"), ("panda", "panda"), ("tree", TREE)] {
+        let path = |suffix: &str| folder.join(format!("{name}.{suffix}")).to_str().expect("text").to_string();
+        let (first, second) = (path("json"), path("urdf"));
+        assert!(text(&["convert", input, &first]).contains(" kg"));
+        text(&["convert", &first, &second]);
+        let n = json(&["info", input])["n"].as_u64().expect("n") as usize;
+        let state = |from: f64| (0..n).map(|j| (from + 0.7 * j as f64).sin().to_string()).collect::<Vec<_>>().join(",");
+        let at = |robot: &str| json(&["terms", robot, "--theta", &state(0.3), "--dtheta", &state(1.1)]);
+        let expected = at(input);
+        for robot in [&first, &second] {
+            let found = at(robot);
+            assert_eq!(found["joints"], expected["joints"]);
+            assert_close(&rows(&found["mass_matrix"]).concat(), &rows(&expected["mass_matrix"]).concat(), 1e-12);
+            let forces = |terms: &serde_json::Value| common::numbers(&terms["bias_forces"]);
+            let scale = forces(&expected).iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+            assert_close(&forces(&found), &forces(&expected), 1e-12 * scale);
+        }
+        let again = path("again.json");
+        text(&["convert", &first, &again]);
+        let read = |path: &str| std::fs::read_to_string(path).expect("a file");
+        assert_eq!(read(&first), read(&again), "JSON reads back bit by bit");
+    }
+}
+
+#[test]
+fn python_and_what_cannot_be_converted() {
+    let folder = folder("not_converted");
+    let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
+    text(&["convert", "ur5", &path("ur5.py")]);
+    assert_eq!(std::fs::read_to_string(path("ur5.py")).expect("a file"), text(&["screws", "ur5", "--python"]));
+    let says = |arguments: &[&str], words: &str| {
+        let (code, message) = complaint(arguments);
+        assert!(code == 1 && message.contains(words), "{message}");
+    };
+    says(&["convert", "ur5", &path("ur5.xml")], "expected a name that ends in .urdf, .json or .py");
+    says(&["convert", "panda", &path("panda.py")], "serial chains");
+    let robot = path("ur5.json");
+    text(&["convert", "ur5", &robot]);
+    let good: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&robot).expect("it")).expect("JSON");
+    let broken = |edit: &dyn Fn(&mut serde_json::Value)| {
+        let mut value = good.clone();
+        edit(&mut value);
+        file(&folder, "broken.json", &value.to_string())
+    };
+    says(
+        &["info", &broken(&|v| v["joints"][1]["damping"] = "x".into())],
+        "joints[1].damping is \"x\", expected a number",
+    );
+    says(&["info", &broken(&|v| v["links"][1]["G"][3][3] = 99.into())], "links[1].G is ");
+    says(&["info", &broken(&|v| v["lists"]["S"][1][4] = 7.into())], "lists.S is not what links and joints say");
+    says(&["info", &broken(&|v| v["gravity"] = serde_json::json!([0, 1]))], "gravity is [0,1], expected 3 numbers");
+    says(&["info", &file(&folder, "no.json", "{")], "is no JSON");
+}

@@ -1,0 +1,67 @@
+//! The two languages that robots are read in.
+
+/// What a text is written in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Dialect {
+    #[default]
+    Urdf,
+    Mjcf,
+}
+
+impl Dialect {
+    /// By the first element of the text, whatever the file is called; URDF where there is none.
+    pub fn of(text: &str) -> Self {
+        let mut rest = text;
+        while let Some((_, after)) = rest.split_once('<') {
+            let end = match after {
+                _ if after.starts_with("!--") => "-->",
+                _ if after.starts_with(['?', '!']) => ">",
+                _ if after.starts_with("mujoco") => return Dialect::Mjcf,
+                _ => return Dialect::Urdf,
+            };
+            rest = after.split_once(end).map_or("", |(_, rest)| rest);
+        }
+        Dialect::Urdf
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Dialect::Urdf => "URDF",
+            Dialect::Mjcf => "MJCF",
+        }
+    }
+
+    /// The name of the root element.
+    pub fn root(self) -> &'static str {
+        match self {
+            Dialect::Urdf => "robot",
+            Dialect::Mjcf => "mujoco",
+        }
+    }
+
+    /// What its codes begin with.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Dialect::Urdf => "mozzi::urdf::",
+            Dialect::Mjcf => "mozzi::mjcf::",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_element_tells() {
+        for (text, dialect) in [
+            ("<?xml version='1.0'?>\n<!-- <robot> -->\n<mujoco model='a'>", Dialect::Mjcf),
+            ("<mujocoinclude>", Dialect::Mjcf),
+            ("<robot><mujoco/></robot>", Dialect::Urdf),
+            ("<!-- <mujoco>", Dialect::Urdf),
+            ("", Dialect::Urdf),
+        ] {
+            assert_eq!(Dialect::of(text), dialect, "{text}");
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! `<worldbody>` and `<body>`: links, and the joints before them.
+
+use super::Model;
+use super::class::Class;
+use super::compiler::FromGeoms;
+use super::contents::{Contents, Inside};
+use super::geom::Mass;
+use super::orientation::{pose, to_z, unit};
+use super::tree::{Link, Name, Site};
+use super::{attributes::Item, words};
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::places::Place;
+use crate::words::shown;
+use mozzi::{SE3, SpatialInertia, Vec3};
+
+/// A body that carries others.
+#[derive(Clone, Copy)]
+struct Carrier {
+    link: usize,
+    /// No joint moves it.
+    is_static: bool,
+    depth: usize,
+}
+
+impl<'a> Model<'a> {
+    /// The tree of bodies; what stands in the world itself does not move.
+    pub fn world(&mut self, element: &Element<'a>, cx: &mut Context) {
+        let element = element.called("worldbody");
+        element.check_attributes(&words::WORLD, cx);
+        element.check_children(&words::WORLD, cx);
+        let class = self.classes.named(&element, "childclass", Class::MAIN, cx);
+        let mut contents = Contents::default();
+        self.gather(&element, SE3::identity(), class, 0, &mut contents, cx);
+        for joint in &contents.joints {
+            let message = "worldbody: has a joint, but the world does not move";
+            cx.findings.error("misplaced_joint", joint.item.element.span(), message);
+        }
+        contents.geoms.iter().for_each(|geom| geom.item.element.check_attributes(&words::GEOM, cx));
+        self.rest(contents, Carrier { link: 0, is_static: true, depth: 0 }, cx);
+    }
+
+    /// A body, and all that it carries.
+    fn body(&mut self, inside: Inside<'a>, carrier: Carrier, cx: &mut Context) {
+        let element = inside.item.element.called("body");
+        self.tree.bodies += 1;
+        let name = Name::of(&element, format!("body{}", self.tree.bodies), cx);
+        let element = element.called(format!("body `{}`", name.shown()));
+        let item = Item::plain(&element);
+        element.check_attributes(&words::BODY, cx);
+        element.check_children(&words::BODY, cx);
+        let class = self.classes.named(&element, "childclass", inside.class, cx);
+        let mut origin = inside.T * pose(&item, &self.compiler, cx);
+        if item.number("gravcomp", 0.0, cx) != 0.0 {
+            self.ignored.force("gravcomp", &item, "gravcomp", "a compensation of gravity");
+        }
+        if item.flag("mocap", false, cx) {
+            self.ignored.force("mocap", &item, "mocap", "a motion that is given");
+        }
+        let mut contents = Contents::default();
+        self.gather(&element, SE3::identity(), class, carrier.depth, &mut contents, cx);
+
+        let mut place = Place::new(element.span());
+        if let Some(value) = element.attribute("name") {
+            place.set("name", value.span);
+        }
+        let is_static = carrier.is_static && contents.joints.is_empty();
+        let inertia = self.inertia(&element, &contents, &mut place, is_static, cx);
+        // joints act one after the other, the first at the parent; between them are massless links
+        let mut parent = carrier.link;
+        let count = contents.joints.len();
+        for (i, joint) in contents.joints.iter().enumerate() {
+            let child = self.tree.links.len();
+            let read = self.joint(joint, [parent, child], origin, cx);
+            if i + 1 < count {
+                let name = Name::generated(format!("{}:{}", name.shown(), read));
+                let place = Place::new(joint.item.element.span());
+                self.tree.links.push(Link { name, inertia: SpatialInertia::zero(), place });
+            }
+            (parent, origin) = (child, SE3::identity());
+        }
+        let link = if count == 0 { self.tree.links.len() } else { parent };
+        if count == 0 {
+            let fixed = Name::generated(format!("{}:fixed", name.shown()));
+            self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
+        }
+        self.tree.links.push(Link { name, inertia, place });
+        self.rest(contents, Carrier { link, is_static, depth: carrier.depth + 1 }, cx);
+    }
+
+    /// The sites of a body, and the bodies that it carries.
+    fn rest(&mut self, contents: Contents<'a>, carrier: Carrier, cx: &mut Context) {
+        for site in &contents.sites {
+            self.site(site, carrier.link, cx);
+        }
+        for body in contents.bodies {
+            self.body(body, carrier, cx);
+        }
+    }
+
+    /// A site is a frame, if it has a name.
+    fn site(&mut self, site: &Inside, link: usize, cx: &mut Context) {
+        let Inside { item, T, .. } = site;
+        item.element.check_attributes(&words::SITE, cx);
+        let name = Name::of(&item.element.called("site"), String::new(), cx);
+        let mut frame = pose(item, &self.compiler, cx);
+        if let Some([a, b, c, d, e, f]) = item.vector::<6>("fromto", cx) {
+            let (from, to) = (Vec3([a, b, c]), Vec3([d, e, f]));
+            let R = unit(to - from).map_or(frame.R, to_z);
+            frame = SE3 { R, p: (from + to) * 0.5 };
+        }
+        let Some(name) = name.given else { return };
+        let mut place = Place::new(item.element.span());
+        if let Some(value) = item.element.attribute("name") {
+            place.set("name", value.span);
+        }
+        self.tree.sites.push(Site { name, link, T: *T * frame, place });
+    }
+
+    /// The inertia of a body in its frame: given, or the sum of its geoms'.
+    fn inertia(
+        &mut self,
+        element: &Element<'a>,
+        contents: &Contents<'a>,
+        place: &mut Place,
+        is_static: bool,
+        cx: &mut Context,
+    ) -> SpatialInertia {
+        let (inertial, from_geoms) = (contents.inertial.as_ref(), self.compiler.from_geoms);
+        let given = inertial.map(|inertial| self.inertial(inertial, place, cx));
+        let is_given = from_geoms == FromGeoms::Never || from_geoms == FromGeoms::Auto && given.is_some();
+        let mut sum = SpatialInertia::zero();
+        for geom in &contents.geoms {
+            let named = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
+            let subject = named.unwrap_or_else(|| format!("{}: geom", element.subject));
+            let item = Item { element: geom.item.element.called(subject), ..geom.item.clone() };
+            item.element.check_attributes(&words::GEOM, cx);
+            if is_given {
+                continue;
+            }
+            match self.mass_of(&item, geom.T, cx) {
+                Mass::Known(inertia) => sum += inertia,
+                // what the checks say of a mass that is not known is an echo
+                Mass::Wrong => place.report("mass"),
+                Mass::Mesh if is_static => self.ignored.mesh(&item),
+                Mass::Mesh => {
+                    let help = "give the body an <inertial>, or the geom the mass 0; MuJoCo writes inertias into the file that \
+                                it saves with the compiler's saveinertial";
+                    let message = "is a mesh, whose inertia would be needed: mozzi reads no meshes";
+                    cx.findings.add(item.error("mesh_inertia", "mesh", message).help(help));
+                    place.report("mass");
+                }
+            }
+        }
+        let inertia = if is_given { given.unwrap_or_else(SpatialInertia::zero) } else { sum };
+        self.bounded(inertia)
+    }
+
+    /// Scales all bodies to the mass that the compiler is told to.
+    pub fn scale_to_total_mass(&mut self, cx: &mut Context) {
+        let Some(total) = self.compiler.total_mass else { return };
+        let mass: f64 = self.tree.links.iter().map(|link| link.inertia.mass).sum();
+        if !(mass > 0.0) {
+            let message =
+                format!("compiler: settotalmass: the bodies have the mass {mass}, which cannot become {total}");
+            cx.findings.add(Finding::error("no_mass", self.tree.links[0].place.span(""), message));
+            return;
+        }
+        let k = total / mass;
+        for SpatialInertia { mass, mc, I } in self.tree.links.iter_mut().map(|link| &mut link.inertia) {
+            (*mass, *mc, *I) = (*mass * k, *mc * k, *I * k);
+        }
+    }
+}

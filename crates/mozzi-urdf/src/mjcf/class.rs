@@ -1,0 +1,113 @@
+//! `<default>`: classes of values for attributes that are not written.
+
+use super::attributes::Item;
+use super::words;
+use crate::context::Context;
+use crate::element::{Element, Value};
+use crate::finding::Finding;
+use crate::spelling::did_you_mean;
+use crate::words::{Vocabulary, shown};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// The values of attributes, outermost class first.
+pub(crate) type Values<'a> = BTreeMap<&'static str, Vec<Value<'a>>>;
+
+/// The place of a class among all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Class(usize);
+
+impl Class {
+    /// The outermost one.
+    pub const MAIN: Class = Class(0);
+}
+
+/// All classes; a class holds what it inherits, as it was when the class was made.
+pub(crate) struct Classes<'a> {
+    names: BTreeMap<String, Class>,
+    values: Vec<BTreeMap<&'static str, Rc<Values<'a>>>>,
+}
+
+/// What a default gives to which elements, and the attributes that are read.
+fn of_tag(tag: &str) -> Option<(&'static str, &'static Vocabulary)> {
+    Some(match tag {
+        "joint" => ("joint", &words::JOINT),
+        "geom" => ("geom", &words::GEOM),
+        "site" => ("site", &words::SITE),
+        "equality" => ("equality", &words::COUPLING),
+        "tendon" => ("tendon", &words::TENDON),
+        // all kinds of actuators share their defaults
+        tag if words::ACTUATORS.contains(&tag) => ("actuator", &words::ACTUATOR),
+        _ => return None,
+    })
+}
+
+impl<'a> Classes<'a> {
+    pub fn read<'s>(sections: impl Iterator<Item = &'s Element<'a>>, cx: &mut Context) -> Self
+    where
+        'a: 's,
+    {
+        let mut classes = Classes { names: BTreeMap::new(), values: vec![BTreeMap::new()] };
+        for section in sections {
+            if let Some(name) = section.attribute("class") {
+                classes.names.insert(name.text.to_string(), Class::MAIN);
+            }
+            classes.fill(section, Class::MAIN, 0, cx);
+        }
+        classes.names.entry("main".to_string()).or_insert(Class::MAIN);
+        classes
+    }
+
+    /// The values of one class, then the classes inside it.
+    fn fill(&mut self, element: &Element<'a>, class: Class, depth: usize, cx: &mut Context) {
+        element.check_attributes(&words::DEFAULT, cx);
+        element.check_children(&words::DEFAULT, cx);
+        if super::contents::is_too_deep(element, depth, cx) {
+            return;
+        }
+        for child in element.elements() {
+            let Some((tag, words)) = of_tag(child.name()) else { continue };
+            if tag != "actuator" {
+                child.check_attributes(words, cx);
+            }
+            let values = Rc::make_mut(self.values[class.0].entry(tag).or_default());
+            for &name in words.attributes {
+                if let Some(value) = child.attribute(name) {
+                    values.entry(name).or_default().push(value);
+                }
+            }
+        }
+        for child in element.elements().filter(|child| child.name() == "default") {
+            let Some(name) = child.required_name("class", cx) else { continue };
+            if self.names.contains_key(name.text) {
+                let message = format!("default: the class `{}` is taken, expected a name of its own", shown(name.text));
+                cx.findings.error("duplicate_name", name.span, message);
+                continue;
+            }
+            let inner = Class(self.values.len());
+            self.values.push(self.values[class.0].clone());
+            self.names.insert(name.text.to_string(), inner);
+            self.fill(&child.called(format!("default `{}`", shown(name.text))), inner, depth + 1, cx);
+        }
+    }
+
+    /// The class that an attribute names, or another.
+    pub fn named(&self, element: &Element<'a>, attribute: &str, otherwise: Class, cx: &mut Context) -> Class {
+        let Some(value) = element.attribute(attribute) else { return otherwise };
+        if let Some(&class) = self.names.get(value.text) {
+            return class;
+        }
+        let message = format!("{}: {attribute}: there is no default class `{}`", element.subject, shown(value.text));
+        let known = self.names.keys().map(String::as_str).take(1000);
+        let help = did_you_mean(value.text, known);
+        cx.findings.add(Finding::error("unknown_class", value.span, message).maybe_help(help));
+        otherwise
+    }
+
+    /// An element with the values of its class, or of the class around it.
+    pub fn item(&self, element: Element<'a>, tag: &str, around: Class, cx: &mut Context) -> Item<'a> {
+        let class = self.named(&element, "class", around, cx);
+        let defaults = self.values[class.0].get(tag).cloned();
+        Item::new(element, defaults)
+    }
+}

@@ -1,0 +1,109 @@
+//! `<compiler>`: how the numbers of a model are meant.
+
+use super::attributes::Item;
+use super::words;
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::words::shown;
+use mozzi::{SO3, Vec3};
+
+/// Where the inertia of a body is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FromGeoms {
+    Never,
+    Always,
+    /// Where a body has no `<inertial>`.
+    Auto,
+}
+
+/// The settings that matter here.
+pub(crate) struct Compiler {
+    degrees: bool,
+    /// Axis, and does it turn with the frame?
+    sequence: [(usize, bool); 3],
+    pub autolimits: bool,
+    pub from_geoms: FromGeoms,
+    pub groups: [f64; 2],
+    pub bound_mass: f64,
+    pub bound_inertia: f64,
+    pub balance: bool,
+    pub total_mass: Option<f64>,
+}
+
+impl Compiler {
+    /// Of several sections, the last that says something counts.
+    pub fn read<'a: 's, 's>(sections: impl Iterator<Item = &'s Element<'a>>, cx: &mut Context) -> Self {
+        let mut compiler = Compiler {
+            degrees: true,
+            sequence: [(0, true), (1, true), (2, true)],
+            autolimits: true,
+            from_geoms: FromGeoms::Auto,
+            groups: [0.0, 5.0],
+            bound_mass: 0.0,
+            bound_inertia: 0.0,
+            balance: false,
+            total_mass: None,
+        };
+        for section in sections {
+            compiler.take(&Item::plain(&section.called("compiler")), cx);
+        }
+        compiler
+    }
+
+    fn take(&mut self, item: &Item, cx: &mut Context) {
+        item.element.check_attributes(&words::COMPILER, cx);
+        item.element.check_children(&words::COMPILER, cx);
+        if let Some(angle) = item.word("angle", &["degree", "radian"], cx) {
+            self.degrees = angle == "degree";
+        }
+        if item.word("coordinate", &["local", "global"], cx) == Some("global") {
+            let finding = item.error("global_coordinates", "coordinate", "coordinate: is `global`, expected `local`");
+            let help = "save the model with MuJoCo 2.3.3 or older, which writes local coordinates";
+            cx.findings.add(finding.help(help));
+        }
+        if let Some(value) = item.value("eulerseq") {
+            let axis = |c: char| Some(("xyz".find(c.to_ascii_lowercase())?, c.is_ascii_lowercase()));
+            let axes: Option<Vec<(usize, bool)>> = value.text.chars().take(4).map(axis).collect();
+            match axes.as_deref() {
+                Some(&[a, b, c]) => self.sequence = [a, b, c],
+                _ => {
+                    let message = format!("compiler: eulerseq: is `{}`, expected three axes", shown(value.text));
+                    let help = "such as `xyz`, which turn with the frame, or `XYZ`, which do not";
+                    cx.findings.add(Finding::error("unknown_word", value.span, message).help(help));
+                }
+            }
+        }
+        self.autolimits = item.flag("autolimits", self.autolimits, cx);
+        self.balance = item.flag("balanceinertia", self.balance, cx);
+        match item.word("inertiafromgeom", &["auto", "true", "false"], cx) {
+            Some("true") => self.from_geoms = FromGeoms::Always,
+            Some("false") => self.from_geoms = FromGeoms::Never,
+            Some(_) => self.from_geoms = FromGeoms::Auto,
+            None => {}
+        }
+        self.groups = item.vector::<2>("inertiagrouprange", cx).unwrap_or(self.groups);
+        self.bound_mass = item.number("boundmass", self.bound_mass, cx);
+        self.bound_inertia = item.number("boundinertia", self.bound_inertia, cx);
+        if item.has("settotalmass") {
+            self.total_mass = Some(item.number("settotalmass", -1.0, cx)).filter(|&mass| mass > 0.0);
+        }
+    }
+
+    /// An angle in radians.
+    pub fn angle(&self, x: f64) -> f64 {
+        if self.degrees { x.to_radians() } else { x }
+    }
+
+    /// The rotation of three Euler angles.
+    pub fn euler(&self, angles: [f64; 3]) -> SO3 {
+        let mut R = SO3::identity();
+        for ((axis, turns), angle) in self.sequence.into_iter().zip(angles) {
+            let mut w = [0.0; 3];
+            w[axis] = self.angle(angle);
+            let turn = SO3::exp(Vec3(w));
+            R = if turns { R * turn } else { turn * R };
+        }
+        R
+    }
+}

@@ -1,0 +1,95 @@
+//! What stands in a body, frames resolved.
+
+use super::Model;
+use super::attributes::Item;
+use super::class::Class;
+use super::orientation::pose;
+use super::words;
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::scan::MOST_DEPTH;
+use mozzi::SE3;
+
+/// Something in a body, and the frame that it is told in, seen from the body's.
+pub(crate) struct Inside<'a> {
+    pub item: Item<'a>,
+    pub T: SE3,
+    /// The class of what it contains.
+    pub class: Class,
+}
+
+/// The contents of a body, each kind in the order of the file.
+#[derive(Default)]
+pub(crate) struct Contents<'a> {
+    pub joints: Vec<Inside<'a>>,
+    pub geoms: Vec<Inside<'a>>,
+    pub sites: Vec<Inside<'a>>,
+    pub bodies: Vec<Inside<'a>>,
+    pub inertial: Option<Item<'a>>,
+}
+
+/// Files may include each other, and so nest deeper than one file can.
+pub(crate) fn is_too_deep(element: &Element, depth: usize, cx: &mut Context) -> bool {
+    if depth > MOST_DEPTH {
+        let message = format!("more than {MOST_DEPTH} elements are nested here");
+        cx.findings.error("too_deep", element.span(), message);
+    }
+    depth > MOST_DEPTH
+}
+
+impl<'a> Model<'a> {
+    /// Adds what stands in an element, whose frame T is seen from the body's.
+    pub fn gather(
+        &mut self,
+        element: &Element<'a>,
+        T: SE3,
+        class: Class,
+        depth: usize,
+        contents: &mut Contents<'a>,
+        cx: &mut Context,
+    ) {
+        if is_too_deep(element, depth, cx) || cx.findings.is_full() {
+            return;
+        }
+        for child in element.elements().filter(|child| !child.has_prefix()) {
+            match child.name() {
+                tag @ ("joint" | "geom" | "site") => {
+                    let item = self.classes.item(child, tag, class, cx);
+                    let list = match tag {
+                        "joint" => &mut contents.joints,
+                        "geom" => &mut contents.geoms,
+                        _ => &mut contents.sites,
+                    };
+                    list.push(Inside { item, T, class });
+                }
+                "body" => contents.bodies.push(Inside { item: Item::plain(&child), T, class }),
+                "inertial" => contents.inertial = contents.inertial.take().or(Some(Item::plain(&child))),
+                "freejoint" => refuse_freedom(&child, "a free joint, which has six freedoms", cx),
+                "frame" => {
+                    child.check_attributes(&words::FRAME, cx);
+                    child.check_children(&words::FRAME, cx);
+                    let class = self.classes.named(&child, "childclass", class, cx);
+                    let frame = T * pose(&Item::plain(&child), &self.compiler, cx);
+                    self.gather(&child, frame, class, depth + 1, contents, cx);
+                }
+                name @ ("replicate" | "attach" | "composite" | "flexcomp") => {
+                    let message = format!("{}: has <{name}>, which mozzi does not expand", element.subject);
+                    let help = "let MuJoCo expand it: load the model there and save it as XML";
+                    cx.findings.add(Finding::error("unsupported_element", child.span(), message).help(help));
+                }
+                "camera" | "light" => self.ignored.element(&child, &element.subject),
+                "plugin" => self.ignored.force("plugin", &Item::plain(&child), "plugin", "a plugin"),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Free and ball joints have no place yet.
+pub(crate) fn refuse_freedom(joint: &Element, what: &str, cx: &mut Context) {
+    let message = format!("{}: is {what}", joint.subject);
+    let help = "mozzi computes hinges and slides; a base that moves is given to the functions as its twist and \
+                acceleration, so remove the joint of the root body to compute what it carries";
+    cx.findings.add(Finding::error("unsupported_joint", joint.span(), message).help(help));
+}

@@ -1,0 +1,104 @@
+//! What of a model does not enter the dynamics: said once per kind, with how often it stands there.
+
+use super::attributes::Item;
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::words::shown;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// The first of a kind, and how many there are.
+struct Kind {
+    code: &'static str,
+    span: Range<usize>,
+    message: String,
+    help: &'static str,
+    count: usize,
+}
+
+/// Everything left out, by kind.
+#[derive(Default)]
+pub(crate) struct Ignored(BTreeMap<String, Kind>);
+
+impl Ignored {
+    fn add(&mut self, kind: &str, first: impl FnOnce() -> Kind) {
+        match self.0.get_mut(kind) {
+            Some(known) => known.count += 1,
+            None => {
+                self.0.insert(kind.to_string(), first());
+            }
+        }
+    }
+
+    /// A force that mozzi does not compute.
+    pub fn force(&mut self, kind: &str, item: &Item, name: &str, what: &str) {
+        self.add(&format!("force {kind}"), || {
+            let value = item.value(name);
+            let text = value.as_ref().map_or_else(String::new, |value| format!(" is `{}`,", shown(value.text.trim())));
+            Kind {
+                code: "ignored_force",
+                span: value.map_or_else(|| item.element.span(), |value| value.span),
+                message: format!("{}: {name}:{text} {what}, which mozzi does not compute", item.element.subject),
+                help: "M, c, g and inverse and forward dynamics leave it out; add what it does to the joints' torques",
+                count: 1,
+            }
+        });
+    }
+
+    /// A mesh in a body that does not move.
+    pub fn mesh(&mut self, item: &Item) {
+        self.add("mesh", || Kind {
+            code: "ignored_mesh",
+            span: item.element.span(),
+            message: format!("{}: is a mesh, whose mass is not known; the body does not move", item.element.subject),
+            help: "the mass of what does not move enters nothing but the sum of masses",
+            count: 1,
+        });
+    }
+
+    /// An element that says nothing about dynamics.
+    pub fn element(&mut self, element: &Element, parent: &str) {
+        self.list(element.name(), element.span(), parent, "it is for the eye only");
+    }
+
+    /// One of a kind of elements that are ignored.
+    pub fn list(&mut self, name: &str, span: Range<usize>, parent: &str, help: &'static str) {
+        let message = || format!("{parent}: <{}> is ignored", shown(name));
+        self.add(&format!("element {name}"), || Kind {
+            code: "ignored_element",
+            span,
+            message: message(),
+            help,
+            count: 1,
+        });
+    }
+
+    /// The sections of the model that are ignored.
+    pub fn sections(&mut self, sections: &[Element]) {
+        for section in sections {
+            let help = match section.name() {
+                "actuator" => "the joints' torques are given to the functions",
+                "contact" => "contacts are not computed; give their forces as applied wrenches",
+                "sensor" => "everything that a sensor measures can be asked for",
+                "keyframe" => "states are given to the functions",
+                "custom" => "it says nothing about dynamics",
+                "extension" => "plugins are not computed",
+                "asset" | "visual" | "statistic" | "deformable" => "it is for the eye only",
+                _ => continue,
+            };
+            self.list(section.name(), section.span(), "mujoco", help);
+        }
+    }
+
+    /// Says all of it.
+    pub fn tell(&mut self, cx: &mut Context) {
+        for (_, kind) in std::mem::take(&mut self.0) {
+            let message = match kind.count {
+                1 => kind.message,
+                count => format!("{} (here, and {} more)", kind.message, count - 1),
+            };
+            cx.findings.add(Finding::warning(kind.code, kind.span, message).help(kind.help));
+        }
+    }
+}

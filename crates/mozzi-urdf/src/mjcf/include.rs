@@ -1,0 +1,129 @@
+//! `<include>`: files that stand in a model where they are named.
+
+use crate::bytes::{self, MOST_BYTES};
+use crate::context::Context;
+use crate::dialect::Dialect;
+use crate::finding::{Finding, Findings};
+use crate::source::Source;
+use crate::syntax;
+use crate::words::shown;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// More files are refused.
+const MOST_FILES: usize = 256;
+
+/// An `<include>`: its place, its name's and its attribute's, and the file.
+struct Include {
+    place: usize,
+    span: Range<usize>,
+    file: Option<String>,
+}
+
+/// Reads what the first source includes, and what that includes. The place of each `<include>`, and the number of
+/// its source; None, and reported, where something cannot be read.
+pub(crate) fn gather(
+    sources: &mut Vec<Source>,
+    folder: Option<&Path>,
+    cx: &mut Context,
+) -> Option<BTreeMap<usize, usize>> {
+    let (mut pages, mut known, mut next) = (BTreeMap::new(), BTreeSet::new(), 0);
+    if let (Some(folder), Some(first)) = (folder, sources.first()) {
+        let main = Path::new(&*first.name);
+        known.extend(folder.join(main.file_name().unwrap_or_default()).canonicalize().ok());
+    }
+    let mut bytes = sources.first().map_or(0, |source| source.text.len());
+    while let Some(source) = sources.get(next).cloned() {
+        let includes = match includes_of(&source) {
+            Ok(includes) => includes,
+            Err(finding) => {
+                cx.findings.add(finding);
+                return None;
+            }
+        };
+        for include in includes {
+            let base = sources.last().map_or(0, |last| last.base + last.text.len() + 1);
+            match open(&include, folder, &mut known) {
+                Ok((name, content)) if sources.len() < MOST_FILES && bytes + content.len() <= MOST_BYTES => {
+                    bytes += content.len();
+                    let mut findings = Findings::default();
+                    let text = Source::new(&name, bytes::read(&content, &mut findings)).at(base);
+                    pages.insert(include.place, sources.len());
+                    sources.push(text);
+                    if findings.has_errors() {
+                        findings.moved(base).for_each(|finding| cx.findings.add(finding));
+                        return None;
+                    }
+                }
+                Ok(_) => {
+                    let message = format!(
+                        "include: more than {MOST_FILES} files or {MOST_BYTES} bytes in all, expected at most these"
+                    );
+                    cx.findings.error("too_large", include.span, message);
+                    return None;
+                }
+                Err(finding) => cx.findings.add(finding),
+            }
+        }
+        next += 1;
+    }
+    (!cx.findings.has_errors()).then_some(pages)
+}
+
+/// The includes of one text.
+fn includes_of(source: &Source) -> Result<Vec<Include>, Finding> {
+    if !source.text.contains("<include") {
+        return Ok(Vec::new());
+    }
+    let document = syntax::parse(source, Dialect::Mjcf)?;
+    let is_include = |node: &roxmltree::Node| node.is_element() && node.has_tag_name("include");
+    let includes = document.descendants().filter(is_include).map(|node| {
+        let start = node.range().start;
+        let file = node.attribute_node("file");
+        let name = start + 1..start + 1 + "include".len();
+        Include {
+            place: source.base + start,
+            span: source.place(file.map_or(name, |file| file.range_value())),
+            file: file.map(|file| file.value().to_string()),
+        }
+    });
+    Ok(includes.collect())
+}
+
+/// The name and the content of an included file.
+fn open(include: &Include, folder: Option<&Path>, known: &mut BTreeSet<PathBuf>) -> Result<(String, Vec<u8>), Finding> {
+    let error = |code, message: String| Finding::error(code, include.span.clone(), message);
+    let Some(file) = include.file.as_deref().filter(|file| !file.is_empty()) else {
+        return Err(error("missing_attribute", "include: has no attribute `file`".to_string()));
+    };
+    let shown = shown(file);
+    let Some(folder) = folder else {
+        return Err(error("include", format!("include: `{shown}` is searched beside the model, which is no file"))
+            .help("read the model from its file"));
+    };
+    if file.contains("://") || file.starts_with(r"\\") || file.starts_with("//") {
+        return Err(error("include", format!("include: `{shown}` is not on this machine, expected a file")));
+    }
+    let path = folder.join(file);
+    let fails = |why: String| {
+        error("include", format!("include: `{shown}` cannot be read: {why}"))
+            .help("files are searched in the folder of the main file")
+    };
+    let real = path.canonicalize().map_err(|why| fails(why.to_string()))?;
+    if !real.is_file() {
+        return Err(fails("it is no file".to_string()));
+    }
+    if !known.insert(real.clone()) {
+        return Err(error(
+            "repeated_include",
+            format!("include: `{shown}` is included already, expected once at most"),
+        )
+        .help("a file that includes itself, over one or more steps, would never end"));
+    }
+    let mut content = Vec::new();
+    let read = std::fs::File::open(real).and_then(|file| file.take(MOST_BYTES as u64 + 1).read_to_end(&mut content));
+    read.map_err(|why| fails(why.to_string()))?;
+    Ok((path.to_string_lossy().into_owned(), content))
+}

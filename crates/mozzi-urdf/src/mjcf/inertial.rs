@@ -1,0 +1,77 @@
+//! `<inertial>`, and the compiler's corrections of inertias.
+
+use super::Model;
+use super::attributes::Item;
+use super::orientation::{ORIENTATIONS, pose};
+use super::words;
+use crate::context::Context;
+use crate::finding::Finding;
+use crate::places::Place;
+use mozzi::SpatialInertia;
+use mozzi::linalg::Sym3;
+use nalgebra::{Matrix3, SymmetricEigen};
+
+impl Model<'_> {
+    /// The inertia in the body's frame.
+    pub fn inertial(&self, item: &Item, place: &mut Place, cx: &mut Context) -> SpatialInertia {
+        item.element.check_attributes(&words::INERTIAL, cx);
+        let T = pose(item, &self.compiler, cx);
+        for (name, check) in [("mass", "mass"), ("diaginertia", "inertia"), ("fullinertia", "inertia")] {
+            if let Some(value) = item.value(name) {
+                place.set(check, value.span);
+            }
+        }
+        let mass = match item.element.required("mass", cx) {
+            Some(_) => item.number("mass", 0.0, cx),
+            None => 0.0,
+        };
+        let (diagonal, full) = (item.has("diaginertia"), item.has("fullinertia"));
+        let turned = ORIENTATIONS.into_iter().find(|name| item.has(name));
+        if let (true, Some(name)) = (full, turned) {
+            let message = format!("has both fullinertia and {name}, expected one of them");
+            cx.findings.add(item.error("several_orientations", name, &message));
+        }
+        if diagonal == full {
+            let found = if full { "has both diaginertia and" } else { "has neither diaginertia nor" };
+            let message = format!("{}: {found} fullinertia, expected one of them", item.element.subject);
+            cx.findings.add(Finding::error("missing_attribute", item.element.span(), message));
+        }
+        let I = if let Some([xx, yy, zz, xy, xz, yz]) = item.vector::<6>("fullinertia", cx) {
+            Sym3 { xx, xy, xz, yy, yz, zz }
+        } else {
+            let [x, y, z] = item.vector::<3>("diaginertia", cx).unwrap_or([0.0; 3]);
+            Sym3::diagonal(x, y, z).congruence(T.R.matrix())
+        };
+        SpatialInertia::new(mass, T.p, I)
+    }
+
+    /// The inertia, raised to the compiler's bounds and balanced, where it is told to.
+    pub fn bounded(&self, given: SpatialInertia) -> SpatialInertia {
+        let (bound, mass) = (self.compiler.bound_inertia, given.mass.max(self.compiler.bound_mass));
+        let verdict = given.verdict();
+        let is_low = verdict.principal_moments.iter().any(|&moment| moment < bound);
+        let is_unbalanced = self.compiler.balance && !verdict.is_physical();
+        if mass == given.mass && !is_low && !is_unbalanced {
+            return given;
+        }
+        let mut I = given.about_center_of_mass();
+        if is_low {
+            let rows = I.to_mat3().rows();
+            let Some(mut eigen) = SymmetricEigen::try_new(Matrix3::from_fn(|i, j| rows[i][j]), f64::EPSILON, 1000)
+            else {
+                return given; // not finite, which the checks tell
+            };
+            eigen.eigenvalues.iter_mut().for_each(|moment| *moment = moment.max(bound));
+            let raised = eigen.recompose();
+            let entry = |i: usize, j: usize| 0.5 * (raised[(i, j)] + raised[(j, i)]);
+            let (xx, xy, xz) = (entry(0, 0), entry(0, 1), entry(0, 2));
+            I = Sym3 { xx, xy, xz, yy: entry(1, 1), yz: entry(1, 2), zz: entry(2, 2) };
+        }
+        let raised = SpatialInertia::new(mass, given.center_of_mass(), I);
+        if self.compiler.balance && !raised.verdict().is_physical() {
+            let mean = I.trace() / 3.0;
+            return SpatialInertia::new(mass, given.center_of_mass(), Sym3::diagonal(mean, mean, mean));
+        }
+        raised
+    }
+}

@@ -1,0 +1,113 @@
+//! `<joint>`: hinges and slides.
+
+use super::Model;
+use super::attributes::Item;
+use super::contents::{Inside, refuse_freedom};
+use super::tree::Name;
+use super::words;
+use crate::axis;
+use crate::context::Context;
+use crate::finding::Finding;
+use crate::places::Place;
+use mozzi::model::description::{JointKind, Limits};
+use mozzi::{SE3, ScrewAxis, Vec3};
+
+impl<'a> Model<'a> {
+    /// Adds a joint between two links; its name as messages show it.
+    pub fn joint(&mut self, inside: &Inside<'a>, ends: [usize; 2], origin: SE3, cx: &mut Context) -> String {
+        let number = self.tree.degrees;
+        self.tree.degrees += 1;
+        let name = Name::of(&inside.item.element.called("joint"), format!("joint{number}"), cx);
+        let shown = name.shown();
+        let element = inside.item.element.called(format!("joint `{shown}`"));
+        let item = Item { element, ..inside.item.clone() };
+        item.element.check_attributes(&words::JOINT, cx);
+        let mut place = Place::new(item.element.span());
+        let attributes = ["name", "range", "damping", "frictionloss", "armature"];
+        for (name, check) in attributes.into_iter().zip(["name", "limits", "damping", "friction", "armature"]) {
+            if let Some(value) = item.value(name) {
+                place.set(check, value.span);
+            }
+        }
+        let kind = item.word("type", &["hinge", "slide", "ball", "free"], cx).unwrap_or("hinge");
+        match kind {
+            "ball" => refuse_freedom(&item.element, "a ball joint, which has three freedoms", cx),
+            "free" => refuse_freedom(&item.element, "a free joint, which has six freedoms", cx),
+            _ => {}
+        }
+        let is_slide = kind == "slide";
+        let screw = screw(&item, inside.T, is_slide, cx);
+        let position = |x: f64| if is_slide { x } else { self.compiler.angle(x) };
+        let reference = position(item.number("ref", 0.0, cx));
+        let limits = self.range(&item, cx).map(|range| range.map(position));
+        let [damping, friction] = self.friction(&item, cx);
+        let armature = item.number("armature", 0.0, cx);
+        // the file's own configuration is at `ref`
+        let back = screw.map_or(SE3::identity(), |screw| SE3::exp(screw.twist() * -reference));
+        let added = self.tree.joint(name, ends, origin * back, place);
+        added.joint.kind = screw.map_or(JointKind::Fixed, JointKind::Screw);
+        added.joint.limits = Limits { position: limits, ..Limits::default() };
+        (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
+        added.reference = reference;
+        shown
+    }
+
+    /// The limits as the file writes them, where the joint is limited.
+    fn range(&self, item: &Item, cx: &mut Context) -> Option<[f64; 2]> {
+        let range = item.vector::<2>("range", cx);
+        let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");
+        match limited {
+            "false" => None,
+            "true" if !item.has("range") => {
+                let finding = item.error("missing_attribute", "limited", "is limited, but has no attribute `range`");
+                cx.findings.add(finding);
+                None
+            }
+            "auto" if item.has("range") && !self.compiler.autolimits => {
+                let message = "range: counts only with limited=\"true\", since the compiler's autolimits is `false`";
+                cx.findings.add(item.error("unclear_limit", "range", message).help("write `limited`, true or false"));
+                None
+            }
+            _ => range,
+        }
+    }
+
+    /// Damping and Coulomb friction; springs are told.
+    fn friction(&mut self, item: &Item, cx: &mut Context) -> [f64; 2] {
+        let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
+        if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
+            self.ignored.force("damping", item, "damping", "a damping that is not linear");
+        }
+        if self.options.spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
+            self.ignored.force("stiffness", item, "stiffness", "a spring");
+        }
+        let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
+        if time > 0.0 && ratio > 0.0 {
+            let message = "springdamper: lets MuJoCo choose a spring and a damping, which mozzi does not";
+            cx.findings.add(item.error("unsupported_attribute", "springdamper", message).help("give `damping` itself"));
+        }
+        let loss = item.number("frictionloss", 0.0, cx);
+        [if self.options.damper { linear } else { 0.0 }, if self.options.friction { loss } else { 0.0 }]
+    }
+}
+
+/// The screw in the body's frame; None, and reported, where the axis has no direction.
+fn screw(item: &Item, T: SE3, is_slide: bool, cx: &mut Context) -> Option<ScrewAxis> {
+    let axis = Vec3(item.vector::<3>("axis", cx).unwrap_or([0.0, 0.0, 1.0]));
+    let position = Vec3(item.vector::<3>("pos", cx).unwrap_or([0.0; 3]));
+    let kind = if is_slide { "prismatic" } else { "revolute" };
+    let Some((screw, _)) = axis::screw(kind, T.R * axis) else {
+        let text = item.value("axis").map_or("", |value| value.text.trim());
+        let message = format!("axis: is `{}`, expected a direction", crate::words::shown(text));
+        let help = "the axis of a joint is a vector in the body's frame, such as `0 0 1`";
+        cx.findings.add(item.error("zero_axis", "axis", &message).help(help));
+        return None;
+    };
+    if is_slide {
+        return Some(screw);
+    }
+    let line = ScrewAxis::from_line(screw.twist().w.0, (T * position).0, 0.0);
+    line.map_err(|_| Finding::error("not_finite", item.element.span(), format!("{}: pos", item.element.subject)))
+        .map_err(|finding| cx.findings.add(finding))
+        .ok()
+}

@@ -1,0 +1,58 @@
+//! `<option>`: gravity, and what is switched off.
+
+use super::attributes::Item;
+use super::ignored::Ignored;
+use super::words;
+use crate::context::Context;
+use crate::element::Element;
+
+/// The options that matter here.
+pub(crate) struct Options {
+    pub gravity: [f64; 3],
+    pub damper: bool,
+    pub spring: bool,
+    pub friction: bool,
+    pub equality: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { gravity: [0.0, 0.0, -9.81], damper: true, spring: true, friction: true, equality: true }
+    }
+}
+
+impl Options {
+    /// Of several sections, the last that says something counts.
+    pub fn read<'a: 's, 's>(
+        sections: impl Iterator<Item = &'s Element<'a>>,
+        ignored: &mut Ignored,
+        cx: &mut Context,
+    ) -> Self {
+        let (mut options, mut weightless) = (Options::default(), false);
+        for section in sections {
+            let item = Item::plain(&section.called("option"));
+            item.element.check_attributes(&words::OPTION, cx);
+            let children = item.element.check_children(&words::OPTION, cx);
+            options.gravity = item.vector::<3>("gravity", cx).unwrap_or(options.gravity);
+            for name in ["density", "viscosity"] {
+                if item.number(name, 0.0, cx) != 0.0 {
+                    ignored.force("fluid", &item, name, "a fluid around the bodies");
+                }
+            }
+            let Some(flag) = children.get("flag") else { continue };
+            flag.check_attributes(&words::FLAG, cx);
+            let flag = Item::plain(flag);
+            let mut is_off = |name| flag.word(name, &["enable", "disable"], cx) == Some("disable");
+            weightless |= is_off("gravity");
+            let (passive, constraint) = (is_off("passive"), is_off("constraint"));
+            options.damper &= !(passive | is_off("damper"));
+            options.spring &= !(passive | is_off("spring"));
+            options.friction &= !(constraint | is_off("frictionloss"));
+            options.equality &= !(constraint | is_off("equality"));
+        }
+        if weightless {
+            options.gravity = [0.0; 3];
+        }
+        options
+    }
+}

@@ -1,0 +1,161 @@
+//! The tree while it is read: ends of joints are numbers, for names are settled when all are known.
+
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::places::{Place, Places};
+use crate::words::shown;
+use mozzi::model::description::{self, JointKind};
+use mozzi::{Description, SE3, SpatialInertia};
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+/// The name of an element, or what it is called without one.
+pub(crate) struct Name {
+    pub given: Option<String>,
+    pub otherwise: String,
+}
+
+impl Name {
+    /// What the file calls it, and how it is called where the file does not.
+    pub fn of(element: &Element, otherwise: String, cx: &mut Context) -> Self {
+        let is_named = element.attribute("name").is_some_and(|name| !name.text.is_empty());
+        let value = if is_named { element.required_name("name", cx) } else { None };
+        Name { given: value.map(|value| value.text.to_string()), otherwise }
+    }
+
+    pub fn generated(otherwise: String) -> Self {
+        Name { given: None, otherwise }
+    }
+
+    pub fn shown(&self) -> String {
+        shown(self.given.as_ref().unwrap_or(&self.otherwise))
+    }
+}
+
+/// A body, or a massless link between two joints of one.
+pub(crate) struct Link {
+    pub name: Name,
+    pub inertia: SpatialInertia,
+    pub place: Place,
+}
+
+/// A joint; its name, parent and child are settled at the end.
+pub(crate) struct Joint {
+    pub name: Name,
+    pub parent: usize,
+    pub child: usize,
+    pub joint: description::Joint,
+    /// The position of the file's own configuration.
+    pub reference: f64,
+    pub place: Place,
+}
+
+/// A site.
+pub(crate) struct Site {
+    pub name: String,
+    pub link: usize,
+    pub T: SE3,
+    pub place: Place,
+}
+
+/// Links, joints and sites in the order of the file; the first link is the world.
+pub(crate) struct Tree {
+    place: Place,
+    pub links: Vec<Link>,
+    pub joints: Vec<Joint>,
+    pub sites: Vec<Site>,
+    /// How many bodies and joints MuJoCo counts so far.
+    pub bodies: usize,
+    pub degrees: usize,
+}
+
+impl Tree {
+    pub fn new(root: &Element) -> Self {
+        let world = Link {
+            name: Name { given: Some("world".to_string()), otherwise: String::new() },
+            inertia: SpatialInertia::zero(),
+            place: Place::new(root.span()),
+        };
+        let place = Place::new(root.span());
+        Tree { place, links: vec![world], joints: Vec::new(), sites: Vec::new(), bodies: 0, degrees: 0 }
+    }
+
+    /// Adds a joint between two links, at first fixed.
+    pub fn joint(&mut self, name: Name, [parent, child]: [usize; 2], origin: SE3, place: Place) -> &mut Joint {
+        let joint = description::Joint::new("", "", "", origin, JointKind::Fixed);
+        self.joints.push(Joint { name, parent, child, joint, reference: 0.0, place });
+        let last = self.joints.len() - 1;
+        &mut self.joints[last]
+    }
+
+    /// The description, with names for what has none.
+    pub fn describe(self, name: &str, gravity: [f64; 3], cx: &mut Context) -> (Description, Places) {
+        let mut places = Places { robot: self.place, ..Places::default() };
+        let (mut description, mut carriers) = (Description::new(name).with_gravity(gravity), Vec::new());
+
+        let mut taken: BTreeSet<String> = self.links.iter().filter_map(|link| link.name.given.clone()).collect();
+        let mut renamed: Option<(Range<usize>, String, usize)> = None;
+        for site in self.sites {
+            let mut name = site.name;
+            if taken.contains(&name) {
+                let other = free(&format!("{name}:site"), &taken);
+                renamed
+                    .get_or_insert_with(|| {
+                        let (site_name, other) = (shown(&name), shown(&other));
+                        (
+                            site.place.span("name"),
+                            format!("site `{site_name}`: a body has this name too; it is called `{other}` here"),
+                            0,
+                        )
+                    })
+                    .2 += 1;
+                name = other;
+            }
+            places.frames.push(site.place);
+            carriers.push(site.link);
+            description.frames.push(description::NamedFrame { name, link: String::new(), T: site.T });
+        }
+        if let Some((span, message, count)) = renamed {
+            let message = if count == 1 { message } else { format!("{message} (and {} more)", count - 1) };
+            let help = "bodies and sites are both frames here, so such a site is called after both";
+            cx.findings.add(Finding::warning("renamed_site", span, message).help(help));
+        }
+        taken.extend(description.frames.iter().map(|frame| frame.name.clone()));
+        for link in self.links {
+            let name = settle(link.name, &mut taken);
+            description.links.push(description::Link { name, inertia: link.inertia });
+            places.links.push(link.place);
+        }
+        let links = &description.links;
+        let link = |i: usize| links[i].name.clone();
+        for (frame, carrier) in description.frames.iter_mut().zip(carriers) {
+            frame.link = link(carrier);
+        }
+        let mut taken = self.joints.iter().filter_map(|joint| joint.name.given.clone()).collect();
+        for joint in self.joints {
+            let name = settle(joint.name, &mut taken);
+            let (parent, child) = (link(joint.parent), link(joint.child));
+            places.joints.push(joint.place);
+            description.joints.push(description::Joint { name, parent, child, ..joint.joint });
+        }
+        (description, places)
+    }
+}
+
+fn settle(name: Name, taken: &mut BTreeSet<String>) -> String {
+    name.given.unwrap_or_else(|| {
+        let name = free(&name.otherwise, taken);
+        taken.insert(name.clone());
+        name
+    })
+}
+
+/// A name that is not taken.
+fn free(name: &str, taken: &BTreeSet<String>) -> String {
+    let mut name = name.to_string();
+    while taken.contains(&name) {
+        name.push('\'');
+    }
+    name
+}
