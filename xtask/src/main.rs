@@ -7,6 +7,7 @@ mod advisories;
 mod bench;
 mod command;
 mod examples;
+mod fuzz;
 mod house_rules;
 mod licences;
 mod main_job;
@@ -29,7 +30,7 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
-          the no_std check, every example, the main job
+          a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   bench   one state on one core beside Pinocchio, into benches/RESULTS.md;
           bench --criterion: each kernel alone";
@@ -59,6 +60,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
+    report.step("fuzzing", || fuzz::run(workspace));
     report.step("no_std", || no_std::check(workspace));
     for example in examples::list(workspace) {
         report.step(&format!("example {}", example.name()), || example.run(workspace));

@@ -26,7 +26,7 @@ impl Description {
 }
 
 /// The model of a description that was checked.
-fn normal_form(description: Description) -> Model {
+pub(super) fn normal_form(description: Description) -> Model {
     let link_index = index(description.links.iter().map(|link| link.name.as_str()));
     let (joints_of, base) = branches(&description, &link_index);
 

@@ -3,6 +3,7 @@
 mod bodies;
 mod followers;
 mod numbers;
+mod overflow;
 mod tree;
 mod units;
 
@@ -152,6 +153,7 @@ impl Description {
                 format!("there is no link or frame `{name}`"),
             );
         }
+        report.overflow();
         report.problems
     }
 }

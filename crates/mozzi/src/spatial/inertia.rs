@@ -126,7 +126,7 @@ impl SpatialInertia<f64> {
 
     /// c; the origin for a massless body.
     pub fn center_of_mass(&self) -> Vec3 {
-        if self.mass == 0.0 { Vec3::zero() } else { self.mc * (1.0 / self.mass) }
+        if self.mass == 0.0 { Vec3::zero() } else { self.mc.map(|x| x / self.mass) }
     }
 
     /// The rotational inertia about the centre of mass, in this frame's axes.

@@ -7,7 +7,10 @@ use alloc::string::ToString;
 
 /// Are all ten numbers finite, and those that are made of them?
 pub(super) fn is_finite(inertia: &SpatialInertia) -> bool {
-    inertia.to_matrix().as_flattened().iter().all(|x| x.is_finite())
+    let c = inertia.center_of_mass();
+    let at_c = inertia.about_center_of_mass().to_mat3().rows();
+    let made = c.0.iter().chain(at_c.as_flattened());
+    inertia.to_matrix().as_flattened().iter().chain(made).all(|x| x.is_finite())
 }
 
 impl Report<'_> {

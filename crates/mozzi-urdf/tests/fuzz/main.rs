@@ -1,0 +1,197 @@
+//! The fuzz targets under a plain driver: for `MOZZI_FUZZ_SECONDS` each (5 where it is not set), from a seed that
+//! `MOZZI_FUZZ_SEED` sets. Not in a plain `cargo test`; `cargo xtask test` runs it. A failing input is written to the
+//! folder for temporary files, and its name is said.
+mod targets;
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// No input may take longer; one of 64 KiB takes milliseconds.
+const LONGEST: Duration = Duration::from_secs(5);
+
+/// xorshift64*: the same numbers in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 16
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        self.next() as usize % n.max(1)
+    }
+}
+
+fn setting(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
+/// Runs the target on what `make` makes until the time is up.
+fn run(name: &str, target: fn(&[u8]), mut make: impl FnMut(&mut Random) -> Vec<u8>) {
+    let until = Instant::now() + Duration::from_secs(setting("MOZZI_FUZZ_SECONDS", 5));
+    let (mut random, mut count) = (Random(setting("MOZZI_FUZZ_SEED", 1).max(1)), 0);
+    while Instant::now() < until {
+        let (input, start) = (make(&mut random), Instant::now());
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            target(&input);
+            assert!(start.elapsed() < LONGEST, "took {:?}", start.elapsed());
+        }));
+        if let Err(panic) = result {
+            let file = std::env::temp_dir().join(format!("mozzi-fuzz-{name}-{count}"));
+            std::fs::write(&file, &input).expect("a writable folder");
+            eprintln!("input {count} of {name} is in {}", file.display());
+            resume_unwind(panic);
+        }
+        count += 1;
+    }
+    println!("{name}: {count} inputs");
+}
+
+/// Robots that are right, and robots that are not.
+fn corpus() -> Vec<Vec<u8>> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = [here.join("tests/broken"), here.join("../../models")];
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten());
+    let mut paths: Vec<_> = files.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "urdf"));
+    paths.sort();
+    assert!(paths.len() > 50, "{paths:?}");
+    paths.iter().map(|path| std::fs::read(path).expect("a readable file")).collect()
+}
+
+const WORDS: &[&str] = &[
+    "<",
+    ">",
+    "/>",
+    "'",
+    "\"",
+    "&",
+    "&amp;",
+    "&#48;",
+    "]]>",
+    "<!--",
+    "-->",
+    "<![CDATA[",
+    "<?xml?>",
+    "=",
+    " ",
+    "\n",
+    "\0",
+    "ä",
+    "\u{feff}",
+    "xmlns='x'",
+    "xmlns:x='y'",
+    "x:",
+    "<link name='a'/>",
+    "<origin xyz='0 0 1'/>",
+    "<inertial>",
+    "</inertial>",
+    "<mass value='1'/>",
+    "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>",
+    "<joint name='j' type='fixed'>",
+    "</joint>",
+    "<parent link='base'/>",
+    "<child link='upper'/>",
+    "<mimic joint='shoulder'/>",
+    "<dynamics damping='1'/>",
+    "revolute",
+    "prismatic",
+    "continuous",
+    "fixed",
+    "floating",
+    "base",
+    "upper",
+    "shoulder",
+    "lower",
+    "name",
+    "xyz",
+    "rpy",
+];
+const NUMBERS: &[&str] = &[
+    "0",
+    "-0",
+    "1",
+    "-1",
+    "0.1",
+    "90",
+    "1e3",
+    "1e-9",
+    "1e-300",
+    "5e-324",
+    "1e154",
+    "1e160",
+    "1e200",
+    "1e300",
+    "-1e300",
+    "1.7976931348623157e308",
+    "1e999",
+    "nan",
+    "inf",
+    "1,5",
+    "",
+    "0 0 0",
+    "1e300 1e300 1e300",
+];
+
+/// One change: of a number, of a word, of bytes.
+fn mutate(text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
+    let at = random.below(text.len() + 1);
+    let most = if random.below(8) == 0 { 400 } else { 8 };
+    let length = 1 + random.below(most);
+    let end = (at + length).min(text.len());
+    match random.below(8) {
+        0..=2 => {
+            // the value in quotes after the place
+            let quote = |from: usize, text: &[u8]| text[from..].iter().position(|&b| b == b'"').map(|k| from + k);
+            let Some(open) = quote(at, text) else { return };
+            let Some(close) = quote(open + 1, text) else { return };
+            let value = NUMBERS[random.below(NUMBERS.len())];
+            let numbers = text[open + 1..close].split(|&b| b == b' ').count();
+            let value = if random.below(8) == 0 { value.to_string() } else { vec![value; numbers].join(" ") };
+            text.splice(open + 1..close, value.bytes());
+        }
+        3 => drop(text.splice(at..at, WORDS[random.below(WORDS.len())].bytes())),
+        4 => drop(text.splice(at..end, WORDS[random.below(WORDS.len())].bytes())),
+        5 => drop(text.drain(at..end)),
+        6 => {
+            let piece = text[at..end].to_vec();
+            let to = random.below(text.len() + 1);
+            text.splice(to..to, piece);
+        }
+        _ if random.below(4) == 0 && at < text.len() => text[at] = random.next() as u8,
+        _ => {
+            let from = random.below(other.len());
+            let piece = &other[from..(from + length).min(other.len())];
+            text.splice(at..end, piece.iter().copied());
+        }
+    }
+}
+
+#[test]
+#[ignore = "takes its time; cargo xtask test runs it"]
+fn urdf() {
+    let corpus = corpus();
+    corpus.iter().for_each(|text| targets::urdf(text));
+    run("urdf", targets::urdf, |random| {
+        let mut text = corpus[random.below(corpus.len())].clone();
+        for _ in 0..=random.below(5) {
+            let other = &corpus[random.below(corpus.len())];
+            mutate(&mut text, other, random);
+        }
+        text
+    });
+}
+
+#[test]
+#[ignore = "takes its time; cargo xtask test runs it"]
+fn description() {
+    run("description", targets::description, |random| {
+        // small bytes are harmless numbers: every third input is made of them
+        let (length, mask) = (random.below(600), if random.below(3) == 0 { 0x7f } else { 0xff });
+        (0..length).map(|_| random.next() as u8 & mask).collect()
+    });
+}

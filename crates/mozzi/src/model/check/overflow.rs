@@ -1,0 +1,69 @@
+//! Numbers that are finite each, and whose products are not.
+
+use super::{Element, Report};
+use crate::model::Model;
+use crate::model::build::normal_form;
+use crate::spatial::Rounded;
+use alloc::format;
+use core::cell::Cell;
+
+/// Below this, no constant of a model overflows, but for long chains of followers.
+const LARGE: f64 = 1e30;
+/// Ratios of followers multiply along their chains, and enter squared.
+const LARGE_RATIO: f64 = 1e100;
+
+impl Report<'_> {
+    /// An error at the largest number of a robot whose model is not finite. Only robots with enormous numbers are built
+    /// to see it.
+    pub(super) fn overflow(&mut self) {
+        let d = self.description;
+        let (mut largest, mut ratios) = ((0.0, Element::Robot, ""), 1.0);
+        let mut see = |numbers: &[f64], element, attribute| {
+            for x in numbers {
+                if x.abs() > largest.0 {
+                    largest = (x.abs(), element, attribute);
+                }
+            }
+        };
+        for (i, link) in d.links.iter().enumerate() {
+            let (element, G) = (Element::Link(i), &link.inertia);
+            see(&[G.mass], element, "mass");
+            see(G.to_matrix().as_flattened(), element, "inertia");
+        }
+        for (i, joint) in d.joints.iter().enumerate() {
+            let element = Element::Joint(i);
+            see(&joint.origin.p.0, element, "origin");
+            see(&[joint.damping], element, "damping");
+            see(&[joint.friction], element, "friction");
+            see(&[joint.armature], element, "armature");
+            if let crate::model::description::JointKind::Screw(A) = joint.kind {
+                see(&A.twist().to_array(), element, "kind");
+            }
+            if let Some(mimic) = &joint.mimic {
+                see(&[mimic.ratio, mimic.offset], element, "mimic");
+                ratios *= 1.0 + mimic.ratio * mimic.ratio;
+            }
+        }
+        for (i, frame) in d.frames.iter().enumerate() {
+            see(&frame.T.p.0, Element::Frame(i), "T");
+        }
+        let (size, element, attribute) = largest;
+        if self.errors == 0 && !(size <= LARGE && ratios <= LARGE_RATIO) && !is_finite(&normal_form(d.clone())) {
+            let message = format!(
+                "holds a number of the size {}: what is computed with it is beyond the range of double precision",
+                Rounded(size)
+            );
+            self.error(element, attribute, "too_large_number", message);
+        }
+    }
+}
+
+/// Every constant of the model, and the lists that are made of it.
+fn is_finite(model: &Model) -> bool {
+    let finite = Cell::new(true);
+    model.map(|c: f64| {
+        finite.set(finite.get() && c.is_finite());
+        c
+    });
+    finite.get()
+}

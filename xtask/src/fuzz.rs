@@ -1,0 +1,10 @@
+//! The fuzz targets under their plain driver, for `MOZZI_FUZZ_SECONDS` each (5 where it is not set).
+
+use crate::command;
+use crate::report::Outcome;
+use crate::workspace::Workspace;
+
+pub fn run(workspace: &Workspace) -> Outcome {
+    let arguments = ["test", "--package", "mozzi-urdf", "--test", "fuzz", "--", "--ignored", "--nocapture"];
+    command::outcome(workspace.cargo(&arguments))
+}
