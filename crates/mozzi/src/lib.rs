@@ -52,7 +52,7 @@ pub use dynamics::*;
 pub use kinematics::*;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
-pub use model::{Description, Environment, Error, Frame, FrameId, HomeFrames, Model, Screws, Workspace};
+pub use model::{Base, Description, Environment, Error, Frame, FrameId, HomeFrames, Model, Screws, Workspace};
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
 pub use simulation::Trajectory;

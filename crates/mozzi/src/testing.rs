@@ -1,9 +1,11 @@
 //! Random values for the tests.
 
+use crate::Dual;
+use crate::kinematics::integrate;
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
 use crate::model::description::{Joint, JointKind, Mimic};
-use crate::model::{Description, Model};
+use crate::model::{Base, Description, Model};
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
 
@@ -97,8 +99,25 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
+/// The same on a free base.
+pub fn floating_tree(seed: u64, links: usize, followers: usize) -> Model {
+    tree(seed, links, followers).with_base(Base::Floating).expect("a sound robot")
+}
+
+/// θ ⊕ θ̇ε: the positions as dual numbers whose derivative is along θ̇.
+pub fn moving(model: &Model, theta: &[f64], dtheta: &[f64]) -> alloc::vec::Vec<Dual> {
+    let mut theta: alloc::vec::Vec<Dual> = theta.iter().map(|&x| Dual::constant(x)).collect();
+    let dtheta: alloc::vec::Vec<Dual> = dtheta.iter().map(|&x| Dual::constant(x)).collect();
+    integrate(model, &mut theta, &dtheta, Dual { value: 0.0, derivative: 1.0 });
+    theta
+}
+
 /// A random state (θ, θ̇, θ̈) of a model.
 pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {
     let mut random = Random(seed + 4000);
-    [random.vector(model.nq(), 3.0), random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
+    let mut theta = random.vector(model.nq(), 3.0);
+    if let (Some(pose), true) = (theta.first_chunk_mut(), model.is_floating()) {
+        *pose = SE3::exp(Twist::from_array(random.array()) * 2.0).to_pose();
+    }
+    [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
 }

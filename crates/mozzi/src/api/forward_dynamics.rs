@@ -118,7 +118,7 @@ impl Model<f64> {
     }
 
     fn singular(&self, j: usize, pivot: f64, diagonal: f64, theta: &[f64]) -> Error {
-        let joint = self.joint_names().nth(j).unwrap_or_default().to_string();
+        let joint = self.velocity_names().nth(j).unwrap_or_default().to_string();
         Error::SingularMassMatrix { joint, pivot, diagonal, theta: theta.to_vec() }
     }
 }

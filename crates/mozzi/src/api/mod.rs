@@ -19,7 +19,8 @@ impl Model<f64> {
         velocities: [(&'static str, &[f64]); K],
     ) -> Result<(), Error> {
         check_length("theta", theta, self.nq())?;
-        self.check_velocities(velocities)
+        self.check_velocities(velocities)?;
+        self.check_quaternion(theta)
     }
 
     pub(crate) fn check_velocities<const K: usize>(
@@ -27,6 +28,19 @@ impl Model<f64> {
         velocities: [(&'static str, &[f64]); K],
     ) -> Result<(), Error> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
+    }
+
+    /// A free base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
+    fn check_quaternion(&self, theta: &[f64]) -> Result<(), Error> {
+        let (Some(q), true) = (theta.first_chunk::<4>(), self.is_floating()) else { return Ok(()) };
+        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if (length - 1.0).abs() <= 1e-3 || length.is_nan() {
+            return Ok(());
+        }
+        let found = format!("{q:?}, of length {length}");
+        let expected =
+            "a unit quaternion (w, x, y, z), to 1e-3: theta of a free base is (w, x, y, z), its origin, and the joints";
+        Err(Error::BadArgument { what: "the base's orientation in theta", found, expected })
     }
 
     /// A frame of this model, not of a larger one.

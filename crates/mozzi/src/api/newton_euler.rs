@@ -2,7 +2,7 @@
 
 use crate::dynamics as kernel;
 use crate::lie::SE3;
-use crate::model::{Environment, Error, Model, Workspace};
+use crate::model::{Base, Environment, Error, Model, Workspace};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -27,7 +27,8 @@ pub struct NewtonEuler {
     /// 𝓕_i: the wrench that joint i transmits to link i; its part along the joint is the motor's, the other five are
     /// the bearing's reaction.
     pub wrenches: Vec<Wrench>,
-    /// The wrench that the ground applies to the base, in base coordinates, the base's own weight included.
+    /// The wrench that the base needs from the ground, its own weight included, or, where it is free, from whatever drives it:
+    /// then it is the first six entries of τ. In base coordinates.
     pub base_reaction: Wrench,
     /// τ.
     pub tau: DVector<f64>,
@@ -63,7 +64,10 @@ impl Model<f64> {
             twists: twists(&V),
             accelerations: twists(&dV),
             wrenches: F[1..].iter().zip(&frames).map(|(&F, T)| T.Ad().transpose() * F).collect(),
-            base_reaction: F[0] + G * dV[0] - V[0].ad().transpose() * (G * V[0]),
+            base_reaction: match self.base() {
+                Base::Fixed => F[0] + G * dV[0] - V[0].ad().transpose() * (G * V[0]),
+                Base::Floating => F[0],
+            },
             tau: DVector::from_vec(tau),
         })
     }

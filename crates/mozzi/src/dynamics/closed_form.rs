@@ -2,14 +2,16 @@
 //! from the screws in the centre-of-mass frames.
 
 use super::joint_friction::joint_friction;
+use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::model::{Environment, Error, Model};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// Every stacked vector and matrix of the closed form at one state, for N moving links and n joints. Frame {i} is at the
-/// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first.
+/// Every stacked vector and matrix of the closed form at one state, for N moving links and n velocities. Frame {i} is at the
+/// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A free base is the first of the
+/// N moving links, with the axes I, in the base link's own frame.
 ///
 /// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
 /// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
@@ -51,7 +53,8 @@ impl Model<f64> {
     pub fn closed_form(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<ClosedForm, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
         self.check_environment(environment)?;
-        let (lists, N, n) = (self.screws(), self.moving_links(), self.n());
+        let (lists, n, base) = (self.screws(), self.n(), usize::from(self.is_floating()));
+        let N = base + self.moving_links();
         let mut form = ClosedForm {
             A: DMatrix::zeros(6 * N, n),
             G: DMatrix::zeros(6 * N, 6 * N),
@@ -67,19 +70,29 @@ impl Model<f64> {
             armature: DVector::from_column_slice(&self.armature),
             friction: DVector::from_fn(n, |j, _| joint_friction(self, j, dtheta[j])),
         };
+        if let (Some(&V), true) = (dtheta.first_chunk(), self.is_floating()) {
+            let Ad = matrix6(base_pose(self, theta).inverse().Ad().to_matrix());
+            form.A.view_mut((0, 0), (6, 6)).fill_with_identity();
+            form.G.view_mut((0, 0), (6, 6)).copy_from(&matrix6(self.base_inertia.to_matrix()));
+            form.ad_Adtheta.view_mut((0, 0), (6, 6)).copy_from(&matrix6(Twist::from_array(V).ad().to_matrix()));
+            form.V_base.rows_mut(0, 6).copy_from(&(&Ad * vector6(environment.base_twist)));
+            form.dV_base.rows_mut(0, 6).copy_from(&(&Ad * vector6(environment.proper_base_acceleration())));
+        }
         for (i, link) in self.links.iter().enumerate() {
             let (A, q) = (lists.A[i], link.ratio * theta[link.q] + link.offset);
             let T = SE3::exp(A * -q) * lists.M_relative[i].inverse(); // T_{i,p} = e^{−[A]q} M_{i,p}
             let Ad = matrix6(T.Ad().to_matrix());
+            let G = matrix6(lists.G[i].to_matrix());
+            let i = base + i;
             match link.parent {
-                0 => {
+                0 if !self.is_floating() => {
                     form.V_base.rows_mut(6 * i, 6).copy_from(&(&Ad * vector6(environment.base_twist)));
                     form.dV_base.rows_mut(6 * i, 6).copy_from(&(&Ad * vector6(environment.proper_base_acceleration())));
                 }
-                parent => form.W.view_mut((6 * i, 6 * (parent - 1)), (6, 6)).copy_from(&Ad),
+                parent => form.W.view_mut((6 * i, 6 * (base + parent - 1)), (6, 6)).copy_from(&Ad),
             }
             form.A.view_mut((6 * i, link.j), (6, 1)).copy_from(&vector6(A * link.ratio));
-            form.G.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&matrix6(lists.G[i].to_matrix()));
+            form.G.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&G);
             let ad = matrix6((A * (link.ratio * dtheta[link.j])).ad().to_matrix());
             form.ad_Adtheta.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&ad);
         }
@@ -95,9 +108,9 @@ impl Model<f64> {
         }
         for &(frame, F) in environment.applied {
             let frame = self.frames[frame.0];
-            if frame.slot > 0 {
+            if base + frame.slot > 0 {
                 let Ad = matrix6((frame.T.inverse() * self.body_frame(frame.slot)).Ad().to_matrix());
-                let mut block = form.F_tip.rows_mut(6 * (frame.slot - 1), 6);
+                let mut block = form.F_tip.rows_mut(6 * (base + frame.slot - 1), 6);
                 block += Ad.transpose() * DVector::from_column_slice(&F.to_array());
             }
         }

@@ -1,6 +1,6 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
-use crate::kinematics::joint_transforms;
+use crate::kinematics::{base_twist, joint_transforms};
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
@@ -11,7 +11,8 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// With J̇_k = Ad `[ad_𝒱_i]` A_i − `[ad_𝒱_k]` Ad A_i, what stands before Ad A_i is ½ (𝒢̇ + H(𝒢𝒱)): the rate of the
 /// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too, but
-/// Ṁ − 2C is not skew for it.)
+/// Ṁ − 2C is not skew for it.) A free base's velocities are no coordinates' rates and have no Christoffel symbols; the same
+/// formula gives a C with the same two properties for it.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -30,7 +31,9 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     let half = S::from_f64(0.5);
 
     C.fill(S::zero());
-    V[0] = Twist::zero();
+    V[0] = base_twist(model, theta, dtheta, Twist::zero());
+    let G_0 = model.base_inertia.map(S::from);
+    (G_c[0], dG_c[0], P[0]) = (G_0, G_0.rate(V[0]), G_0 * V[0]);
     for (i, link) in model.outward::<S>() {
         V[i]    = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
         dV[i]   = V[i].ad() * (link.A * link.ratio);                         // rate of A, per unit of θ̇_j
@@ -54,12 +57,29 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
             C[below.j * n + j] += below.ratio * (below.A * F1);
             C[j * n + below.j] += dV[k].dot(F2) + below.ratio * (below.A * F3);
         }
-        if link.parent > 0 {
+        if model.is_floating() {
+            let Ad = T[k].Ad().transpose();
+            (F1, F2, F3) = (Ad * F1, Ad * F2, Ad * F3);
+            let row = V[0].ad().transpose() * F2 + F3;                       // each axis e turns with [ad_𝒱_0] e
+            for (r, (column, row)) in F1.to_array().into_iter().zip(row.to_array()).enumerate() {
+                C[r * n + j] += column;
+                C[j * n + r] += row;
+            }
+        }
+        if link.parent > 0 || model.is_floating() {
             let Ad = T[i].Ad();
             let (G_i, dG_i, P_i) = (G_c[i].congruence(Ad), dG_c[i].congruence(Ad), Ad.transpose() * P[i]);
             G_c[link.parent]  += G_i;
             dG_c[link.parent] += dG_i;
             P[link.parent]    += P_i;
+        }
+    }
+    if model.is_floating() {
+        for (r, e) in Twist::axes().into_iter().enumerate() {
+            let column = G_c[0] * (V[0].ad() * e) + (dG_c[0] * e - e.ad().transpose() * P[0]) * half;
+            for (s, entry) in column.to_array().into_iter().enumerate() {
+                C[s * n + r] = entry;
+            }
         }
     }
 }

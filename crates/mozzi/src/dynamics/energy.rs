@@ -1,14 +1,13 @@
 //! Kinetic and potential energy.
 
-use crate::kinematics::joint_transforms;
-use crate::lie::SE3;
+use crate::kinematics::{base_pose, base_twist, joint_transforms};
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of the moving links; `base_twist` is the base's, in base
-/// coordinates (zero for ½ θ̇ᵀMθ̇).
+/// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of all that moves: the moving links,
+/// and a free base. `V_s` is the twist of {s} in its own coordinates (zero for ½ θ̇ᵀMθ̇).
 ///
 /// Cost O(n), no allocation.
 ///
@@ -16,13 +15,16 @@ use crate::spatial::Twist;
 /// When θ is not nq long, or θ̇ not n.
 #[rustfmt::skip]
 pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>,
+    model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
 ) -> S {
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
     let Workspace { T, V, .. } = workspace;
-    V[0] = base_twist;
+    V[0] = base_twist(model, theta, dtheta, V_s);
     let mut twice = S::zero();
+    if model.is_floating() {
+        twice = V[0].dot(model.base_inertia.map(S::from) * V[0]);
+    }
     for (i, link) in model.outward::<S>() {
         V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
         twice += V[i].dot(link.G * V[i]);
@@ -33,8 +35,7 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     twice * S::from_f64(0.5)
 }
 
-/// 𝒫 = −Σ m_i gᵀp_i in joules, p_i the centres of mass of the moving links seen from the base; 0 for a mass at the base's
-/// origin.
+/// 𝒫 = −Σ m_i gᵀp_i in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at its origin.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -46,10 +47,14 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
 ) -> S {
     model.assert_lengths(theta.len(), []);
     let T = &mut workspace.T;
-    T[0] = SE3::identity();
+    T[0] = base_pose(model, theta);
     let mut first_moment = Vec3::zero();
+    if model.is_floating() {
+        let G = model.base_inertia.map(S::from);
+        first_moment = T[0].R * G.mc + T[0].p * G.mass;
+    }
     for (i, link) in model.outward::<S>() {
-        T[i] = T[link.parent] * link.transform(theta).inverse();                 // T_{0,i}
+        T[i] = T[link.parent] * link.transform(theta).inverse();                 // T_{s,i}
         first_moment += T[i].R * link.G.mc + T[i].p * link.G.mass;
     }
     -gravity.dot(first_moment)

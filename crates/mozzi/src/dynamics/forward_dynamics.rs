@@ -2,9 +2,11 @@
 
 use super::joint_friction::joint_friction;
 use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
-use crate::kinematics::joint_transforms;
+use crate::kinematics::{base_motion, joint_transforms};
+use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
+use crate::spatial::{Twist, Wrench};
 
 /// The joint accelerations θ̈ that the joint forces and torques τ produce:
 ///
@@ -45,8 +47,14 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     joint_transforms(model, theta, workspace);
-    let Workspace { T, V, dV, F, G_hat, U, u, pivots, .. } = workspace;
-    (V[0], dV[0]) = (environment.base_twist, environment.proper_base_acceleration());
+    let Workspace { T, V, dV, F, G_hat, U, u, pivots, vector, .. } = workspace;
+    vector.fill(S::zero());
+    (V[0], dV[0]) = base_motion(model, theta, dtheta, vector, environment);
+    if model.is_floating() {
+        let G = model.base_inertia.map(S::from);
+        F[0] = -(V[0].ad().transpose() * (G * V[0]));
+        G_hat[0] = G.into();
+    }
 
     // base to tips: twists, and what each link's motion needs at no acceleration
     for (i, link) in model.outward::<S>() {
@@ -70,7 +78,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         u[i] = (tau[j] - joint_friction(model, j, dtheta[j]) - A * F[i]) * one_over_d;
         U[i] = GA * one_over_d;
         pivots[j] = d;
-        if link.parent > 0 {
+        if link.parent > 0 || model.is_floating() {
             let G_a = G_hat[i].minus_outer(GA, one_over_d);
             let F_a = F[i] + G_a * dV[i] + GA * u[i];
             let Ad  = T[i].Ad();
@@ -78,6 +86,19 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
             G_hat[link.parent] += G_i;
             F[link.parent]     += F_i;
         }
+    }
+
+    // a free base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free
+    if let (Some(&F_tau), true) = (tau.first_chunk(), model.is_floating()) {
+        let mut ddbase = (Wrench::from_array(F_tau) - F[0] - G_hat[0] * dV[0]).to_array();
+        let mut L = *G_hat[0].to_matrix().as_flattened().first_chunk::<36>().expect("6 × 6");
+        ldlt::factor(&model.structure.pattern, 6, &mut L);
+        ldlt::solve(&model.structure.pattern, 6, &L, &mut ddbase);
+        for j in 0..6 {
+            pivots[j] = L[7 * j];
+        }
+        ddtheta[..6].copy_from_slice(&ddbase);
+        dV[0] += Twist::from_array(ddbase);
     }
 
     // base to tips: accelerations

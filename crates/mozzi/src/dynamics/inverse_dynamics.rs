@@ -1,7 +1,7 @@
 //! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
 
 use super::joint_friction::joint_friction;
-use crate::kinematics::joint_transforms;
+use crate::kinematics::{base_motion, joint_transforms};
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
@@ -11,7 +11,8 @@ use crate::spatial::Wrench;
 /// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇), with f = d θ̇ + μ sgn θ̇
 ///
 /// where M holds the rotors' inertia (armature) and F is what `environment.applied` says the robot applies to its
-/// environment. N m for revolute and helical joints, N for prismatic ones.
+/// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a free base are the
+/// wrench (m, f) on it that the motion takes, in its own coordinates.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -34,7 +35,7 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The links' part of τ, without armature and friction. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link;
-/// 𝓕_0 is the wrench that the base applies to the chain.
+/// 𝓕_0 is the wrench that a bolted base applies to the chain, or that a free one, itself included, needs.
 #[inline(always)]
 #[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
@@ -45,8 +46,13 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     joint_transforms(model, theta, workspace);                                            // T_{i,i−1}(θ) (8.50)
     let Workspace { T, V, dV, F, .. } = workspace;
 
-    // base: at its given twist, accelerating against gravity; nothing hangs from it yet
-    (V[0], dV[0], F[0]) = (environment.base_twist, environment.proper_base_acceleration(), Wrench::zero());
+    // base: its twist, accelerating against gravity; nothing hangs from it yet
+    (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
+    F[0] = Wrench::zero();
+    if model.is_floating() {
+        let G = model.base_inertia.map(S::from);
+        F[0] = G * dV[0] - V[0].ad().transpose() * (G * V[0]);                            // (8.53)
+    }
 
     // base to tips: twist and acceleration of each link
     for (i, link) in model.outward::<S>() {
@@ -72,5 +78,8 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         tau[link.j] += link.ratio * (link.A * F[i]);                                      // (8.54)
         let F_i = T[i].Ad().transpose() * F[i];
         F[link.parent] += F_i;                                                            // (8.53), the child's part
+    }
+    if model.is_floating() {
+        tau[..6].copy_from_slice(&F[0].to_array());                                       // (8.54) with A = I
     }
 }

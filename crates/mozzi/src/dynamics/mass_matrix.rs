@@ -7,7 +7,8 @@ use crate::scalar::Scalar;
 /// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal. kg m², kg m or kg.
 ///
 /// Each link's composite inertia 𝒢ᶜ holds all that hangs from it. Accelerating joint i alone needs the wrench 𝒢ᶜA at
-/// link i, which every joint between it and the base feels.
+/// link i, which every joint between it and the base feels. A free base's six rows and columns come first; their block is the
+/// whole robot's composite inertia.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -26,6 +27,7 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     for (j, &armature) in model.armature.iter().enumerate() {
         M[j * n + j] = S::from(armature);
     }
+    G_c[0] = model.base_inertia.map(S::from);
     for (i, link) in model.outward::<S>() {
         G_c[i] = link.G;
     }
@@ -42,9 +44,21 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
             M[j * n + below.j] += entry;
             M[below.j * n + j] += entry;
         }
-        if link.parent > 0 {
+        if model.is_floating() {
+            F = T[k].Ad().transpose() * F;                                   // seen from the base
+            for (r, entry) in F.to_array().into_iter().enumerate() {
+                M[j * n + r] += entry;
+                M[r * n + j] += entry;
+            }
+        }
+        if link.parent > 0 || model.is_floating() {
             let G = G_c[i].congruence(T[i].Ad());
             G_c[link.parent] += G;
+        }
+    }
+    if model.is_floating() {
+        for (row, entries) in M.chunks_exact_mut(n).zip(G_c[0].to_matrix()) {
+            row[..6].copy_from_slice(&entries);
         }
     }
 }

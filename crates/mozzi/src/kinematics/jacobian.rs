@@ -1,5 +1,6 @@
 //! Jacobians of a frame (Modern Robotics, chapter 5).
 
+use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
 use crate::scalar::Scalar;
@@ -61,7 +62,7 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
     body_columns(model, theta, frame, J);
 }
 
-/// The space Jacobian `J_s`(θ) of a frame {b}: 𝒱_s = `J_s` θ̇ in base coordinates (Modern Robotics 5.11), by
+/// The space Jacobian `J_s`(θ) of a frame {b}: 𝒱_s = `J_s` θ̇ in {s} coordinates (Modern Robotics 5.11), by
 /// `J_s` = `[Ad_T_sb]` `J_b`. `J` takes its n columns.
 ///
 /// Cost O(depth), no allocation.
@@ -92,5 +93,10 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
         J[link.j] += T.Ad() * link.A.twist() * link.ratio;                // J_i = Ad_{T_{b,i}} A_i
         T = T * link.transform(theta);                                    // T_{b,i−1} = T_{b,i} T_{i,i−1}
     }
-    T.inverse()
+    if model.is_floating() {
+        for (column, e) in J.iter_mut().zip(Twist::axes()) {
+            *column = T.Ad() * e;                                         // A_0 = I
+        }
+    }
+    base_pose(model, theta) * T.inverse()
 }

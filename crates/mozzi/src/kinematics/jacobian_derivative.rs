@@ -1,12 +1,13 @@
 //! ∂J_i/∂θ_j of both Jacobians (Modern Robotics, exercise 8.6).
 
+use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j where joint j is between joint i and the frame,
-/// else 0.
+/// else 0. The derivative by a free base's six is along its twist in its own coordinates.
 ///
 /// Cost O(n² + depth²), no allocation.
 ///
@@ -23,7 +24,7 @@ pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// ∂J_i/∂θ_j of the space Jacobian, at `H[i * n + j]`: `[ad_{J_j}]` J_i where joint j is between the base and joint i,
-/// else 0.
+/// else 0. The derivative by a free base's six is along its twist in its own coordinates.
 ///
 /// Cost O(n² + depth²), no allocation.
 ///
@@ -38,8 +39,17 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 ) {
     let T_sb =
         brackets(model, theta, frame, workspace, H, |outer, inner, bracket, H, n| H[outer * n + inner] += bracket);
-    for entry in H {
+    for entry in H.iter_mut() {
         *entry = T_sb.Ad() * *entry;
+    }
+    if model.is_floating() {
+        // a free base's own columns turn and slide with it
+        let (n, Ad) = (model.n(), base_pose(model, theta).Ad());
+        for (j, along) in Twist::axes().into_iter().enumerate() {
+            for (i, axis) in Twist::axes().into_iter().enumerate() {
+                H[i * n + j] = Ad * (along.ad() * axis);
+            }
+        }
     }
 }
 
@@ -66,5 +76,13 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
         }
         T = T * inner.transform(theta);
     }
-    T.inverse()
+    if model.is_floating() {
+        for (j, axis) in Twist::axes().into_iter().enumerate() {
+            let J_j = T.Ad() * axis;
+            for (k, outer) in model.to_base::<S>(frame.slot) {
+                add(outer.j, j, J_j.ad() * J[k], H, n);
+            }
+        }
+    }
+    base_pose(model, theta) * T.inverse()
 }

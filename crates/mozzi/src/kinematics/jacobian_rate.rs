@@ -25,9 +25,14 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
         V += J_i * link.rate(dtheta);
         T = T * link.transform(theta);
     }
+    if model.is_floating() {
+        for (column, e) in dJ.iter_mut().zip(Twist::axes()) {
+            *column = (T.Ad() * e).ad() * V;
+        }
+    }
 }
 
-/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in base coordinates. `dJ` takes its n columns,
+/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns,
 /// J̇_s = `[Ad_T_sb]` (`[ad_V_b]` `J_b` + J̇_b).
 ///
 /// Cost O(n), no allocation.

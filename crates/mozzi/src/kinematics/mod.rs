@@ -1,5 +1,7 @@
 //! Where frames are and how they move.
 
+mod base;
+mod configuration;
 mod forward;
 mod jacobian;
 mod jacobian_derivative;
@@ -9,8 +11,11 @@ mod joint_transforms;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use base::{base_motion, base_pose, base_twist};
+pub(crate) use configuration::{advance, rate_of_logarithm};
 pub(crate) use joint_transforms::joint_transforms;
 
+pub use configuration::{difference, integrate};
 pub use forward::{forward_kinematics, frame_poses};
 pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
 pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};

@@ -1,21 +1,19 @@
 //! Kinematics against the product of exponentials, dual numbers and each other, on random trees.
 
 use crate::model::{Description, HomeFrames, Model, Screws};
-use crate::testing::{distance, state, tree, twist};
+use crate::testing::{distance, floating_tree, moving, state, tree, twist};
 use crate::{Dual, FrameId, SE3, Twist, kinematics as kernel};
 use alloc::vec::Vec;
 
 fn models() -> impl Iterator<Item = (u64, Model, FrameId)> {
-    [(1, 0), (4, 0), (9, 0), (9, 3), (15, 4)].into_iter().enumerate().map(|(k, (links, followers))| {
-        let model = tree(100 + k as u64, links, followers);
+    [(1, 0), (4, 0), (9, 0), (9, 3), (15, 4), (1, 0), (9, 2)].into_iter().enumerate().map(|(k, (links, followers))| {
+        let make = if k < 5 { tree } else { floating_tree };
+        let model = make(100 + k as u64, links, followers);
         let tip = model.end_effector().expect("named");
         (k as u64, model, tip)
     })
 }
 
-fn moving(theta: &[f64], dtheta: &[f64]) -> Vec<Dual> {
-    theta.iter().zip(dtheta).map(|(&value, &derivative)| Dual { value, derivative }).collect()
-}
 fn along(n: usize, j: usize) -> Vec<f64> {
     (0..n).map(|i| f64::from(u8::from(i == j))).collect()
 }
@@ -28,16 +26,18 @@ fn the_pose_is_the_product_of_exponentials() {
         let (_, home) = lists.end_effector.clone().expect("named");
         // the joints on the tip's path, base to tip
         let mut path = Vec::new();
-        let mut at = model.links.len();
+        let mut at = model.frames[tip.0].slot;
         while at > 0 {
             path.insert(0, at - 1);
             at = lists.parents[at - 1];
         }
         let q = |i: usize| model.links[i].ratio * theta[model.links[i].q] + model.links[i].offset;
-        let space = path.iter().fold(SE3::identity(), |T, &i| T * SE3::exp(lists.S[i] * q(i))) * home;
-        let body = path.iter().fold(home, |T, &i| T * SE3::exp(lists.B[i] * q(i)));
+        let base = kernel::base_pose(&model, &theta);
+        let space = path.iter().fold(base, |T, &i| T * SE3::exp(lists.S[i] * q(i))) * home;
+        let body = path.iter().fold(base * home, |T, &i| T * SE3::exp(lists.B[i] * q(i)));
         let pose = model.forward_kinematics(&theta, tip).expect("lengths");
-        assert!(distance(pose, space) < 1e-13 && distance(pose, body) < 1e-13, "{seed}");
+        let errors = [distance(pose, space), distance(pose, body)];
+        assert!(errors.iter().all(|&error| error < 1e-13), "{seed} {errors:?}");
         // every frame at once, and one by one
         for (pose, (frame, _)) in model.frame_poses(&theta).expect("lengths").into_iter().zip(model.frames()) {
             assert!(distance(pose, model.forward_kinematics(&theta, frame).expect("lengths")) < 1e-13);
@@ -52,7 +52,7 @@ fn jacobians_are_the_derivatives_of_the_pose() {
         let (Js, Jb) = (model.space_jacobian(&theta, tip), model.body_jacobian(&theta, tip));
         let (Js, Jb) = (Js.expect("lengths"), Jb.expect("lengths"));
         for j in 0..model.n() {
-            let T = kernel::forward_kinematics(&model, &moving(&theta, &along(model.n(), j)), tip);
+            let T = kernel::forward_kinematics(&model, &moving(&model, &theta, &along(model.n(), j)), tip);
             // [𝒱_s] = Ṫ T⁻¹ and [𝒱_b] = T⁻¹ Ṫ
             let (pose, dT) = (T.map(|x| x.value), T.map(|x| x.derivative));
             let w = (dT.R.matrix() * pose.R.matrix().transpose()).vee();
@@ -74,19 +74,19 @@ fn rates_and_derivatives_against_dual_numbers() {
         let close =
             |a: Twist, b: Twist| assert!((a - b).norm() < 1e-12 * (1.0 + a.norm() + b.norm()), "{seed}: {a:?} {b:?}");
 
-        kernel::space_jacobian(&model, &moving(&theta, &dtheta), tip, &mut J);
+        kernel::space_jacobian(&model, &moving(&model, &theta, &dtheta), tip, &mut J);
         let rate = model.space_jacobian_rate(&theta, &dtheta, tip).expect("lengths");
         J.iter().zip(&rate.0).for_each(|(J, &dJ)| close(derivative(J), dJ));
-        kernel::body_jacobian(&model, &moving(&theta, &dtheta), tip, &mut J);
+        kernel::body_jacobian(&model, &moving(&model, &theta, &dtheta), tip, &mut J);
         let rate = model.body_jacobian_rate(&theta, &dtheta, tip).expect("lengths");
         J.iter().zip(&rate.0).for_each(|(J, &dJ)| close(derivative(J), dJ));
 
         let space = model.space_jacobian_derivative(&theta, tip).expect("lengths");
         let body = model.body_jacobian_derivative(&theta, tip).expect("lengths");
         for j in 0..n {
-            kernel::space_jacobian(&model, &moving(&theta, &along(n, j)), tip, &mut J);
+            kernel::space_jacobian(&model, &moving(&model, &theta, &along(n, j)), tip, &mut J);
             J.iter().zip(&space[j].0).for_each(|(J, &H)| close(derivative(J), H));
-            kernel::body_jacobian(&model, &moving(&theta, &along(n, j)), tip, &mut J);
+            kernel::body_jacobian(&model, &moving(&model, &theta, &along(n, j)), tip, &mut J);
             J.iter().zip(&body[j].0).for_each(|(J, &H)| close(derivative(J), H));
         }
     }

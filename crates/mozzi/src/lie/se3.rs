@@ -41,6 +41,12 @@ impl<S: Scalar> SE3<S> {
         SE3 { R: self.R.inverse(), p: -self.R.inverse_mul(self.p) }
     }
 
+    /// From the quaternion (w, x, y, z) of the orientation, of any length but 0, and the origin (x, y, z).
+    #[inline(always)]
+    pub fn from_pose([w, x, y, z, px, py, pz]: [S; 7]) -> Self {
+        SE3 { R: SO3::from_quaternion(w, Vec3([x, y, z])), p: Vec3([px, py, pz]) }
+    }
+
     /// `[Ad_T]`.
     #[inline(always)]
     pub fn Ad(self) -> Adjoint<S> {
@@ -92,6 +98,13 @@ impl<S: Real> SE3<S> {
     /// For a joint, e^{`[S]`θ} is `SE3::exp(S * theta)`.
     pub fn exp(xi: Twist<S>) -> Self {
         SE3 { R: SO3::exp(xi.w), p: SO3::left_jacobian(xi.w) * xi.v }
+    }
+
+    /// The unit quaternion (w, x, y, z) of the orientation, w ≥ 0, and the origin (x, y, z): how a free base's configuration stands
+    /// among the positions.
+    pub fn to_pose(self) -> [S; 7] {
+        let ((w, Vec3([x, y, z])), [px, py, pz]) = (self.R.quaternion(), self.p.0);
+        [w, x, y, z, px, py, pz]
     }
 
     /// ξ with e^{`[ξ]`} = T and ‖ω‖ ≤ π.

@@ -59,6 +59,21 @@ impl<S: Scalar> SO3<S> {
         ]))
     }
 
+    /// The rotation of a quaternion (s, v), of any length but 0: R = I + 2 (s`[v]` + `[v]`²) / (s² + ‖v‖²).
+    #[inline(always)]
+    pub fn from_quaternion(s: S, v: Vec3<S>) -> Self {
+        let two_over = S::from_f64(2.0) / (s * s + v.dot(v));
+        let (Vec3([x, y, z]), Vec3([sx, sy, sz])) = (v * two_over, v * (s * two_over));
+        let Vec3([a, b, c]) = v;
+        let (xx, yy, zz, xy, xz, yz) = (x * a, y * b, z * c, x * b, x * c, y * c);
+        let one = S::one();
+        SO3(Mat3::from_rows([
+            [one - yy - zz, xy - sz, xz + sy],
+            [xy + sz, one - xx - zz, yz - sx],
+            [xz - sy, yz + sx, one - xx - yy],
+        ]))
+    }
+
     /// Each entry by f, a conversion between scalars.
     #[inline(always)]
     pub fn map<U>(self, f: impl Fn(S) -> U) -> SO3<U> {

@@ -13,20 +13,28 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// From each moving link's parent slot and joint number, base to tips. In a plain tree the ancestors are the tree's;
+    /// From the number of the base's own rows, which couple with all, and from each moving link's parent slot and row, base to tips. In a plain tree the ancestors are the tree's;
     /// a follower couples its master's row with another path, and eliminating that row couples both paths.
-    pub fn new(n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
-        let coupled = n < links.len();
+    pub fn new(base: usize, n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
+        let coupled = n < base + links.len();
         let links: Vec<(usize, usize)> = links.collect();
         let mut parent = vec![usize::MAX; n];
+        for j in 1..base {
+            parent[j] = j - 1;
+        }
         if !coupled {
-            for &(carrier, j) in links.iter().filter(|(carrier, _)| *carrier > 0) {
-                parent[j] = links[carrier - 1].1;
+            for &(carrier, j) in &links {
+                match carrier {
+                    0 if base == 0 => {}
+                    0 => parent[j] = base - 1,
+                    _ => parent[j] = links[carrier - 1].1,
+                }
             }
             return Pattern { parent };
         }
         let mut rows: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
         for &(carrier, j) in &links {
+            rows[j].extend(0..base);
             let mut slot = carrier;
             while slot > 0 {
                 let (next, k) = links[slot - 1];
@@ -36,7 +44,7 @@ impl Pattern {
                 slot = next;
             }
         }
-        for k in (0..n).rev() {
+        for k in (base..n).rev() {
             if let Some(last) = rows[k].pop_last() {
                 parent[k] = last;
                 let rest = core::mem::take(&mut rows[k]);
@@ -99,17 +107,17 @@ mod tests {
     #[test]
     fn a_follower_couples_two_paths() {
         // slots 1 → 2 → 3 and 1 → 4; slot 4 follows joint 2 (of slot 3): joints 0, 1, 2, 2
-        let pattern = Pattern::new(3, [(0, 0), (1, 1), (2, 2), (1, 2)].into_iter());
+        let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (2, 2), (1, 2)].into_iter());
         assert_eq!(pattern.ancestors(2).collect::<Vec<_>>(), [1, 0]);
         // two arms whose last joints are one: joints 0, 1 and 2, 1
-        let pattern = Pattern::new(3, [(0, 0), (1, 1), (0, 2), (3, 1)].into_iter());
+        let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (0, 2), (3, 1)].into_iter());
         assert_eq!(pattern.parent, [usize::MAX, 0, 1], "joint 2 couples with 1, and 1 with 0");
     }
 
     #[test]
     fn factor_and_solve_a_tree_shaped_matrix() {
         // a trunk 0 with two branches 1 → 2 and 3 → 4
-        let pattern = Pattern::new(5, [(0, 0), (1, 1), (2, 2), (1, 3), (4, 4)].into_iter());
+        let pattern = Pattern::new(0, 5, [(0, 0), (1, 1), (2, 2), (1, 3), (4, 4)].into_iter());
         let (n, mut random) = (5, Random(4));
         let mut M = vec![0.0; n * n];
         for k in 0..n {

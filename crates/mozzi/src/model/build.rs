@@ -85,8 +85,9 @@ pub(super) fn normal_form(description: Description) -> Model {
     };
 
     let joints = couple(&description, &moving_joints, &mut links);
+    let n = description.base.velocities() + joints.len();
     let sum = |of: fn(&Joint, f64) -> f64| {
-        let mut total = vec![0.0; joints.len()];
+        let mut total = vec![0.0; n];
         for (link, &i) in links.iter().zip(&moving_joints) {
             total[link.j] += of(&description.joints[i], link.ratio);
         }
@@ -99,8 +100,9 @@ pub(super) fn normal_form(description: Description) -> Model {
         friction: sum(|joint, ratio| ratio.abs() * joint.friction),
         frames,
         gravity: Vec3(description.gravity),
+        base: description.base,
         structure: Arc::new(Structure {
-            pattern: Pattern::new(joints.len(), links.iter().map(|link| (link.parent, link.j))),
+            pattern: Pattern::new(description.base.velocities(), n, links.iter().map(|link| (link.parent, link.j))),
             coupled: joints.len() < links.len(),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
             base,
@@ -148,7 +150,8 @@ fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<
             link.ratio *= followed.ratio;
             master = joint_index[followed.joint.as_str()];
         }
-        (link.q, link.j) = (number[master], number[master]);
+        let base = description.base;
+        (link.q, link.j) = (base.positions() + number[master], base.velocities() + number[master]);
     }
     joints
 }

@@ -1,5 +1,6 @@
 //! A robot as its file tells it: plain data, nothing computed.
 
+use super::Base;
 use crate::lie::SE3;
 use crate::spatial::{ScrewAxis, SpatialInertia};
 use alloc::string::String;
@@ -18,8 +19,10 @@ pub struct Description {
     pub frames: Vec<NamedFrame>,
     /// The end-effector frame, where it was named.
     pub end_effector: Option<String>,
-    /// Gravity in base coordinates, m/s².
+    /// Gravity in {s} coordinates, m/s².
     pub gravity: [f64; 3],
+    /// Is the base link bolted to {s}, or free?
+    pub base: Base,
 }
 
 /// A rigid body.
@@ -134,10 +137,17 @@ impl Description {
             frames: Vec::new(),
             end_effector: None,
             gravity: [0.0, 0.0, -9.81],
+            base: Base::Fixed,
         }
     }
 
-    /// The same robot under another gravity, in base coordinates, m/s².
+    /// The same robot with a free base.
+    pub fn floating(mut self) -> Self {
+        self.base = Base::Floating;
+        self
+    }
+
+    /// The same robot under another gravity, in {s} coordinates, m/s².
     pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
         self.gravity = gravity;
         self

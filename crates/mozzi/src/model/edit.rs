@@ -1,7 +1,7 @@
 //! New robots from old ones: payloads, locked joints, parts of a robot, further frames.
 
 use super::description::{JointKind, NamedFrame};
-use super::{Description, Error, FrameId, Model};
+use super::{Base, Description, Error, FrameId, Model};
 use crate::lie::SE3;
 use crate::spatial::SpatialInertia;
 use alloc::collections::BTreeSet;
@@ -38,13 +38,23 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot under another gravity, in base coordinates, m/s².
+    /// The same robot under another gravity, in {s} coordinates, m/s².
     ///
     /// # Errors
     /// [`Error::Invalid`] when the numbers are not finite.
     pub fn with_gravity(&self, gravity: [f64; 3]) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         robot.gravity = gravity;
+        robot.build()
+    }
+
+    /// The same robot with its base bolted or free.
+    ///
+    /// # Errors
+    /// None that the model did not have before.
+    pub fn with_base(&self, base: Base) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        robot.base = base;
         robot.build()
     }
 
@@ -86,8 +96,8 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The part of the robot from one link, which becomes the base, to another: what hangs from the links between, off
-    /// the path, is left out. Gravity keeps its coordinates: give the part its own where its base is turned.
+    /// The part of the robot from one link, which becomes the base (bolted, unless it was a free base before), to another: what
+    /// hangs from the links between, off the path, is left out. Gravity keeps its coordinates: give the part its own where its base is turned.
     ///
     /// # Errors
     /// [`Error::BadArgument`] when `to` does not hang from `from`, or a joint on the path follows one off it.
@@ -129,6 +139,7 @@ impl Model<f64> {
             frames: whole.frames.iter().filter(|frame| has(&frame.link)).cloned().collect::<Vec<_>>(),
             end_effector: Some(whole.links[to].name.clone()),
             gravity: whole.gravity,
+            base: if from == self.structure.base { whole.base } else { Base::Fixed },
         }
         .build()
     }

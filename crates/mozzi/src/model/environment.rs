@@ -17,18 +17,18 @@ use crate::spatial::{Twist, Wrench};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Environment<'a, S = f64> {
-    /// Gravity g in base coordinates, m/s².
+    /// Gravity g in {s} coordinates, m/s². A bolted base's frame is {s}.
     pub gravity: Vec3<S>,
-    /// The base's twist 𝒱₀ in base coordinates.
+    /// The twist of {s} in its own coordinates: of a bolted base, or of what a free base's configuration is seen from.
     pub base_twist: Twist<S>,
-    /// The base's acceleration 𝒱̇₀ in base coordinates, gravity not included.
+    /// Its acceleration in its own coordinates, gravity not included.
     pub base_acceleration: Twist<S>,
     /// Wrenches that the frames apply to the environment, each in its frame's own coordinates: F_tip, and any other.
     pub applied: &'a [(FrameId, Wrench<S>)],
 }
 
 impl<S: Scalar> Environment<'_, S> {
-    /// Base at rest, nothing touched.
+    /// {s} at rest, nothing touched.
     #[inline(always)]
     pub fn with_gravity(gravity: Vec3<S>) -> Self {
         Environment { gravity, base_twist: Twist::zero(), base_acceleration: Twist::zero(), applied: &[] }

@@ -1,5 +1,6 @@
 //! The robot: what its file says ([`Description`]), and what the kernels read ([`Model`]).
 
+mod base;
 mod build;
 mod check;
 pub mod description;
@@ -19,6 +20,7 @@ use crate::spatial::SpatialInertia;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+pub use base::Base;
 pub use check::{Element, Problem, Severity};
 pub use description::Description;
 pub use environment::Environment;
@@ -39,14 +41,16 @@ pub struct Model<C = f64> {
     pub(crate) links: Vec<Link<C>>,
     /// What the base link and all that is fixed to it weighs, in the base frame.
     pub(crate) base_inertia: SpatialInertia<C>,
-    /// Rotor inertia of each independent joint, seen at the joint, followers included: Σ ratio² · armature.
+    /// Rotor inertia of each of the n velocities, 0 for a free base's; seen at the joint, followers included:
+    /// Σ ratio² · armature.
     pub(crate) armature: Vec<C>,
-    /// Viscous friction of each independent joint: Σ ratio² · d.
+    /// Viscous friction likewise: Σ ratio² · d.
     pub(crate) damping: Vec<C>,
-    /// Coulomb friction of each independent joint: Σ |ratio| · μ.
+    /// Coulomb friction likewise: Σ |ratio| · μ.
     pub(crate) friction: Vec<C>,
     pub(crate) frames: Vec<Frame<C>>,
     pub(crate) gravity: Vec3<C>,
+    pub(crate) base: Base,
     pub(crate) structure: Arc<Structure>,
 }
 
@@ -72,14 +76,14 @@ pub(crate) struct Structure {
 }
 
 impl<C: Scalar> Model<C> {
-    /// The number n of velocities: the length of θ̇, θ̈ and τ.
+    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, after six of a free base.
     pub fn n(&self) -> usize {
         self.armature.len()
     }
 
-    /// The number of positions: the length of θ.
+    /// The number of positions: the length of θ. n, and one more where the base is free: a quaternion has four entries.
     pub fn nq(&self) -> usize {
-        self.structure.joints.len()
+        self.base.positions() + self.structure.joints.len()
     }
 
     /// The number N of moving links; larger than n where joints follow others.
@@ -92,7 +96,7 @@ impl<C: Scalar> Model<C> {
         self.structure.coupled
     }
 
-    /// Gravity in base coordinates, m/s².
+    /// Gravity in {s} coordinates, m/s².
     pub fn gravity(&self) -> Vec3<C> {
         self.gravity
     }
@@ -102,12 +106,12 @@ impl<C: Scalar> Model<C> {
         &self.structure.description
     }
 
-    /// The names of the n independent joints, in the order of θ.
+    /// The names of the independent joints, in the order of θ.
     pub fn joint_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.joints().map(|joint| joint.name.as_str())
     }
 
-    /// The n independent joints as described, in the order of θ: limits, damping, friction, armature.
+    /// The independent joints as described, in the order of θ: limits, damping, friction, armature.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
         self.structure.joints.iter().map(|&joint| &self.structure.description.joints[joint])
     }
@@ -128,6 +132,7 @@ impl<C: Scalar> Model<C> {
             friction: list(&self.friction),
             frames: self.frames.iter().map(|frame| Frame { slot: frame.slot, T: frame.T.map(f) }).collect(),
             gravity: self.gravity.map(f),
+            base: self.base,
             structure: Arc::clone(&self.structure),
         }
     }

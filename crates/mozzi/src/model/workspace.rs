@@ -15,6 +15,7 @@ pub struct Workspace<S = f64> {
     pub(crate) sin_cos: Vec<(S, S)>,
     /// T_{i,i−1}.
     pub(crate) T: Vec<SE3<S>>,
+    /// At least n of them.
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
     pub(crate) F: Vec<Wrench<S>>,
@@ -44,7 +45,7 @@ impl<S: Scalar> Workspace<S> {
         Workspace {
             sin_cos: vec![(o, o); slots],
             T: vec![SE3::identity(); slots],
-            V: vec![Twist::zero(); slots],
+            V: vec![Twist::zero(); slots.max(n)],
             dV: vec![Twist::zero(); slots],
             F: vec![Wrench::zero(); slots],
             G_c: vec![SpatialInertia::zero(); slots],

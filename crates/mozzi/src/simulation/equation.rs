@@ -136,6 +136,6 @@ impl<'m, I: Input> Equation<'m, I> {
     }
 
     fn joint(&self, j: usize) -> String {
-        self.model.joint_names().nth(j).unwrap_or_default().to_string()
+        self.model.velocity_names().nth(j).unwrap_or_default().to_string()
     }
 }

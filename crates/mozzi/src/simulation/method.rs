@@ -1,6 +1,9 @@
 //! One step of an integration: explicit Euler (Modern Robotics, section 8.5), semi-implicit Euler, Runge-Kutta.
 
-use crate::scalar::Scalar;
+use crate::kinematics::{advance, rate_of_logarithm};
+use crate::model::Base;
+use crate::scalar::{Real, Scalar};
+use crate::spatial::Twist;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -38,6 +41,7 @@ impl Method {
 /// A state with its rates, and with integrals of K further rates (such as work, of powers).
 #[derive(Clone, Debug)]
 pub struct Motion<S = f64, const K: usize = 0> {
+    base: Base,
     /// Time in seconds.
     pub t: f64,
     /// θ, nq positions.
@@ -64,11 +68,6 @@ struct Stage<S> {
     mean_ddtheta: Vec<S>,
 }
 
-/// θ ← θ advanced by θ̇h. The one place that knows how positions move: by addition, for joints of one degree of freedom.
-fn advance<S: Scalar>(theta: &mut [S], dtheta: &[S], h: S) {
-    add(theta, dtheta, h);
-}
-
 /// x ← x + kh.
 fn add<S: Scalar>(x: &mut [S], k: &[S], h: S) {
     for (x, &k) in x.iter_mut().zip(k) {
@@ -76,12 +75,13 @@ fn add<S: Scalar>(x: &mut [S], k: &[S], h: S) {
     }
 }
 
-impl<S: Scalar, const K: usize> Motion<S, K> {
-    /// At time t, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations and returns the further rates.
+impl<S: Real, const K: usize> Motion<S, K> {
+    /// At time t, of a robot on this base, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations and returns the further rates.
     ///
     /// # Errors
     /// Those of F.
     pub fn start<E>(
+        base: Base,
         t: f64,
         theta: &[S],
         dtheta: &[S],
@@ -91,6 +91,7 @@ impl<S: Scalar, const K: usize> Motion<S, K> {
         let mut ddtheta = zeros.clone();
         let rates = F(t, theta, dtheta, &mut ddtheta)?;
         Ok(Motion {
+            base,
             t,
             theta: theta.to_vec(),
             dtheta: dtheta.to_vec(),
@@ -122,13 +123,13 @@ impl<S: Scalar, const K: usize> Motion<S, K> {
         let dt = S::from_f64(h);
         match method {
             Method::Euler => {
-                advance(&mut self.theta, &self.dtheta, dt);
+                advance(self.base, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.dtheta, &self.ddtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
             Method::SemiImplicitEuler => {
                 add(&mut self.dtheta, &self.ddtheta, dt);
-                advance(&mut self.theta, &self.dtheta, dt);
+                advance(self.base, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
             Method::RungeKutta4 => self.runge_kutta_4(h, t_next, &mut F)?,
@@ -138,8 +139,8 @@ impl<S: Scalar, const K: usize> Motion<S, K> {
         Ok(())
     }
 
-    /// x + h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts from
-    /// x again, along the k before it.
+    /// x ⊕ h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts from
+    /// x again, along the k before it. A free base's k is the rate of log(T₀⁻¹T) (Munthe-Kaas).
     fn runge_kutta_4<E>(
         &mut self,
         h: f64,
@@ -162,16 +163,20 @@ impl<S: Scalar, const K: usize> Motion<S, K> {
         for (along, t, weight) in stages {
             let along = S::from_f64(along);
             theta.copy_from_slice(&self.theta);
-            advance(theta, dtheta, along); // with the velocity of the stage before, which is then replaced
+            advance(self.base, theta, dtheta, along); // with the velocity of the stage before, which is then replaced
+            let u = dtheta.first_chunk().map(|&V| Twist::from_array(V) * along);
             dtheta.copy_from_slice(&self.dtheta);
             add(dtheta, ddtheta, along);
             let rates = F(t, theta, dtheta, ddtheta)?;
+            if let (Some(u), Some(V), Base::Floating) = (u, dtheta.first_chunk_mut(), self.base) {
+                *V = rate_of_logarithm(u, Twist::from_array(*V)).to_array();
+            }
             add(mean_dtheta, dtheta, weight);
             add(mean_ddtheta, ddtheta, weight);
             add(&mut mean_rates, &rates, weight);
         }
         let dt = S::from_f64(h);
-        advance(&mut self.theta, mean_dtheta, dt);
+        advance(self.base, &mut self.theta, mean_dtheta, dt);
         add(&mut self.dtheta, mean_ddtheta, dt);
         add(&mut self.integrals, &mean_rates, dt);
         Ok(())
@@ -256,7 +261,7 @@ mod tests {
                 a[0] = t - x[0];
                 Ok::<_, Infallible>([x[0]])
             };
-            let mut motion = Motion::start(0.0, &[1.0], &[0.0], &mut F).expect("infallible");
+            let mut motion = Motion::start(Base::Fixed, 0.0, &[1.0], &[0.0], &mut F).expect("infallible");
             motion.step(method, 0.5, 0.5, &mut F).expect("infallible");
             [motion.theta[0], motion.dtheta[0], motion.ddtheta[0], motion.integrals[0]]
         };
@@ -270,13 +275,13 @@ mod tests {
     }
 
     /// One Runge-Kutta step on any number, with τ = u in every joint.
-    fn one_step<S: Scalar + From<f64> + 'static>(model: &Model, theta: &[S], dtheta: &[S], u: S) -> Vec<S> {
+    fn one_step<S: Real + From<f64> + 'static>(model: &Model, theta: &[S], dtheta: &[S], u: S) -> Vec<S> {
         let (tau, mut workspace) = (vec![u; model.n()], Workspace::new(model));
         let mut F = |_: f64, q: &[S], dq: &[S], ddq: &mut [S]| {
             forward_dynamics(model, q, dq, &tau, &model.environment(), &mut workspace, ddq);
             Ok::<_, Infallible>([])
         };
-        let mut motion = Motion::start(0.0, theta, dtheta, &mut F).expect("infallible");
+        let mut motion = Motion::start(model.base(), 0.0, theta, dtheta, &mut F).expect("infallible");
         motion.step(Method::RungeKutta4, 0.01, 0.01, &mut F).expect("infallible");
         [motion.theta, motion.dtheta].concat()
     }

@@ -91,7 +91,8 @@ impl Model<f64> {
 
         let steps = options.steps;
         let mut equation = Equation::new(self, input, options);
-        let mut motion = Motion::start(0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
+        let mut motion =
+            Motion::start(self.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
         let mut trajectory = Trajectory::of(self);
         trajectory.record(&motion, &mut equation);
         for k in 1..=steps {

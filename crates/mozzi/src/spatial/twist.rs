@@ -84,6 +84,13 @@ impl<S: Scalar> Twist<S> {
         (self.w.dot(self.w) + self.v.dot(self.v)).sqrt()
     }
 
+    /// The six unit twists: turns about x, y, z, then slides along them.
+    #[inline(always)]
+    pub fn axes() -> [Self; 6] {
+        let entry = |one| if one { S::one() } else { S::zero() };
+        core::array::from_fn(|r| Twist::from_array(core::array::from_fn(|k| entry(k == r))))
+    }
+
     /// Each component by f.
     #[inline(always)]
     pub fn map<U>(self, f: impl Fn(S) -> U + Copy) -> Twist<U> {

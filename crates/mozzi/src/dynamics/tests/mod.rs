@@ -3,7 +3,7 @@
 mod numbers;
 
 use crate::model::{Environment, Model, Workspace};
-use crate::testing::{state, tree, twist, wrench};
+use crate::testing::{floating_tree, moving, state, tree, twist, wrench};
 use crate::{Dual, Scalar, dynamics as kernel};
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +11,10 @@ const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12
 
 pub fn models() -> impl Iterator<Item = (u64, Model)> {
     TREES.iter().enumerate().flat_map(|(k, &(links, followers))| {
-        (0..4).map(move |s| (10 * k as u64 + s, tree(10 * k as u64 + s, links, followers)))
+        (0..6).map(move |s| {
+            let make = if s % 3 == 2 { floating_tree } else { tree };
+            (10 * k as u64 + s, make(10 * k as u64 + s, links, followers))
+        })
     })
 }
 
@@ -124,12 +127,14 @@ fn identities_of_the_coriolis_matrix() {
         let skew = &dM - &C * 2.0;
         close(&(-skew.transpose()), &skew, scale, 4.0, "Ṁ − 2C skew");
         // Ṁ against dual numbers
-        let moving: alloc::vec::Vec<Dual> =
-            theta.iter().zip(&dtheta).map(|(&value, &derivative)| Dual { value, derivative }).collect();
+        let moving = moving(&model, &theta, &dtheta);
         let (n, dual) = (model.n(), model.map(Dual::constant));
         let mut M = alloc::vec![Dual::zero(); n * n];
         kernel::mass_matrix(&dual, &moving, &mut Workspace::new(&dual), &mut M);
         close(&DMatrix::from_fn(n, n, |i, j| M[i * n + j].derivative), &dM, scale, 1000.0, "Ṁ");
+        if model.is_floating() {
+            continue; // a twist is no coordinates' rate
+        }
         // and C against the Christoffel symbols Γ_ijk = ½(∂M_ij/∂θ_k + ∂M_ik/∂θ_j − ∂M_jk/∂θ_i), by dual numbers
         let dM_by: alloc::vec::Vec<DMatrix<f64>> = (0..n)
             .map(|k| {
@@ -162,7 +167,7 @@ fn energies_and_power() {
             x.iter().zip(dx).map(|(&value, &derivative)| Dual { value, derivative }).collect()
         };
         let mut workspace = Workspace::new(&model);
-        let (q, dq) = (dual(&theta, &dtheta), dual(&dtheta, &ddtheta));
+        let (q, dq) = (moving(&model, &theta, &dtheta), dual(&dtheta, &ddtheta));
         let energy = kernel::kinetic_energy(&model, &q, &dq, crate::Twist::zero(), &mut workspace)
             + kernel::potential_energy(&model, &q, model.gravity().map(Dual::constant), &mut workspace);
         let tip = model.end_effector().expect("named");
@@ -209,8 +214,10 @@ fn the_mass_matrix_is_the_sum_over_links_of_jacobians_and_inertias() {
         let [theta, _, _] = state(&model, seed);
         let lists = model.screws();
         let mut sum = DMatrix::from_diagonal(&DVector::from_column_slice(&model.armature));
-        for (slot, G) in (1..=model.moving_links()).zip(&lists.G) {
-            let link = model.frame(&lists.links[slot - 1]).expect("a link");
+        let base = model.is_floating().then_some((0, &model.base_inertia));
+        for (slot, G) in base.into_iter().chain((1..=model.moving_links()).zip(&lists.G)) {
+            let name = if slot == 0 { "link0" } else { &lists.links[slot - 1] };
+            let link = model.frame(name).expect("a link");
             let T = model.link_frame(slot).inverse() * model.body_frame(slot);
             let J = model.with_frame("{i}", link, T).expect("a new name");
             let J = J.body_jacobian(&theta, J.frame("{i}").expect("just added")).expect("lengths").matrix();
