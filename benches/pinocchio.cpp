@@ -72,8 +72,9 @@ const char* peer_flags() {
     return STRING(PEER_FLAGS);
 }
 
-Robot* peer_robot(const double* gravity) {
+Robot* peer_robot(const double* gravity, int floating) {
     auto robot = new Robot;
+    if (floating) robot->model.addJoint(0, pin::JointModelFreeFlyer(), pin::SE3::Identity(), "base");
     robot->model.gravity.linear() = Vector3d(gravity);
     return robot;
 }
@@ -82,7 +83,7 @@ void peer_robot_free(Robot* robot) {
     delete robot;
 }
 
-// Joints come depth first; joint 0 is the base. Returns the new joint's number.
+// Joints come depth first; joint 0 is the base, or where it is free, joint 1. Returns the new joint's number.
 int peer_joint(Robot* robot, int parent, const double* T, const double* axis, int revolute) {
     auto& model = robot->model;
     auto name = "joint" + std::to_string(model.njoints);
@@ -96,12 +97,15 @@ void peer_body(Robot* robot, int joint, const double* T, double mass, const doub
 
 // Ends the description: `count` states, each θ, θ̇, θ̈, τ.
 void peer_states(Robot* robot, const double* x, int count) {
-    auto n = robot->model.nv;
+    auto nq = robot->model.nq, n = robot->model.nv;
     robot->model.armature.setZero();
     robot->data = pin::Data(robot->model);
-    auto part = [&](int k, int i) { return Eigen::Map<const VectorXd>(x + (4 * k + i) * n, n); };
-    for (int k = 0; k < count; ++k)
-        robot->states.push_back({part(k, 0), part(k, 1), part(k, 2), part(k, 3)});
+    auto next = [&](auto length) {
+        VectorXd part = Eigen::Map<const VectorXd>(x, length);
+        x += length;
+        return part;
+    };
+    for (int k = 0; k < count; ++k) robot->states.push_back({next(nq), next(n), next(n), next(n)});
 }
 
 // All states, one after the other.

@@ -1,15 +1,37 @@
-//! The robots: two arms and a body with a head and four limbs.
+//! The robots: two arms, a body with a head and four limbs, and two that walk.
 
 use crate::random::Random;
 use mozzi::model::description::{Joint, JointKind};
+use std::path::Path;
+
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 
-/// All of them, each with its name.
+/// Those that are built in, each with its name.
 ///
 /// # Panics
 /// When one of them is broken.
 pub fn all() -> [(&'static str, Model); 3] {
     [("Panda", panda()), ("UR5", ur5()), ("tree of 32", tree())]
+}
+
+/// Legged robots with a free base, from the folder of robots of PyPI's `example-robot-data`.
+///
+/// # Errors
+/// When one of them cannot be read.
+pub fn legged(folder: &Path) -> Result<[(&'static str, Model); 2], String> {
+    let read = |file| {
+        let path = folder.join(file);
+        let name = path.to_str().ok_or_else(|| format!("{}: no text", path.display()))?;
+        let mut robot = mozzi_urdf::open(name).map_err(|error| error.to_string())?.description;
+        for joint in &mut robot.joints {
+            (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
+        }
+        robot.floating().build().map_err(|error| error.to_string())
+    };
+    Ok([
+        ("ANYmal, free base", read("anymal_b_simple_description/robots/anymal.urdf")?),
+        ("Talos, free base", read("talos_data/robots/talos_reduced.urdf")?),
+    ])
 }
 
 /// The Panda arm: 7 joints, the fingers closed and locked.

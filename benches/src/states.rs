@@ -1,16 +1,17 @@
 //! The states at which everything is evaluated.
 
 use crate::random::Random;
-use mozzi::Model;
+use mozzi::{Model, SE3, Twist, Vec3};
 
 /// (θ, θ̇, θ̈, τ).
 pub type State<'a> = [&'a [f64]; 4];
 
 /// K random states of a robot.
 pub struct States {
+    nq: usize,
     n: usize,
     /// θ, θ̇, θ̈, τ of each state, one after the other.
-    pub numbers: Vec<f64>,
+    numbers: Vec<f64>,
 }
 
 impl States {
@@ -19,15 +20,27 @@ impl States {
 
     /// States all around the circle, at speeds and torques that an arm has.
     pub fn new(model: &Model) -> Self {
-        let (mut random, n) = (Random(1763), model.n());
-        let sizes = [std::f64::consts::PI, 2.0, 5.0, 20.0];
-        let all = (0..Self::COUNT).flat_map(|_| sizes).flat_map(|size| vec![size; n]);
-        States { n, numbers: all.map(|size| size * random.number()).collect() }
+        let (mut random, nq, n) = (Random(1763), model.nq(), model.n());
+        let mut numbers = Vec::new();
+        for _ in 0..Self::COUNT {
+            let start = numbers.len();
+            for (size, length) in [(std::f64::consts::PI, nq), (2.0, n), (5.0, n), (20.0, n)] {
+                numbers.extend((0..length).map(|_| size * random.number()));
+            }
+            if model.is_floating() {
+                let turn = Twist { w: Vec3(random.vector()) * 2.0, v: Vec3(random.vector()) };
+                numbers[start..start + 7].copy_from_slice(&SE3::exp(turn).to_pose());
+            }
+        }
+        States { nq, n, numbers }
     }
 
     /// Each of them.
     pub fn iter(&self) -> impl Iterator<Item = State<'_>> {
-        let n = self.n;
-        self.numbers.chunks_exact(4 * n).map(move |s| [&s[..n], &s[n..2 * n], &s[2 * n..3 * n], &s[3 * n..]])
+        let (nq, n) = (self.nq, self.n);
+        self.numbers.chunks_exact(nq + 3 * n).map(move |s| {
+            let (theta, rest) = s.split_at(nq);
+            [theta, &rest[..n], &rest[n..2 * n], &rest[2 * n..]]
+        })
     }
 }

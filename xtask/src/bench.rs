@@ -11,6 +11,8 @@ use std::process::Command;
 const SOURCE: &str = "benches/pinocchio.cpp";
 const REQUIREMENTS: &str = "benches/requirements.txt"; // Eigen's headers, which Pinocchio's wheel has not
 const LIBRARY: &str = "target/bench/libpinocchio_peer.so";
+/// Where the wheel of `example-robot-data` keeps its robots.
+const ROBOTS: &str = "share/example-robot-data/robots";
 const RESULTS: &str = "benches/RESULTS.md";
 
 /// What makes a difference to the speed, and is quoted.
@@ -44,7 +46,14 @@ pub fn criterion(workspace: &Workspace) -> Outcome {
 fn compare(workspace: &Workspace) -> Result<String, String> {
     let note = build_peer(workspace)?;
     let mut cargo = workspace.cargo(&["run", "--release", "-p", "mozzi-benches", "--bin", "compare", "--"]);
-    command::run(cargo.arg("--peer").arg(workspace.path(LIBRARY)).args(["--write", RESULTS]))?;
+    command::run(
+        cargo
+            .arg("--peer")
+            .arg(workspace.path(LIBRARY))
+            .arg("--robots")
+            .arg(prefix(workspace)?.join(ROBOTS))
+            .args(["--write", RESULTS]),
+    )?;
     Ok(format!("{RESULTS} is written{note}"))
 }
 

@@ -69,13 +69,16 @@ impl Kernel {
     }
 
     /// The largest difference between mozzi's result (by rows) and Pinocchio's (by columns), over the largest entry.
-    pub fn difference(&self, n: usize, ours: &[f64], theirs: &[f64]) -> f64 {
+    /// Of a free base Pinocchio has the linear three first.
+    pub fn difference(&self, model: &Model, ours: &[f64], theirs: &[f64]) -> f64 {
+        let (n, base) = (model.n(), model.base().velocities());
+        let place = |j: usize| if j < base { (j + 3) % 6 } else { j };
         let largest = theirs.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let mut worst = 0.0_f64;
         for (k, x) in ours.iter().enumerate() {
-            let (row, column) = (k / n, k % n);
+            let (row, column) = (place(k / n), place(k % n));
             let y = match (self.is_matrix, self.is_symmetric && row > column) {
-                (false, _) => theirs[k],
+                (false, _) => theirs[place(k)],
                 (true, false) => theirs[column * n + row],
                 (true, true) => theirs[row * n + column], // its mirror image, in the upper triangle
             };

@@ -1,6 +1,6 @@
 //! mozzi beside Pinocchio: the same robots, the same states, one process, one clock, one core, in turn.
 //!
-//! `compare [--peer LIBRARY] [--seconds S] [--write FILE]`; `cargo xtask bench` builds the peer and calls it.
+//! `compare [--peer LIBRARY] [--robots FOLDER] [--seconds S] [--write FILE]`; `cargo xtask bench` builds the peer and calls it.
 
 mod kernel;
 mod machine;
@@ -35,6 +35,7 @@ struct Contender<'a> {
 #[derive(Default)]
 struct Arguments {
     peer: Option<OsString>,
+    robots: Option<OsString>,
     write: Option<OsString>,
     seconds: Option<f64>,
 }
@@ -53,9 +54,11 @@ fn main() -> ExitCode {
 fn arguments() -> Result<Arguments, String> {
     let (mut arguments, mut words) = (Arguments::default(), std::env::args_os().skip(1));
     while let Some(word) = words.next() {
-        let value = words.next().ok_or("usage: compare [--peer LIBRARY] [--seconds S] [--write FILE]")?;
+        let value =
+            words.next().ok_or("usage: compare [--peer LIBRARY] [--robots FOLDER] [--seconds S] [--write FILE]")?;
         match word.to_str() {
             Some("--peer") => arguments.peer = Some(value),
+            Some("--robots") => arguments.robots = Some(value),
             Some("--write") => arguments.write = Some(value),
             Some("--seconds") => arguments.seconds = value.to_str().and_then(|text| text.parse().ok()),
             _ => return Err(format!("{}: unknown", word.display())),
@@ -72,7 +75,11 @@ fn compare(arguments: &Arguments) -> Result<(), String> {
     };
     let time = Duration::from_secs_f64(arguments.seconds.unwrap_or(20.0));
     let mut tables = Vec::new();
-    for (name, model) in robots::all() {
+    let legged = match &arguments.robots {
+        Some(folder) => Some(robots::legged(folder.as_ref())?),
+        None => None,
+    };
+    for (name, model) in robots::all().into_iter().chain(legged.into_iter().flatten()) {
         tables.push(robot(name, &model, peer.as_ref(), time)?);
     }
     let text = report::text(&tables, peer.as_ref());
@@ -116,7 +123,7 @@ fn largest_difference(kernel: &Kernel, model: &Model, states: &States, theirs: &
     for (k, state) in states.iter().enumerate() {
         (kernel.run)(model, state, &model.environment(), &mut workspace, &mut out);
         for &algorithm in kernel.peer {
-            let difference = kernel.difference(model.n(), &out, &theirs.result(algorithm, k, out.len()));
+            let difference = kernel.difference(model, &out, &theirs.result(algorithm, k, out.len()));
             if difference.is_nan() {
                 return difference;
             }

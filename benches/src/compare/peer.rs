@@ -48,7 +48,7 @@ impl Algorithm {
 }
 
 type Version = unsafe extern "C" fn() -> *const c_char;
-type NewRobot = unsafe extern "C" fn(*const f64) -> *mut Opaque;
+type NewRobot = unsafe extern "C" fn(*const f64, c_int) -> *mut Opaque;
 type FreeRobot = unsafe extern "C" fn(*mut Opaque);
 type AddJoint = unsafe extern "C" fn(*mut Opaque, c_int, *const f64, *const f64, c_int) -> c_int;
 type AddBody = unsafe extern "C" fn(*mut Opaque, c_int, *const f64, f64, *const f64, *const f64);
@@ -93,7 +93,9 @@ impl Peer {
         let moving: Vec<&Joint> = model.moving_joints().collect();
         // SAFETY: the types are those of pinocchio.cpp; every pointer is to as many numbers as it reads there.
         unsafe {
-            let this = function::<NewRobot>(library, "peer_robot")(description.gravity.as_ptr());
+            let this =
+                function::<NewRobot>(library, "peer_robot")(description.gravity.as_ptr(), model.is_floating().into());
+            let first = c_int::from(model.is_floating()); // the free base is Pinocchio's joint 1
             let (add_joint, add_body) =
                 (function::<AddJoint>(library, "peer_joint"), function::<AddBody>(library, "peer_body"));
             for (k, joint) in moving.iter().enumerate() {
@@ -104,16 +106,16 @@ impl Peer {
                 let revolute = !screw.is_prismatic();
                 assert!(!revolute || twist.v == mozzi::Vec3::zero(), "`{}` turns beside its origin", joint.name);
                 let T = numbers(carrier * joint.origin);
-                let number = add_joint(this, parent as c_int, T.as_ptr(), axis.0.as_ptr(), revolute.into());
-                assert_eq!(number as usize, k + 1);
+                let number = add_joint(this, first + parent as c_int, T.as_ptr(), axis.0.as_ptr(), revolute.into());
+                assert_eq!(number, first + k as c_int + 1);
             }
             for link in &description.links {
                 let ((joint, T), G) = (place(description, &moving, &link.name), link.inertia);
                 let (c, I) = (G.center_of_mass().0, G.about_center_of_mass().to_mat3().rows());
-                add_body(this, joint as c_int, numbers(T).as_ptr(), G.mass, c.as_ptr(), I.as_ptr().cast());
+                add_body(this, first + joint as c_int, numbers(T).as_ptr(), G.mass, c.as_ptr(), I.as_ptr().cast());
             }
             let count = States::COUNT as c_int;
-            function::<SetStates>(library, "peer_states")(this, states.numbers.as_ptr(), count);
+            function::<SetStates>(library, "peer_states")(this, theirs(model, states).as_ptr(), count);
             Robot { library: Rc::clone(library), this }
         }
     }
@@ -157,6 +159,24 @@ fn place(description: &Description, moving: &[&Joint], link: &str) -> (usize, SE
         (T, link) = (joint.origin * T, &joint.parent);
     }
     (0, T)
+}
+
+/// The states in Pinocchio's order: of a free base the linear three first, and the quaternion's real part last.
+fn theirs(model: &Model, states: &States) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    for state in states.iter() {
+        for (mut values, positions) in state.into_iter().zip([true, false, false, false]) {
+            if model.is_floating() && positions {
+                numbers.extend([4, 5, 6, 1, 2, 3, 0].map(|i| values[i]));
+                values = &values[7..];
+            } else if model.is_floating() {
+                numbers.extend([3, 4, 5, 0, 1, 2].map(|i| values[i]));
+                values = &values[6..];
+            }
+            numbers.extend(values);
+        }
+    }
+    numbers
 }
 
 /// The rotation by rows, then the translation.

@@ -12,7 +12,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ̇)
 ///
-/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n); where joints follow
+/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a free base by a 6 × 6 LDLᵀ at the root; where joints follow
 /// others, by the mass matrix. No allocation. Where M is singular the result is not finite or meaningless: the methods
 /// of [`Model`] look at the pivots and answer with an error.
 ///
@@ -90,13 +90,9 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
 
     // a free base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free
     if let (Some(&F_tau), true) = (tau.first_chunk(), model.is_floating()) {
-        let mut ddbase = (Wrench::from_array(F_tau) - F[0] - G_hat[0] * dV[0]).to_array();
-        let mut L = *G_hat[0].to_matrix().as_flattened().first_chunk::<36>().expect("6 × 6");
-        ldlt::factor(&model.structure.pattern, 6, &mut L);
-        ldlt::solve(&model.structure.pattern, 6, &L, &mut ddbase);
-        for j in 0..6 {
-            pivots[j] = L[7 * j];
-        }
+        let needed = Wrench::from_array(F_tau) - F[0] - G_hat[0] * dV[0];
+        let (ddbase, base_pivots) = ldlt::solve_6(G_hat[0].to_matrix(), needed.to_array());
+        pivots[..6].copy_from_slice(&base_pivots);
         ddtheta[..6].copy_from_slice(&ddbase);
         dV[0] += Twist::from_array(ddbase);
     }

@@ -99,6 +99,32 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]
     }
 }
 
+/// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of the last row
+/// first eliminated, for the caller to check.
+#[inline(always)]
+pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], [S; 6]) {
+    let mut pivots = [S::zero(); 6];
+    for k in (0..6).rev() {
+        pivots[k] = A[k][k];
+        let one_over = S::one() / pivots[k];
+        for i in (0..k).rev() {
+            let a = A[k][i] * one_over;
+            for j in 0..=i {
+                A[i][j] = A[k][j].mul_add(-a, A[i][j]);
+            }
+            x[i] = x[k].mul_add(-a, x[i]);
+            A[k][i] = a;
+        }
+        x[k] = x[k] * one_over;
+    }
+    for k in 0..6 {
+        for i in 0..k {
+            x[k] = A[k][i].mul_add(-x[i], x[k]);
+        }
+    }
+    (x, pivots)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +138,22 @@ mod tests {
         // two arms whose last joints are one: joints 0, 1 and 2, 1
         let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (0, 2), (3, 1)].into_iter());
         assert_eq!(pattern.parent, [usize::MAX, 0, 1], "joint 2 couples with 1, and 1 with 0");
+    }
+
+    #[test]
+    fn a_six_by_six_system() {
+        let mut random = Random(6);
+        let B: [[f64; 6]; 6] = core::array::from_fn(|_| random.array());
+        let entry = |i: usize, j: usize| (0..6).map(|k| B[i][k] * B[j][k]).sum::<f64>() + f64::from(u8::from(i == j));
+        let A: [[f64; 6]; 6] = core::array::from_fn(|i| core::array::from_fn(|j| entry(i, j)));
+        let x: [f64; 6] = random.array();
+        let b = core::array::from_fn(|i| (0..6).map(|j| A[i][j] * x[j]).sum());
+        let (found, pivots) = solve_6(A, b);
+        assert!(found.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {x:?}");
+        let pattern = Pattern::new(6, 6, core::iter::empty::<(usize, usize)>());
+        let mut M = A.as_flattened().to_vec();
+        factor(&pattern, 6, &mut M);
+        assert!((0..6).all(|k| (pivots[k] - M[7 * k]).abs() < 1e-14 * pivots[k]));
     }
 
     #[test]
