@@ -4,6 +4,8 @@
 //! so are the models in `tests/broken/mjcf`. A code without a file fails the test.
 //! `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports` writes the reports anew: read them before you commit them.
 
+mod page;
+
 use mozzi_urdf::{LoadError, Loaded, Policy, Style, codes, explain, load_with, mjcf, parse_with};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
