@@ -54,7 +54,8 @@ pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     }
 }
 
-fn give(cargo: &mut Command, variable: &str, folder: Option<std::path::PathBuf>) {
+/// Names a folder to the tests, where it is there.
+pub fn give(cargo: &mut Command, variable: &str, folder: Option<std::path::PathBuf>) {
     match folder {
         Some(folder) => {
             println!("{variable}={}", folder.display());

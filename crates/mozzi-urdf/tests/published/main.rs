@@ -47,13 +47,15 @@ const WHY: [(&str, &str); 11] = [
     (
         "unknown_attribute",
         "`D`, `K`, `mu_coulomb` and `mu_viscous` of the Panda are friction and stiffness in words of its own that would \
-         change the joints' torques; `dont_collapse` and `current` concern other programs. URDF does not say what they mean, \
+         change the joints' torques; `dont_collapse`, `current`, `command_effort` and `gear_velocity` \
+         concern other programs. URDF does not say what they mean, \
          so they are left out, and named once.",
     ),
     (
         "unknown_element",
         "`<gravity>` and `<kinematic>` are SDF's words in the wrong place, `<origin>` and `<surface>` in a link mean nothing \
-         in URDF. Their authors expect an effect that they do not have.",
+         in URDF: their authors expect an effect that they do not have. `<self_filter>` and `<collision_checking>` are for \
+         programs of their own.",
     ),
     (
         "unknown_joint",

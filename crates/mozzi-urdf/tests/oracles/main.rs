@@ -4,6 +4,8 @@
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
 #![allow(clippy::unwrap_used)]
 
+mod models;
+
 use mozzi::{Environment, FrameId, Model, Wrench};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -156,6 +158,21 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     }
 }
 
+/// All states of a file of oracles; how its joints are ordered is looked up by name.
+fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
+    let names: Vec<&str> =
+        oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    assert_eq!(names.len(), model.n(), "{name}");
+    let order: Vec<usize> =
+        names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
+    if oracle.get("mjcf").is_some() {
+        assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
+    }
+    let mut worst = Worst::default();
+    oracle["states"].as_array().unwrap().iter().for_each(|state| compare(model, &order, state, &mut worst));
+    worst
+}
+
 /// Every file of a folder; a line for each robot, and the worst of all.
 fn compare_folder(folder: &Path) {
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -176,17 +193,8 @@ fn compare_folder(folder: &Path) {
                 continue;
             }
         };
-        let names: Vec<&str> =
-            oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        assert_eq!(names.len(), model.n(), "{}", path.display());
-        let order: Vec<usize> =
-            names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
-        if oracle.get("mjcf").is_some() {
-            assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
-        }
-        let mut worst = Worst::default();
+        let worst = compare_all(&name, &oracle, &model);
         let states = oracle["states"].as_array().unwrap();
-        states.iter().for_each(|state| compare(&model, &order, state, &mut worst));
         let text: Vec<String> = worst.0.iter().map(|(what, error)| format!("{what} {error:.1}")).collect();
         println!("{name:<34} n {:>3}, {:>3} states: {}", model.n(), states.len(), text.join(", "));
         if worst.0.values().any(|error| !(*error < BOUND)) {
