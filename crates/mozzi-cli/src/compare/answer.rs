@@ -4,13 +4,15 @@ use super::constants::{Constants, JointConstants, body};
 use super::numbers::{Numbers, Side};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A way around what MuJoCo refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// Without visual and collision elements.
     Geometry,
+    /// Without inertias of links that no joint moves.
+    Fixed,
     /// With balanceinertia.
     Balance,
     /// With boundmass and boundinertia.
@@ -31,7 +33,10 @@ pub enum Silence {
 pub struct Robot {
     pub constants: Constants,
     pub side: Side,
-    /// Forces that τ contains and mozzi does not compute, by the library's name, one vector a state.
+    /// τ without the forces of constraints, and what these are: "limits", "contacts".
+    pub unconstrained: Vec<DVector<f64>>,
+    pub constraints: BTreeSet<String>,
+    /// Other forces that τ contains and mozzi does not compute, by the library's name, one vector a state.
     pub forces: BTreeMap<String, Vec<DVector<f64>>>,
     /// Joints that the library holds to others by a constraint.
     pub couplings: Vec<(String, String)>,
@@ -64,6 +69,7 @@ impl Answer {
         let attempt = |step: &Value| {
             let remedy = match step["then"].as_str()? {
                 "geometry" => Remedy::Geometry,
+                "fixed" => Remedy::Fixed,
                 "balance" => Remedy::Balance,
                 "bound" => Remedy::Bound,
                 _ => return None,
@@ -126,6 +132,7 @@ fn robot(value: &Value) -> Option<Robot> {
     let n = names.len();
     let vector = |value: &Value| Some(DVector::from_vec(numbers(value)?)).filter(|v| v.len() == n);
     let (mut states, mut forces) = (Vec::new(), BTreeMap::<String, Vec<DVector<f64>>>::new());
+    let (mut unconstrained, mut constraints) = (Vec::new(), BTreeSet::new());
     for state in value["states"].as_array()? {
         let rows: Vec<f64> = state["M"].as_array()?.iter().map(numbers).collect::<Option<Vec<_>>>()?.concat();
         states.push(Numbers {
@@ -134,6 +141,9 @@ fn robot(value: &Value) -> Option<Robot> {
             h: vector(&state["h"])?,
             tau: vector(&state["tau"])?,
         });
+        unconstrained.push(vector(state.get("unconstrained").unwrap_or(&state["tau"]))?);
+        let kinds = state["constraints"].as_array().map_or(&[][..], Vec::as_slice);
+        constraints.extend(kinds.iter().filter_map(|kind| kind.as_str().map(str::to_string)));
         for (name, force) in state["parts"].as_object()? {
             forces.entry(name.clone()).or_default().push(vector(force)?);
         }
@@ -144,6 +154,8 @@ fn robot(value: &Value) -> Option<Robot> {
     Some(Robot {
         constants: Constants { joints, gravity: array(&value["gravity"])? },
         side: Side { names, states },
+        unconstrained,
+        constraints,
         forces,
         couplings: value["couplings"].as_array()?.iter().map(coupling).collect::<Option<_>>()?,
         from_geometry: value["from_geometry"].as_array()?.iter().map(text).collect::<Option<_>>()?,

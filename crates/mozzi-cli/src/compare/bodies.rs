@@ -11,6 +11,8 @@ use mozzi::{Description, SpatialInertia, Sym3};
 pub enum Reason {
     /// MuJoCo made its moments those of a sphere (balanceinertia).
     Balanced,
+    /// MuJoCo dropped the moments of links without mass, fixed to others.
+    Dropped,
     /// MuJoCo raised its mass or its moments (boundmass, boundinertia).
     Bounded,
     /// MuJoCo computed its inertia from its shapes.
@@ -65,6 +67,10 @@ fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robo
     let (mass, moment) = (setting("boundmass"), setting("boundinertia"));
     let is_bounded = mass > 0.0 || moment > 0.0;
     let balances = from.settings["balanceinertia"] == true;
+    let dropped = |inertia: SpatialInertia| if inertia.mass == 0.0 { SpatialInertia::zero() } else { inertia };
+    if same_body(&whole(&dropped), &change.theirs) {
+        return Ok(Reason::Dropped);
+    }
     if balances && same_body(&whole(&balanced), &change.theirs) {
         return Ok(Reason::Balanced);
     }

@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, Robot};
 use super::bodies::{BodyChange, Reason};
-use super::constants::{Constants, home};
+use super::constants::{Constants, JointConstants, home};
 use super::numbers::Side;
 use crate::failure::Result;
 use mozzi::model::description::{Joint, JointKind};
@@ -37,6 +37,8 @@ pub enum Cause {
     Armature(Vec<Change>),
     Damping(Vec<Change>),
     Friction(Vec<Change>),
+    /// The forces of such constraints, which their τ contains.
+    Constraints(Vec<String>),
     /// A force that their τ contains.
     Force(String),
     Bodies(Reason, Vec<BodyChange>),
@@ -75,6 +77,12 @@ impl Cause {
                 }
             }
             Cause::Gravity { theirs, .. } => robot.gravity = *theirs,
+            // before other forces are taken off: the causes are in this order
+            Cause::Constraints(_) => {
+                for (state, tau) in theirs.states.iter_mut().zip(&from.unconstrained) {
+                    state.tau.copy_from(tau);
+                }
+            }
             Cause::Force(name) => {
                 for (state, force) in theirs.states.iter_mut().zip(from.forces.get(name).into_iter().flatten()) {
                     state.tau += force; // the library's inverse dynamics is less by it
@@ -142,24 +150,30 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     }
 
     let pairs: Vec<_> = mine.joints.iter().filter_map(|joint| Some((joint, theirs.joint(&joint.name)?))).collect();
-    let changes = |pick: &dyn Fn(&super::constants::JointConstants) -> f64, ignored: bool| -> Vec<Change> {
-        let change = |(a, b): &(&super::constants::JointConstants, &super::constants::JointConstants)| {
-            let (mozzi, theirs) = (pick(a), if ignored { 0.0 } else { pick(b) });
-            apart(mozzi, theirs).then(|| Change { joint: a.name.clone(), mozzi, theirs })
+    type Number = fn(&JointConstants) -> f64;
+    let changes = |pick: Number, ignored: bool| -> Vec<Change> {
+        let change = |joint: &JointConstants| {
+            // a follower that is coupled there has no numbers of its own; what τ leaves out, it leaves out of all
+            let theirs = if ignored { 0.0 } else { pick(theirs.joint(&joint.name)?) };
+            let mozzi = pick(joint);
+            apart(mozzi, theirs).then(|| Change { joint: joint.name.clone(), mozzi, theirs })
         };
-        pairs.iter().filter_map(change).collect()
+        mine.joints.iter().filter_map(change).collect()
     };
     // Pinocchio keeps both and leaves them out of its inverse dynamics; MuJoCo makes a constraint of dry friction
     let pinocchio = answer.library == "Pinocchio";
     let lists: [(fn(Vec<Change>) -> Cause, Vec<Change>); 3] = [
-        (Cause::Armature, changes(&|joint| joint.armature, false)),
-        (Cause::Damping, changes(&|joint| joint.damping, pinocchio)),
-        (Cause::Friction, changes(&|joint| joint.friction, true)),
+        (Cause::Armature, changes(|joint| joint.armature, false)),
+        (Cause::Damping, changes(|joint| joint.damping, pinocchio)),
+        (Cause::Friction, changes(|joint| joint.friction, true)),
     ];
     causes.extend(lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(cause, list)| cause(list)));
+    if !from.constraints.is_empty() {
+        causes.push(Cause::Constraints(from.constraints.iter().cloned().collect()));
+    }
     causes.extend(from.forces.keys().map(|name| Cause::Force(name.clone())));
 
-    let turned = |(a, b): &(&super::constants::JointConstants, &super::constants::JointConstants)| {
+    let turned = |(a, b): &(&JointConstants, &JointConstants)| {
         let (a, [b]) = (a.axes[0], &b.axes[..]) else { return None };
         let far = a.iter().zip(b).any(|(x, y)| (x - y).abs() > 1e-9 * (1.0 + x.abs()));
         far.then_some(*b)

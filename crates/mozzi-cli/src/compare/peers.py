@@ -168,6 +168,23 @@ def without_geometry(text):
     return ElementTree.tostring(robot, encoding="unicode")
 
 
+def without_fixed_inertia(text):
+    """Links that no joint moves do without their inertias, which enter nothing."""
+    robot = ElementTree.fromstring(text)
+    parents = {}
+    for joint in robot.findall("joint"):
+        parents[joint.find("child").get("link")] = (joint.find("parent").get("link"), joint.get("type"))
+    for link in robot.findall("link"):
+        name, seen = link.get("name"), set()
+        while name in parents and parents[name][1] == "fixed" and name not in seen:
+            seen.add(name)
+            name = parents[name][0]
+        if name not in parents:
+            for element in link.findall("inertial"):
+                link.remove(element)
+    return ElementTree.tostring(robot, encoding="unicode")
+
+
 SMALLEST = 1e-9  # kg, kg m2: what massless bodies get, where MuJoCo refuses them
 
 
@@ -184,14 +201,16 @@ def mujoco_model(mujoco, question, attempts):
         except Exception as error:
             message = one_line(error)
         done = [step["then"] for step in attempts]
+        source = lambda: open(path, "rb").read() if text is None else text
         then = None
-        if "inertia must" in message and "balance" not in done:
+        if is_urdf and "positive eigenvalues" in message and "fixed" not in done:
+            text, then = attempt(lambda: without_fixed_inertia(source())), "fixed"
+        elif "A + B" in message and "balance" not in done:
             then, settings["balanceinertia"] = "balance", True
         elif "mjMINVAL" in message and "bound" not in done:
             then, settings["boundmass"], settings["boundinertia"] = "bound", SMALLEST, SMALLEST
         elif is_urdf and "geometry" not in done:
-            text = attempt(lambda: without_geometry(open(path, "rb").read() if text is None else text))
-            then = "geometry"
+            text, then = attempt(lambda: without_geometry(source())), "geometry"
         if then is None:
             raise Refused(message)
         attempts.append({"message": message, "then": then})
@@ -283,8 +302,16 @@ class MuJoCo:
         self.set(ddtheta, self.model.jnt_dofadr, data.qacc)
         self.mujoco.mj_inverse(self.model, data)
         result["tau"] = numbers(data.qfrc_inverse)
-        forces = ("constraint", "spring", "gravcomp", "fluid")
-        result["parts"] = {name: numbers(getattr(data, f"qfrc_{name}")) for name in forces}
+        result["parts"] = {name: numbers(getattr(data, f"qfrc_{name}")) for name in ("spring", "gravcomp", "fluid")}
+        counts = {"equalities": data.ne, "dry friction": data.nf, "limits": data.nl, "contacts": data.ncon}
+        result["constraints"] = [name for name, count in counts.items() if count]
+        if result["constraints"]:
+            # computed anew: the forces may be so large that taking them off leaves rounding
+            before, off = int(self.model.opt.disableflags), int(self.mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+            self.model.opt.disableflags = before | off
+            self.mujoco.mj_inverse(self.model, data)
+            result["unconstrained"] = numbers(data.qfrc_inverse)
+            self.model.opt.disableflags = before
         return result
 
     def about(self):

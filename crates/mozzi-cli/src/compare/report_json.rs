@@ -93,6 +93,7 @@ fn cause(cause: &Cause) -> Value {
         Cause::Armature(list) => changes("armature", list),
         Cause::Damping(list) => changes("damping", list),
         Cause::Friction(list) => changes("friction", list),
+        Cause::Constraints(kinds) => json!({ "kind": "constraints", "constraints": kinds }),
         Cause::Force(name) => json!({ "kind": "force", "force": name }),
         Cause::Bodies(reason, list) => json!({
             "kind": "inertia",

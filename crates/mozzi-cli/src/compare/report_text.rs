@@ -5,7 +5,7 @@ use super::numbers::{Entry, Errors, QUANTITIES};
 use super::question::Question;
 use super::verdict::Verdict;
 use super::words;
-use crate::text::{Page, about, scalar, table};
+use crate::text::{Page, about, table};
 
 /// What was found of one library.
 pub struct Finding<'a> {
@@ -31,7 +31,10 @@ pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
             numbers(page, verdict, question);
             verdict.causes.iter().for_each(|found| {
                 page.line(format!("  - {}", words::cause(&found.cause, answer)));
-                page.line(format!("    without this: {}", errors(found.without)));
+                // of a single cause it is the first row of the table
+                if verdict.after.agree() && verdict.causes.len() > 1 {
+                    page.line(format!("    all but this: {}", errors(found.without)));
+                }
             });
             extra(page, verdict, answer);
             if let Some(entry) = &verdict.first {
@@ -47,9 +50,9 @@ pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
             page.blank().line(format!("{name}: loads the file: {} velocities", robot.side.names.len()));
         }
     }
+    let verb = if answer.robot.is_ok() { "taken" } else { "tried" };
     for (message, remedy) in &answer.attempts {
-        page.line(format!("  it says of the file as it stands: {message}"));
-        page.line(format!("  so it was {}", words::remedy(*remedy)));
+        page.line(format!("  it refuses the file as it stands: {message}; {verb} {}", words::remedy(*remedy)));
     }
 }
 
@@ -89,8 +92,7 @@ fn extra(page: &mut Page, verdict: &Verdict, answer: &Answer) {
 fn first(page: &mut Page, entry: &Entry, library: &str) {
     let place = entry.joints.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let Entry { quantity, state, mozzi, theirs, .. } = entry;
-    let (here, there) = (scalar(*mozzi), scalar(*theirs));
-    page.line(format!("  first entry that differs still: {quantity}[{place}] is {here} here, {there} in {library} (state {})", state + 1));
+    page.line(format!("  first entry that differs still: {quantity}[{place}] is {mozzi} here, {theirs} in {library} (state {})", state + 1));
 }
 
 fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding, verdict: &Verdict) {
@@ -116,8 +118,9 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
             let worst = about(verdict.before.worst());
             page.line(format!("  tried: with mimic=True {library} agrees, worst error {worst} ε"));
         }
-        Some((answer, Some(verdict))) if verdict.is_explained() => {
-            page.line(format!("  tried: with mimic=True these differ still, explained: {}", verdict.causes.iter().map(|found| words::cause(&found.cause, answer)).collect::<Vec<_>>().join("; ")));
+        Some((_, Some(verdict))) if verdict.is_explained() => {
+            let worst = about(verdict.after.worst());
+            page.line(format!("  tried: with mimic=True the followers follow; the rest explained as above, worst error {worst} ε"));
         }
         Some((_, Some(verdict))) => {
             page.line(format!("  tried: with mimic=True it differs still: {}", errors(verdict.before)));

@@ -49,6 +49,10 @@ pub fn cause(cause: &Cause, answer: &Answer) -> String {
         Cause::Friction(list) => {
             format!("friction: μ sgn θ̇ here, the force of a constraint (frictionloss) in {library}: {}", changes(list))
         }
+        Cause::Constraints(kinds) => format!(
+            "constraints: τ of {library} contains their forces (qfrc_constraint), of {}; mozzi computes none",
+            kinds.join(", ")
+        ),
         Cause::Force(name) => force(name, library),
         Cause::Bodies(reason, list) => bodies(*reason, list, library),
         Cause::Axes(list) => {
@@ -63,7 +67,6 @@ fn changes(list: &[Change]) -> String {
 
 fn force(name: &str, library: &str) -> String {
     let what = match name {
-        "constraint" => "the forces of its constraints: limits, contacts, dry friction, equalities (qfrc_constraint)",
         "spring" => "springs: stiffness (qfrc_spring)",
         "gravcomp" => "gravity compensation of bodies (qfrc_gravcomp)",
         "fluid" => "the drag of a fluid (qfrc_fluid)",
@@ -77,6 +80,7 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
         Reason::Balanced => {
             "inertias that break the triangle inequality are those of spheres in MuJoCo (balanceinertia); as given here"
         }
+        Reason::Dropped => "MuJoCo drops the moments of links without mass that are fixed to others; counted here",
         Reason::Bounded => "bodies without mass or inertia get some in MuJoCo (boundmass, boundinertia); as given here",
         Reason::Shapes => "MuJoCo computes inertias from the shapes (inertiafromgeom); no <inertial>, no mass here",
         Reason::Scaled => "MuJoCo scales all masses to a sum (settotalmass); as given here",
@@ -93,7 +97,7 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
         if (a.mass - b.mass).abs() > 1e-9 * a.mass.abs() {
             words.push(format!("{} / {} kg", scalar(a.mass), scalar(b.mass)));
         }
-        if far {
+        if far && a.mass != 0.0 {
             let [a, b] = centers.map(|center| center.map(about).join(", "));
             words.push(format!("centre ({a}) / ({b}) m"));
         }
@@ -112,9 +116,10 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
 /// What was done that the library takes the file.
 pub fn remedy(remedy: Remedy) -> &'static str {
     match remedy {
-        Remedy::Geometry => "compared without <visual> and <collision>",
-        Remedy::Balance => "compared with balanceinertia=\"true\"",
-        Remedy::Bound => "compared with boundmass and boundinertia = 1e-9",
+        Remedy::Geometry => "without <visual> and <collision>",
+        Remedy::Fixed => "without the <inertial> of links that no joint moves",
+        Remedy::Balance => "with balanceinertia=\"true\"",
+        Remedy::Bound => "with boundmass and boundinertia = 1e-9",
     }
 }
 
