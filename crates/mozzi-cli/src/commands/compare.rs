@@ -83,11 +83,13 @@ fn source(name_or_path: &str, robot: &Description) -> Result<Source> {
     let path = Path::new(name_or_path);
     if path.extension().is_some_and(|suffix| suffix == "json") {
         let written = mozzi_urdf::write(robot);
-        return Ok(text(written.map_err(|why| {
-            Failure::wrong(format!("{name_or_path} cannot be given to other libraries: {why}"))
-        })?));
+        return Ok(text(
+            written
+                .map_err(|why| Failure::wrong(format!("{name_or_path} cannot be given to other libraries: {why}")))?,
+        ));
     }
-    let bytes = std::fs::read(path).map_err(|error| Failure::wrong(format!("{name_or_path} cannot be read: {error}")))?;
+    let bytes =
+        std::fs::read(path).map_err(|error| Failure::wrong(format!("{name_or_path} cannot be read: {error}")))?;
     let is_mjcf = mozzi_urdf::mjcf::is_mjcf(&String::from_utf8_lossy(&bytes));
     let language = if is_mjcf { "mjcf" } else { "urdf" };
     Ok(Source { language, path: Some(name_or_path.to_string()), text: None })

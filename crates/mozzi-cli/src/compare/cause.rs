@@ -94,7 +94,11 @@ impl Cause {
                     for (k, name) in change.links.iter().enumerate() {
                         let whole = change.theirs.seen_from(home[name].inverse());
                         let inertia = if k == 0 { whole } else { SpatialInertia::zero() };
-                        robot.links.iter_mut().filter(|link| link.name == *name).for_each(|link| link.inertia = inertia);
+                        robot
+                            .links
+                            .iter_mut()
+                            .filter(|link| link.name == *name)
+                            .for_each(|link| link.inertia = inertia);
                     }
                 }
             }

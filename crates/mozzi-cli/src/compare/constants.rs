@@ -64,9 +64,8 @@ impl Constants {
         };
         let bodies = model.folded_links();
         let joint = |(joint, body): (&&Joint, &mozzi::model::FoldedBody)| {
-            let sum = (body.links.iter()).fold(SpatialInertia::zero(), |sum, (link, _)| {
-                sum + inertia[link].seen_from(home[*link])
-            });
+            let sum = (body.links.iter())
+                .fold(SpatialInertia::zero(), |sum, (link, _)| sum + inertia[link].seen_from(home[*link]));
             let axis = match joint.kind {
                 JointKind::Screw(A) => A.seen_from(home[&joint.child]).twist().to_array(),
                 JointKind::Fixed => [0.0; 6],

@@ -9,5 +9,7 @@ pub mod python;
 pub mod question;
 pub mod report_json;
 pub mod report_text;
+#[cfg(test)]
+mod tests;
 pub mod verdict;
 pub mod words;

@@ -60,7 +60,8 @@ impl Side {
         let names: Vec<String> = model.joint_names().map(str::to_string).collect();
         let environment = model.environment();
         let at = |values: &[f64]| -> Vec<f64> {
-            let value = |name: &String| question.names.iter().position(|known| known == name).map_or(0.0, |k| values[k]);
+            let value =
+                |name: &String| question.names.iter().position(|known| known == name).map_or(0.0, |k| values[k]);
             names.iter().map(value).collect()
         };
         let numbers = |state: &super::question::State| {

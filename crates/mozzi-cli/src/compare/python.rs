@@ -59,27 +59,39 @@ fn start(python: &Path) -> Result<Child> {
     })
 }
 
-fn answer(mut child: Child, question: &Question, peer: Peer) -> Answer {
-    let died = |why: String| Answer::silent(peer.key(), Silence::Died(why));
+fn answer(child: Child, question: &Question, peer: Peer) -> Answer {
+    let read = |value: serde_json::Value| {
+        let answer = Answer::read(&value).filter(|answer| answer.library == name_of(peer.key()));
+        answer.ok_or_else(|| not_written(&value.to_string()))
+    };
+    let answer = value(child, question, peer).and_then(read);
+    answer.unwrap_or_else(|why| Answer::silent(peer.key(), Silence::Died(why)))
+}
+
+/// One answer as JSON, to be kept.
+#[cfg(test)]
+pub fn raw(python: &Path, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
+    value(start(python).map_err(|failure| format!("{failure:?}"))?, question, peer)
+}
+
+fn not_written(text: &str) -> String {
+    let start: String = text.chars().take(60).collect();
+    format!("its answer is not what the script writes: `{start}`")
+}
+
+/// What the script prints, or why there is none.
+fn value(mut child: Child, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
     let text = question.json(peer.key(), peer == Peer::PinocchioMimic).to_string();
     if let Some(mut stdin) = child.stdin.take() {
         // a script that ends before it has read says why by its exit
         let _ = stdin.write_all(text.as_bytes());
     }
-    let output = match child.wait_with_output() {
-        Ok(output) => output,
-        Err(error) => return died(format!("its answer cannot be read: {error}")),
-    };
+    let output = child.wait_with_output().map_err(|error| format!("its answer cannot be read: {error}"))?;
     let said = String::from_utf8_lossy(&output.stderr);
     let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing").trim();
     if !output.status.success() {
-        return died(format!("Python ended with {}: {last}", output.status));
+        return Err(format!("Python ended with {}: {last}", output.status));
     }
     let text = String::from_utf8_lossy(&output.stdout);
-    let start: String = text.chars().take(60).collect();
-    let read = serde_json::from_str(&text).ok().and_then(|value| Answer::read(&value));
-    match read {
-        Some(answer) if answer.library == name_of(peer.key()) => answer,
-        _ => died(format!("its answer is not what the script writes: `{start}`")),
-    }
+    serde_json::from_str(&text).map_err(|_| not_written(&text))
 }

@@ -70,7 +70,8 @@ impl State {
             let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
             let [low, high] = joint.limits.position.unwrap_or([-reach, reach]);
             // limits that exclude 0 by far are kept to; half a per mille off the stops themselves
-            let (low, high) = if low > reach || high < -reach { (low, high) } else { (low.max(-reach), high.min(reach)) };
+            let (low, high) =
+                if low > reach || high < -reach { (low, high) } else { (low.max(-reach), high.min(reach)) };
             let at = 0.0005 + 0.999 * (0.5 + 0.5 * random.number());
             values.insert(name, [low + (high - low) * at, random.number(), 2.0 * random.number()]);
         }

@@ -25,15 +25,24 @@ pub fn object(finding: &Finding) -> Value {
         })).collect::<Value>(),
     });
     if let (Ok(robot), Some(verdict)) = (&answer.robot, &finding.verdict) {
-        object["joints"] = robot.constants.joints.iter().map(|joint| json!({
-            "name": joint.name, "called": joint.called, "nq": joint.nq, "nv": joint.nv,
-        })).collect();
+        object["joints"] = robot
+            .constants
+            .joints
+            .iter()
+            .map(|joint| {
+                json!({
+                    "name": joint.name, "called": joint.called, "nq": joint.nq, "nv": joint.nv,
+                })
+            })
+            .collect();
         object["comparison"] = comparison(verdict, finding);
         object["with_mimic"] = match &finding.coupled {
             Some((_, Some(verdict))) => comparison(verdict, finding),
-            Some((answer, None)) => answer.robot.as_ref().err().map_or(Value::Null, |silence| {
-                json!({ "message": words::silence(silence, answer.library) })
-            }),
+            Some((answer, None)) => answer
+                .robot
+                .as_ref()
+                .err()
+                .map_or(Value::Null, |silence| json!({ "message": words::silence(silence, answer.library) })),
             None => Value::Null,
         };
     }

@@ -92,7 +92,10 @@ fn extra(page: &mut Page, verdict: &Verdict, answer: &Answer) {
 fn first(page: &mut Page, entry: &Entry, library: &str) {
     let place = entry.joints.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let Entry { quantity, state, mozzi, theirs, .. } = entry;
-    page.line(format!("  first entry that differs still: {quantity}[{place}] is {mozzi} here, {theirs} in {library} (state {})", state + 1));
+    page.line(format!(
+        "  first entry that differs still: {quantity}[{place}] is {mozzi} here, {theirs} in {library} (state {})",
+        state + 1
+    ));
 }
 
 fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding, verdict: &Verdict) {
@@ -100,7 +103,12 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
     if let Some(order) = &verdict.order {
         let (k, &j) = order.iter().enumerate().find(|(k, j)| k != *j).unwrap_or((0, &0));
         let why = if library == "Pinocchio" { ", which sorts siblings by name" } else { "" };
-        page.line(format!("  order of joints: another in {library}{why}: its joint {} is `{}`, here {}", k + 1, question.names[j], j + 1));
+        page.line(format!(
+            "  order of joints: another in {library}{why}: its joint {} is `{}`, here `{}`",
+            k + 1,
+            question.names[j],
+            question.names[k]
+        ));
     }
     let joints = &robot.constants.joints;
     let circles: Vec<&str> = joints.iter().filter(|j| j.nv == 1 && j.nq == 2).map(|j| j.name.as_str()).collect();
@@ -120,7 +128,9 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
         }
         Some((_, Some(verdict))) if verdict.is_explained() => {
             let worst = about(verdict.after.worst());
-            page.line(format!("  tried: with mimic=True the followers follow; the rest explained as above, worst error {worst} ε"));
+            page.line(format!(
+                "  tried: with mimic=True the followers follow; the rest explained as above, worst error {worst} ε"
+            ));
         }
         Some((_, Some(verdict))) => {
             page.line(format!("  tried: with mimic=True it differs still: {}", errors(verdict.before)));

@@ -42,7 +42,13 @@ impl Verdict {
 }
 
 /// Tries the causes together, then drops those that make no difference. `coupled`: as in [`suspects`].
-pub fn judge(robot: &Description, question: &Question, answer: &Answer, from: &Robot, coupled: bool) -> Result<Verdict> {
+pub fn judge(
+    robot: &Description,
+    question: &Question,
+    answer: &Answer,
+    from: &Robot,
+    coupled: bool,
+) -> Result<Verdict> {
     let with = |causes: &[&Cause]| -> Result<(Side, Side)> {
         let (mut robot, mut theirs) = (robot.clone(), from.side.clone());
         causes.iter().try_for_each(|cause| cause.apply(&mut robot, &mut theirs, from))?;
@@ -83,7 +89,8 @@ pub fn judge(robot: &Description, question: &Question, answer: &Answer, from: &R
     };
     let joints = &from.constants.joints;
     let is_extra = |name: &String| !question.names.contains(name);
-    let extra = joints.iter().filter(|joint| is_extra(&joint.name)).map(|joint| (joint.name.clone(), joint.nv)).collect();
+    let extra =
+        joints.iter().filter(|joint| is_extra(&joint.name)).map(|joint| (joint.name.clone(), joint.nv)).collect();
     Ok(Verdict { before, after, causes, extra, first, order: order(question, from) })
 }
 

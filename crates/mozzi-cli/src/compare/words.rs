@@ -56,7 +56,10 @@ pub fn cause(cause: &Cause, answer: &Answer) -> String {
         Cause::Force(name) => force(name, library),
         Cause::Bodies(reason, list) => bodies(*reason, list, library),
         Cause::Axes(list) => {
-            format!("screw axes: {library} reads others: {}", some(list, |(name, axis)| format!("`{name}` {}", tuple(axis))))
+            format!(
+                "screw axes: {library} reads others: {}",
+                some(list, |(name, axis)| format!("`{name}` {}", tuple(axis)))
+            )
         }
     }
 }
