@@ -129,7 +129,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     let mimic = |name: &str| robot.joints.iter().find(|joint| joint.name == name)?.mimic.as_ref();
 
     let held: Vec<String> = (mine.joints.iter())
-        .filter(|joint| !there(&joint.name) && !(coupled && mimic(&joint.name).is_some()))
+        .filter(|joint| !(there(&joint.name) || coupled && mimic(&joint.name).is_some()))
         .map(|joint| joint.name.clone())
         .collect();
     let mut robot = robot.clone();
@@ -166,7 +166,8 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     };
     // Pinocchio keeps both and leaves them out of its inverse dynamics; MuJoCo makes a constraint of dry friction
     let pinocchio = answer.library == "Pinocchio";
-    let lists: [(fn(Vec<Change>) -> Cause, Vec<Change>); 3] = [
+    type Make = fn(Vec<Change>) -> Cause;
+    let lists: [(Make, Vec<Change>); 3] = [
         (Cause::Armature, changes(|joint| joint.armature, false)),
         (Cause::Damping, changes(|joint| joint.damping, pinocchio)),
         (Cause::Friction, changes(|joint| joint.friction, true)),
