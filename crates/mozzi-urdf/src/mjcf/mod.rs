@@ -59,6 +59,11 @@ use option::Options;
 use std::path::Path;
 use tree::Tree;
 
+/// Is this text a model of MuJoCo's, as far as its first element tells?
+pub fn is_mjcf(text: &str) -> bool {
+    Dialect::of(text) == Dialect::Mjcf
+}
+
 /// Is this the code of a warning about what is right in MJCF, and has no place here? The strict policy lets it pass.
 pub(crate) fn is_list(code: &str) -> bool {
     matches!(code, "mozzi::mjcf::ignored_attribute" | "mozzi::mjcf::ignored_element" | "mozzi::mjcf::renamed_site")

@@ -6,6 +6,7 @@
 
 mod models;
 
+use mozzi::accuracy::{TermSizes, normalized_error};
 use mozzi::{Environment, FrameId, Model, Wrench};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -72,8 +73,7 @@ struct Worst(BTreeMap<&'static str, f64>);
 impl Worst {
     fn add(&mut self, what: &'static str, found: &DMatrix<f64>, reference: &DMatrix<f64>, terms: f64) {
         assert_eq!(found.shape(), reference.shape(), "{what}");
-        let scale = terms.max(reference.amax());
-        let error = (found - reference).amax() / (f64::EPSILON * if scale > 0.0 { scale } else { 1.0 });
+        let error = normalized_error(found.as_slice(), reference.as_slice(), terms);
         let worst = self.0.entry(what).or_insert(0.0);
         // NaN must not hide
         *worst = if error >= *worst || error.is_nan() { error } else { *worst };
@@ -98,12 +98,12 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     let has = |key: &str| state.get(key).is_some();
 
     let M = matrix(&state["mass_matrix"]);
-    let quadratic = M.amax() * largest_square(&dtheta); // size of what c is made of
     let g = model.gravity_forces(&theta).unwrap().amax();
-    let total = M.amax() * largest_square(&ddtheta).sqrt() + quadratic + g;
+    let sizes = TermSizes::new(M.amax(), g, &dtheta, &ddtheta);
+    let (quadratic, bias, total) = (sizes.velocity_product, sizes.bias_forces, sizes.inverse_dynamics);
     worst.add("M", &both(model.mass_matrix(&theta).unwrap()), &M, 0.0);
     let found = model.bias_forces(&theta, &dtheta, &environment).unwrap();
-    worst.add("h", &theirs(found), &list("bias_forces"), quadratic + g);
+    worst.add("h", &theirs(found), &list("bias_forces"), bias);
     let found = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).unwrap();
     worst.add("τ", &theirs(found), &list("inverse_dynamics"), total);
     if has("velocity_product") {
@@ -120,7 +120,7 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
         // backward: the torque that mozzi's accelerations need by the oracle's M and h, against the torque given
         let found = theirs(model.forward_dynamics(&theta, &dtheta, &tau, &environment).unwrap());
         let needed = &M * &found + list("bias_forces");
-        worst.add("θ̈", &needed, &list("tau"), M.amax() * found.amax() + quadratic + g);
+        worst.add("θ̈", &needed, &list("tau"), M.amax() * found.amax() + bias);
     }
     let pose = model.forward_kinematics(&theta, tip).unwrap().to_matrix();
     worst.add("T", &DMatrix::from_fn(4, 4, |i, j| pose[i][j]), &matrix(&state["pose"]), 0.0);
