@@ -1,6 +1,7 @@
 //! What each code means, and how to mend what it says.
 
 use crate::mjcf;
+use crate::spelling::nearest;
 
 /// A code, without `mozzi::urdf::` or `mozzi::mjcf::`; what it means; how to mend it.
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
@@ -195,6 +196,16 @@ pub fn explain(code: &str) -> Option<&'static str> {
 /// How to mend what a code says; what a diagnostic's help says where its place says nothing more precise.
 pub fn remedy(code: &str) -> Option<&'static str> {
     entry(code).map(|&(.., remedy)| remedy)
+}
+
+/// The code of either language that one which does not exist was probably meant to be.
+///
+/// ```
+/// assert_eq!(mozzi_urdf::nearest_code("mozzi::urdf::zero-axes"), Some("zero_axis"));
+/// ```
+pub fn nearest_code(code: &str) -> Option<&'static str> {
+    let short = code.rsplit("::").next().unwrap_or(code).replace('-', "_");
+    nearest(&short, codes().chain(mjcf::codes()))
 }
 
 /// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are [`mjcf::codes`].
