@@ -81,7 +81,7 @@ impl PolicyArguments {
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
+    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: anymal, double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
     #[arg(long, value_name = "FRAME")]

@@ -1,7 +1,8 @@
 //! Robots that mozzi brings along, each with the source of its numbers in its file.
 
 /// Name and text.
-const ROBOTS: [(&str, &str); 5] = [
+const ROBOTS: [(&str, &str); 6] = [
+    ("anymal", include_str!("../../../models/anymal.urdf")),
     ("double_pendulum", include_str!("../../../models/double_pendulum.urdf")),
     ("furuta_pendulum", include_str!("../../../models/furuta_pendulum.urdf")),
     ("panda", include_str!("../../../models/panda.urdf")),

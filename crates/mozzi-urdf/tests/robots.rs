@@ -6,8 +6,14 @@ use std::path::{Path, PathBuf};
 
 #[test]
 fn the_robots_that_mozzi_brings_along_are_flawless() {
-    for (name, n) in [("double_pendulum", 2), ("furuta_pendulum", 2), ("panda", 8), ("two_link_planar", 2), ("ur5", 6)]
-    {
+    for (name, n) in [
+        ("anymal", 12),
+        ("double_pendulum", 2),
+        ("furuta_pendulum", 2),
+        ("panda", 8),
+        ("two_link_planar", 2),
+        ("ur5", 6),
+    ] {
         let robot = open(name).expect(name);
         assert!(robot.warnings.is_empty(), "{name}: {:#?}", robot.warnings);
         assert_eq!(robot.build().expect(name).n(), n, "{name}");
@@ -20,7 +26,7 @@ fn what_is_not_there_is_said_so() {
     let message = open("ur6").expect_err("no such robot").to_string();
     assert_eq!(
         message,
-        "`ur6` is neither a file nor one of the robots `double_pendulum`, `furuta_pendulum`, `panda`, `two_link_planar`, `ur5`"
+        "`ur6` is neither a file nor one of the robots `anymal`, `double_pendulum`, `furuta_pendulum`, `panda`, `two_link_planar`, `ur5`"
     );
     assert!(matches!(load("no/such/file.urdf"), Err(LoadError::File { .. })));
     assert!(matches!(load("."), Err(LoadError::File { .. })), "a folder");
