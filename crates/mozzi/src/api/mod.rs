@@ -4,6 +4,7 @@
 mod dynamics;
 mod forward_dynamics;
 mod kinematics;
+mod momentum;
 mod newton_euler;
 
 pub use newton_euler::{BodyFrame, NewtonEuler};

@@ -9,6 +9,7 @@ mod inverse_dynamics;
 mod joint_friction;
 mod mass_matrix;
 mod mass_matrix_solve;
+mod momentum;
 
 #[cfg(test)]
 mod tests;
@@ -22,3 +23,4 @@ pub use inverse_dynamics::inverse_dynamics;
 pub use joint_friction::joint_friction;
 pub use mass_matrix::mass_matrix;
 pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;
+pub use momentum::{momentum, momentum_matrix, momentum_rate, total_inertia};

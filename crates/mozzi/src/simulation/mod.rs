@@ -3,10 +3,12 @@
 //! > q̇₁ = q₂,  q̇₂ = FD(q₁, q₂, τ, F),  with q₁ = θ and q₂ = θ̇
 //!
 //! [`Model::simulate`] takes a start, an [`Input`] (τ and the wrenches on the environment, by functions or tables) and
-//! [`Options`], and answers with a [`Trajectory`], its energies among it. The base is at rest. Positions are not kept
+//! [`Options`], and answers with a [`Trajectory`], its energies among it. {s} is at rest. Positions are not kept
 //! within the joints' limits. Coulomb friction acts on moving joints; sticking is not modelled, see [`Friction`].
 
 mod equation;
+#[cfg(test)]
+mod free_base;
 mod input;
 mod method;
 mod options;

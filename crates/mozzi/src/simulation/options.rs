@@ -17,7 +17,7 @@ pub struct Options {
     pub steps: usize,
     /// Record the start, every k-th step, and the last; 1.
     pub record_every: usize,
-    /// Gravity in base coordinates, m/s², in place of the model's own. (For a base that accelerates by a without turning:
+    /// Gravity in {s} coordinates, m/s², in place of the model's own. (For a {s} that accelerates by a without turning:
     /// g − a.)
     pub gravity: Option<Vec3>,
     /// Coulomb friction as in the model.

@@ -46,6 +46,12 @@ impl<S: Scalar> Wrench<S> {
         Wrench { m: Vec3([a, b, c]), f: Vec3([x, y, z]) }
     }
 
+    /// The same wrench, or momentum, about a point p of its frame instead of the origin: (m − p × f, f).
+    #[inline(always)]
+    pub fn about(self, p: Vec3<S>) -> Self {
+        Wrench { m: self.m - p.cross(self.f), f: self.f }
+    }
+
     /// √(‖m‖² + ‖f‖²): a size for tests and tolerances; it mixes units.
     pub fn norm(self) -> S {
         (self.m.dot(self.m) + self.f.dot(self.f)).sqrt()

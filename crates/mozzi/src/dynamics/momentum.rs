@@ -1,0 +1,123 @@
+//! Momentum of all that moves: its matrix by composite rigid bodies, its rate by Newton-Euler (Orin, Goswami and Lee 2013).
+
+use super::inverse_dynamics::newton_euler;
+use crate::kinematics::{base_pose, base_twist, joint_transforms};
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Environment, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::{SpatialInertia, Twist, Wrench};
+
+/// The spatial inertia of all that moves (the moving links, and a free base), about the origin of {s} in its coordinates: its
+/// `mass`, and its `mc`, the mass times the centre of mass.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long.
+#[rustfmt::skip]
+pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
+    composite_inertias(model, theta, workspace);
+    workspace.G_c[0].seen_from(base_pose(model, theta))
+}
+
+/// The momentum of all that moves, (angular, linear), about the origin of {s} in its coordinates, {s} at rest:
+///
+/// > h = Σ `[Ad_T_is]`ᵀ 𝒢_i 𝒱_i
+///
+/// in kg m²/s and kg m/s. About a point p it is (m − p × f, f): see [`Wrench::about`]. Rotors (armature) are not in it.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ not n.
+#[rustfmt::skip]
+pub fn momentum<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
+) -> Wrench<S> {
+    model.assert_lengths(theta.len(), [dtheta.len()]);
+    joint_transforms(model, theta, workspace);
+    let Workspace { T, V, F: P, .. } = workspace;
+    V[0] = base_twist(model, theta, dtheta, Twist::zero());
+    P[0] = base_inertia(model) * V[0];
+    for (i, link) in model.outward::<S>() {
+        V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
+        P[i] = link.G * V[i];
+    }
+    for (i, link) in model.inward::<S>() {
+        let P_i = T[i].Ad().transpose() * P[i];
+        P[link.parent] += P_i;
+    }
+    seen_from_space(model, theta, P[0])
+}
+
+/// The n columns of the matrix A with [`momentum`] h = Aθ̇. About the centre of mass it is the centroidal momentum matrix.
+///
+/// > A_i = `[Ad_T_is]`ᵀ 𝒢ᶜ_i 𝒜_i
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `A` not n.
+#[rustfmt::skip]
+pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, A: &mut [Wrench<S>],
+) {
+    model.assert_lengths(theta.len(), [A.len()]);
+    composite_inertias(model, theta, workspace);
+    let Workspace { T, G_c, .. } = workspace;
+    A.fill(Wrench::zero());
+    let T_bs: SE3<S> = base_pose(model, theta).inverse();
+    if model.is_floating() {
+        for (column, axis) in A.iter_mut().zip(Twist::axes()) {
+            *column = T_bs.Ad().transpose() * (G_c[0] * axis);
+        }
+    }
+    T[0] = T_bs;
+    for (i, link) in model.outward::<S>() {
+        T[i] = T[i] * T[link.parent];                                                     // T_is
+        A[link.j] += T[i].Ad().transpose() * (G_c[i] * link.A * link.ratio);
+    }
+}
+
+/// ḣ of the [`momentum`] h along a motion: Aθ̈ + Ȧθ̇, about the origin of {s}. It is what gravity, the ground and all else that
+/// pushes must add up to.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or θ̇ or θ̈ not n.
+#[rustfmt::skip]
+pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
+) -> Wrench<S> {
+    let mut tau = core::mem::take(&mut workspace.vector);
+    newton_euler(model, theta, dtheta, ddtheta, &Environment::with_gravity(Vec3::zero()), workspace, &mut tau);
+    workspace.vector = tau;
+    seen_from_space(model, theta, workspace.F[0])
+}
+
+/// 𝒢ᶜ of every slot; of a bolted base without its own.
+#[rustfmt::skip]
+fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
+    model.assert_lengths(theta.len(), []);
+    joint_transforms(model, theta, workspace);
+    let Workspace { T, G_c, .. } = workspace;
+    G_c[0] = base_inertia(model);
+    for (i, link) in model.outward::<S>() {
+        G_c[i] = link.G;
+    }
+    for (i, link) in model.inward::<S>() {
+        let G = G_c[i].congruence(T[i].Ad());
+        G_c[link.parent] += G;
+    }
+}
+
+/// 𝒢 of the base as far as it moves.
+fn base_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> SpatialInertia<S> {
+    if model.is_floating() { model.base_inertia.map(S::from) } else { SpatialInertia::zero() }
+}
+
+fn seen_from_space<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], P: Wrench<S>) -> Wrench<S> {
+    base_pose(model, theta).inverse().Ad().transpose() * P
+}
