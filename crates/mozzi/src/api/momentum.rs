@@ -159,11 +159,7 @@ mod tests {
             let h = kernel::momentum(&dual, &moving(&model, &theta, &dtheta), &rates, &mut workspace);
             let dh = h.map(|x| x.derivative);
             let o = Vec3::zero();
-            close(
-                &model.momentum_rate(&theta, &dtheta, &ddtheta, o).expect("lengths").to_array(),
-                &dh.to_array(),
-                "ḣ",
-            );
+            close(&model.momentum_rate(&theta, &dtheta, &ddtheta, o).expect("lengths").to_array(), &dh.to_array(), "ḣ");
             let ddc = model.center_of_mass_acceleration(&theta, &dtheta, &ddtheta).expect("a mass");
             close(&ddc.0, &(dh.f * (1.0 / model.mass())).0, "c̈");
         }
@@ -211,7 +207,8 @@ mod tests {
 
     #[test]
     fn nothing_has_no_centre() {
-        let empty = crate::Description::new("empty").link("base", crate::SpatialInertia::zero()).build().expect("sound");
+        let empty =
+            crate::Description::new("empty").link("base", crate::SpatialInertia::zero()).build().expect("sound");
         let message = empty.center_of_mass(&[]).expect_err("no mass").to_string();
         assert_eq!(message, "the mass of all that moves is 0 kg, expected more, to have a centre");
     }

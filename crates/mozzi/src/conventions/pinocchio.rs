@@ -3,7 +3,7 @@
 use super::JointOrder;
 use super::joint_order::check_length;
 use crate::kinematics::Jacobian;
-use crate::model::description::{Joint, JointKind};
+use crate::model::description::Joint;
 use crate::model::{Error, Model};
 use crate::scalar::{Real, Scalar};
 use alloc::collections::BTreeMap;
@@ -44,7 +44,8 @@ pub struct Pinocchio {
 }
 
 impl Pinocchio {
-    /// As Pinocchio reads the robot's URDF.
+    /// As Pinocchio reads the robot's URDF. (A `revolute` joint to which the file gives no bounds turns without limits in mozzi, and has
+    /// one position in Pinocchio: [`with_joints`](Self::with_joints) knows better.)
     pub fn new(model: &Model) -> Self {
         let order = JointOrder::new(model, depth_first_by_the_alphabet(model));
         let joints: Vec<&Joint> = model.joints().collect();
@@ -228,7 +229,7 @@ fn depth_first_by_the_alphabet(model: &Model) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::description::Limits;
+    use crate::model::description::{JointKind, Limits};
     use crate::model::{Base, Description};
     use crate::spatial::ScrewAxis;
     use crate::testing::{Random, floating_tree, inertia, state, tree};
