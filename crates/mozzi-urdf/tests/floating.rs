@@ -48,6 +48,12 @@ fn potential_size(model: &Model, reach: f64) -> f64 {
     9.81 * model.mass() * (1.0 + reach)
 }
 
+/// M_ij over √(M_ii M_jj), which no entry exceeds: so that a finger's inertia counts beside the robot's mass.
+fn balanced(M: &DMatrix<f64>, reference: &DMatrix<f64>) -> DMatrix<f64> {
+    let size = |i: usize, j: usize| (reference[(i, i)] * reference[(j, j)]).sqrt();
+    DMatrix::from_fn(M.nrows(), M.ncols(), |i, j| if size(i, j) > 0.0 { M[(i, j)] / size(i, j) } else { M[(i, j)] })
+}
+
 /// In Pinocchio's convention.
 fn compare_pinocchio(model: &Model, theirs: &Pinocchio, state: &Value, worst: &mut Worst) {
     let list = |key: &str| vector(&state[key]);
@@ -62,7 +68,9 @@ fn compare_pinocchio(model: &Model, theirs: &Pinocchio, state: &Value, worst: &m
     let quadratic = M.amax() * largest_square(dtheta);
     let g = model.gravity_forces(theta).unwrap();
     let bias = quadratic + g.amax();
-    worst.add("M", &theirs.mass_matrix(&model.mass_matrix(theta).unwrap()).unwrap(), &M, 0.0);
+    let found = theirs.mass_matrix(&model.mass_matrix(theta).unwrap()).unwrap();
+    worst.add("M", &found, &M, 0.0);
+    worst.add("M_ij", &balanced(&found, &M), &balanced(&M, &M), 1.0);
     worst.add_list("g", force(g).as_slice(), &state["gravity"], 0.0);
     let h = force(model.bias_forces(theta, dtheta, &environment).unwrap());
     worst.add_list("h", h.as_slice(), &state["nle"], bias);
@@ -70,6 +78,7 @@ fn compare_pinocchio(model: &Model, theirs: &Pinocchio, state: &Value, worst: &m
     let size = M.amax() * largest_square(ddtheta).sqrt() + bias;
     worst.add_list("τ", found.as_slice(), &state["rnea"], size);
     let C = theirs.mass_matrix(&model.coriolis_matrix(theta, dtheta).unwrap()).unwrap();
+    worst.add("C", &C, &matrix(&state["C"]), quadratic.max(M.amax()));
     let v = theirs.velocity(dtheta).unwrap();
     let Cv = matrix(&state["C"]) * &v;
     worst.add("Cθ̇", &column((C * v).as_slice()), &column(Cv.as_slice()), quadratic);
@@ -136,7 +145,9 @@ fn compare_mujoco(model: &Model, theirs: &MuJoCo, state: &Value, worst: &mut Wor
     let (environment, tip) = (model.environment(), model.end_effector().unwrap());
 
     let (mine, M) = (model.mass_matrix(theta).unwrap(), matrix(&state["M"]));
-    worst.add("M", &theirs.mass_matrix(theta, &mine).unwrap(), &M, 0.0);
+    let found = theirs.mass_matrix(theta, &mine).unwrap();
+    worst.add("M", &found, &M, 0.0);
+    worst.add("M_ij", &balanced(&found, &M), &balanced(&M, &M), 1.0);
     let back = theirs.from_mass_matrix(&qpos, &M).unwrap();
     worst.add("M, back", &back, &mine, 0.0);
     let bias = M.amax() * largest_square(dtheta) + model.gravity_forces(theta).unwrap().amax();
