@@ -1,5 +1,5 @@
-//! The reference numbers: `oracles/make.py` computes them with Pinocchio on the robots of example-robot-data,
-//! `oracles/make_mjcf.py` with MuJoCo on the models of gymnasium and dm_control.
+//! The reference numbers: the scripts of `oracles/` compute them, `make.py` with Pinocchio on the robots of example-robot-data,
+//! bolted, `make_floating.py` with free bases, `make_mjcf.py` with MuJoCo on the models of gymnasium and dm_control.
 
 use crate::command;
 use crate::report::Outcome;
@@ -9,7 +9,9 @@ use crate::workspace::Workspace;
 use std::path::PathBuf;
 use std::process::Command;
 
-const SCRIPTS: [&str; 2] = ["oracles/make.py", "oracles/make_mjcf.py"];
+/// Each script, and where in the folder of numbers its files go.
+const SCRIPTS: [(&str, &str); 3] =
+    [("oracles/make.py", ""), ("oracles/make_floating.py", "floating"), ("oracles/make_mjcf.py", "")];
 const STATES: &str = "100";
 
 /// Where the example_robot_data robots are: the package has no Python module, but it lists its files.
@@ -41,10 +43,10 @@ fn try_make(workspace: &Workspace) -> Result<String, String> {
         return Ok("made already".into());
     }
     let folder = workspace.fresh_folder("target/oracles")?; // without the stamp: an interrupted run is no finished one
-    for script in SCRIPTS {
+    for (script, part) in SCRIPTS {
         let mut python = Command::new(venv::python(workspace));
         python.current_dir(&workspace.root).arg(script).args(["--states", STATES, "--out"]);
-        command::run(python.arg(&folder))?;
+        command::run(python.arg(folder.join(part)))?;
     }
     stamp.write()?;
     Ok(format!("{STATES} states a robot"))
@@ -65,9 +67,13 @@ pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
 /// What the numbers are made from: scripts, requirements, robots and models under `oracles/`, and the robots of `models/`.
 fn stamp(workspace: &Workspace) -> Result<Stamp, String> {
     let mut files = Vec::new();
-    let sources =
-        [("oracles", &["py", "txt", "urdf", "xml"][..]), ("oracles/parts", &["xml"][..]), ("models", &["urdf"][..])];
-    for (folder, endings) in sources {
+    let folders = [
+        ("oracles", &["py", "txt", "urdf", "xml"][..]),
+        ("oracles/parts", &["xml"]),
+        ("oracles/floating", &["urdf"]),
+        ("models", &["urdf"]),
+    ];
+    for (folder, endings) in folders {
         let Ok(entries) = std::fs::read_dir(workspace.path(folder)) else { continue };
         let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
         files.extend(paths.filter(|path| path.extension().is_some_and(|e| endings.iter().any(|known| e == *known))));

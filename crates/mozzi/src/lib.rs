@@ -25,6 +25,7 @@
 //!   kernels on `f64` with the machine's instruction set, for control loops.
 //! - To look at: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
 //! - In time: [`simulation`].
+//! - Beside Pinocchio and MuJoCo: [`conventions`].
 //!
 //! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is
 //! positive. Without the default feature `std` the crate is `no_std` with `alloc`, and takes elementary functions from `libm`.
@@ -34,6 +35,7 @@ extern crate alloc;
 
 pub mod accuracy;
 mod api;
+pub mod conventions;
 pub mod dynamics;
 pub mod kinematics;
 pub mod lie;

@@ -4,35 +4,16 @@
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../common/mod.rs"]
+mod common;
 mod models;
 
-use mozzi::accuracy::{TermSizes, normalized_error};
+use common::{BOUND, Worst, column, largest_square, matrix, repository, vector};
+use mozzi::accuracy::TermSizes;
 use mozzi::{Environment, FrameId, Model, Wrench};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// Nothing may be further off than this many ε.
-const BOUND: f64 = 1000.0;
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn vector(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
-}
-fn matrix(value: &Value) -> DMatrix<f64> {
-    let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(vector).collect();
-    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
-}
-fn column(v: &[f64]) -> DMatrix<f64> {
-    DMatrix::from_column_slice(v.len(), 1, v)
-}
-fn largest_square(v: &[f64]) -> f64 {
-    v.iter().fold(0.0, |m: f64, x| m.max(x * x))
-}
 
 /// What a model of MJCF may be refused for: it is more than a tree, or its numbers stand in meshes.
 const CLOSURES: [&str; 5] =
@@ -64,20 +45,6 @@ fn model(oracle: &Value) -> Result<Model, String> {
     assert_eq!(vector(&oracle["gravity"]), robot.gravity, "{}", path.display());
     robot.end_effector = Some(oracle["tip_frame"].as_str().unwrap().into());
     Ok(robot.build().unwrap())
-}
-
-/// The worst normalised error of each quantity.
-#[derive(Default)]
-struct Worst(BTreeMap<&'static str, f64>);
-
-impl Worst {
-    fn add(&mut self, what: &'static str, found: &DMatrix<f64>, reference: &DMatrix<f64>, terms: f64) {
-        assert_eq!(found.shape(), reference.shape(), "{what}");
-        let error = normalized_error(found.as_slice(), reference.as_slice(), terms);
-        let worst = self.0.entry(what).or_insert(0.0);
-        // NaN must not hide
-        *worst = if error >= *worst || error.is_nan() { error } else { *worst };
-    }
 }
 
 /// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's joints.
@@ -195,9 +162,8 @@ fn compare_folder(folder: &Path) {
         };
         let worst = compare_all(&name, &oracle, &model);
         let states = oracle["states"].as_array().unwrap();
-        let text: Vec<String> = worst.0.iter().map(|(what, error)| format!("{what} {error:.1}")).collect();
-        println!("{name:<34} n {:>3}, {:>3} states: {}", model.n(), states.len(), text.join(", "));
-        if worst.0.values().any(|error| !(*error < BOUND)) {
+        println!("{name:<34} n {:>3}, {:>3} states: {}", model.n(), states.len(), worst.line());
+        if worst.failed() {
             failed.push(name);
         }
     }

@@ -10,6 +10,7 @@ mod newton_euler;
 pub use newton_euler::{BodyFrame, NewtonEuler};
 
 use crate::model::{Environment, Error, FrameId, Model};
+use crate::scalar::Scalar;
 use alloc::format;
 
 impl Model<f64> {
@@ -31,17 +32,11 @@ impl Model<f64> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
 
-    /// A free base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
     fn check_quaternion(&self, theta: &[f64]) -> Result<(), Error> {
-        let (Some(q), true) = (theta.first_chunk::<4>(), self.is_floating()) else { return Ok(()) };
-        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if (length - 1.0).abs() <= 1e-3 || length.is_nan() {
-            return Ok(());
+        match theta.first_chunk() {
+            Some(&q) if self.is_floating() => check_unit(q),
+            _ => Ok(()),
         }
-        let found = format!("{q:?}, of length {length}");
-        let expected =
-            "a unit quaternion (w, x, y, z), to 1e-3: theta of a free base is (w, x, y, z), its origin, and the joints";
-        Err(Error::BadArgument { what: "the base's orientation in theta", found, expected })
     }
 
     /// A frame of this model, not of a larger one.
@@ -62,4 +57,16 @@ impl Model<f64> {
 fn check_length(what: &'static str, slice: &[f64], expected: usize) -> Result<(), Error> {
     let found = slice.len();
     if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
+}
+
+/// A free base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
+pub(crate) fn check_unit(q: [f64; 4]) -> Result<(), Error> {
+    let length = Scalar::sqrt(q.iter().map(|x| x * x).sum::<f64>());
+    if (length - 1.0).abs() <= 1e-3 || length.is_nan() {
+        return Ok(());
+    }
+    let found = format!("{q:?}, of length {length}");
+    let expected =
+        "a unit quaternion (w, x, y, z), to 1e-3: theta of a free base is (w, x, y, z), its origin, and the joints";
+    Err(Error::BadArgument { what: "the base's orientation in theta", found, expected })
 }

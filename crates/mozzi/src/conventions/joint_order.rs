@@ -1,0 +1,153 @@
+//! The order in which another library has the joints.
+
+use crate::model::{Base, Error, Model};
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// mozzi's number of the other's k-th joint, at k.
+#[derive(Clone, Debug)]
+pub(super) struct JointOrder {
+    base: Base,
+    joints: Vec<usize>,
+}
+
+impl JointOrder {
+    /// By number.
+    pub fn new(model: &Model, joints: Vec<usize>) -> Self {
+        JointOrder { base: model.base(), joints }
+    }
+
+    /// By name: each independent joint once.
+    pub fn by_name(model: &Model, names: &[&str]) -> Result<Self, Error> {
+        check_length("the list of joint names", names.len(), model.joint_names().len())?;
+        let mut is_taken = vec![false; names.len()];
+        let number = |name: &&str| {
+            let Some(j) = model.joint_names().position(|known| known == *name) else {
+                return Err(unknown(model, name));
+            };
+            if core::mem::replace(&mut is_taken[j], true) {
+                let (what, found) = ("a joint name", format!("`{name}`, a second time"));
+                return Err(Error::BadArgument { what, found, expected: "each independent joint once" });
+            }
+            Ok(j)
+        };
+        Ok(JointOrder::new(model, names.iter().map(number).collect::<Result<_, _>>()?))
+    }
+
+    /// mozzi's numbers of the other's joints.
+    pub fn joints(&self) -> &[usize] {
+        &self.joints
+    }
+
+    pub fn is_floating(&self) -> bool {
+        self.base == Base::Floating
+    }
+
+    /// The length of θ.
+    pub fn nq(&self) -> usize {
+        self.base.positions() + self.joints.len()
+    }
+
+    /// The length of θ̇, and of the other's velocities.
+    pub fn n(&self) -> usize {
+        self.base.velocities() + self.joints.len()
+    }
+
+    /// A vector of velocities or forces in the other's order of joints, and linear first where the base is free.
+    pub fn velocities_to(&self, what: &'static str, mine: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length(what, mine.len(), self.n())?;
+        Ok(DVector::from_fn(self.n(), |k, _| mine[self.velocity(k)]))
+    }
+
+    /// The inverse of [`velocities_to`](Self::velocities_to).
+    pub fn velocities_from(&self, what: &'static str, theirs: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length(what, theirs.len(), self.n())?;
+        let mut mine = DVector::zeros(self.n());
+        (0..self.n()).for_each(|k| mine[self.velocity(k)] = theirs[k]);
+        Ok(mine)
+    }
+
+    /// A form on velocities likewise, M for one.
+    pub fn matrix_to(&self, what: &'static str, mine: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        self.check_matrix(what, mine)?;
+        Ok(DMatrix::from_fn(self.n(), self.n(), |i, j| mine[(self.velocity(i), self.velocity(j))]))
+    }
+
+    /// The inverse of [`matrix_to`](Self::matrix_to).
+    pub fn matrix_from(&self, what: &'static str, theirs: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        self.check_matrix(what, theirs)?;
+        let mut mine = DMatrix::zeros(self.n(), self.n());
+        for i in 0..self.n() {
+            (0..self.n()).for_each(|j| mine[(self.velocity(i), self.velocity(j))] = theirs[(i, j)]);
+        }
+        Ok(mine)
+    }
+
+    /// mozzi's number of the other's k-th velocity.
+    pub fn velocity(&self, k: usize) -> usize {
+        match k.checked_sub(self.base.velocities()) {
+            Some(joint) => self.base.velocities() + self.joints[joint],
+            None => (k + 3) % 6,
+        }
+    }
+
+    pub fn check_matrix(&self, what: &'static str, matrix: &DMatrix<f64>) -> Result<(), Error> {
+        let (n, (rows, columns)) = (self.n(), matrix.shape());
+        check_length(what, rows * columns, n * n)?;
+        if rows == n {
+            return Ok(());
+        }
+        Err(Error::BadArgument { what, found: format!("{rows} × {columns}"), expected: "a square matrix" })
+    }
+}
+
+pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {
+    if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
+}
+
+fn unknown(model: &Model, name: &str) -> Error {
+    let joint = model.moving_joints().find(|joint| joint.name == name);
+    if let Some(mimic) = joint.and_then(|joint| joint.mimic.as_ref()) {
+        let found = format!("`{name}`, which follows `{}`", mimic.joint);
+        return Error::BadArgument { what: "a joint name", found, expected: "an independent joint" };
+    }
+    let known: Vec<String> = model.joint_names().map(ToString::to_string).collect();
+    Error::NoSuchJoint { name: name.into(), known }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{floating_tree, tree};
+
+    #[test]
+    fn names_are_matched_each_once() {
+        let model = floating_tree(2, 4, 1);
+        let order = JointOrder::by_name(&model, &["joint3", "joint1", "joint2"]).expect("its joints");
+        let mine: Vec<&str> = model.joint_names().collect();
+        let theirs: Vec<&str> = order.joints().iter().map(|&j| mine[j]).collect();
+        assert_eq!(theirs, ["joint3", "joint1", "joint2"]);
+        let refused = |names: &[&str]| JointOrder::by_name(&model, names).expect_err("not its joints").to_string();
+        assert_eq!(refused(&["joint1"]), "the list of joint names has 1 entries, expected 3");
+        assert!(refused(&["joint1", "joint2", "knee"]).starts_with("there is no joint `knee`; this robot has `joint"));
+        assert!(refused(&["joint1", "joint2", "joint1"]).contains("`joint1`, a second time"));
+        assert!(refused(&["joint1", "joint2", "joint4"]).contains("`joint4`, which follows `joint"));
+    }
+
+    #[test]
+    fn there_and_back_is_the_same_to_the_bit() {
+        for model in [tree(2, 4, 0), floating_tree(2, 4, 0)] {
+            let order = JointOrder::by_name(&model, &["joint3", "joint1", "joint4", "joint2"]).expect("its joints");
+            let list: Vec<f64> = (0..model.n()).map(|k| k as f64 + 0.1).collect();
+            let there = order.velocities_to("a", &list).expect("n");
+            assert_eq!(order.velocities_from("a", there.as_slice()).expect("n").as_slice(), list);
+            let M = DMatrix::from_fn(model.n(), model.n(), |i, j| 10.0 * i as f64 + j as f64);
+            assert_eq!(order.matrix_from("M", &order.matrix_to("M", &M).expect("n")).expect("n"), M);
+            assert!(order.matrix_to("M", &DMatrix::zeros(1, model.n() * model.n())).is_err());
+            assert!(order.velocities_to("a", &list[1..]).is_err());
+        }
+    }
+}

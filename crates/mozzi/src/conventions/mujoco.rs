@@ -1,0 +1,356 @@
+//! MuJoCo's convention.
+
+use super::JointOrder;
+use super::joint_order::check_length;
+use crate::api::check_unit;
+use crate::lie::SO3;
+use crate::linalg::Vec3;
+use crate::model::{Error, Model};
+use nalgebra::{DMatrix, DVector};
+
+/// States, forces and matrices of a model in the coordinates of MuJoCo, and back.
+///
+/// | | mozzi | MuJoCo (a free base is its `freejoint`), R = `R_sb` |
+/// |---|---|---|
+/// | configuration | (q_w, q_x, q_y, q_z, p, joints) | `qpos` = (p, q_w, q_x, q_y, q_z, joints) |
+/// | velocity | (ω, v, joints), in the base link's coordinates | `qvel` = (Rv, ω, joints): ṗ in world axes, ω in the body's |
+/// | acceleration | its derivative | `qacc` = (R(v̇ + ω × v), ω̇, joints): p̈ in world axes |
+/// | force | (m, f, joints) | `qfrc_*` = (Rf, m, joints) |
+/// | mass matrix | M | XᵀMX, with θ̇ = X `qvel` |
+/// | h | h | Xᵀ(h + Mβ), with θ̈ = X `qacc` + β, β = (0, −ω × v, 0) |
+///
+/// h is no [`force`](Self::force) alone: it is what θ̈ = 0 needs, and `qfrc_bias` what `qacc` = 0 needs.
+///
+/// All is exact to the rounding of one rotation; permutations, and all of a bolted robot, to the bit. Where mozzi's methods take θ
+/// to know R, those that lead back take `qpos`.
+#[derive(Clone, Debug)]
+pub struct MuJoCo {
+    order: JointOrder,
+}
+
+impl MuJoCo {
+    /// Joints in mozzi's own order, as MuJoCo has it too when it reads the same file: depth first, siblings as they stand.
+    pub fn new(model: &Model) -> Self {
+        MuJoCo { order: JointOrder::new(model, (0..model.joint_names().len()).collect()) }
+    }
+
+    /// Joints as a MuJoCo model names them, the free one left out.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`], [`Error::BadArgument`]: unless these are the independent joints, each once.
+    pub fn with_joints(model: &Model, names: &[&str]) -> Result<Self, Error> {
+        Ok(MuJoCo { order: JointOrder::by_name(model, names)? })
+    }
+
+    /// mozzi's number, among the joints, of each of MuJoCo's.
+    pub fn joints(&self) -> &[usize] {
+        self.order.joints()
+    }
+
+    /// `qpos` from θ.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn configuration(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length("theta", theta.len(), self.order.nq())?;
+        Ok(DVector::from_fn(self.order.nq(), |k, _| theta[self.position(k)]))
+    }
+
+    /// θ from `qpos`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn from_configuration(&self, qpos: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length("qpos", qpos.len(), self.order.nq())?;
+        let mut theta = DVector::zeros(self.order.nq());
+        (0..self.order.nq()).for_each(|k| theta[self.position(k)] = qpos[k]);
+        Ok(theta)
+    }
+
+    /// `qvel` from θ̇: (Rv, ω, joints).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    pub fn velocity(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        let R = self.orientation(theta)?;
+        Ok(turned(self.order.velocities_to("dtheta", dtheta)?, R))
+    }
+
+    /// θ̇ from `qvel`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    pub fn from_velocity(&self, qpos: &[f64], qvel: &[f64]) -> Result<DVector<f64>, Error> {
+        self.turned_back(qpos, "qvel", qvel)
+    }
+
+    /// `qacc` from θ̈: (R(v̇ + ω × v), ω̇, joints).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    pub fn acceleration(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        let (R, beta) = (self.orientation(theta)?, self.spin(dtheta)?);
+        check_length("ddtheta", ddtheta.len(), self.order.n())?;
+        Ok(turned(self.order.velocities_to("ddtheta", (DVector::from_column_slice(ddtheta) - beta).as_slice())?, R))
+    }
+
+    /// θ̈ from `qacc`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    pub fn from_acceleration(&self, qpos: &[f64], qvel: &[f64], qacc: &[f64]) -> Result<DVector<f64>, Error> {
+        let dtheta = self.from_velocity(qpos, qvel)?;
+        Ok(self.turned_back(qpos, "qacc", qacc)? + self.spin(dtheta.as_slice())?)
+    }
+
+    /// `qfrc_*` from τ: (Rf, m, joints). For h see [`bias_forces`](Self::bias_forces).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    pub fn force(&self, theta: &[f64], tau: &[f64]) -> Result<DVector<f64>, Error> {
+        let R = self.orientation(theta)?;
+        Ok(turned(self.order.velocities_to("tau", tau)?, R))
+    }
+
+    /// τ from `qfrc_*`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    pub fn from_force(&self, qpos: &[f64], qfrc: &[f64]) -> Result<DVector<f64>, Error> {
+        self.turned_back(qpos, "qfrc", qfrc)
+    }
+
+    /// `mj_fullM`'s matrix from M: XᵀMX.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    pub fn mass_matrix(&self, theta: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        let R = self.orientation(theta)?;
+        Ok(congruent(self.order.matrix_to("M", M)?, R))
+    }
+
+    /// M from `mj_fullM`'s matrix.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    pub fn from_mass_matrix(&self, qpos: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        let R = self.orientation(self.from_configuration(qpos)?.as_slice())?;
+        self.order.check_matrix("M", M)?;
+        self.order.matrix_from("M", &congruent(M.clone(), R.map(SO3::inverse)))
+    }
+
+    /// `qfrc_bias` from h and M, both mozzi's: Xᵀ(h + Mβ), β = (0, −ω × v, 0).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    pub fn bias_forces(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        M: &DMatrix<f64>,
+        h: &[f64],
+    ) -> Result<DVector<f64>, Error> {
+        self.order.check_matrix("M", M)?;
+        check_length("h", h.len(), self.order.n())?;
+        if !self.order.is_floating() {
+            return self.order.velocities_to("h", h);
+        }
+        self.force(theta, (DVector::from_column_slice(h) + M * self.spin(dtheta)?).as_slice())
+    }
+
+    /// h from `qfrc_bias` and M, this one mozzi's: X⁻ᵀ`qfrc_bias` − Mβ.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    pub fn from_bias_forces(
+        &self,
+        qpos: &[f64],
+        qvel: &[f64],
+        M: &DMatrix<f64>,
+        qfrc_bias: &[f64],
+    ) -> Result<DVector<f64>, Error> {
+        self.order.check_matrix("M", M)?;
+        let h = self.turned_back(qpos, "qfrc_bias", qfrc_bias)?;
+        if !self.order.is_floating() {
+            return Ok(h);
+        }
+        Ok(h - M * self.spin(self.from_velocity(qpos, qvel)?.as_slice())?)
+    }
+
+    /// mozzi's number of MuJoCo's k-th position.
+    fn position(&self, k: usize) -> usize {
+        let base = self.order.nq() - self.joints().len();
+        match k.checked_sub(base) {
+            Some(joint) => base + self.joints()[joint],
+            None => (k + 4) % 7,
+        }
+    }
+
+    /// `R_sb` of a free base.
+    fn orientation(&self, theta: &[f64]) -> Result<Option<SO3>, Error> {
+        check_length("theta", theta.len(), self.order.nq())?;
+        let (Some(&[w, x, y, z]), true) = (theta.first_chunk(), self.order.is_floating()) else { return Ok(None) };
+        check_unit([w, x, y, z])?;
+        Ok(Some(SO3::from_quaternion(w, Vec3([x, y, z]))))
+    }
+
+    /// β = Ẋ `qvel`: −ω × v in the rows of v, for the body's axes turn under the velocity.
+    fn spin(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length("dtheta", dtheta.len(), self.order.n())?;
+        let mut beta = DVector::zeros(self.order.n());
+        if let (&[wx, wy, wz, vx, vy, vz, ..], true) = (dtheta, self.order.is_floating()) {
+            let turning = Vec3([vx, vy, vz]).cross(Vec3([wx, wy, wz]));
+            (0..3).for_each(|i| beta[3 + i] = turning.0[i]);
+        }
+        Ok(beta)
+    }
+
+    /// X `theirs`, which X⁻ᵀ is too: a rotation and a permutation.
+    fn turned_back(&self, qpos: &[f64], what: &'static str, theirs: &[f64]) -> Result<DVector<f64>, Error> {
+        let R = self.orientation(self.from_configuration(qpos)?.as_slice())?;
+        check_length(what, theirs.len(), self.order.n())?;
+        let turned = turned(DVector::from_column_slice(theirs), R.map(SO3::inverse));
+        self.order.velocities_from(what, turned.as_slice())
+    }
+}
+
+/// R times the first three entries.
+fn turned(mut list: DVector<f64>, R: Option<SO3>) -> DVector<f64> {
+    if let Some(R) = R {
+        let first = R * Vec3([list[0], list[1], list[2]]);
+        (0..3).for_each(|i| list[i] = first.0[i]);
+    }
+    list
+}
+
+/// Diag(R, I) M diag(R, I)ᵀ.
+fn congruent(mut M: DMatrix<f64>, R: Option<SO3>) -> DMatrix<f64> {
+    if let Some(R) = R {
+        for _ in 0..2 {
+            M.column_iter_mut().for_each(|mut column| {
+                let first = R * Vec3([column[0], column[1], column[2]]);
+                (0..3).for_each(|i| column[i] = first.0[i]);
+            });
+            M = M.transpose();
+        }
+    }
+    M
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::integrate;
+    use crate::model::Environment;
+    use crate::testing::{Random, floating_tree, state, tree};
+    use alloc::vec::Vec;
+
+    /// A model, its conversion with the joints the other way round, and its state.
+    fn cases() -> impl Iterator<Item = (Model, MuJoCo, [Vec<f64>; 3])> {
+        [tree(4, 7, 0), floating_tree(4, 7, 2), floating_tree(9, 3, 0)].into_iter().zip(1..).map(|(model, seed)| {
+            let names: Vec<&str> = model.joint_names().collect();
+            let names: Vec<&str> = names.into_iter().rev().collect();
+            let mujoco = MuJoCo::with_joints(&model, &names).expect("its joints");
+            let state = state(&model, seed);
+            (model, mujoco, state)
+        })
+    }
+
+    #[test]
+    fn accelerations_are_the_derivatives_of_velocities() {
+        for (model, mujoco, [theta, dtheta, ddtheta]) in cases() {
+            let qvel = |t: f64| {
+                // θ ⊕ (θ̇ t + θ̈ t²/2): at second order the way in between does not matter
+                let step: Vec<f64> = dtheta.iter().zip(&ddtheta).map(|(v, a)| v + 0.5 * a * t).collect();
+                let (mut theta, velocity) = (theta.clone(), DVector::from_column_slice(&ddtheta) * t);
+                integrate(&model, &mut theta, &step, t);
+                let velocity = DVector::from_column_slice(&dtheta) + velocity;
+                (mujoco.configuration(&theta).expect("nq"), mujoco.velocity(&theta, velocity.as_slice()).expect("n"))
+            };
+            let step = 1e-5;
+            let difference = (qvel(step).1 - qvel(-step).1) / (2.0 * step);
+            let qacc = mujoco.acceleration(&theta, &dtheta, &ddtheta).expect("n");
+            assert!((difference - &qacc).amax() < 1e-8 * qacc.amax(), "{qacc}");
+            if model.is_floating() {
+                // the linear velocity is the origin's
+                let rate = (qvel(step).0 - qvel(-step).0) / (2.0 * step);
+                assert!((rate.rows(0, 3) - qvel(0.0).1.rows(0, 3)).amax() < 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn power_energy_and_the_equation_of_motion_are_the_same() {
+        for (model, mujoco, [theta, dtheta, _]) in cases() {
+            let tau = Random(6).vector(model.n(), 3.0);
+            let qvel = mujoco.velocity(&theta, &dtheta).expect("n");
+            let qfrc = mujoco.force(&theta, &tau).expect("n");
+            let power: f64 = tau.iter().zip(&dtheta).map(|(a, b)| a * b).sum();
+            assert!((qfrc.dot(&qvel) - power).abs() < 1e-13);
+            let M = model.mass_matrix(&theta).expect("M");
+            let theirs = mujoco.mass_matrix(&theta, &M).expect("n");
+            let K = model.kinetic_energy(&theta, &dtheta).expect("K");
+            assert!((0.5 * qvel.dot(&(&theirs * &qvel)) - K).abs() < 1e-13 * K);
+            // XᵀMX q̈ + h = Xᵀτ, by forward dynamics; and h at rest in the world is inverse dynamics with β
+            let environment: Environment = model.environment();
+            let h = model.bias_forces(&theta, &dtheta, &environment).expect("h");
+            let bias = mujoco.bias_forces(&theta, &dtheta, &M, h.as_slice()).expect("n");
+            let found = model.forward_dynamics(&theta, &dtheta, &tau, &environment).expect("θ̈");
+            let qacc = mujoco.acceleration(&theta, &dtheta, found.as_slice()).expect("n");
+            let friction = model.joint_friction(&dtheta).expect("f");
+            let friction = mujoco.force(&theta, friction.as_slice()).expect("n");
+            let error = (&theirs * &qacc + &bias + &friction - &qfrc).amax();
+            assert!(error < 1e-13 * M.amax() * (qacc.amax() + 10.0), "{error}");
+            let qpos = mujoco.configuration(&theta).expect("nq");
+            let zero = alloc::vec![0.0; model.n()];
+            let beta = mujoco.from_acceleration(qpos.as_slice(), qvel.as_slice(), &zero).expect("n");
+            let still = model.inverse_dynamics(&theta, &dtheta, beta.as_slice(), &environment).expect("τ");
+            let still = mujoco.force(&theta, still.as_slice()).expect("n") - friction;
+            assert!((still - &bias).amax() < 1e-13 * (bias.amax() + M.amax() * 10.0));
+        }
+    }
+
+    #[test]
+    fn there_and_back() {
+        for (model, mujoco, [theta, dtheta, ddtheta]) in cases() {
+            // a rotation there and one back: a few ε of the sizes of what is turned, nothing where nothing turns
+            let bound = if model.is_floating() { 16.0 * f64::EPSILON } else { 0.0 };
+            let close = |found: DVector<f64>, given: &[f64], size: f64| {
+                let error = (found - DVector::from_column_slice(given)).amax();
+                assert!(error <= bound * size, "{error:e} of {size}");
+            };
+            let largest = |list: &[f64]| list.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let qpos = mujoco.configuration(&theta).expect("nq");
+            assert_eq!(mujoco.from_configuration(qpos.as_slice()).expect("nq").as_slice(), theta);
+            let (qpos, qvel) = (qpos.as_slice(), mujoco.velocity(&theta, &dtheta).expect("n"));
+            close(mujoco.from_velocity(qpos, qvel.as_slice()).expect("n"), &dtheta, largest(&dtheta));
+            let qacc = mujoco.acceleration(&theta, &dtheta, &ddtheta).expect("n");
+            let back = mujoco.from_acceleration(qpos, qvel.as_slice(), qacc.as_slice()).expect("n");
+            close(back, &ddtheta, largest(&ddtheta) + largest(&dtheta).powi(2));
+            let qfrc = mujoco.force(&theta, &ddtheta).expect("n");
+            close(mujoco.from_force(qpos, qfrc.as_slice()).expect("n"), &ddtheta, largest(&ddtheta));
+            let M = model.mass_matrix(&theta).expect("M");
+            let theirs = mujoco.mass_matrix(&theta, &M).expect("n");
+            let back = mujoco.from_mass_matrix(qpos, &theirs).expect("n");
+            close(DVector::from_column_slice(back.as_slice()), M.as_slice(), M.amax());
+            let h = model.bias_forces(&theta, &dtheta, &model.environment()).expect("h");
+            let bias = mujoco.bias_forces(&theta, &dtheta, &M, h.as_slice()).expect("n");
+            let back = mujoco.from_bias_forces(qpos, qvel.as_slice(), &M, bias.as_slice()).expect("n");
+            close(back, h.as_slice(), h.amax() + M.amax() * largest(&dtheta).powi(2));
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_an_error_that_says_so() {
+        let model = floating_tree(3, 4, 0);
+        let (mujoco, [theta, dtheta, _]) = (MuJoCo::new(&model), state(&model, 1));
+        assert!(mujoco.joints().iter().copied().eq(0..4));
+        let said = |answer: Result<DVector<f64>, Error>| alloc::format!("{}", answer.expect_err("it does not fit"));
+        assert_eq!(said(mujoco.configuration(&theta[1..])), "theta has 10 entries, expected 11");
+        assert_eq!(said(mujoco.from_velocity(&theta[1..], &dtheta)), "qpos has 10 entries, expected 11");
+        assert_eq!(said(mujoco.acceleration(&theta, &dtheta, &theta)), "ddtheta has 11 entries, expected 10");
+        let nothing = [0.0; 11];
+        assert!(said(mujoco.velocity(&nothing, &dtheta)).contains("of length 0, expected a unit quaternion"));
+        assert!(mujoco.from_mass_matrix(&theta, &DMatrix::zeros(3, 3)).is_err());
+    }
+}
