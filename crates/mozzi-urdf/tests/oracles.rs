@@ -78,7 +78,7 @@ impl Worst {
     }
 }
 
-/// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's joints.
+/// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's velocities.
 fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     let n = model.n();
     let mine = |key: &str| {
@@ -90,7 +90,12 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     let theirs = |v: DVector<f64>| column(&order.iter().map(|&j| v[j]).collect::<Vec<_>>());
     let both = |M: DMatrix<f64>| DMatrix::from_fn(n, n, |i, j| M[(order[i], order[j])]);
     let columns = |J: mozzi::Jacobian| J.matrix().select_columns(order);
-    let (theta, dtheta, ddtheta, tau) = (mine("theta"), mine("dtheta"), mine("ddtheta"), mine("tau"));
+    let mut theta = vector(&state["theta"]);
+    let (base, joints) = (model.base().positions(), model.base().velocities());
+    let theirs_of_joints = theta.split_off(base);
+    theta.resize(model.nq(), 0.0);
+    order[joints..].iter().zip(theirs_of_joints).for_each(|(&j, x)| theta[base + j - joints] = x);
+    let (dtheta, ddtheta, tau) = (mine("dtheta"), mine("ddtheta"), mine("tau"));
     let (environment, tip) = (model.environment(), model.end_effector().unwrap());
     let list = |key: &str| column(&vector(&state[key]));
     let has = |key: &str| state.get(key).is_some();
@@ -178,9 +183,11 @@ fn compare_folder(folder: &Path) {
         };
         let names: Vec<&str> =
             oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        assert_eq!(names.len(), model.n(), "{}", path.display());
-        let order: Vec<usize> =
-            names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
+        assert_eq!(oracle.get("floating").is_some(), model.is_floating(), "{name}: is the base free?");
+        let base = model.base().velocities();
+        assert_eq!(base + names.len(), model.n(), "{}", path.display());
+        let of = |name: &&str| base + model.joint_names().position(|mine| mine == *name).unwrap();
+        let order: Vec<usize> = (0..base).chain(names.iter().map(of)).collect();
         if oracle.get("mjcf").is_some() {
             assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
         }

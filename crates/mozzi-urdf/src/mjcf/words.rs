@@ -28,6 +28,7 @@ pub(crate) const MUJOCO: Vocabulary = Vocabulary {
 pub(crate) const COMPILER: Vocabulary = Vocabulary {
     attributes: &[
         "angle",
+        "alignfree",
         "autolimits",
         "balanceinertia",
         "boundinertia",
@@ -40,7 +41,6 @@ pub(crate) const COMPILER: Vocabulary = Vocabulary {
     ],
     once: &["lengthrange"],
     silent: &[
-        "alignfree",
         "assetdir",
         "conflict",
         "convexhull",
@@ -190,6 +190,8 @@ pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     attributes: &["pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia"],
     ..NOTHING
 };
+pub(crate) const FREE_JOINT: Vocabulary =
+    Vocabulary { attributes: &["name", "align"], silent: &["group", "sleep"], ..NOTHING };
 pub(crate) const JOINT: Vocabulary = Vocabulary {
     attributes: &[
         "name",
