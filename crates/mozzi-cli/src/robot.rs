@@ -4,14 +4,14 @@ use crate::failure::{self, Result};
 use crate::numbers::array;
 use crate::robot_json;
 use clap::Args;
-use mozzi::{FrameId, Model};
+use mozzi::{Description, FrameId, Model};
 use mozzi_urdf::{LoadError, Loaded, Policy, embedded};
 use std::path::Path;
 
 /// More are counted: `mozzi check` shows them, each with its place.
 const WARNINGS: usize = 3;
 
-/// How strictly the robot's file is read.
+/// How the robot's file is read.
 #[derive(Args, Debug)]
 pub struct PolicyArguments {
     /// Call warnings errors
@@ -20,6 +20,9 @@ pub struct PolicyArguments {
     /// Repair what can be repaired, such as an inertia that no body can have; each repair is told
     #[arg(long, conflicts_with = "strict")]
     lenient: bool,
+    /// Free the base: θ begins with its quaternion (w, x, y, z) and origin, θ̇ with its twist (ω, v), τ with the wrench on it
+    #[arg(long)]
+    floating: bool,
 }
 
 impl PolicyArguments {
@@ -30,11 +33,16 @@ impl PolicyArguments {
             (_, true) => Policy::Lenient,
             _ => Policy::Default,
         };
-        match embedded::text(name_or_path) {
+        let loaded = match embedded::text(name_or_path) {
             Some(text) => mozzi_urdf::parse_with(&format!("{name_or_path}.urdf"), text, policy),
             None if Path::new(name_or_path).exists() => mozzi_urdf::load_with(name_or_path, policy),
             None => mozzi_urdf::open(name_or_path), // says what there is
-        }
+        }?;
+        Ok(Loaded { description: self.freed(loaded.description), ..loaded })
+    }
+
+    fn freed(&self, robot: Description) -> Description {
+        if self.floating { robot.floating() } else { robot }
     }
 
     /// As [`open`](Self::open), saying what is odd: each repair, and some of the warnings.
@@ -54,7 +62,7 @@ impl PolicyArguments {
     /// The robot of a file of any kind.
     pub fn model(&self, name_or_path: &str) -> Result<Model> {
         if Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json") {
-            return Ok(robot_json::read(name_or_path)?.build()?);
+            return Ok(self.freed(robot_json::read(name_or_path)?).build()?);
         }
         Ok(self.load(name_or_path)?.build()?)
     }
@@ -62,12 +70,12 @@ impl PolicyArguments {
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A URDF file, or an embedded robot: double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
+    /// A robot's file (URDF, MJCF, JSON of `mozzi convert`), or an embedded robot: double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
     #[arg(long, value_name = "FRAME")]
     pub end_effector: Option<String>,
-    /// Gravity in base coordinates, m/s² [default: the robot's own, 0,0,-9.81]
+    /// Gravity in {s}, which is the frame of a bolted base, m/s² [default: the robot's own, 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Print one JSON object, every digit of every number, instead of text
@@ -109,13 +117,22 @@ pub struct Units {
     pub inertia: &'static str,
 }
 
+/// A free base turns and slides, too.
+const MIXED: Units = Units { position: "rad, m", force: "N m, N", inertia: "kg m², kg m, kg" };
+
+/// What {s} is to this robot.
+pub fn space_frame(model: &Model) -> &'static str {
+    if model.is_floating() { "the space frame {s}" } else { "the base frame" }
+}
+
 impl Units {
     pub fn of(model: &Model) -> Self {
         let slides = model.joints().filter(|joint| joint.kind.name() == "prismatic").count();
         match slides {
+            _ if model.is_floating() => MIXED,
             0 => Units { position: "rad", force: "N m", inertia: "kg m²" },
             all if all == model.n() => Units { position: "m", force: "N", inertia: "kg" },
-            _ => Units { position: "rad, m", force: "N m, N", inertia: "kg m², kg m, kg" },
+            _ => MIXED,
         }
     }
 
