@@ -177,7 +177,7 @@ fn entries(model: &Model) -> String {
     let list = |names: Vec<&str>| names.join(", ");
     let (positions, velocities) = (model.base().positions(), model.base().velocities());
     format!(
-        "entries by number (theta from 1 to {}, the others from 1 to {}) or by name (theta: {}; the others: {}; all: {})",
+        "entries by number (theta from 1 to {}, the others from 1 to {}) or by name (theta: {}; the others: {}; joints: {})",
         model.nq(),
         model.n(),
         list(model.position_names().take(positions).collect()),

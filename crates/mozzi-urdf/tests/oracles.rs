@@ -32,8 +32,14 @@ fn largest_square(v: &[f64]) -> f64 {
 }
 
 /// What a model of MJCF may be refused for: it is more than a tree, or its numbers stand in meshes.
-const CLOSURES: [&str; 5] =
-    ["loop_closure", "unsupported_tendon", "unsupported_equality", "mesh_inertia", "actuator_armature"];
+const CLOSURES: [&str; 6] = [
+    "loop_closure",
+    "unsupported_tendon",
+    "unsupported_equality",
+    "mesh_inertia",
+    "actuator_armature",
+    "unsupported_attribute",
+];
 
 /// The robot of a file of oracles, without friction, and without armature where the oracle has none. The reason, where
 /// it is a model that mozzi refuses for good reason.
