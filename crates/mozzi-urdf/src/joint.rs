@@ -102,8 +102,9 @@ fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &E
     let limit = children.get("limit").filter(|limit| {
         limit.check_attributes(&LIMIT, cx);
         limit.check_children(&LIMIT, cx);
-        let numbers = LIMIT.attributes.iter().map(|name| limit.number(name, cx).unwrap_or(0.0));
-        numbers.fold(false, |any, x| any || x != 0.0)
+        // every number is read, for each can be wrong
+        let numbers: Vec<f64> = LIMIT.attributes.iter().filter_map(|name| limit.number(name, cx)).collect();
+        numbers.iter().any(|x| *x != 0.0)
     });
     for given in limit.into_iter().chain(children.get("dynamics").filter(|_| is_rough)) {
         let message =
