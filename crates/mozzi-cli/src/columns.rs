@@ -1,7 +1,19 @@
 //! CSV out: every digit, so that what is read back is the same number.
 
 use crate::failure::{Failure, Result};
+use mozzi::Model;
 use std::fmt::Write;
+
+/// The columns of a group: by number, `tau_1` … `tau_n`; where the base is free, by name, for then the joints' numbers in θ are
+/// others than in θ̇.
+pub fn names(model: &Model, group: &str) -> Vec<String> {
+    let all: Vec<&str> =
+        if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() };
+    let name = |(j, name): (usize, &&str)| {
+        if model.is_floating() { format!("{group}_{name}") } else { format!("{group}_{}", j + 1) }
+    };
+    all.iter().enumerate().map(name).collect()
+}
 
 /// A table by columns.
 #[derive(Default)]
@@ -16,10 +28,10 @@ impl Columns {
         self.values.push(values);
     }
 
-    /// `group_1` … `group_n` of rows.
-    pub fn add_group(&mut self, group: &str, n: usize, rows: &[Vec<f64>]) {
-        for j in 0..n {
-            self.add(format!("{group}_{}", j + 1), rows.iter().map(|row| row[j]).collect());
+    /// The columns of `theta`, `dtheta`, `ddtheta` or `tau`, of rows.
+    pub fn add_group(&mut self, model: &Model, group: &str, rows: &[Vec<f64>]) {
+        for (j, name) in names(model, group).into_iter().enumerate() {
+            self.add(name, rows.iter().map(|row| row[j]).collect());
         }
     }
 

@@ -1,6 +1,6 @@
 //! Values as JSON. Matrices are lists of rows; a number that is none (NaN, infinity) is null, as JSON has no name for it.
 
-use mozzi::{Jacobian, SE3};
+use mozzi::{Base, Jacobian, Model, SE3};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
@@ -26,6 +26,18 @@ pub fn pose(T: SE3) -> Value {
 
 pub fn jacobian(J: &Jacobian) -> Value {
     matrix(&J.matrix())
+}
+
+/// "fixed" or "floating".
+pub fn base(model: &Model) -> &'static str {
+    match model.base() {
+        Base::Fixed => "fixed",
+        Base::Floating => "floating",
+    }
+}
+
+pub fn names<'n>(names: impl Iterator<Item = &'n str>) -> Value {
+    names.map(Value::from).collect()
 }
 
 /// An object over lines: a list without lists or objects in it is one line.

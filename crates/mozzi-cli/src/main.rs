@@ -74,6 +74,7 @@ Examples:
   mozzi inverse-dynamics panda --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
   mozzi inverse-dynamics ur5 --in motion.csv --out torques.csv
   mozzi forward-dynamics ur5 --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
+  mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
 
 Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
@@ -85,9 +86,12 @@ const TABLES: &str = "\
 CSV files have a header and one row for each state; columns in any order:
   t                                     time, s
   theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_;
-                                        a joint by its number, or by its name: theta_elbow_joint
+                                        a joint by its number, or by its name: theta_elbow_joint;
+                                        of a free base theta_base.qw qx qy qz x y z, and
+                                        dtheta_base.wx wy wz vx vy vz, likewise ddtheta_, tau_
   m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in its frame
-Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0.
+Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0,
+and so are the six of a free base in tau.
 What one subcommand writes, the others read.";
 
 fn main() -> ExitCode {

@@ -36,9 +36,13 @@ pub fn numbers_for<'n>(
     if names.len() > list.len() {
         list.push("…");
     }
-    let (count, expected) = (found.len(), names.len());
+    Err(wrong_count(place, found.len(), names.len(), &list.join(", ")))
+}
+
+/// "--theta has 3 entries, expected 6: …"
+pub fn wrong_count(place: &str, count: usize, expected: usize, what: &str) -> Failure {
     let entries = if count == 1 { "entry" } else { "entries" };
-    Err(Failure::wrong(format!("{place} has {count} {entries}, expected {expected}: {}", list.join(", "))))
+    Failure::wrong(format!("{place} has {count} {entries}, expected {expected}: {what}"))
 }
 
 /// As [`numbers_for`], of a known length.

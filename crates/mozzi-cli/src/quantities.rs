@@ -1,6 +1,7 @@
 //! Rows of quantities, one entry for each joint.
 
-use crate::text::{Decimals, page_width, table, width};
+use crate::text::{Decimals, page_width, rows_of, table, width};
+use mozzi::Model;
 
 /// A vector over the joints: its symbol, what it is, its unit.
 pub struct Quantity<'a> {
@@ -16,9 +17,40 @@ impl<'a> Quantity<'a> {
     }
 }
 
+/// Lines of quantities below the joints' numbers; where the base is free, columns beside the names of their entries, for then
+/// positions are more than velocities.
+pub fn quantities(model: &Model, list: &[Quantity], common: bool) -> Vec<String> {
+    if !model.is_floating() {
+        return by_number(list, common);
+    }
+    let (positions, others): (Vec<&Quantity>, Vec<&Quantity>) =
+        list.iter().partition(|quantity| quantity.values.len() == model.nq());
+    let mut lines = Vec::new();
+    for (names, list) in [(model.position_names().collect(), positions), (model.velocity_names().collect(), others)] {
+        if !list.is_empty() {
+            lines.extend(by_name(names, &list, common));
+        }
+    }
+    lines
+}
+
+/// Columns of quantities beside the names of their entries.
+fn by_name(names: Vec<&str>, list: &[&Quantity], common: bool) -> Vec<String> {
+    let all = Decimals::of(list.iter().flat_map(|quantity| quantity.values));
+    let mut columns =
+        vec![[["", "", ""].as_slice(), &names].concat().into_iter().map(String::from).collect::<Vec<_>>()];
+    for quantity in list {
+        let decimals = if common { all } else { Decimals::of(quantity.values) };
+        let mut column = vec![quantity.symbol.trim().to_string(), quantity.name.to_string(), quantity.unit.clone()];
+        column.extend(quantity.values.iter().map(|&x| decimals.show(x)));
+        columns.push(column);
+    }
+    table(&rows_of(columns), "lr")
+}
+
 /// Lines of quantities below the joints' numbers; in groups of joints where there are many. With `common`, the decimal
 /// points of all stand below each other: for terms of one sum.
-pub fn quantities(list: &[Quantity], common: bool) -> Vec<String> {
+fn by_number(list: &[Quantity], common: bool) -> Vec<String> {
     let all = Decimals::of(list.iter().flat_map(|quantity| quantity.values));
     let cells: Vec<Vec<String>> = list
         .iter()

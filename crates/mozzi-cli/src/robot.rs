@@ -12,7 +12,7 @@ use std::path::Path;
 /// More are counted: `mozzi check` shows them, each with its place.
 const WARNINGS: usize = 3;
 
-/// How strictly the robot's file is read.
+/// How the robot's file is read.
 #[derive(Args, Debug)]
 pub struct PolicyArguments {
     /// Call warnings errors
@@ -21,6 +21,9 @@ pub struct PolicyArguments {
     /// Repair what can be repaired, such as an inertia that no body can have; each repair is told
     #[arg(long, conflicts_with = "strict")]
     lenient: bool,
+    /// Free the base: θ begins with its quaternion (w, x, y, z) and origin, θ̇ with its twist (ω, v), τ with the wrench on it
+    #[arg(long)]
+    floating: bool,
 }
 
 impl PolicyArguments {
@@ -31,11 +34,16 @@ impl PolicyArguments {
             (_, true) => Policy::Lenient,
             _ => Policy::Default,
         };
-        match embedded::text(name_or_path) {
+        let loaded = match embedded::text(name_or_path) {
             Some(text) => mozzi_urdf::parse_with(&format!("{name_or_path}.urdf"), text, policy),
             None if Path::new(name_or_path).exists() => mozzi_urdf::load_with(name_or_path, policy),
             None => mozzi_urdf::open(name_or_path), // says what there is
-        }
+        }?;
+        Ok(Loaded { description: self.freed(loaded.description), ..loaded })
+    }
+
+    fn freed(&self, robot: Description) -> Description {
+        if self.floating { robot.floating() } else { robot }
     }
 
     /// As [`open`](Self::open), saying what is odd: each repair, and some of the warnings.
@@ -57,7 +65,7 @@ impl PolicyArguments {
         if !robot_json::is_json(name_or_path) {
             return Ok(self.load(name_or_path)?.build()?);
         }
-        let robot = robot_json::read(name_or_path)?;
+        let robot = self.freed(robot_json::read(name_or_path)?);
         let (errors, warnings) = self.problems(&robot);
         if self.strict && !errors.is_empty() {
             return Err(Failure::wrong(format!("{name_or_path} is refused: {}", errors[0])));
@@ -86,7 +94,7 @@ pub struct RobotArguments {
     /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
     #[arg(long, value_name = "FRAME")]
     pub end_effector: Option<String>,
-    /// Gravity in base coordinates, m/s² [default: the robot's own, 0,0,-9.81]
+    /// Gravity in {s}, which is the frame of a bolted base, m/s² [default: the robot's own, 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Print one JSON object, every digit of every number, instead of text
@@ -128,13 +136,22 @@ pub struct Units {
     pub inertia: &'static str,
 }
 
+/// A free base turns and slides, too.
+const MIXED: Units = Units { position: "rad, m", force: "N m, N", inertia: "kg m², kg m, kg" };
+
+/// What {s} is to this robot.
+pub fn space_frame(model: &Model) -> &'static str {
+    if model.is_floating() { "the space frame {s}" } else { "the base frame" }
+}
+
 impl Units {
     pub fn of(model: &Model) -> Self {
         let slides = model.joints().filter(|joint| joint.kind.name() == "prismatic").count();
         match slides {
+            _ if model.is_floating() => MIXED,
             0 => Units { position: "rad", force: "N m", inertia: "kg m²" },
             all if all == model.n() => Units { position: "m", force: "N", inertia: "kg" },
-            _ => Units { position: "rad, m", force: "N m, N", inertia: "kg m², kg m, kg" },
+            _ => MIXED,
         }
     }
 

@@ -3,8 +3,8 @@
 use crate::commands::terms_json;
 use crate::failure::{Failure, Result};
 use crate::json;
-use mozzi::model::description::{Joint, JointKind, Limits, Mimic, NamedFrame};
-use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia};
+use mozzi::model::description::{FreeJoint, Joint, JointKind, Limits, Mimic, NamedFrame};
+use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia};
 use serde_json::{Value, json};
 
 pub fn write(model: &Model) -> String {
@@ -25,6 +25,8 @@ pub fn write(model: &Model) -> String {
     };
     json::print(&json!({
         "robot": robot.name,
+        "base": json::base(model),
+        "free_joint": model.is_floating().then(|| json!({ "name": robot.free_joint.name, "parent": robot.free_joint.parent })),
         "gravity": json::vector(&robot.gravity),
         "end_effector": robot.end_effector,
         "links": robot.links.iter().map(|link| json!({
@@ -106,6 +108,9 @@ impl<'v> At<'v> {
 
 fn description(at: &At) -> Read<Description> {
     let mut robot = Description::new(at.get("robot").text()?).with_gravity(at.get("gravity").vector()?);
+    robot.base = at.get("base").some(base)?.unwrap_or_default(); // files of before had bolted bases only
+    let free_joint = |at: &At| Ok(FreeJoint { name: at.get("name").text()?, parent: at.get("parent").text()? });
+    robot.free_joint = at.get("free_joint").some(free_joint)?.unwrap_or_default();
     robot.end_effector = at.get("end_effector").some(At::text)?;
     for link in at.get("links").list()? {
         let at = link.get("G");
@@ -121,6 +126,14 @@ fn description(at: &At) -> Read<Description> {
     }
     lists_agree(&at.get("lists"), &robot)?;
     Ok(robot)
+}
+
+fn base(at: &At) -> Read<Base> {
+    match at.value.as_str() {
+        Some("fixed") => Ok(Base::Fixed),
+        Some("floating") => Ok(Base::Floating),
+        _ => at.wrong("\"fixed\" or \"floating\""),
+    }
 }
 
 fn joint(at: &At) -> Read<Joint> {

@@ -1,8 +1,10 @@
 //! Tables of numbers in CSV files: one row for each time, columns by name.
 //!
-//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…` with the number of a joint (from 1) or its
-//! name, or `m_x m_y m_z f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order.
+//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…` with the number of an entry (from 1) or its
+//! name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a free base), or `m_x m_y m_z f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a
+//! free base's wrench may be left out alone, and are then 0: no motor drives it.
 
+use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, number};
 use mozzi::{Model, Wrench};
@@ -59,7 +61,10 @@ impl Samples {
         if rows.is_empty() {
             return Err(Failure::wrong(format!("{name} has no rows below its header")));
         }
-        let pick = |columns: &Vec<usize>| rows.iter().map(|row| columns.iter().map(|&c| row[c]).collect()).collect();
+        let pick = |columns: &Vec<Option<usize>>| {
+            let entry = |row: &[f64], column: Option<usize>| column.map_or(0.0, |c| row[c]);
+            rows.iter().map(|row| columns.iter().map(|&c| entry(row, c)).collect()).collect()
+        };
         samples.t = places.t.map(|c| rows.iter().map(|row| row[c]).collect());
         [samples.theta, samples.dtheta, samples.ddtheta, samples.tau] =
             places.groups.each_ref().map(|g| g.as_ref().map(pick));
@@ -81,17 +86,27 @@ impl Samples {
     }
 }
 
+/// How a message names the columns of a group.
+pub fn first_column(model: &Model, group: &str) -> String {
+    let names = columns::names(model, group);
+    format!("{} …", names.first().map_or(group, |name| name))
+}
+
 /// Which column is what.
 struct Places {
     t: Option<usize>,
-    groups: [Option<Vec<usize>>; 4],
+    /// None of an entry: its column was left out, and it is 0.
+    groups: [Option<Vec<Option<usize>>>; 4],
     wrench: Option<[usize; 6]>,
 }
 
 impl Places {
     fn find(file: &str, header: &[String], model: &Model) -> Result<Self> {
-        let joints: Vec<&str> = model.joint_names().collect();
-        let mut groups: [Vec<Option<usize>>; 4] = GROUPS.map(|_| vec![None; joints.len()]);
+        let names = |group: &str| -> Vec<&str> {
+            if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() }
+        };
+        let names = GROUPS.map(names);
+        let mut groups: [Vec<Option<usize>>; 4] = names.each_ref().map(|names| vec![None; names.len()]);
         let (mut t, mut wrench) = ([None], [None; 6]);
         for (column, name) in header.iter().enumerate() {
             let place: Option<&mut Option<usize>> = if name == "t" {
@@ -101,21 +116,19 @@ impl Places {
             } else if ENERGIES.contains(&name.as_str()) || name == "method" {
                 continue;
             } else {
-                GROUPS.iter().zip(&mut groups).find_map(|(group, places)| {
+                GROUPS.iter().zip(&names).zip(&mut groups).find_map(|((group, names), places)| {
                     let joint = name.strip_prefix(group)?.strip_prefix('_')?;
                     let by_number = joint.parse::<usize>().ok().and_then(|j| j.checked_sub(1));
-                    places.get_mut(joints.iter().position(|known| *known == joint).or(by_number)?)
+                    places.get_mut(names.iter().position(|known| *known == joint).or(by_number)?)
                 })
             };
             let Some(place) = place else {
                 return Err(Failure::wrong(format!(
-                    "{file}:1: column {} is called `{name}`, expected t, {}, or {}, with joints from 1 to {} or by name \
-                     ({})",
+                    "{file}:1: column {} is called `{name}`, expected t, {}, or {}, with {}",
                     column + 1,
                     GROUPS.map(|group| format!("{group}_1 …")).join(", "),
                     WRENCH.join(" "),
-                    joints.len(),
-                    joints.join(", ")
+                    entries(model)
                 )));
             };
             if let Some(first) = place.replace(column) {
@@ -123,33 +136,54 @@ impl Places {
                 return Err(Failure::wrong(format!("{file}:1: columns {first} and {second} both give `{name}`")));
             }
         }
-        let whole = |names: &dyn Fn(usize) -> String, places: &[Option<usize>]| {
-            let found: Vec<usize> = places.iter().flatten().copied().collect();
-            match places.iter().position(Option::is_none) {
-                None => Ok(Some(found)),
-                Some(_) if found.is_empty() => Ok(None),
-                Some(k) => Err(Failure::wrong(format!(
-                    "{file}:1: column {} is missing; of its group there are {} of {}",
-                    names(k),
-                    found.len(),
-                    places.len()
-                ))),
-            }
+        let missing = |name: &str, of: usize, found: usize| {
+            Failure::wrong(format!("{file}:1: column {name} is missing; of its group there are {found} of {of}"))
         };
         let mut found = [const { None }; 4];
-        for ((found, group), places) in found.iter_mut().zip(GROUPS).zip(&groups) {
-            *found = whole(&|k| format!("{group}_{}", k + 1), places)?;
+        for ((found, group), places) in found.iter_mut().zip(GROUPS).zip(groups) {
+            let optional = if group == "tau" { model.base().velocities() } else { 0 };
+            let count = places.iter().flatten().count();
+            let is_whole = places.iter().skip(optional).all(Option::is_some);
+            let base = places.iter().take(optional).flatten().count();
+            if count > 0 && is_whole && (base == 0 || base == optional) {
+                *found = Some(places);
+            } else if count > 0 {
+                let first = if base == 0 { optional } else { 0 };
+                let at = (first..places.len()).find(|&k| places[k].is_none()).unwrap_or(0);
+                return Err(missing(&columns::names(model, group)[at], places.len(), count));
+            }
         }
-        let wrench = whole(&|k| WRENCH[k].to_string(), &wrench)?;
-        Ok(Places { t: t[0], groups: found, wrench: wrench.and_then(|columns| columns.try_into().ok()) })
+        let columns: Vec<usize> = wrench.iter().flatten().copied().collect();
+        let wrench = match wrench.iter().position(Option::is_none) {
+            Some(k) if !columns.is_empty() => return Err(missing(WRENCH[k], WRENCH.len(), columns.len())),
+            Some(_) => None,
+            None => columns.try_into().ok(),
+        };
+        Ok(Places { t: t[0], groups: found, wrench })
     }
 
     fn all(&self) -> impl Iterator<Item = usize> {
-        self.t
-            .into_iter()
-            .chain(self.groups.iter().flatten().flatten().copied())
-            .chain(self.wrench.into_iter().flatten())
+        let groups = self.groups.iter().flatten().flatten().flatten();
+        self.t.into_iter().chain(groups.copied()).chain(self.wrench.into_iter().flatten())
     }
+}
+
+/// How the columns of a group go on.
+fn entries(model: &Model) -> String {
+    let joints: Vec<&str> = model.joint_names().collect();
+    if !model.is_floating() {
+        return format!("joints from 1 to {} or by name ({})", joints.len(), joints.join(", "));
+    }
+    let list = |names: Vec<&str>| names.join(", ");
+    let (positions, velocities) = (model.base().positions(), model.base().velocities());
+    format!(
+        "entries by number (theta from 1 to {}, the others from 1 to {}) or by name (theta: {}; the others: {}; joints: {})",
+        model.nq(),
+        model.n(),
+        list(model.position_names().take(positions).collect()),
+        list(model.velocity_names().take(velocities).collect()),
+        joints.join(", ")
+    )
 }
 
 fn csv_failure(file: &str, error: &csv::Error) -> Failure {

@@ -1,16 +1,16 @@
 //! One state of a robot, by flags.
 
 use crate::failure::Result;
-use crate::numbers::{WRENCH, array, numbers_for};
+use crate::numbers::{WRENCH, array, numbers, numbers_for, wrong_count};
 use clap::Args;
 use mozzi::{Environment, FrameId, Model, Wrench};
 
 #[derive(Args, Debug, Default)]
 pub struct StartArguments {
-    /// Joint positions θ, rad or m [default: all 0]
+    /// Positions θ, rad or m; of a free base its pose first [default: joints at 0, a free base at {s}]
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     pub theta: Option<String>,
-    /// Joint velocities θ̇, rad/s or m/s [default: all 0]
+    /// Velocities θ̇, rad/s or m/s; of a free base its twist first, in its own coordinates [default: all 0]
     #[arg(long, value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
     pub dtheta: Option<String>,
 }
@@ -26,8 +26,8 @@ impl StartArguments {
     /// (θ, θ̇).
     pub fn read(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {
         Ok((
-            joint_values("--theta", self.theta.as_deref(), model)?,
-            joint_values("--dtheta", self.dtheta.as_deref(), model)?,
+            positions("--theta", self.theta.as_deref(), model)?,
+            velocities("--dtheta", self.dtheta.as_deref(), model)?,
         ))
     }
 }
@@ -42,13 +42,44 @@ impl TipArguments {
     }
 }
 
-/// One number for each joint; zeros where the flag is not given.
-pub fn joint_values(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
-    let names: Vec<&str> = model.joint_names().collect();
+/// nq numbers; the neutral configuration where the flag is not given.
+pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
     match text {
-        None => Ok(vec![0.0; names.len()]),
-        Some(text) => numbers_for(flag, text, names.iter().copied()),
+        None => Ok(model.neutral_configuration()),
+        Some(text) => {
+            entries(flag, text, model, model.position_names().collect(), "base quaternion (w, x, y, z), base origin")
+        }
     }
+}
+
+/// n numbers; zeros where the flag is not given.
+pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
+    let base = match flag {
+        "--tau" => "base wrench (m, f)",
+        "--ddtheta" => "base acceleration (ω̇, v̇)",
+        _ => "base twist (ω, v)",
+    };
+    match text {
+        None => Ok(vec![0.0; model.n()]),
+        Some(text) => entries(flag, text, model, model.velocity_names().collect(), base),
+    }
+}
+
+/// One number for each name; of a free base, `layout` tells what stands before the joints.
+fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str) -> Result<Vec<f64>> {
+    if !model.is_floating() {
+        return numbers_for(flag, text, names.into_iter());
+    }
+    let found = numbers(flag, text)?;
+    if found.len() == names.len() {
+        return Ok(found);
+    }
+    let joints = match model.joint_names().len() {
+        0 => String::new(),
+        1 => ", then 1 joint".to_string(),
+        many => format!(", then {many} joints"),
+    };
+    Err(wrong_count(flag, found.len(), names.len(), &format!("{layout}{joints}")))
 }
 
 /// The model's gravity, and what the robot applies.

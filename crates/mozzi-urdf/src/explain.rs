@@ -7,7 +7,7 @@ use crate::spelling::nearest;
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // a code in three lines
-const CODES: [Entry; 56] = [
+const CODES: [Entry; 57] = [
     ("circular_mimic",
         "A joint that follows another (mimic) follows, over one or more steps, itself. Its position is then defined by nothing.",
         "let one of the joints follow none"),
@@ -44,6 +44,9 @@ const CODES: [Entry; 56] = [
     ("fixed_master",
         "A joint follows a fixed joint, which never moves.",
         "follow a joint that moves, or make this one fixed too"),
+    ("ignored_property",
+        "A planar or floating joint has limits, damping or friction. URDF has one number for them, but such a joint both slides and turns; what the number would mean is not said. It is ignored.",
+        "remove it, or build the joint from joints of one freedom, each with its own"),
     ("implausible_inertia",
         "The moments of inertia are far too large for the mass: the radius of gyration is more than 10 m, and more than ten times the longest distance in the robot. It is computed as given.",
         "moments are in kg m²: those in kg mm² are a million times larger"),
@@ -150,8 +153,8 @@ const CODES: [Entry; 56] = [
         "A joint follows a joint that does not exist. The coupling would be lost in silence, so the file is refused.",
         "write the joint's name as it stands in its own `name`"),
     ("unknown_joint_type",
-        "The type of a joint is not one of revolute, continuous, prismatic and fixed.",
-        "`revolute` turns between bounds, `continuous` without, `prismatic` slides, `fixed` does not move"),
+        "The type of a joint is not one of revolute, continuous, prismatic, fixed, planar and floating.",
+        "`revolute` turns between bounds, `continuous` without, `prismatic` slides, `fixed` does not move, `planar` slides and turns in a plane, `floating` frees the base"),
     ("unknown_link",
         "A joint names a link that does not exist.",
         "write the link's name as it stands in its own `name`, or add the link"),
@@ -162,8 +165,8 @@ const CODES: [Entry; 56] = [
         "A link hangs in a ring of joints that is not connected to the base.",
         "one of the joints of the ring has the wrong parent"),
     ("unsupported_joint",
-        "Floating and planar joints have six and three freedoms. mozzi computes joints of one freedom, or none.",
-        "build it from joints of one freedom: `revolute`, `continuous`, `prismatic`; a base that moves is given to the functions as its twist and acceleration"),
+        "A floating joint stands inside the tree, or a joint is a ball. Every joint of mozzi has one number as its position; only the base can be free, by a floating joint between an empty root link and the base. A quaternion inside the tree would need columns and brackets of its own in every algorithm.",
+        "build it from joints of one freedom with massless links between: `revolute`, `continuous`, `prismatic`; three hinges move as a ball does, away from the position where two of them line up"),
     ("wrong_count",
         "A vector has not as many numbers as it needs.",
         "numbers are separated by spaces: `0 0 0.5`"),

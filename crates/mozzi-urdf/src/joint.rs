@@ -7,13 +7,31 @@ use crate::finding::Finding;
 use crate::limit;
 use crate::origin;
 use crate::places::Place;
+use crate::planar;
 use crate::spelling::did_you_mean;
-use crate::words::{DYNAMICS, JOINT, JOINT_TYPES, MIMIC, PARENT, list, shown};
-use mozzi::SE3;
+use crate::words::{DYNAMICS, JOINT, JOINT_TYPES, LIMIT, MIMIC, PARENT, list, shown};
 use mozzi::model::description::{Joint, JointKind, Limits, Mimic};
+use mozzi::{SE3, ScrewAxis};
+
+/// A joint, and how it moves where that is more than one freedom.
+pub(crate) struct Read {
+    pub joint: Joint,
+    pub place: Place,
+    pub freedoms: Freedoms,
+}
+
+/// How a joint moves.
+pub(crate) enum Freedoms {
+    /// As its kind says.
+    OneOrNone,
+    /// By slides and a turn.
+    Planar([ScrewAxis; 3]),
+    /// In SE(3); its kind is fixed as long as nobody reads this.
+    Six,
+}
 
 /// A joint. What cannot be read is reported, and left as if it were not there.
-pub(crate) fn read(element: &Element, cx: &mut Context) -> (Joint, Place) {
+pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     let mut place = Place::new(element.span());
     let mut element = element.called("joint");
     let value = element.required_name("name", cx);
@@ -34,14 +52,31 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> (Joint, Place) {
     }
     let kind = read_type(&element, cx);
     // what a joint that does not move has of these means nothing
+    let mut freedoms = Freedoms::OneOrNone;
     let (screw, limits) = match kind {
         None | Some("fixed") => (None, Limits::default()),
+        Some(kind @ ("planar" | "floating")) => {
+            freedoms = match kind {
+                "floating" => Freedoms::Six,
+                _ => axis::read(kind, children.get("axis"), &element, cx)
+                    .and_then(|normal| planar::screws(normal.twist().w))
+                    .map_or(Freedoms::OneOrNone, Freedoms::Planar),
+            };
+            (None, Limits::default())
+        }
         Some(kind) => {
             let screw = axis::read(kind, children.get("axis"), &element, cx);
             (screw, limit::read(kind, children.get("limit"), &element, &mut place, cx))
         }
     };
     let [damping, friction] = read_dynamics(&children, &mut place, cx);
+    if let Some(kind @ ("planar" | "floating")) = kind {
+        let is_rough = damping != 0.0 || friction != 0.0;
+        several_freedoms(kind, &children, is_rough, &element, cx);
+    }
+    if let Some(value) = element.attribute("type") {
+        place.set("kind", value.span);
+    }
     let joint = Joint {
         name,
         parent,
@@ -57,7 +92,30 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> (Joint, Place) {
     if kind != Some("fixed") && joint.kind == JointKind::Fixed {
         place.report("kind");
     }
-    (joint, place)
+    Read { joint, place, freedoms }
+}
+
+/// URDF has one number for the limits and the friction of a joint: of several freedoms it says nothing. What the joint follows
+/// would be lost as well, and changes the robot.
+fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &Element, cx: &mut Context) {
+    let subject = &element.subject;
+    let limit = children.get("limit").filter(|limit| {
+        limit.check_attributes(&LIMIT, cx);
+        limit.check_children(&LIMIT, cx);
+        // every number is read, for each can be wrong
+        let numbers: Vec<f64> = LIMIT.attributes.iter().filter_map(|name| limit.number(name, cx)).collect();
+        numbers.iter().any(|x| *x != 0.0)
+    });
+    for given in limit.into_iter().chain(children.get("dynamics").filter(|_| is_rough)) {
+        let message =
+            format!("{}: is ignored, for a {kind} joint slides and turns, in metres and in radians", given.subject);
+        cx.findings.add(Finding::warning("ignored_property", given.span(), message));
+    }
+    if let Some(mimic) = children.get("mimic") {
+        let message = format!("{subject}: mimic: a {kind} joint has several positions, and can follow none");
+        let help = "build it from joints of one freedom, and let those follow";
+        cx.findings.add(Finding::error("unsupported_joint", mimic.span(), message).help(help));
+    }
 }
 
 /// One of the types that mozzi computes; None, and reported, for others.
@@ -69,10 +127,10 @@ fn read_type(element: &Element, cx: &mut Context) -> Option<&'static str> {
     }
     let subject = &element.subject;
     cx.findings.add(match value.text {
-        "floating" | "planar" => {
-            let freedoms = if value.text == "planar" { "three" } else { "six" };
-            let message = format!("{subject}: type: is `{}`, which has {freedoms} freedoms", value.text);
-            let help = format!("mozzi computes joints of one freedom or none: {}; a base that moves is given to the functions as its twist and acceleration", list(&JOINT_TYPES));
+        "ball" | "spherical" => {
+            let message = format!("{subject}: type: is `{}`, which turns about every axis", value.text);
+            let help = "three hinges in its place, with massless links between, move as it does, away from the position where two \
+                        of them line up";
             Finding::error("unsupported_joint", value.span, message).help(help)
         }
         other => {

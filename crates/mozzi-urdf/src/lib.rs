@@ -8,6 +8,10 @@
 //! Measured on the 69 robots of `example-robot-data` 6.0.0: 66 load, 38 of them without a word; three are refused, for a
 //! follower of a joint that does not exist, for negative moments of inertia, and for having no links.
 //!
+//! - A `floating` joint at the root is a free base ([`mozzi::Base`]); the empty link that carries it is the space frame, and no link
+//!   of the robot. A `planar` joint `j` becomes the slides `j.x` and `j.y` and the turn `j.theta` about its axis, with massless links
+//!   between: x is along the joint frame's x-axis projected onto the plane (its y-axis where |axis_x| > 0.9), y along axis × x.
+//!   Floating joints inside the tree and ball joints are refused.
 //! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
 //!   namespaces) silent, other unknown ones a warning once per kind.
 //! - An axis that is not of length 1 is a direction, with a warning beyond 10⁻³; positions stay radians or metres.
@@ -43,6 +47,7 @@ pub mod embedded;
 mod error;
 mod explain;
 mod finding;
+mod floating;
 mod joint;
 mod limit;
 mod link;
@@ -51,6 +56,7 @@ mod number;
 mod origin;
 mod pages;
 mod places;
+mod planar;
 mod pretty;
 mod problem;
 mod repair;

@@ -6,7 +6,8 @@ use crate::finding::Finding;
 use crate::places::{Place, Places};
 use crate::spelling::did_you_mean;
 use crate::words::{ROBOT, shown};
-use crate::{joint, link};
+use crate::{floating, joint, link, planar};
+use joint::Freedoms;
 use mozzi::Description;
 
 /// Links and joints in the order of the file, and their places. None when the file is no URDF at all, or
@@ -20,6 +21,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
     let mut places = Places { robot: Place::new(root.span()), ..Places::default() };
     let name = root.required_name("name", cx);
     let mut description = Description::new(places.robot.note("name", name));
+    let mut floating_joints = Vec::new();
     for child in root.elements().filter(|child| !child.has_prefix()) {
         if cx.findings.is_full() {
             return None;
@@ -31,7 +33,14 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
                 places.links.push(place);
             }
             "joint" => {
-                let (joint, place) = joint::read(&child, cx);
+                let joint::Read { joint, place, freedoms } = joint::read(&child, cx);
+                if let Freedoms::Planar(screws) = freedoms {
+                    planar::add(joint, screws, &place, &mut description, &mut places);
+                    continue;
+                }
+                if let Freedoms::Six = freedoms {
+                    floating_joints.push(description.joints.len());
+                }
                 description.joints.push(joint);
                 places.joints.push(place);
             }
@@ -46,6 +55,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
     let before = cx.findings.errors();
     root.check_children(&ROBOT, cx);
     places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
+    floating::free_base(&floating_joints, &mut description, &mut places, cx);
     Some((description, places))
 }
 

@@ -51,7 +51,7 @@ pub(crate) const DYNAMICS: Vocabulary = Vocabulary { attributes: &["damping", "f
 pub(crate) const MIMIC: Vocabulary = Vocabulary { attributes: &["joint", "multiplier", "offset"], ..NOTHING };
 
 /// The types of joints that mozzi computes.
-pub(crate) const JOINT_TYPES: [&str; 4] = ["revolute", "continuous", "prismatic", "fixed"];
+pub(crate) const JOINT_TYPES: [&str; 6] = ["revolute", "continuous", "prismatic", "fixed", "planar", "floating"];
 
 /// At most forty characters of a text, on one line.
 pub(crate) fn shown(text: &str) -> String {

@@ -1,7 +1,7 @@
 //! Back to URDF text.
 
 use mozzi::model::description::{Joint, JointKind, Link};
-use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
+use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::fmt::{self, Write};
 
 /// What of a description URDF has no words for.
@@ -58,7 +58,11 @@ fn not_urdf(d: &Description) -> Vec<String> {
             reasons.push(format!("joint `{name}`: an infinite limit"));
         }
     }
-    let names = d.links.iter().map(|link| &link.name).chain(d.joints.iter().map(|joint| &joint.name)).chain([&d.name]);
+    let names = d.links.iter().map(|link| &link.name).chain(d.joints.iter().map(|joint| &joint.name)).chain([
+        &d.name,
+        &d.free_joint.name,
+        &d.free_joint.parent,
+    ]);
     let is_control =
         |c: char| c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{fffe}' | '\u{ffff}');
     reasons.extend(names.filter(|name| name.contains(is_control)).map(|name| format!("the name {name:?}")));
@@ -72,13 +76,40 @@ fn not_urdf(d: &Description) -> Vec<String> {
 
 fn robot(text: &mut String, d: &Description) -> fmt::Result {
     writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(&d.name))?;
+    // the base is freed from an empty link
+    let taken = |name: &str| d.links.iter().any(|link| link.name == name);
+    let space = free(&d.free_joint.parent, taken);
+    if d.base == Base::Floating {
+        writeln!(text, "  <link name=\"{}\"/>", escaped(&space))?;
+    }
     for each in &d.links {
         link(text, each)?;
+    }
+    if d.base == Base::Floating {
+        let name = free(&d.free_joint.name, |name| d.joints.iter().any(|joint| joint.name == name));
+        let is_base = |link: &&Link| !d.joints.iter().any(|joint| joint.child == link.name);
+        let base = d.links.iter().find(is_base).map_or("", |link| &link.name);
+        writeln!(text, "  <joint name=\"{}\" type=\"floating\">", escaped(&name))?;
+        writeln!(
+            text,
+            "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n  </joint>",
+            escaped(&space),
+            escaped(base)
+        )?;
     }
     for each in &d.joints {
         joint(text, each)?;
     }
     text.write_str("</robot>\n")
+}
+
+/// The name, or one like it that is not taken.
+fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
+    let mut name = name.to_string();
+    while taken(&name) {
+        name.push('\'');
+    }
+    name
 }
 
 fn link(text: &mut String, link: &Link) -> fmt::Result {

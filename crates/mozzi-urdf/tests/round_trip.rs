@@ -11,6 +11,7 @@ fn difference(a: &Description, b: &Description) -> f64 {
         let scale = a.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
         largest = a.iter().zip(b).fold(largest, |m, (x, y)| m.max((x - y).abs() / scale));
     };
+    assert_eq!((a.base, &a.free_joint), (b.base, &b.free_joint));
     assert_eq!((a.links.len(), a.joints.len()), (b.links.len(), b.joints.len()));
     for (a, b) in a.links.iter().zip(&b.links) {
         assert_eq!(a.name, b.name);
@@ -44,6 +45,28 @@ fn round_trip(name: &str) {
 #[test]
 fn the_robots_that_mozzi_brings_along() {
     embedded::names().for_each(round_trip);
+}
+
+#[test]
+fn free_bases() {
+    for name in embedded::names() {
+        let robot = open(name).expect(name).description.floating();
+        let again = parse("again.urdf", write(&robot).expect("URDF")).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(again.warnings.is_empty(), "{:?}", again.warnings);
+        assert!(difference(&robot, &again.description) < 1e-14, "{name}");
+    }
+    // its names are kept, and names that the robot itself has are not taken
+    let text = "<robot name='r'><link name='odom'/><joint name='free' type='floating'><parent link='odom'/><child link='b'/></joint>\
+                <link name='b'/></robot>";
+    let robot = parse("r.urdf", text).expect("a robot").description;
+    let text = write(&robot).expect("URDF");
+    assert!(
+        text.contains("<link name=\"odom\"/>") && text.contains("<joint name=\"free\" type=\"floating\">"),
+        "{text}"
+    );
+    assert_eq!(parse("again.urdf", text).expect("a robot").description, robot);
+    let world = Description::new("w").link("world", mozzi::SpatialInertia::zero()).floating();
+    assert!(write(&world).expect("URDF").contains("<link name=\"world'\"/>"));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::failure::Result;
 use crate::json;
 use crate::quantities::{Quantity, quantities};
 use crate::robot::{RobotArguments, Units};
-use crate::state::{StartArguments, TipArguments, environment, joint_values};
+use crate::state::{StartArguments, TipArguments, environment, velocities};
 use clap::{Args, ValueEnum};
 use mozzi::{Environment, Model};
 use nalgebra::DVector;
@@ -17,7 +17,7 @@ pub struct ForwardArguments {
     robot: RobotArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// Joint torques τ, N m or N [default: all 0]
+    /// Forces τ of the motors, N m or N [default: all 0]
     #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "input")]
     tau: Option<String>,
     #[command(flatten)]
@@ -66,13 +66,16 @@ pub fn run(arguments: &ForwardArguments) -> Result<String> {
         });
     }
     let (theta, dtheta) = arguments.start.read(&model)?;
-    let tau = joint_values("--tau", arguments.tau.as_deref(), &model)?;
+    let tau = velocities("--tau", arguments.tau.as_deref(), &model)?;
     let applied = arguments.tip.read(&model)?;
     let ddtheta = by.solve(&model, &theta, &dtheta, &tau, &environment(&model, &applied))?;
     if arguments.robot.json {
         return Ok(json::print(&json!({
             "robot": model.description().name,
             "joints": model.joint_names().collect::<Vec<_>>(),
+            "base": json::base(&model),
+            "positions": json::names(model.position_names()),
+            "velocities": json::names(model.velocity_names()),
             "theta": json::vector(&theta),
             "dtheta": json::vector(&dtheta),
             "tau": json::vector(&tau),
@@ -82,6 +85,7 @@ pub fn run(arguments: &ForwardArguments) -> Result<String> {
     }
     let units = Units::of(&model);
     let lines = quantities(
+        &model,
         &[
             Quantity::new("θ", "positions", units.rate(0), &theta),
             Quantity::new("θ̇", "velocities", units.rate(1), &dtheta),

@@ -17,7 +17,7 @@ pub struct InfoArguments {
 
 pub fn run(arguments: &InfoArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let poses = model.frame_poses(&vec![0.0; model.nq()])?;
+    let poses = model.frame_poses(&model.neutral_configuration::<f64>())?;
     Ok(if arguments.robot.json { json::print(&object(&model, &poses)) } else { page(&model, &poses) })
 }
 
@@ -36,12 +36,14 @@ pub fn kind(joint: &Joint) -> &'static str {
 pub fn headline(model: &Model) -> String {
     let robot = model.description();
     let plural = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
-    let followers = model.moving_links() - model.n();
+    let joints = model.joint_names().len();
+    let followers = model.moving_links() - joints;
     let coupled = if followers == 0 { String::new() } else { format!(" and {}", plural(followers, "follower")) };
     format!(
-        "{}: {}{coupled}, {}, {} kg",
+        "{}: {}{}{coupled}, {}, {} kg",
         robot.name,
-        plural(model.n(), "independent joint"),
+        if model.is_floating() { "a free base, " } else { "" },
+        plural(joints, "independent joint"),
         plural(robot.links.len(), "link"),
         scalar(total_mass(robot)),
     )
@@ -64,6 +66,9 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     let (robot, units) = (model.description(), Units::of(model));
     let mut page = Page::default();
     page.line(headline(model)).line(surroundings(model));
+    if model.is_floating() {
+        page.title("the base, free").lines(&base(model));
+    }
     page.title("joints").lines(&joints(model));
     page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.position, units.rate(1), units.force)]);
     let folded = folded(model);
@@ -75,6 +80,21 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     page.lines(&inertias(robot));
     page.title("frames at θ = 0: origin in the base frame [m], turned by ω̂θ [rad]").lines(&frames(model, poses));
     page.end()
+}
+
+/// What a free base adds to the state.
+fn base(model: &Model) -> Vec<String> {
+    let list = |names: Vec<&str>| names.join(" ");
+    let (positions, velocities) = (model.base().positions(), model.base().velocities());
+    let G = model.base_inertia();
+    vec![
+        format!("θ has nq = {} entries: {}, then the joints", model.nq(), list(model.position_names().take(positions).collect())),
+        format!("θ̇, θ̈ and τ have n = {}: {}, then the joints", model.n(), list(model.velocity_names().take(velocities).collect())),
+        "the quaternion (w, x, y, z) and the origin, m, are its pose in {s}; its twist (ω, v) and its wrench (m, f) are in its own"
+            .to_string(),
+        "coordinates; gravity is in {s}".to_string(),
+        format!("it weighs {} kg with all that is fixed to it, centre of mass at {} m", scalar(G.mass), tuple(&G.center_of_mass().0)),
+    ]
 }
 
 fn joints(model: &Model) -> Vec<String> {
@@ -209,6 +229,9 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
         "robot": robot.name,
         "n": model.n(),
         "nq": model.nq(),
+        "base": json::base(model),
+        "positions": json::names(model.position_names()),
+        "velocities": json::names(model.velocity_names()),
         "moving_links": model.moving_links(),
         "total_mass": total_mass(robot),
         "gravity": json::vector(&model.gravity().0),

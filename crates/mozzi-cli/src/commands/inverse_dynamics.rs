@@ -5,7 +5,7 @@ use crate::failure::Result;
 use crate::json;
 use crate::quantities::{Quantity, quantities};
 use crate::robot::{RobotArguments, Units};
-use crate::state::{StartArguments, TipArguments, environment, joint_values};
+use crate::state::{StartArguments, TipArguments, environment, velocities};
 use clap::Args;
 use serde_json::json;
 
@@ -15,7 +15,7 @@ pub struct InverseArguments {
     robot: RobotArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// Joint accelerations θ̈, rad/s² or m/s² [default: all 0]
+    /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
     #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true, conflicts_with = "input")]
     ddtheta: Option<String>,
     #[command(flatten)]
@@ -34,13 +34,16 @@ pub fn run(arguments: &InverseArguments) -> Result<String> {
         });
     }
     let (theta, dtheta) = arguments.start.read(&model)?;
-    let ddtheta = joint_values("--ddtheta", arguments.ddtheta.as_deref(), &model)?;
+    let ddtheta = velocities("--ddtheta", arguments.ddtheta.as_deref(), &model)?;
     let applied = arguments.tip.read(&model)?;
     let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment(&model, &applied))?;
     if arguments.robot.json {
         return Ok(json::print(&json!({
             "robot": model.description().name,
             "joints": model.joint_names().collect::<Vec<_>>(),
+            "base": json::base(&model),
+            "positions": json::names(model.position_names()),
+            "velocities": json::names(model.velocity_names()),
             "theta": json::vector(&theta),
             "dtheta": json::vector(&dtheta),
             "ddtheta": json::vector(&ddtheta),
@@ -50,6 +53,7 @@ pub fn run(arguments: &InverseArguments) -> Result<String> {
     }
     let units = Units::of(&model);
     let lines = quantities(
+        &model,
         &[
             Quantity::new("θ", "positions", units.rate(0), &theta),
             Quantity::new("θ̇", "velocities", units.rate(1), &dtheta),

@@ -1,7 +1,7 @@
 //! A robot's lists as Python, in the shapes of the Modern Robotics package.
 
 use mozzi::model::ScrewLists;
-use mozzi::{Model, SE3, ScrewAxis};
+use mozzi::{Base, Model, SE3, ScrewAxis};
 
 pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
     let robot = &model.description().name;
@@ -12,7 +12,7 @@ pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
     let poses: Vec<String> = lists.M_relative.iter().chain([&last]).map(|T| nested(&T.to_matrix())).collect();
     let inertias: Vec<String> = lists.G.iter().map(|G| nested(&G.to_matrix())).collect();
     let names: Vec<String> = lists.joints.iter().map(|name| format!("{name:?}")).collect();
-    [
+    let mut lines = vec![
         format!(
             "# {robot}: the lists of Modern Robotics, chapter 8; angular first, SI units, frames at centres of mass"
         ),
@@ -29,12 +29,22 @@ pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
         format!("Blist = np.array([\n{},\n]).T", axes(&lists.B)),
         "# the end effector at theta = 0, seen from the base".to_string(),
         format!("M = np.array(\n{}\n)", nested(&tip.to_matrix())),
-        String::new(),
-        "# import modern_robotics as mr".to_string(),
-        "# tau = mr.InverseDynamics(theta, dtheta, ddtheta, g, Ftip, Mlist, Glist, Slist)".to_string(),
-        String::new(),
-    ]
-    .join("\n")
+    ];
+    let call = "# tau = mr.InverseDynamics(theta, dtheta, ddtheta, g, Ftip, Mlist, Glist, Slist)";
+    match model.base() {
+        Base::Fixed => lines.extend(["base = \"fixed\"", "", "# import modern_robotics as mr", call].map(str::to_string)),
+        Base::Floating => lines.extend([
+            "# link 0, the base, is free; its spatial inertia, in its own frame".to_string(),
+            "base = \"floating\"".to_string(),
+            format!("Gbase = np.array(\n{}\n)", nested(&model.base_inertia().to_matrix())),
+            String::new(),
+            "# import modern_robotics as mr; it knows bolted bases only: theta, dtheta, tau are the joints', the base at rest"
+                .to_string(),
+            call.to_string(),
+        ]),
+    }
+    lines.push(String::new());
+    lines.join("\n")
 }
 
 fn flat(values: &[f64]) -> String {

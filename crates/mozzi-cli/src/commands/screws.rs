@@ -24,7 +24,12 @@ pub fn run(arguments: &ScrewsArguments) -> Result<String> {
     let model = arguments.robot.load()?;
     let lists = model.screws();
     if arguments.robot.json {
-        return Ok(json::print(&terms_json::screws(&lists)));
+        let mut object = terms_json::screws(&lists);
+        object["base"] = json::base(&model).into();
+        if model.is_floating() {
+            object["G_base"] = json::rows(model.base_inertia().to_matrix());
+        }
+        return Ok(json::print(&object));
     }
     if !arguments.python {
         return Ok(page(&model, &lists));
@@ -86,6 +91,9 @@ fn page(model: &Model, lists: &ScrewLists) -> String {
     page.line(info::headline(model)).line(info::surroundings(model));
     page.line("Frame {i} is at the centre of mass of moving link i (with all that is fixed to it), oriented as the link's frame.");
     page.line("A screw axis is (ω, v), angular first: ω the turn's axis, v how the point at the frame's origin moves at 1 rad/s.");
+    if model.is_floating() {
+        page.line("The base, link 0, is free: its axes are the identity in its own frame, and G_0 is its inertia there. \"Base frame\" is that frame.");
+    }
     if lists.parents.iter().enumerate().any(|(i, &parent)| parent != i) {
         page.line("The robot branches: the parent of each link is");
         let parents =
@@ -113,12 +121,10 @@ fn page(model: &Model, lists: &ScrewLists) -> String {
     }
     let relative = |i: usize| format!("M_{},{}", lists.parents[i], i + 1);
     page.title("M_i-1,i: home frames seen from the one before, m").lines(&poses(&relative, &lists.M_relative));
-    let inertias: Vec<_> = lists
-        .G
-        .iter()
-        .enumerate()
-        .map(|(i, G)| (format!("G_{}, {}", i + 1, lists.links[i]), constants(G.to_matrix())))
-        .collect();
+    let base = model.is_floating().then(|| ("G_0, the base".to_string(), constants(model.base_inertia().to_matrix())));
+    let links =
+        lists.G.iter().enumerate().map(|(i, G)| (format!("G_{}, {}", i + 1, lists.links[i]), constants(G.to_matrix())));
+    let inertias: Vec<_> = base.into_iter().chain(links).collect();
     page.title("G_i: spatial inertias in frames {i}, kg m² and kg").lines(&beside(&inertias));
     page.end()
 }

@@ -1,11 +1,11 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
 use crate::columns::{Columns, save};
-use crate::failure::{Failure, Result};
+use crate::failure::{self, Failure, Result};
 use crate::json;
 use crate::numbers::{WRENCH, array, number};
 use crate::robot::{RobotArguments, Units};
-use crate::samples::{ENERGIES, Samples};
+use crate::samples::{ENERGIES, Samples, first_column};
 use crate::state::StartArguments;
 use crate::text::{Decimals, Page, about, scalar, table};
 use clap::{Args, ValueEnum};
@@ -82,10 +82,10 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
     let input = (arguments.torque(&model)?, arguments.wrench(&model)?);
     let motion = simulate(&model, &theta, &dtheta, input, &options)?;
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
-        save(file, &columns(&motion).text())?;
+        save(file, &columns(&model, &motion).text())?;
     }
     match arguments.out.as_deref() {
-        Some("-") => Ok(columns(&motion).text()),
+        Some("-") => Ok(columns(&model, &motion).text()),
         _ if arguments.robot.json => Ok(json::print(&object(&model, &motion, &options))),
         file => Ok(page(&model, &motion, &options, &arguments.torque, file)),
     }
@@ -109,10 +109,16 @@ impl SimulateArguments {
     fn torque<'m>(&self, model: &'m Model) -> Result<Box<dyn Input + 'm>> {
         match self.torque.as_str() {
             "zero" => Ok(Box::new(Zero)),
+            "gravity-compensation" if model.is_floating() => {
+                failure::note(
+                    "gravity-compensation holds the free base too: the first six entries of τ are a wrench on it",
+                );
+                Ok(Box::new(GravityCompensation::new(model)))
+            }
             "gravity-compensation" => Ok(Box::new(GravityCompensation::new(model))),
             file => {
                 let samples = Samples::read(file, model)?;
-                let values = samples.need(&samples.tau, "tau_1 …")?.concat();
+                let values = samples.need(&samples.tau, &first_column(model, "tau"))?.concat();
                 Ok(Box::new(TorqueTable(self.table(&samples, values)?)))
             }
         }
@@ -176,14 +182,14 @@ pub fn simulate(
 }
 
 /// The motion by columns, as it goes to a file.
-pub fn columns(motion: &Trajectory) -> Columns {
+pub fn columns(model: &Model, motion: &Trajectory) -> Columns {
     let mut columns = Columns::default();
     let group = |values: &[f64], n: usize| values.chunks(n.max(1)).map(<[f64]>::to_vec).collect::<Vec<_>>();
     columns.add("t", motion.t.clone());
-    columns.add_group("theta", motion.nq, &group(&motion.theta, motion.nq));
-    columns.add_group("dtheta", motion.n, &group(&motion.dtheta, motion.n));
-    columns.add_group("ddtheta", motion.n, &group(&motion.ddtheta, motion.n));
-    columns.add_group("tau", motion.n, &group(&motion.tau, motion.n));
+    columns.add_group(model, "theta", &group(&motion.theta, motion.nq));
+    columns.add_group(model, "dtheta", &group(&motion.dtheta, motion.n));
+    columns.add_group(model, "ddtheta", &group(&motion.ddtheta, motion.n));
+    columns.add_group(model, "tau", &group(&motion.tau, motion.n));
     for (name, values) in ENERGIES.iter().zip(energies(motion)) {
         columns.add(*name, values);
     }
@@ -201,6 +207,9 @@ fn object(model: &Model, motion: &Trajectory, options: &Options) -> Value {
     json!({
         "robot": model.description().name,
         "joints": model.joint_names().collect::<Vec<_>>(),
+        "base": json::base(model),
+        "positions": json::names(model.position_names()),
+        "velocities": json::names(model.velocity_names()),
         "method": options.method.name(),
         "step": options.step(),
         "steps": motion.steps,
@@ -218,13 +227,25 @@ fn object(model: &Model, motion: &Trajectory, options: &Options) -> Value {
     })
 }
 
+/// Positions that a row has room for: eight, or a free base's seven.
+fn shown_positions(model: &Model) -> usize {
+    match model.base().positions() {
+        0 => 8,
+        base => base,
+    }
+}
+
 /// Some rows of a motion: t, θ, 𝒦, 𝒫, drift.
-pub fn rows(motion: &Trajectory, shown: usize) -> Vec<String> {
-    let (last, n) = (motion.len() - 1, motion.nq.min(8));
+pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
+    let (last, n) = (motion.len() - 1, motion.nq.min(shown_positions(model)));
     let picked: Vec<usize> = (0..=shown).map(|k| k * last / shown.max(1)).collect();
     let mut picked = picked;
     picked.dedup();
-    let heads = (1..=n).map(|j| format!("θ_{j}")).chain(["K [J]", "P [J]", "drift [J]"].map(str::to_string));
+    let positions: Vec<String> = match model.is_floating() {
+        true => model.position_names().take(n).map(str::to_string).collect(),
+        false => (1..=n).map(|j| format!("θ_{j}")).collect(),
+    };
+    let heads = positions.into_iter().chain(["K [J]", "P [J]", "drift [J]"].map(str::to_string));
     let mut cells = vec![std::iter::once("t [s]".to_string()).chain(heads).collect::<Vec<_>>()];
     let decimals = |pick: &dyn Fn(usize) -> f64| Decimals::of(&picked.iter().map(|&k| pick(k)).collect::<Vec<_>>());
     let theta = decimals(&|k| motion.sample(k).theta.iter().take(n).fold(0.0, |m: f64, x| m.max(x.abs())));
@@ -254,9 +275,11 @@ fn page(model: &Model, motion: &Trajectory, options: &Options, torque: &str, fil
         motion.steps,
         scalar(options.step()),
     ));
-    page.blank().lines(&rows(motion, SHOWN));
-    if model.nq() > 8 {
-        page.lines(&[format!("… the first 8 of {} joints; --out FILE.csv or --json gives all", model.nq())]);
+    page.blank().lines(&rows(model, motion, SHOWN));
+    let shown = shown_positions(model);
+    if model.nq() > shown {
+        let what = if model.is_floating() { "positions" } else { "joints" };
+        page.lines(&[format!("… the first {shown} of {} {what}; --out FILE.csv or --json gives all", model.nq())]);
     }
     let end = motion.last().energy;
     page.blank().line(format!("θ in {}; K kinetic, P potential energy", Units::of(model).position));

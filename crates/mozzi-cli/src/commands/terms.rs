@@ -5,7 +5,7 @@ use crate::failure::{self, Failure, Result};
 use crate::json;
 use crate::numbers::TWIST;
 use crate::robot::{RobotArguments, end_effector};
-use crate::state::{StartArguments, TipArguments, environment, joint_values};
+use crate::state::{StartArguments, TipArguments, environment, velocities};
 use clap::{Args, ValueEnum};
 use mozzi::{
     BodyFrame, ClosedForm, Environment, FrameId, Jacobian, Model, NewtonEuler, SE3, Task, TaskFrame, TaskSpaceDynamics,
@@ -19,10 +19,10 @@ pub struct TermsArguments {
     robot: RobotArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// Joint accelerations θ̈, rad/s² or m/s² [default: all 0]
+    /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
     #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
     ddtheta: Option<String>,
-    /// Joint torques τ, N m or N, in place of θ̈, which is then computed
+    /// Forces τ of the motors, N m or N, in place of θ̈, which is then computed
     #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
     tau: Option<String>,
     #[command(flatten)]
@@ -94,9 +94,9 @@ pub fn run(arguments: &TermsArguments) -> Result<String> {
     let applied = arguments.tip.read(&model)?;
     let environment = environment(&model, &applied);
     let ddtheta = match &arguments.tau {
-        None => joint_values("--ddtheta", arguments.ddtheta.as_deref(), &model)?,
+        None => velocities("--ddtheta", arguments.ddtheta.as_deref(), &model)?,
         Some(tau) => {
-            let tau = joint_values("--tau", Some(tau), &model)?;
+            let tau = velocities("--tau", Some(tau), &model)?;
             model.forward_dynamics(&theta, &dtheta, &tau, &environment)?.as_slice().to_vec()
         }
     };

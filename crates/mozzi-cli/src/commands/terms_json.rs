@@ -1,7 +1,7 @@
 //! The quantities of one state as JSON, by the library's names.
 
 use super::terms::Terms;
-use crate::json::{dvector, jacobian, matrix, pose, rows, vector};
+use crate::json::{base, dvector, jacobian, matrix, names, pose, rows, vector};
 use mozzi::{ClosedForm, TaskFrame};
 use nalgebra::DVector;
 use serde_json::{Value, json};
@@ -13,6 +13,9 @@ pub fn object(terms: &Terms) -> Value {
     json!({
         "robot": model.description().name,
         "joints": model.joint_names().collect::<Vec<_>>(),
+        "base": base(model),
+        "positions": names(model.position_names()),
+        "velocities": names(model.velocity_names()),
         "end_effector": tip.map(|tip| model.frame_name(tip.frame)),
         "gravity": vector(&model.gravity().0),
         "theta": vector(&terms.theta),

@@ -4,19 +4,32 @@ use super::stacked;
 use super::terms::{Terms, Tip};
 use crate::numbers::{TWIST, WRENCH};
 use crate::quantities::{Quantity, quantities};
-use crate::robot::Units;
+use crate::robot::{Units, space_frame};
 use crate::text::{Page, beside, flow, matrix, scalar, sixes, table, tuple};
-use mozzi::{Jacobian, SE3, TaskFrame, Twist};
+use mozzi::{Base, Jacobian, SE3, TaskFrame, Twist};
 use nalgebra::DMatrix;
 
 pub fn page(terms: &Terms) -> String {
     let mut page = Page::default();
     let model = terms.model;
-    page.line(format!("{}, {} joints:", model.description().name, model.n()));
-    page.lines(&flow(&model.joint_names().zip(1..).map(|(name, j)| format!("{j} {name}")).collect::<Vec<_>>()));
+    let numbered =
+        |names: Vec<&str>| flow(&names.iter().zip(1..).map(|(name, j)| format!("{j} {name}")).collect::<Vec<_>>());
+    if model.is_floating() {
+        let (name, nq, n) = (&model.description().name, model.nq(), model.n());
+        page.line(format!(
+            "{name}, its base free, {} joints: {nq} positions θ and {n} velocities θ̇,",
+            model.joint_names().len()
+        ));
+        page.lines(&numbered(model.velocity_names().collect()));
+        page.line("in this order in the rows and columns of all matrices; the base's are in its own coordinates");
+    } else {
+        page.line(format!("{}, {} joints:", model.description().name, model.n()));
+        page.lines(&numbered(model.joint_names().collect()));
+    }
     page.title("the state").lines(&state(terms)).lines(&wrench(terms));
     if let Some(tip) = &terms.tip {
-        page.title(&format!("where {} is and how it moves", terms.model.frame_name(tip.frame))).lines(&kinematics(tip));
+        page.title(&format!("where {} is and how it moves", terms.model.frame_name(tip.frame)))
+            .lines(&kinematics(tip, space_frame(terms.model)));
     }
     page.title("the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ̇)").lines(&matrices(terms));
     page.blank().lines(&sum(terms)).blank().lines(&further(terms));
@@ -32,6 +45,7 @@ pub fn page(terms: &Terms) -> String {
 pub fn state(terms: &Terms) -> Vec<String> {
     let units = Units::of(terms.model);
     quantities(
+        terms.model,
         &[
             Quantity::new("θ", "positions", units.rate(0), &terms.theta),
             Quantity::new("θ̇", "velocities", units.rate(1), &terms.dtheta),
@@ -87,10 +101,10 @@ pub fn short(values: &[f64]) -> String {
     format!("({})", entries.join(", "))
 }
 
-fn kinematics(tip: &Tip) -> Vec<String> {
-    let mut lines = beside(&[("T_sb(θ), its pose in the base frame [R p], m".into(), pose(tip.T_sb))]);
+fn kinematics(tip: &Tip, space: &str) -> Vec<String> {
+    let mut lines = beside(&[(format!("T_sb(θ), its pose in {space} [R p], m"), pose(tip.T_sb))]);
     lines.push(format!("V_b = J_b θ̇ = {}   in its own frame", velocity(tip.V_b)));
-    lines.push(format!("V_s = J_s θ̇ = {}   in the base frame", velocity(tip.V_s)));
+    lines.push(format!("V_s = J_s θ̇ = {}   in {space}", velocity(tip.V_s)));
     lines.extend(beside(&[
         ("J_b(θ), body Jacobian".into(), jacobian(&tip.J_b)),
         ("J_s(θ), space Jacobian".into(), jacobian(&tip.J_s)),
@@ -114,6 +128,7 @@ pub fn sum(terms: &Terms) -> Vec<String> {
     let force = Units::of(terms.model).force;
     let inertial = &terms.M * nalgebra::DVector::from_column_slice(&terms.ddtheta);
     quantities(
+        terms.model,
         &[
             Quantity::new("  M θ̈", "mass_matrix θ̈", force, inertial.as_slice()),
             Quantity::new("+ c", "velocity_product", force, terms.c.as_slice()),
@@ -131,12 +146,17 @@ fn further(terms: &Terms) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(ddtheta) = &terms.forward_dynamics {
         let unit = Units::of(terms.model).rate(2);
-        lines = quantities(&[Quantity::new("θ̈ of this τ", "forward_dynamics", unit, ddtheta.as_slice())], false);
+        lines = quantities(
+            terms.model,
+            &[Quantity::new("θ̈ of this τ", "forward_dynamics", unit, ddtheta.as_slice())],
+            false,
+        );
     }
     lines.push(format!("kinetic_energy   ½ θ̇ᵀMθ̇   = {} J", scalar(terms.kinetic_energy)));
     lines.push(format!(
-        "potential_energy −Σ m gᵀp = {} J (0 for a mass at the base's origin)",
-        scalar(terms.potential_energy)
+        "potential_energy −Σ m gᵀp = {} J (0 for a mass at the origin of {})",
+        scalar(terms.potential_energy),
+        space_frame(terms.model)
     ));
     lines
 }
@@ -157,7 +177,11 @@ fn recursion(terms: &Terms) -> Vec<String> {
     lines.extend(six("V̇_i, accelerations, less gravity", accelerations, &twists(&found.accelerations)));
     lines.extend(six("F_i, wrenches through joint i [N m, N]", WRENCH, &wrenches));
     let base = found.base_reaction;
-    lines.push(format!("the ground holds the base with m = {} N m, f = {} N", short(&base.m.0), short(&base.f.0)));
+    let what = match terms.model.base() {
+        Base::Fixed => "the ground holds the base with",
+        Base::Floating => "the base is driven by the first six entries of τ,",
+    };
+    lines.push(format!("{what} m = {} N m, f = {} N", short(&base.m.0), short(&base.f.0)));
     lines
 }
 
@@ -169,7 +193,7 @@ pub fn task(terms: &Terms) -> Vec<String> {
     let rows: Vec<&str> = terms.task_rows.iter().map(|&row| TWIST[row]).collect();
     let coordinates = match terms.task_frame {
         TaskFrame::Body => "the end effector's own frame",
-        TaskFrame::Space => "the base frame",
+        TaskFrame::Space => space_frame(terms.model),
     };
     let mut lines = vec![format!("rows {} in {coordinates}", rows.join(" "))];
     let eta = DMatrix::from_column_slice(task.eta.len(), 1, task.eta.as_slice());

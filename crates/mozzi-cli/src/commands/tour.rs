@@ -105,11 +105,11 @@ fn fall(model: &Model, page: &mut Page) -> Result<()> {
             "by {}; K kinetic, P potential energy, drift of K + P; the joints' limits stop nothing:",
             method.name()
         )]);
-        page.lines(&simulate::rows(motion, 8));
+        page.lines(&simulate::rows(model, motion, 8));
     }
     page.blank().lines(&drifts(&motions));
     let file = format!("mozzi-fall-{ROBOT}.csv");
-    save(&file, &csv(&motions))?;
+    save(&file, &csv(model, &motions))?;
     let path = std::path::absolute(&file).map_err(|error| Failure::wrong(format!("{file}: {error}")))?;
     let rows: usize = motions.iter().map(|(_, motion)| motion.len()).sum();
     page.lines(&[format!("The table, {rows} rows with t, θ, θ̇, θ̈, τ, energies: {}", path.display())]);
@@ -139,10 +139,10 @@ fn drifts(motions: &[(Method, Trajectory)]) -> Vec<String> {
 }
 
 /// One table: a column that names the method, then those of `mozzi simulate`.
-fn csv(motions: &[(Method, Trajectory)]) -> String {
+fn csv(model: &Model, motions: &[(Method, Trajectory)]) -> String {
     let mut text = String::new();
     for (method, motion) in motions {
-        let table = simulate::columns(motion).text();
+        let table = simulate::columns(model, motion).text();
         let mut lines = table.lines();
         let header = lines.next().unwrap_or_default();
         if text.is_empty() {

@@ -4,7 +4,7 @@ use crate::columns::{Columns, save};
 use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::WRENCH;
-use crate::samples::Samples;
+use crate::samples::{Samples, first_column};
 use clap::Args;
 use mozzi::{FrameId, Model, Wrench};
 use serde_json::{Map, Value};
@@ -39,11 +39,11 @@ pub fn run(
     let file = arguments.input.as_deref().unwrap_or("-");
     let samples = Samples::read(file, model)?;
     let (n, count) = (model.n(), samples.lines.len());
-    let theta = samples.need(&samples.theta, "theta_1 …")?;
+    let theta = samples.need(&samples.theta, &first_column(model, "theta"))?;
     let zeros = || vec![vec![0.0; n]; count];
     let dtheta = samples.dtheta.clone().unwrap_or_else(zeros);
     let given_rows = match given {
-        "tau" => samples.need(&samples.tau, "tau_1 …")?.clone(),
+        "tau" => samples.need(&samples.tau, &first_column(model, "tau"))?.clone(),
         _ => samples.ddtheta.clone().unwrap_or_else(zeros),
     };
     let tip = match &samples.tip_wrench {
@@ -67,7 +67,10 @@ pub fn run(
         let lists = |rows: &[Vec<f64>]| rows.iter().map(|row| json::vector(row)).collect::<Value>();
         let mut object = Map::new();
         object.insert("robot".into(), model.description().name.clone().into());
-        object.insert("joints".into(), model.joint_names().map(Value::from).collect());
+        object.insert("joints".into(), json::names(model.joint_names()));
+        object.insert("base".into(), json::base(model).into());
+        object.insert("positions".into(), json::names(model.position_names()));
+        object.insert("velocities".into(), json::names(model.velocity_names()));
         if let Some(t) = &samples.t {
             object.insert("t".into(), json::vector(t));
         }
@@ -85,15 +88,15 @@ pub fn run(
     if let Some(t) = &samples.t {
         table.add("t", t.clone());
     }
-    table.add_group("theta", n, theta);
-    table.add_group("dtheta", n, &dtheta);
-    table.add_group(given, n, &given_rows);
+    table.add_group(model, "theta", theta);
+    table.add_group(model, "dtheta", &dtheta);
+    table.add_group(model, given, &given_rows);
     if let Some(list) = &samples.tip_wrench {
         for (k, name) in WRENCH.iter().enumerate() {
             table.add(*name, list.iter().map(|F| F.to_array()[k]).collect());
         }
     }
-    table.add_group(result, n, &results);
+    table.add_group(model, result, &results);
     finish(arguments.output.as_deref(), table.text(), count)
 }
 

@@ -33,7 +33,7 @@ impl<'a> Model<'a> {
         let class = self.classes.named(&element, "childclass", Class::MAIN, cx);
         let mut contents = Contents::default();
         self.gather(&element, SE3::identity(), class, 0, &mut contents, cx);
-        for joint in &contents.joints {
+        for joint in contents.joints.iter().chain(&contents.free) {
             let message = "worldbody: has a joint, but the world does not move";
             cx.findings.error("misplaced_joint", joint.item.element.span(), message);
         }
@@ -65,7 +65,8 @@ impl<'a> Model<'a> {
         if let Some(value) = element.attribute("name") {
             place.set("name", value.span);
         }
-        let is_static = carrier.is_static && contents.joints.is_empty();
+        let is_free = self.free(&contents, carrier.link, cx);
+        let is_static = carrier.is_static && contents.joints.is_empty() && !is_free;
         let inertia = self.inertia(&element, &contents, &mut place, is_static, cx);
         // joints act one after the other, the first at the parent; between them are massless links
         let mut parent = carrier.link;
@@ -81,7 +82,11 @@ impl<'a> Model<'a> {
             (parent, origin) = (child, SE3::identity());
         }
         let link = if count == 0 { self.tree.links.len() } else { parent };
-        if count == 0 {
+        if is_free {
+            if origin != SE3::identity() {
+                self.ignored.start(&element);
+            }
+        } else if count == 0 {
             let fixed = Name::generated(format!("{}:fixed", name.shown()));
             self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
         }

@@ -23,6 +23,7 @@ pub(crate) struct Compiler {
     /// Axis, and does it turn with the frame?
     sequence: [(usize, bool); 3],
     pub autolimits: bool,
+    pub align_free: bool,
     pub from_geoms: FromGeoms,
     pub groups: [f64; 2],
     pub bound_mass: f64,
@@ -38,6 +39,7 @@ impl Compiler {
             degrees: true,
             sequence: [(0, true), (1, true), (2, true)],
             autolimits: true,
+            align_free: false,
             from_geoms: FromGeoms::Auto,
             groups: [0.0, 5.0],
             bound_mass: 0.0,
@@ -78,6 +80,7 @@ impl Compiler {
             }
         }
         self.autolimits = item.flag("autolimits", self.autolimits, cx);
+        self.align_free = item.flag("alignfree", self.align_free, cx);
         self.balance = item.flag("balanceinertia", self.balance, cx);
         match item.word("inertiafromgeom", &["auto", "true", "false"], cx) {
             Some("true") => self.from_geoms = FromGeoms::Always,

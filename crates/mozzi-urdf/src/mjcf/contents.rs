@@ -23,6 +23,8 @@ pub(crate) struct Inside<'a> {
 #[derive(Default)]
 pub(crate) struct Contents<'a> {
     pub joints: Vec<Inside<'a>>,
+    /// Free joints.
+    pub free: Vec<Inside<'a>>,
     pub geoms: Vec<Inside<'a>>,
     pub sites: Vec<Inside<'a>>,
     pub bodies: Vec<Inside<'a>>,
@@ -60,6 +62,7 @@ impl<'a> Model<'a> {
                 tag @ ("joint" | "geom" | "site") => {
                     let item = self.classes.item(child, tag, class, cx);
                     let list = match tag {
+                        "joint" if item.value("type").is_some_and(|kind| kind.text == "free") => &mut contents.free,
                         "joint" => &mut contents.joints,
                         "geom" => &mut contents.geoms,
                         _ => &mut contents.sites,
@@ -68,7 +71,7 @@ impl<'a> Model<'a> {
                 }
                 "body" => contents.bodies.push(Inside { item: Item::plain(&child), T, class }),
                 "inertial" => contents.inertial = contents.inertial.take().or(Some(Item::plain(&child))),
-                "freejoint" => refuse_freedom(&child, "a free joint, which has six freedoms", cx),
+                "freejoint" => contents.free.push(Inside { item: Item::plain(&child), T, class }), // takes no defaults
                 "frame" => {
                     child.check_attributes(&words::FRAME, cx);
                     child.check_children(&words::FRAME, cx);
@@ -87,12 +90,4 @@ impl<'a> Model<'a> {
             }
         }
     }
-}
-
-/// Free and ball joints have no place yet.
-pub(crate) fn refuse_freedom(joint: &Element, what: &str, cx: &mut Context) {
-    let message = format!("{}: is {what}", joint.subject);
-    let help = "mozzi computes hinges and slides; a base that moves is given to the functions as its twist and \
-                acceleration, so remove the joint of the root body to compute what it carries";
-    cx.findings.add(Finding::error("unsupported_joint", joint.span(), message).help(help));
 }

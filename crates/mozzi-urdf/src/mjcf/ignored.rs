@@ -77,6 +77,28 @@ impl Ignored {
         }
     }
 
+    /// Where a free body is at first.
+    pub fn start(&mut self, body: &Element) {
+        self.add("start", || Kind {
+            code: "ignored_element",
+            span: body.span(),
+            message: format!("{}: the pose in which it starts is ignored", body.subject),
+            help: "states are given to the functions; the positions of a free body are its pose in the world, as MuJoCo's are",
+            count: 1,
+        });
+    }
+
+    /// What stands in the world beside a free body, and does not move either.
+    pub fn beside(&mut self, what: &str, name: &str, span: Range<usize>, free: &str) {
+        self.add(&format!("beside {what}"), || Kind {
+            code: "ignored_element",
+            span,
+            message: format!("{what} `{name}`: does not move, and is ignored beside the free body `{free}`"),
+            help: "it touches the free body by contacts alone, which are not computed",
+            count: 1,
+        });
+    }
+
     /// One of a kind of elements that are ignored.
     pub fn list(&mut self, name: &str, span: Range<usize>, parent: &str, help: &'static str) {
         let message = || format!("{parent}: <{}> is ignored", shown(name));

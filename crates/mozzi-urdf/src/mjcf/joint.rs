@@ -2,7 +2,7 @@
 
 use super::Model;
 use super::attributes::Item;
-use super::contents::{Inside, refuse_freedom};
+use super::contents::Inside;
 use super::tree::Name;
 use super::words;
 use crate::axis;
@@ -37,10 +37,11 @@ impl<'a> Model<'a> {
             }
         }
         let kind = item.word("type", &["hinge", "slide", "ball", "free"], cx).unwrap_or("hinge");
-        match kind {
-            "ball" => refuse_freedom(&item.element, "a ball joint, which has three freedoms", cx),
-            "free" => refuse_freedom(&item.element, "a free joint, which has six freedoms", cx),
-            _ => {}
+        if kind == "ball" {
+            let message = format!("{}: is a ball joint, which turns about every axis", item.element.subject);
+            let help = "three hinges in its place, one after the other in the same body, move as it does, away from the position \
+                        where two of them line up";
+            cx.findings.add(Finding::error("unsupported_joint", item.element.span(), message).help(help));
         }
         let is_slide = kind == "slide";
         let screw = screw(&item, inside.T, is_slide, cx);

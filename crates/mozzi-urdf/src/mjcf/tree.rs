@@ -5,8 +5,8 @@ use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
 use crate::words::shown;
-use mozzi::model::description::{self, JointKind};
-use mozzi::{Description, SE3, SpatialInertia};
+use mozzi::model::description::{self, FreeJoint, JointKind};
+use mozzi::{Base, Description, SE3, SpatialInertia};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -59,12 +59,20 @@ pub(crate) struct Site {
     pub place: Place,
 }
 
+/// A free body: its link, and the name of its joint.
+pub(crate) struct Free {
+    pub link: usize,
+    pub joint: Option<String>,
+}
+
 /// Links, joints and sites in the order of the file; the first link is the world.
 pub(crate) struct Tree {
     place: Place,
     pub links: Vec<Link>,
     pub joints: Vec<Joint>,
     pub sites: Vec<Site>,
+    /// The body that is free.
+    pub free: Option<Free>,
     /// How many bodies and joints MuJoCo counts so far.
     pub bodies: usize,
     pub degrees: usize,
@@ -78,7 +86,7 @@ impl Tree {
             place: Place::new(root.span()),
         };
         let place = Place::new(root.span());
-        Tree { place, links: vec![world], joints: Vec::new(), sites: Vec::new(), bodies: 0, degrees: 0 }
+        Tree { place, links: vec![world], joints: Vec::new(), sites: Vec::new(), free: None, bodies: 0, degrees: 0 }
     }
 
     /// Adds a joint between two links, at first fixed.
@@ -94,6 +102,10 @@ impl Tree {
         let mut places = Places { robot: self.place, ..Places::default() };
         let (mut description, mut carriers) = (Description::new(name).with_gravity(gravity), Vec::new());
 
+        if let Some(free) = &self.free {
+            description.base = Base::Floating;
+            description.free_joint.name.clone_from(free.joint.as_ref().unwrap_or(&FreeJoint::default().name));
+        }
         let mut taken: BTreeSet<String> = self.links.iter().filter_map(|link| link.name.given.clone()).collect();
         let mut renamed: Option<(Range<usize>, String, usize)> = None;
         for site in self.sites {

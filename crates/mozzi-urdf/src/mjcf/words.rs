@@ -28,6 +28,7 @@ pub(crate) const MUJOCO: Vocabulary = Vocabulary {
 pub(crate) const COMPILER: Vocabulary = Vocabulary {
     attributes: &[
         "angle",
+        "alignfree",
         "autolimits",
         "balanceinertia",
         "boundinertia",
@@ -40,7 +41,6 @@ pub(crate) const COMPILER: Vocabulary = Vocabulary {
     ],
     once: &["lengthrange"],
     listed: &[
-        "alignfree",
         "assetdir",
         "conflict",
         "convexhull",
@@ -196,6 +196,8 @@ pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     attributes: &["pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia"],
     ..NOTHING
 };
+pub(crate) const FREE_JOINT: Vocabulary =
+    Vocabulary { attributes: &["name", "align"], silent: &["group", "sleep"], ..NOTHING };
 pub(crate) const JOINT: Vocabulary = Vocabulary {
     attributes: &[
         "name",

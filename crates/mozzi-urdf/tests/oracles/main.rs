@@ -16,8 +16,14 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// What a model of MJCF may be refused for: it is more than a tree, or its numbers stand in meshes.
-const CLOSURES: [&str; 5] =
-    ["loop_closure", "unsupported_tendon", "unsupported_equality", "mesh_inertia", "actuator_armature"];
+const CLOSURES: [&str; 6] = [
+    "loop_closure",
+    "unsupported_tendon",
+    "unsupported_equality",
+    "mesh_inertia",
+    "actuator_armature",
+    "unsupported_attribute",
+];
 
 /// The robot of a file of oracles, without friction, and without armature where the oracle has none. The reason, where
 /// it is a model that mozzi refuses for good reason.
@@ -47,7 +53,7 @@ fn model(oracle: &Value) -> Result<Model, String> {
     Ok(robot.build().unwrap())
 }
 
-/// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's joints.
+/// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's velocities.
 fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     let n = model.n();
     let mine = |key: &str| {
@@ -59,7 +65,12 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     let theirs = |v: DVector<f64>| column(&order.iter().map(|&j| v[j]).collect::<Vec<_>>());
     let both = |M: DMatrix<f64>| DMatrix::from_fn(n, n, |i, j| M[(order[i], order[j])]);
     let columns = |J: mozzi::Jacobian| J.matrix().select_columns(order);
-    let (theta, dtheta, ddtheta, tau) = (mine("theta"), mine("dtheta"), mine("ddtheta"), mine("tau"));
+    let mut theta = vector(&state["theta"]);
+    let (base, joints) = (model.base().positions(), model.base().velocities());
+    let theirs_of_joints = theta.split_off(base);
+    theta.resize(model.nq(), 0.0);
+    order[joints..].iter().zip(theirs_of_joints).for_each(|(&j, x)| theta[base + j - joints] = x);
+    let (dtheta, ddtheta, tau) = (mine("dtheta"), mine("ddtheta"), mine("tau"));
     let (environment, tip) = (model.environment(), model.end_effector().unwrap());
     let list = |key: &str| column(&vector(&state[key]));
     let has = |key: &str| state.get(key).is_some();
@@ -129,9 +140,11 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
 fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
     let names: Vec<&str> =
         oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-    assert_eq!(names.len(), model.n(), "{name}");
-    let order: Vec<usize> =
-        names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
+    assert_eq!(oracle.get("floating").is_some(), model.is_floating(), "{name}: is the base free?");
+    let base = model.base().velocities();
+    assert_eq!(base + names.len(), model.n(), "{name}");
+    let of = |name: &&str| base + model.joint_names().position(|mine| mine == *name).unwrap();
+    let order: Vec<usize> = (0..base).chain(names.iter().map(of)).collect();
     if oracle.get("mjcf").is_some() {
         assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
     }

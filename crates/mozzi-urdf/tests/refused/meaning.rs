@@ -25,10 +25,33 @@ fn joints() {
         (
             joint("type='§revolut'", ""),
             "unknown_joint_type",
-            "joint `j`: type: is `revolut`, expected one of `revolute`, `continuous`, `prismatic`, `fixed`",
+            "joint `j`: type: is `revolut`, expected one of `revolute`, `continuous`, `prismatic`, `fixed`, `planar`, `floating`",
         ),
-        (joint("type='§floating'", ""), "unsupported_joint", "joint `j`: type: is `floating`, which has six freedoms"),
-        (joint("type='§planar'", ""), "unsupported_joint", "joint `j`: type: is `planar`, which has three freedoms"),
+        (
+            joint("type='§floating'", "<origin rpy='0 0 1'/>"),
+            "unsupported_joint",
+            "joint `j`: type: is `floating`, but its origin is [0.0, 0.0, 0.0] m, turned by [0.0, 0.0, 1.0] rad",
+        ),
+        (
+            joint("type='§spherical'", ""),
+            "unsupported_joint",
+            "joint `j`: type: is `spherical`, which turns about every axis",
+        ),
+        (
+            joint("type='planar'", "<axis xyz='§0 0 0'/>"),
+            "zero_axis",
+            "joint `j`: axis: is `0 0 0`, expected a direction",
+        ),
+        (
+            joint("type='planar'", "<§mimic joint='j.x'/>"),
+            "unsupported_joint",
+            "joint `j`: mimic: a planar joint has several positions, and can follow none",
+        ),
+        (
+            joint("type='floating'", "<§mimic joint='k'/>"),
+            "unsupported_joint",
+            "joint `j`: mimic: a floating joint has several positions, and can follow none",
+        ),
         (
             limit("lower='§1' upper='-1'"),
             "reversed_limits",

@@ -23,22 +23,42 @@ macro_rules! pair {
 
 #[test]
 fn what_has_no_place_is_refused_by_name() {
-    let hinge = "mozzi computes hinges";
+    let hinge = "three hinges";
     refused(&[
         (
-            body!("<§freejoint/><geom size='1'/>"),
+            body!("<§freejoint/><joint/><geom size='1'/>"),
             "unsupported_joint",
-            "body `b`: freejoint: is a free joint, which has six freedoms",
+            "body `b`: freejoint: is a free joint beside other joints of its body, expected it alone",
+        ),
+        (
+            body!("<geom size='1'/><body name='c'><§joint name='j' type='free'/><geom size='1'/></body>"),
+            "unsupported_joint",
+            "joint `j`: is a free joint inside the tree: only a body of the world can be free",
+        ),
+        (
+            body!("<freejoint/><geom size='1'/></body><body name='c'><§freejoint name='j'/><geom size='1'/>"),
+            "unsupported_joint",
+            "joint `j`: is a second free joint: body `b` is free already, expected one robot",
+        ),
+        (
+            body!("<freejoint/><geom size='1'/></body><body><§joint name='j'/><geom size='1'/>"),
+            "unsupported_joint",
+            "joint `j`: moves beside the free body `b`, expected one robot",
+        ),
+        (
+            body!("<freejoint align='§true'/><geom size='1'/>"),
+            "unsupported_attribute",
+            "body `b`: freejoint: is aligned with the body's inertia, which moves the body's frame",
+        ),
+        (
+            body!("<joint type='free' armature='§1'/><geom size='1'/>"),
+            "unsupported_attribute",
+            "body `b`: joint: armature: would add an inertia between the world and the base, which mozzi does not",
         ),
         (
             body!("<§joint name='j' type='ball'/><geom size='1'/>"),
             "unsupported_joint",
-            "joint `j`: is a ball joint, which has three freedoms",
-        ),
-        (
-            body!("<§joint type='free'/><geom size='1'/>"),
-            "unsupported_joint",
-            "joint `joint0`: is a free joint, which has six freedoms",
+            "joint `j`: is a ball joint, which turns about every axis",
         ),
         (
             body!("<§replicate count='3'/>"),
@@ -103,7 +123,7 @@ fn what_has_no_place_is_refused_by_name() {
             "deformable: flex `f`: is a flexible body, which mozzi does not compute",
         ),
     ]);
-    let error = parse("a.xml", body!("<freejoint/><geom size='1'/>")).expect_err("a free joint");
+    let error = parse("a.xml", body!("<joint type='ball'/><geom size='1'/>")).expect_err("a ball joint");
     assert!(error.errors().all(|error| error.help().is_some_and(|help| help.starts_with(hinge))));
 }
 
@@ -307,6 +327,11 @@ fn what_is_left_out_is_said() {
             "<mujoco><worldbody><body name='b' gravcomp='§1'><geom size='1'/></body></worldbody></mujoco>",
             "ignored_force",
             "body `b`: gravcomp: is `1`, a compensation of gravity, which mozzi does not compute",
+        ),
+        (
+            body!("<joint type='free' damping='§1'/><geom size='1'/>"),
+            "ignored_force",
+            "body `b`: joint: damping: is `1`, a damping of the free base, which mozzi does not compute",
         ),
         (
             "<mujoco><option density='§1.2'/></mujoco>",

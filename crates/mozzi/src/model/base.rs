@@ -2,6 +2,7 @@
 
 use super::Model;
 use crate::scalar::Scalar;
+use crate::spatial::SpatialInertia;
 
 /// How the base link is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -48,6 +49,11 @@ impl<C: Scalar> Model<C> {
     #[inline(always)]
     pub fn is_floating(&self) -> bool {
         self.base == Base::Floating
+    }
+
+    /// 𝒢_b of the base link with all that is fixed to it, in its frame; it moves, and counts, where the base is free.
+    pub fn base_inertia(&self) -> SpatialInertia<C> {
+        self.base_inertia
     }
 
     /// The names of the nq positions: of a free base `base.qw` … `base.z`, then the independent joints.

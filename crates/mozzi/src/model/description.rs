@@ -23,6 +23,24 @@ pub struct Description {
     pub gravity: [f64; 3],
     /// Is the base link bolted to {s}, or free?
     pub base: Base,
+    /// What a file calls that from which a free base is freed; says nothing about a bolted one.
+    pub free_joint: FreeJoint,
+}
+
+/// The names of a free base's joint and of {s}, which are neither a joint nor a link of the robot: kept so that a file is written
+/// back as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeJoint {
+    /// `floating_base` where no file gave it a name.
+    pub name: String,
+    /// `world` where no file gave it a name.
+    pub parent: String,
+}
+
+impl Default for FreeJoint {
+    fn default() -> Self {
+        FreeJoint { name: "floating_base".into(), parent: "world".into() }
+    }
 }
 
 /// A rigid body.
@@ -138,6 +156,7 @@ impl Description {
             end_effector: None,
             gravity: [0.0, 0.0, -9.81],
             base: Base::Fixed,
+            free_joint: FreeJoint::default(),
         }
     }
 

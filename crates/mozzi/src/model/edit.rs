@@ -140,6 +140,7 @@ impl Model<f64> {
             end_effector: Some(whole.links[to].name.clone()),
             gravity: whole.gravity,
             base: if from == self.structure.base { whole.base } else { Base::Fixed },
+            free_joint: whole.free_joint.clone(),
         }
         .build()
     }
