@@ -72,10 +72,10 @@ fn command(document: &Document, file: &str, dialect: Dialect) -> String {
     if document.input_text().contains("$(find ") {
         return format!(
             "`pip install xacrodoc; xacrodoc {input}{values} --pkg-dir DIR -o {output}` expands it, DIR holding the \
-             folders of the packages; then load {output}"
+             folders of the packages"
         );
     }
-    format!("`pip install xacro; xacro {input}{values} > {output}` expands it; then load {output}")
+    format!("`pip install xacro; xacro {input}{values} > {output}` expands it")
 }
 
 /// The names of arguments that have no default.
@@ -174,9 +174,7 @@ mod tests {
 
     #[test]
     fn commands() {
-        let plain = |input: &str, output: &str| {
-            format!("`pip install xacro; xacro {input} > {output}` expands it; then load {output}")
-        };
+        let plain = |input: &str, output: &str| format!("`pip install xacro; xacro {input} > {output}` expands it");
         for (file, input, output) in [
             ("arm.xacro", "arm.xacro", "arm.urdf"),
             ("robots/arm.urdf.xacro", "robots/arm.urdf.xacro", "robots/arm.urdf"),
@@ -198,7 +196,7 @@ mod tests {
         assert_eq!(
             help("arm.xacro", packages),
             "`pip install xacrodoc; xacrodoc arm.xacro --pkg-dir DIR -o arm.urdf` expands it, DIR holding the folders of \
-             the packages; then load arm.urdf"
+             the packages"
         );
     }
 }
