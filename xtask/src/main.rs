@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | bench`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | bench`: what CI runs, anyone can run.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -6,6 +6,7 @@
 mod advisories;
 mod bench;
 mod command;
+mod docs;
 mod examples;
 mod fuzz;
 mod house_rules;
@@ -32,6 +33,7 @@ usage: cargo xtask COMMAND
   test    build and run everything: Python environment, reference numbers, every test,
           a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
+  docs    write the pages of docs/ anew; `test` holds them current
   bench   one state on one core beside Pinocchio, into benches/RESULTS.md;
           bench --criterion: each kernel alone";
 
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["test"] => test(&workspace),
         ["check"] => check(&workspace),
+        ["docs"] => docs(&workspace),
         ["bench"] => run_benches(&workspace, bench::run),
         ["bench", "--criterion"] => run_benches(&workspace, bench::criterion),
         ["--help" | "-h" | "help"] => {
@@ -69,6 +72,14 @@ fn test(workspace: &Workspace) -> ExitCode {
     let exit = report.finish();
     println!("{count}"); // CI reads this line
     exit
+}
+
+fn docs(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("Python environment", || venv::prepare(workspace));
+    report.step("reference numbers", || oracles::make(workspace));
+    report.step("pages", || docs::write(workspace));
+    report.finish()
 }
 
 fn check(workspace: &Workspace) -> ExitCode {

@@ -1,4 +1,5 @@
-//! The reference numbers: `oracles/make.py` computes them with Pinocchio on the robots of example-robot-data.
+//! The reference numbers: `oracles/make.py` computes them with Pinocchio on the robots of example-robot-data,
+//! `oracles/make_mjcf.py` with MuJoCo on the models of gymnasium and dm_control.
 
 use crate::command;
 use crate::report::Outcome;
@@ -8,7 +9,7 @@ use crate::workspace::Workspace;
 use std::path::PathBuf;
 use std::process::Command;
 
-const SCRIPT: &str = "oracles/make.py";
+const SCRIPTS: [&str; 2] = ["oracles/make.py", "oracles/make_mjcf.py"];
 const STATES: &str = "100";
 
 /// Where the example_robot_data robots are: the package has no Python module, but it lists its files.
@@ -27,9 +28,6 @@ for file in files:
 
 /// Make them, unless they were made already from the same sources.
 pub fn make(workspace: &Workspace) -> Outcome {
-    if !workspace.path(SCRIPT).exists() {
-        return Outcome::Skipped(format!("there is no {SCRIPT} yet"));
-    }
     match try_make(workspace) {
         Ok(note) => Outcome::Passed(note),
         Err(why) => Outcome::Failed(why),
@@ -43,9 +41,11 @@ fn try_make(workspace: &Workspace) -> Result<String, String> {
         return Ok("made already".into());
     }
     let folder = workspace.fresh_folder("target/oracles")?; // without the stamp: an interrupted run is no finished one
-    let mut python = Command::new(venv::python(workspace));
-    python.current_dir(&workspace.root).arg(SCRIPT).args(["--states", STATES, "--out"]);
-    command::run(python.arg(folder))?;
+    for script in SCRIPTS {
+        let mut python = Command::new(venv::python(workspace));
+        python.current_dir(&workspace.root).arg(script).args(["--states", STATES, "--out"]);
+        command::run(python.arg(&folder))?;
+    }
     stamp.write()?;
     Ok(format!("{STATES} states a robot"))
 }
@@ -62,10 +62,12 @@ pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
     (!folder.is_empty()).then(|| PathBuf::from(folder))
 }
 
-/// What the numbers are made from: scripts, requirements and robots under `oracles/`, and the robots of `models/`.
+/// What the numbers are made from: scripts, requirements, robots and models under `oracles/`, and the robots of `models/`.
 fn stamp(workspace: &Workspace) -> Result<Stamp, String> {
     let mut files = Vec::new();
-    for (folder, endings) in [("oracles", &["py", "txt", "urdf"][..]), ("models", &["urdf"][..])] {
+    let sources =
+        [("oracles", &["py", "txt", "urdf", "xml"][..]), ("oracles/parts", &["xml"][..]), ("models", &["urdf"][..])];
+    for (folder, endings) in sources {
         let Ok(entries) = std::fs::read_dir(workspace.path(folder)) else { continue };
         let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
         files.extend(paths.filter(|path| path.extension().is_some_and(|e| endings.iter().any(|known| e == *known))));

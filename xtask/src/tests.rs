@@ -2,6 +2,7 @@
 
 use crate::oracles;
 use crate::report::Outcome;
+use crate::venv;
 use crate::workspace::Workspace;
 use std::fmt;
 use std::io::{BufRead, BufReader};
@@ -42,6 +43,8 @@ pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     let mut cargo = workspace.cargo(&["test", "--workspace", "--no-fail-fast"]);
     give(&mut cargo, "MOZZI_ORACLES", oracles::folder(workspace));
     give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
+    let python = venv::python(workspace);
+    give(&mut cargo, "MOZZI_PYTHON", python.is_file().then_some(python));
     println!("$ cargo test --workspace --no-fail-fast");
     match stream(&mut cargo, |line| count.add(line)) {
         Err(error) => Outcome::Failed(format!("cargo test did not run: {error}")),
@@ -54,11 +57,12 @@ pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     }
 }
 
-fn give(cargo: &mut Command, variable: &str, folder: Option<std::path::PathBuf>) {
-    match folder {
-        Some(folder) => {
-            println!("{variable}={}", folder.display());
-            cargo.env(variable, folder);
+/// Names a path to the tests, where it is there.
+pub fn give(cargo: &mut Command, variable: &str, path: Option<std::path::PathBuf>) {
+    match path {
+        Some(path) => {
+            println!("{variable}={}", path.display());
+            cargo.env(variable, path);
         }
         None => println!("{variable} is not set: nothing there; tests that need it skip themselves"),
     }

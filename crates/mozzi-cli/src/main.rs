@@ -3,6 +3,7 @@
 
 mod columns;
 mod commands;
+mod compare;
 mod failure;
 mod json;
 mod numbers;
@@ -21,7 +22,8 @@ use std::process::ExitCode;
 
 /// Dynamics of open-chain robots, in the notation of Lynch & Park, Modern Robotics, chapter 8.
 ///
-/// Without a subcommand: a tour on the UR5 arm. MODEL is a URDF file or the name of an embedded robot.
+/// Without a subcommand: a tour on the UR5 arm. MODEL is a file (URDF, MuJoCo's MJCF, or JSON of
+/// `mozzi convert`) or the name of an embedded robot.
 #[derive(Parser, Debug)]
 #[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES, max_term_width = 104)]
 struct Arguments {
@@ -50,6 +52,8 @@ enum Command {
     Check(check::CheckArguments),
     /// The same robot in another file: URDF, JSON, or Python for NumPy
     Convert(convert::ConvertArguments),
+    /// What Pinocchio and MuJoCo compute of the same file, and why it differs (asks Python)
+    Compare(commands::compare::CompareArguments),
     /// What the code of a diagnostic means, such as mozzi::urdf::zero_axis
     Explain(explain::ExplainArguments),
 }
@@ -62,6 +66,7 @@ Examples:
   mozzi check my_robot.urdf --format json               the same, a JSON object a line
   mozzi explain zero_axis                               what a diagnostic's code means
   mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; reads back
+  mozzi compare my_robot.urdf                           Pinocchio and MuJoCo beside mozzi: what differs, why
   mozzi terms my_robot.urdf --lenient                   with inertias repaired; --strict: warnings are errors
   mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
   mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
@@ -116,6 +121,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::ForwardDynamics(arguments)) => forward_dynamics::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),
         Some(Command::Explain(arguments)) => explain::run(arguments),
     }

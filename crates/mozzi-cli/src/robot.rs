@@ -1,11 +1,12 @@
 //! The robot that a command is about.
 
-use crate::failure::{self, Result};
+use crate::failure::{self, Failure, Result};
 use crate::numbers::array;
 use crate::robot_json;
 use clap::Args;
-use mozzi::{FrameId, Model};
-use mozzi_urdf::{LoadError, Loaded, Policy, embedded};
+use mozzi::model::Problem;
+use mozzi::{Description, FrameId, Model};
+use mozzi_urdf::{LoadError, Loaded, Policy, Severity, embedded};
 use std::path::Path;
 
 /// More are counted: `mozzi check` shows them, each with its place.
@@ -53,16 +54,34 @@ impl PolicyArguments {
 
     /// The robot of a file of any kind.
     pub fn model(&self, name_or_path: &str) -> Result<Model> {
-        if Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json") {
-            return Ok(robot_json::read(name_or_path)?.build()?);
+        if !robot_json::is_json(name_or_path) {
+            return Ok(self.load(name_or_path)?.build()?);
         }
-        Ok(self.load(name_or_path)?.build()?)
+        let robot = robot_json::read(name_or_path)?;
+        let (errors, warnings) = self.problems(&robot);
+        if self.strict && !errors.is_empty() {
+            return Err(Failure::wrong(format!("{name_or_path} is refused: {}", errors[0])));
+        }
+        for problem in warnings.iter().take(WARNINGS) {
+            failure::write(&format!("{name_or_path}: warning: {problem}\n"));
+        }
+        if warnings.len() > WARNINGS {
+            failure::note(&format!("{} warnings in all; `mozzi check {name_or_path}` shows them", warnings.len()));
+        }
+        Ok(robot.build()?)
+    }
+
+    /// What the library finds wrong or odd with a robot that has no text to point at. Nothing is repaired in it: the
+    /// numbers were repaired, if at all, when the file was written.
+    pub fn problems(&self, robot: &Description) -> (Vec<Problem>, Vec<Problem>) {
+        let is_error = |problem: &Problem| self.strict || problem.severity == Severity::Error;
+        robot.check().into_iter().partition(is_error)
     }
 }
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A URDF file, or an embedded robot: double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
+    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
     #[arg(long, value_name = "FRAME")]

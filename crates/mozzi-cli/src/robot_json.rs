@@ -38,6 +38,11 @@ pub fn write(model: &Model) -> String {
     }))
 }
 
+/// Is this file one that [`write`] made, by its name?
+pub fn is_json(name_or_path: &str) -> bool {
+    std::path::Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json")
+}
+
 pub fn read(file: &str) -> Result<Description> {
     let wrong = |why: String| Failure::wrong(format!("{file}: {why}"));
     let text = std::fs::read_to_string(file).map_err(|error| wrong(format!("cannot be read: {error}")))?;

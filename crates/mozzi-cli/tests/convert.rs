@@ -62,3 +62,57 @@ fn python_and_what_cannot_be_converted() {
     says(&["info", &broken(&|v| v["gravity"] = serde_json::json!([0, 1]))], "gravity is [0,1], expected 3 numbers");
     says(&["info", &file(&folder, "no.json", "{")], "is no JSON");
 }
+
+#[test]
+fn mjcf_is_read_by_every_command() {
+    let folder = folder("mjcf");
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers/springs.xml");
+    let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
+    assert!(text(&["convert", robot, &path("springs.json")]).contains("2 independent joints"));
+    text(&["convert", robot, &path("springs.py")]);
+    let (code, message) = complaint(&["convert", robot, &path("springs.urdf")]);
+    assert!(code == 1 && message.contains("armature 0.01; .json has words for all"), "{message}");
+    let at = ["--theta", "0.3,0.1", "--dtheta", "1,2"];
+    for command in ["terms", "inverse-dynamics", "forward-dynamics"] {
+        let run = |robot: &str| json(&[&[command, robot][..], &at].concat());
+        assert_eq!(run(robot), run(&path("springs.json")), "{command}");
+    }
+    assert_eq!(json(&["info", robot])["n"], 2);
+    assert_eq!(json(&["screws", robot]), json(&["screws", &path("springs.json")]));
+    text(&["check", robot]);
+    text(&["simulate", robot, "--time", "0.01"]);
+}
+
+#[test]
+fn json_is_checked() {
+    let folder = folder("check_json");
+    let robot = folder.join("tree.json").to_str().expect("text").to_string();
+    text(&["convert", TREE, &robot]);
+    text(&["check", &robot]);
+    let odd = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers/doctor.urdf");
+    let path = folder.join("odd.json").to_str().expect("text").to_string();
+    text(&["convert", odd, &path]);
+    let lines = text(&["check", &path, "--json"]);
+    let first: serde_json::Value = serde_json::from_str(lines.lines().next().expect("a line")).expect("JSON");
+    assert_eq!((&first["severity"], &first["code"]), (&"warning".into(), &"mozzi::urdf::unphysical_inertia".into()));
+    assert!(first["line"].is_null() && first["help"].is_string(), "{first}");
+    let output = common::mozzi(&["check", &path]);
+    let said = String::from_utf8_lossy(&output.stderr).to_string();
+    assert!(said.contains("odd.json: warning: link `plate`: inertia") && said.contains("3 warnings"), "{said}");
+    let (code, message) = complaint(&["check", &path, "--strict"]);
+    assert!(code == 1 && message.contains("is refused: 3 errors"), "{message}");
+    assert_eq!(complaint(&["info", &path, "--strict"]).0, 1);
+    assert_eq!(complaint(&["check", &file(&folder, "no.json", "{")]).0, 1);
+}
+
+#[test]
+fn info_tells_what_was_folded_into_what() {
+    let panda = json(&["info", "panda"]);
+    let bodies = panda["bodies"].as_array().expect("a list");
+    let count: usize = bodies.iter().map(|body| body["links"].as_array().expect("links").len()).sum();
+    assert_eq!(count, panda["links"].as_array().expect("links").len());
+    let wrist = bodies.iter().find(|body| body["joint"] == "panda_joint7").expect("it");
+    assert_eq!(wrist["links"][0], "panda_link7");
+    assert!(wrist["links"].as_array().expect("links").iter().any(|link| link == "panda_hand"), "{wrist}");
+    assert!(text(&["info", "panda"]).contains("+ panda_hand"));
+}

@@ -16,11 +16,14 @@ pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
         let help = "save it as UTF-8";
         return Err(("", Finding::error("not_utf8", 0..0, message).help(help)));
     }
-    let bytes = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
+    let file = bytes;
+    let bytes = file.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(file);
     std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         let good = std::str::from_utf8(&bytes[..at]).unwrap_or_default();
-        let message = format!("byte {at} of the text is {:#04x}, which is not UTF-8", bytes[at]);
+        // counted as an editor for bytes does: a byte order mark is three of them
+        let offset = at + file.len() - bytes.len();
+        let message = format!("byte {offset} of the file is {:#04x}, which is not UTF-8", bytes[at]);
         let help = "save the file as UTF-8; a file that declares another encoding has to be converted";
         (good, Finding::error("not_utf8", at..at, message).help(help))
     })

@@ -172,6 +172,10 @@ impl<'a> Element<'a> {
                 continue;
             }
             let (subject, span) = (&self.subject, self.place(attribute.range_qname()));
+            if let Some(known) = words.listed.iter().find(|&&known| known == name) {
+                cx.leave_out(self.name(), known, span);
+                continue;
+            }
             let language = cx.dialect.name();
             let message = format!("{subject}: has an attribute `{}`, which {language} does not know", shown(name));
             match cx.unknown(self.name(), name, "attribute", words.attributes.iter().copied()) {

@@ -1,6 +1,7 @@
 //! What each code means, and how to mend what it says.
 
 use crate::mjcf;
+use crate::spelling::nearest;
 
 /// A code, without `mozzi::urdf::` or `mozzi::mjcf::`; what it means; how to mend it.
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
@@ -170,8 +171,8 @@ const CODES: [Entry; 56] = [
         "The root element of a URDF is <robot>.",
         "is it the right file? A URDF begins with <robot name=\"…\">"),
     ("xacro",
-        "The file is a program for xacro, which writes a URDF when it is run: it has elements such as <xacro:macro>, or values such as ${mass}. mozzi reads what xacro writes and does not run xacro itself: of the programs in Rust that do, each computes another number for some expressions, without a word. PyPI's xacro needs no ROS:\n\npip install xacro\nxacro robot.xacro name:=value > robot.urdf\n\nFiles that say $(find package), or include one that does, need ROS for that, or xacrodoc; DIR holds the folders of the packages:\n\npip install xacrodoc\nxacrodoc robot.xacro name:=value --pkg-dir DIR -o robot.urdf",
-        "expand it first: `pip install xacro; xacro robot.xacro > robot.urdf`, then load robot.urdf"),
+        "The file is a program for xacro, which writes a URDF when it is run: it has elements such as `<xacro:macro>`, or values such as `${mass}`. mozzi reads what xacro writes and does not run xacro itself: of the programs in Rust that do, each computes another number for some expressions, without a word. PyPI's xacro needs no ROS: `pip install xacro`, then `xacro robot.xacro name:=value > robot.urdf`. A file that says `$(find package)`, or includes one that does, needs ROS for that, or xacrodoc: `pip install xacrodoc`, then `xacrodoc robot.xacro name:=value --pkg-dir DIR -o robot.urdf`, DIR holding the folders of the packages.",
+        "expand it first: `pip install xacro; xacro robot.xacro > robot.urdf`"),
     ("zero_axis",
         "The axis of a joint that moves has no direction.",
         "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`"),
@@ -195,6 +196,16 @@ pub fn explain(code: &str) -> Option<&'static str> {
 /// How to mend what a code says; what a diagnostic's help says where its place says nothing more precise.
 pub fn remedy(code: &str) -> Option<&'static str> {
     entry(code).map(|&(.., remedy)| remedy)
+}
+
+/// The code of either language that one which does not exist was probably meant to be.
+///
+/// ```
+/// assert_eq!(mozzi_urdf::nearest_code("mozzi::urdf::zero-axes"), Some("zero_axis"));
+/// ```
+pub fn nearest_code(code: &str) -> Option<&'static str> {
+    let short = code.rsplit("::").next().unwrap_or(code).replace('-', "_");
+    nearest(&short, codes().chain(mjcf::codes()))
 }
 
 /// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are [`mjcf::codes`].

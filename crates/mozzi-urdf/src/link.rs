@@ -8,7 +8,7 @@ use crate::places::Place;
 use crate::words::{INERTIA, INERTIAL, LINK, MASS, shown};
 use mozzi::linalg::Sym3;
 use mozzi::model::description::Link;
-use mozzi::{SE3, SpatialInertia};
+use mozzi::{SE3, SpatialInertia, Vec3};
 
 /// A link; a massless one where it has no `<inertial>`.
 pub(crate) fn read(element: &Element, cx: &mut Context) -> (Link, Place) {
@@ -47,6 +47,11 @@ fn read_inertial(inertial: &Element, place: &mut Place, cx: &mut Context) -> Opt
     let inertia = inertia.and_then(|inertia| read_inertia(inertia, place, cx));
     match (T, mass, inertia) {
         (Some(T), Some(mass), Some(I)) => Some(SpatialInertia::new(mass, T.p, I.congruence(T.R.matrix()))),
+        // a negative mass is wrong whatever else cannot be read: the checks tell it of a point mass
+        (_, Some(mass), _) if mass < 0.0 => {
+            place.report("inertia");
+            Some(SpatialInertia::point_mass(mass, Vec3::zero()))
+        }
         _ => {
             place.report("mass");
             place.report("inertia");

@@ -9,9 +9,11 @@ pub(crate) struct Vocabulary {
     pub many: &'static [&'static str],
     /// Known extensions, attributes or children, which say nothing about dynamics here.
     pub silent: &'static [&'static str],
+    /// Attributes that are left out, and listed as such: see [`LeftOut`](crate::context::LeftOut).
+    pub listed: &'static [&'static str],
 }
 
-pub(crate) const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], many: &[], silent: &[] };
+pub(crate) const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], many: &[], silent: &[], listed: &[] };
 
 pub(crate) const ROBOT: Vocabulary = Vocabulary {
     attributes: &["name", "version"],
@@ -25,6 +27,7 @@ pub(crate) const LINK: Vocabulary = Vocabulary {
     once: &["inertial"],
     many: &["visual", "collision"],
     silent: &["type", "material", "gazebo", "sensor", "contact"],
+    ..NOTHING
 };
 pub(crate) const INERTIAL: Vocabulary = Vocabulary { once: &["origin", "mass", "inertia"], ..NOTHING };
 pub(crate) const MASS: Vocabulary = Vocabulary { attributes: &["value"], ..NOTHING };

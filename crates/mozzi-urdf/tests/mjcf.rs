@@ -157,6 +157,6 @@ fn wrong_includes() {
     std::fs::write(folder.join("parts/a.xml"), b"<x>\n\xff</x>").unwrap();
     assert_eq!(
         main_of(&folder).unwrap_err(),
-        "./main.xml is refused: 1 error\n./parts/a.xml:2:1: error: byte 4 of the text is 0xff, which is not UTF-8"
+        "./main.xml is refused: 1 error\n./parts/a.xml:2:1: error: byte 4 of the file is 0xff, which is not UTF-8"
     );
 }

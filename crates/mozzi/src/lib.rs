@@ -32,6 +32,7 @@
 
 extern crate alloc;
 
+pub mod accuracy;
 mod api;
 pub mod dynamics;
 pub mod kinematics;

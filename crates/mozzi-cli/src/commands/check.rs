@@ -3,13 +3,15 @@
 use super::info;
 use crate::failure::{self, Failure, Result};
 use crate::robot::PolicyArguments;
+use crate::robot_json;
 use clap::{Args, ValueEnum};
-use mozzi_urdf::{Diagnostic, LoadError, Severity};
+use mozzi::Model;
+use mozzi_urdf::{Diagnostic, Severity};
 use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct CheckArguments {
-    /// A robot's file, or the name of an embedded robot
+    /// A robot's file (URDF, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
     /// Text with excerpts on standard error, or one JSON object a line on standard output for each diagnostic
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -29,23 +31,55 @@ enum Format {
 
 pub fn run(arguments: &CheckArguments) -> Result<String> {
     let name = &arguments.model;
+    if robot_json::is_json(name) {
+        return json_robot(arguments);
+    }
     let answer = arguments.policy.open(name);
     if arguments.json || arguments.format == Format::Json {
         return match answer {
             Ok(loaded) => Ok(lines(&loaded.warnings)),
-            Err(error) if error.diagnostics().is_empty() => Err(Failure::Answered(no_place(name, &error))),
+            Err(error) if error.diagnostics().is_empty() => {
+                Err(Failure::Answered(placeless(name, "error", None, &error.to_string())))
+            }
             Err(error) => Err(Failure::Answered(lines(error.diagnostics()))),
         };
     }
     let loaded = answer?;
     loaded.warnings.iter().for_each(failure::say);
-    let count = match loaded.warnings.len() {
+    let count = loaded.warnings.len();
+    sound(name, count, &loaded.build()?)
+}
+
+/// A robot of JSON: the same checks, each problem by its element, as there is no text to point at.
+fn json_robot(arguments: &CheckArguments) -> Result<String> {
+    let name = &arguments.model;
+    let is_lines = arguments.json || arguments.format == Format::Json;
+    let robot = match robot_json::read(name) {
+        Err(Failure::Wrong(why)) if is_lines => return Err(Failure::Answered(placeless(name, "error", None, &why))),
+        other => other?,
+    };
+    let (errors, warnings) = arguments.policy.problems(&robot);
+    let all = || errors.iter().map(|e| ("error", e)).chain(warnings.iter().map(|w| ("warning", w)));
+    if is_lines {
+        let text = all().map(|(severity, p)| placeless(name, severity, Some(p.code), &p.to_string())).collect();
+        return if errors.is_empty() { Ok(text) } else { Err(Failure::Answered(text)) };
+    }
+    all().for_each(|(severity, problem)| failure::write(&format!("{name}: {severity}: {problem}\n")));
+    match errors.len() {
+        0 => sound(name, warnings.len(), &robot.build()?),
+        1 => Err(Failure::wrong(format!("{name} is refused: 1 error"))),
+        many => Err(Failure::wrong(format!("{name} is refused: {many} errors"))),
+    }
+}
+
+/// The robot can be computed.
+fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
+    let count = match warnings {
         0 => "no warnings".to_string(),
         1 => "1 warning".to_string(),
         many => format!("{many} warnings"),
     };
-    let model = loaded.build()?;
-    failure::write(&format!("{name} is a robot that can be computed, {count}: {}\n", info::headline(&model)));
+    failure::write(&format!("{name} is a robot that can be computed, {count}: {}\n", info::headline(model)));
     Ok(String::new())
 }
 
@@ -68,16 +102,16 @@ fn lines(diagnostics: &[Diagnostic]) -> String {
     diagnostics.iter().map(line).collect()
 }
 
-/// There is no file to point at.
-fn no_place(name: &str, error: &LoadError) -> String {
+/// There is no text to point at.
+fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> String {
     line(json!({
-        "severity": "error",
-        "code": null,
-        "message": error.to_string(),
+        "severity": severity,
+        "code": code.map(|code| format!("mozzi::urdf::{code}")),
+        "message": message,
         "file": name,
         "line": null,
         "column": null,
-        "help": null,
+        "help": code.and_then(mozzi_urdf::remedy),
     }))
 }
 

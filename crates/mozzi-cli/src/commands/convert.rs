@@ -10,7 +10,7 @@ use std::path::Path;
 
 #[derive(Args, Debug)]
 pub struct ConvertArguments {
-    /// A robot's file (URDF, or JSON that this command wrote), or the name of an embedded robot
+    /// A robot's file (URDF, MJCF, or JSON that this command wrote), or the name of an embedded robot
     #[arg(value_name = "IN")]
     input: String,
     /// Where it goes, its kind by its suffix: .urdf, .json (links, joints, the book's lists), .py (lists for NumPy)

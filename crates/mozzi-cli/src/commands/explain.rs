@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::text::{page_width, width};
 use clap::Args;
-use mozzi_urdf::{explain, mjcf};
+use mozzi_urdf::{explain, mjcf, nearest_code};
 use std::collections::BTreeSet;
 
 #[derive(Args, Debug)]
@@ -26,7 +26,7 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
             Ok(format!("mozzi::{language}::{short}\n\n{}", wrapped(text)))
         }
         None => {
-            let hint = match nearest(short) {
+            let hint = match nearest_code(asked) {
                 Some(code) => format!("did you mean `{code}`?"),
                 None => "`mozzi explain` lists them".to_string(),
             };
@@ -38,20 +38,6 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
 /// All codes, of either language.
 fn codes() -> impl Iterator<Item = &'static str> {
     mozzi_urdf::codes().chain(mjcf::codes())
-}
-
-/// The code that has most pairs of letters in common, if it has half of them.
-fn nearest(word: &str) -> Option<&'static str> {
-    let pairs = |text: &str| {
-        let letters: Vec<char> = format!("^{}$", text.to_lowercase().replace('-', "_")).chars().collect();
-        letters.windows(2).map(|pair| (pair[0], pair[1])).collect::<BTreeSet<_>>()
-    };
-    let mine = pairs(word);
-    let alike = |code: &str| {
-        let its = pairs(code);
-        2.0 * mine.intersection(&its).count() as f64 / (mine.len() + its.len()) as f64
-    };
-    codes().map(|code| (alike(code), code)).filter(|(x, _)| *x >= 0.5).max_by(|a, b| a.0.total_cmp(&b.0)).map(|x| x.1)
 }
 
 /// In lines that fit the page; lines that stand alone stay so.

@@ -66,12 +66,9 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     page.line(headline(model)).line(surroundings(model));
     page.title("joints").lines(&joints(model));
     page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.position, units.rate(1), units.force)]);
-    let fixed: Vec<&Joint> = robot.joints.iter().filter(|joint| joint.kind == JointKind::Fixed).collect();
-    if !fixed.is_empty() {
-        page.title("fixed joints, folded into the links that carry them");
-        let rows: Vec<Vec<String>> =
-            fixed.iter().map(|joint| vec![joint.name.clone(), format!("{} → {}", joint.parent, joint.child)]).collect();
-        page.lines(&table(&rows, "l"));
+    let folded = folded(model);
+    if !folded.is_empty() {
+        page.title("links that fixed joints fold into the body that carries them [kg]").lines(&folded);
     }
     page.title("links: mass [kg], centre of mass in the link's frame [m]").lines(&masses(robot));
     page.title("links: inertia about the centre of mass, along the axes of the link's frame [kg m²]");
@@ -118,6 +115,19 @@ fn joints(model: &Model) -> Vec<String> {
         .collect();
     let columns = columns.into_iter().map(|(name, cells)| [vec![name.to_string()], cells].concat()).collect();
     table(&rows_of(columns), &align)
+}
+
+/// Each body that is made of several links: its own, then those fixed to it, each with its mass.
+fn folded(model: &Model) -> Vec<String> {
+    let mut rows = Vec::new();
+    for body in model.folded_links().iter().filter(|body| body.links.len() > 1) {
+        let of = body.joint.map_or("base".to_string(), |joint| format!("moved by {joint}"));
+        for (k, (link, mass)) in body.links.iter().enumerate() {
+            let first = if k == 0 { format!("{of}, {}", scalar(body.mass())) } else { String::new() };
+            rows.push(vec![first, if k == 0 { link.to_string() } else { format!("+ {link}") }, scalar(*mass)]);
+        }
+    }
+    table(&rows, "l")
 }
 
 type Pick = fn(&SpatialInertia) -> f64;
@@ -210,6 +220,11 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
             "mass": link.inertia.mass,
             "center_of_mass": json::vector(&link.inertia.center_of_mass().0),
             "rotational_inertia": json::rows(link.inertia.about_center_of_mass().to_mat3().rows()),
+        })).collect::<Value>(),
+        "bodies": model.folded_links().iter().map(|body| json!({
+            "joint": body.joint,
+            "mass": body.mass(),
+            "links": body.links.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
         })).collect::<Value>(),
         "frames": model.frames().zip(poses).map(|((_, name), &T)| json!({
             "name": name, "home": json::pose(T),

@@ -1,6 +1,7 @@
 //! One file for each subcommand: convert, check, call, name the error.
 
 pub mod check;
+pub mod compare;
 pub mod convert;
 pub mod explain;
 pub mod forward_dynamics;

@@ -37,7 +37,7 @@ impl<'a> Model<'a> {
             let message = "worldbody: has a joint, but the world does not move";
             cx.findings.error("misplaced_joint", joint.item.element.span(), message);
         }
-        contents.geoms.iter().for_each(|geom| geom.item.element.check_attributes(&words::GEOM, cx));
+        contents.geoms.iter().for_each(|geom| self.check_geom(&geom.item.element.called("worldbody: geom"), cx));
         self.rest(contents, Carrier { link: 0, is_static: true, depth: 0 }, cx);
     }
 
@@ -103,6 +103,7 @@ impl<'a> Model<'a> {
     fn site(&mut self, site: &Inside, link: usize, cx: &mut Context) {
         let Inside { item, T, .. } = site;
         item.element.check_attributes(&words::SITE, cx);
+        item.element.called("site").check_children(&words::SITE, cx);
         let name = Name::of(&item.element.called("site"), String::new(), cx);
         let mut frame = pose(item, &self.compiler, cx);
         if let Some([a, b, c, d, e, f]) = item.vector::<6>("fromto", cx) {
@@ -116,6 +117,15 @@ impl<'a> Model<'a> {
             place.set("name", value.span);
         }
         self.tree.sites.push(Site { name, link, T: *T * frame, place });
+    }
+
+    /// The words of a geom; a plugin in it makes its shape.
+    fn check_geom(&mut self, geom: &Element<'a>, cx: &mut Context) {
+        geom.check_attributes(&words::GEOM, cx);
+        geom.check_children(&words::GEOM, cx);
+        if let Some(plugin) = geom.elements().find(|child| child.name() == "plugin") {
+            self.ignored.list("plugin", plugin.span(), &geom.subject, "it makes a shape for contacts");
+        }
     }
 
     /// The inertia of a body in its frame: given, or the sum of its geoms'.
@@ -135,7 +145,7 @@ impl<'a> Model<'a> {
             let named = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
             let subject = named.unwrap_or_else(|| format!("{}: geom", element.subject));
             let item = Item { element: geom.item.element.called(subject), ..geom.item.clone() };
-            item.element.check_attributes(&words::GEOM, cx);
+            self.check_geom(&item.element, cx);
             if is_given {
                 continue;
             }

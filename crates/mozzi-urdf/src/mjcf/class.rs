@@ -71,7 +71,14 @@ impl<'a> Classes<'a> {
             return;
         }
         for child in element.elements() {
-            let Some((tag, words)) = of_tag(child.name()) else { continue };
+            let Some((tag, words)) = of_tag(child.name()) else {
+                if let Some(known) =
+                    words::DEFAULT.many.iter().find(|&&known| known == child.name() && known != "default")
+                {
+                    cx.leave_out("default", known, child.span());
+                }
+                continue;
+            };
             if tag != "actuator" {
                 child.check_attributes(words, cx);
             }

@@ -53,7 +53,10 @@ impl Compiler {
 
     fn take(&mut self, item: &Item, cx: &mut Context) {
         item.element.check_attributes(&words::COMPILER, cx);
-        item.element.check_children(&words::COMPILER, cx);
+        let children = item.element.check_children(&words::COMPILER, cx);
+        if let Some(child) = children.get("lengthrange") {
+            cx.leave_out("compiler", "lengthrange", child.span());
+        }
         if let Some(angle) = item.word("angle", &["degree", "radian"], cx) {
             self.degrees = angle == "degree";
         }

@@ -3,7 +3,7 @@
 use crate::explain::Entry;
 
 #[rustfmt::skip] // a code in three lines
-pub(crate) const CODES: [Entry; 35] = [
+pub(crate) const CODES: [Entry; 36] = [
     ("actuator_armature",
         "An actuator has an inertia of its own, which MuJoCo adds to that of its joint, times the square of its gear. It would change the mass matrix, so it is not ignored. Give it as the joint's armature.",
         "give the joint the armature, times the square of the gear"),
@@ -19,6 +19,9 @@ pub(crate) const CODES: [Entry; 35] = [
     ("global_coordinates",
         "The compiler is told that positions are global, a notation that MuJoCo gave up in 2.3.4. MuJoCo 2.3.3 can read such a file and write it with local coordinates.",
         "save the model with MuJoCo 2.3.3 or older, which writes local coordinates"),
+    ("ignored_attribute",
+        "Attributes that say nothing about the dynamics of the tree: contacts, the settings of MuJoCo's solver and compiler, names of files, groups, and what is for the eye only. Also what belongs to something that is told elsewhere, as `springref` does to a spring, and a range of an actuator's force that is no limit of either direction alike. All of one kind of element are said at once; the strict policy lets it pass.",
+        "nothing is to be done; they concern contacts, looks, files, or how MuJoCo solves"),
     ("ignored_element",
         "An element says nothing about the dynamics of the tree: actuators (their torques are arguments), sensors, contacts, keyframes, and what is for the eye only. Said once per kind; the strict policy lets it pass.",
         "nothing is to be done; the tree is read without it"),

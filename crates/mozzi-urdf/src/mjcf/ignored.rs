@@ -1,12 +1,15 @@
 //! What of a model does not enter the dynamics: said once per kind, with how often it stands there.
 
 use super::attributes::Item;
-use crate::context::Context;
+use crate::context::{Context, LeftOut};
 use crate::element::Element;
 use crate::finding::Finding;
-use crate::words::shown;
+use crate::words::{list, shown};
 use std::collections::BTreeMap;
 use std::ops::Range;
+
+/// MuJoCo's own plugins that put no force on bodies: they measure, they are actuators, or they are shapes.
+const HARMLESS_PLUGINS: [&str; 3] = ["mujoco.sensor.", "mujoco.pid", "mujoco.sdf."];
 
 /// The first of a kind, and how many there are.
 struct Kind {
@@ -62,6 +65,18 @@ impl Ignored {
         self.list(element.name(), element.span(), parent, "it is for the eye only");
     }
 
+    /// The plugins that are declared with an instance: each may act on bodies without being named there again.
+    fn plugins(&mut self, extension: &Element) {
+        for plugin in extension.elements() {
+            let name = plugin.attribute("plugin").map_or("", |value| value.text);
+            let acts = !HARMLESS_PLUGINS.iter().any(|start| name.starts_with(start));
+            if acts && plugin.elements().any(|instance| instance.name() == "instance") {
+                let item = Item::plain(&plugin.called("extension: plugin"));
+                self.force("plugin", &item, "plugin", "a plugin, whose forces are its own");
+            }
+        }
+    }
+
     /// One of a kind of elements that are ignored.
     pub fn list(&mut self, name: &str, span: Range<usize>, parent: &str, help: &'static str) {
         let message = || format!("{parent}: <{}> is ignored", shown(name));
@@ -84,15 +99,31 @@ impl Ignored {
                 "keyframe" => "states are given to the functions",
                 "custom" => "it says nothing about dynamics",
                 "extension" => "plugins are not computed",
-                "asset" | "visual" | "statistic" | "deformable" => "it is for the eye only",
+                "size" => "it is memory for MuJoCo",
+                "asset" => {
+                    "it is for the eye and for contacts; a mesh whose inertia is needed is refused where it is used"
+                }
+                "visual" | "statistic" | "deformable" => "it is for the eye only",
                 _ => continue,
             };
+            match section.name() {
+                "extension" => self.plugins(section),
+                // a flex is refused
+                "deformable" if section.elements().any(|child| child.name() == "flex") => continue,
+                _ => {}
+            }
             self.list(section.name(), section.span(), "mujoco", help);
         }
     }
 
     /// Says all of it.
     pub fn tell(&mut self, cx: &mut Context) {
+        for (element, LeftOut { span, names }) in std::mem::take(&mut cx.left_out) {
+            let names: Vec<&str> = names.into_iter().collect();
+            let are = if names.len() == 1 { "is" } else { "are" };
+            let message = format!("{element}: {} {are} ignored", list(&names));
+            cx.findings.add(Finding::warning("ignored_attribute", span, message));
+        }
         for (_, kind) in std::mem::take(&mut self.0) {
             let message = match kind.count {
                 1 => kind.message,

@@ -15,6 +15,7 @@ impl Model<'_> {
     /// The inertia in the body's frame.
     pub fn inertial(&self, item: &Item, place: &mut Place, cx: &mut Context) -> SpatialInertia {
         item.element.check_attributes(&words::INERTIAL, cx);
+        item.element.check_children(&words::INERTIAL, cx);
         let T = pose(item, &self.compiler, cx);
         for (name, check) in [("mass", "mass"), ("diaginertia", "inertia"), ("fullinertia", "inertia")] {
             if let Some(value) = item.value(name) {
@@ -23,7 +24,12 @@ impl Model<'_> {
         }
         let mass = match item.element.required("mass", cx) {
             Some(_) => item.number("mass", 0.0, cx),
-            None => 0.0,
+            None => {
+                // what the checks say of a body without a mass is an echo
+                place.report("mass");
+                place.report("inertia");
+                0.0
+            }
         };
         let (diagonal, full) = (item.has("diaginertia"), item.has("fullinertia"));
         let turned = ORIENTATIONS.into_iter().find(|name| item.has(name));

@@ -22,9 +22,16 @@ impl<'a> Model<'a> {
         let element = inside.item.element.called(format!("joint `{shown}`"));
         let item = Item { element, ..inside.item.clone() };
         item.element.check_attributes(&words::JOINT, cx);
+        item.element.check_children(&words::JOINT, cx);
         let mut place = Place::new(item.element.span());
-        let attributes = ["name", "range", "damping", "frictionloss", "armature"];
-        for (name, check) in attributes.into_iter().zip(["name", "limits", "damping", "friction", "armature"]) {
+        for (name, check) in [
+            ("name", "name"),
+            ("range", "limits"),
+            ("actuatorfrcrange", "effort limit"),
+            ("damping", "damping"),
+            ("frictionloss", "friction"),
+            ("armature", "armature"),
+        ] {
             if let Some(value) = item.value(name) {
                 place.set(check, value.span);
             }
@@ -39,37 +46,53 @@ impl<'a> Model<'a> {
         let screw = screw(&item, inside.T, is_slide, cx);
         let position = |x: f64| if is_slide { x } else { self.compiler.angle(x) };
         let reference = position(item.number("ref", 0.0, cx));
-        let limits = self.range(&item, cx).map(|range| range.map(position));
+        let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
+        let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
         let armature = item.number("armature", 0.0, cx);
         // the file's own configuration is at `ref`
         let back = screw.map_or(SE3::identity(), |screw| SE3::exp(screw.twist() * -reference));
         let added = self.tree.joint(name, ends, origin * back, place);
         added.joint.kind = screw.map_or(JointKind::Fixed, JointKind::Screw);
-        added.joint.limits = Limits { position: limits, ..Limits::default() };
+        added.joint.limits = Limits { position: limits, velocity: None, effort };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
         added.reference = reference;
         shown
     }
 
-    /// The limits as the file writes them, where the joint is limited.
-    fn range(&self, item: &Item, cx: &mut Context) -> Option<[f64; 2]> {
-        let range = item.vector::<2>("range", cx);
-        let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");
-        match limited {
+    /// A range as the file writes it, where another attribute, or the compiler, says that it counts.
+    fn range(&self, item: &Item, range: &str, limited: &str, cx: &mut Context) -> Option<[f64; 2]> {
+        let numbers = item.vector::<2>(range, cx);
+        match item.word(limited, &["auto", "true", "false"], cx).unwrap_or("auto") {
             "false" => None,
-            "true" if !item.has("range") => {
-                let finding = item.error("missing_attribute", "limited", "is limited, but has no attribute `range`");
-                cx.findings.add(finding);
+            "true" if !item.has(range) => {
+                let message = format!("is limited, but has no attribute `{range}`");
+                cx.findings.add(item.error("missing_attribute", limited, &message));
                 None
             }
-            "auto" if item.has("range") && !self.compiler.autolimits => {
-                let message = "range: counts only with limited=\"true\", since the compiler's autolimits is `false`";
-                cx.findings.add(item.error("unclear_limit", "range", message).help("write `limited`, true or false"));
+            "auto" if item.has(range) && !self.compiler.autolimits => {
+                let message =
+                    format!("{range}: counts only with {limited}=\"true\", since the compiler's autolimits is `false`");
+                let help = format!("write `{limited}`, true or false");
+                cx.findings.add(item.error("unclear_limit", range, &message).help(help));
                 None
             }
-            _ => range,
+            _ => numbers,
         }
+    }
+
+    /// The greatest force of all actuators of the joint, where it is the same in both directions.
+    fn effort(&self, item: &Item, cx: &mut Context) -> Option<f64> {
+        const NAME: &str = "actuatorfrcrange";
+        let [low, high] = self.range(item, NAME, "actuatorfrclimited", cx)?;
+        if !(low < high) {
+            let message = format!("{NAME}: goes from {low} to {high}, expected the lower first");
+            cx.findings.add(item.error("reversed_limits", NAME, &message));
+        } else if low != -high {
+            let span = item.value(NAME).map_or_else(|| item.element.span(), |value| value.span);
+            cx.leave_out("joint", NAME, span);
+        }
+        (low == -high && high > 0.0).then_some(high)
     }
 
     /// Damping and Coulomb friction; springs are told.

@@ -17,8 +17,10 @@
 //! - Refused by name: free and ball joints, closures (`connect`, `weld`, curved couplings, tendons with forces or limits),
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes where the inertia would be needed, shells.
 //! - Loaded with a warning that names the force: springs, nonlinear damping, gravity compensation, fluids.
-//! - Listed in a warning of code `ignored_element`, once per kind, which the strict policy lets pass: actuators, sensors,
-//!   contacts, assets, keyframes and what is for the eye only.
+//! - Listed in warnings of the codes `ignored_element` and `ignored_attribute`, once per kind, which the strict policy lets
+//!   pass: actuators, sensors, contacts, assets, keyframes, settings of MuJoCo's solver and what is for the eye only.
+//!
+//! Each word of MuJoCo's schema is in one of these classes: a test goes through all of them.
 mod attributes;
 mod body;
 mod class;
@@ -33,6 +35,8 @@ mod inertial;
 mod joint;
 mod option;
 mod orientation;
+#[cfg(test)]
+mod schema;
 mod tree;
 mod words;
 
@@ -55,9 +59,14 @@ use option::Options;
 use std::path::Path;
 use tree::Tree;
 
+/// Is this text a model of MuJoCo's, as far as its first element tells?
+pub fn is_mjcf(text: &str) -> bool {
+    Dialect::of(text) == Dialect::Mjcf
+}
+
 /// Is this the code of a warning about what is right in MJCF, and has no place here? The strict policy lets it pass.
 pub(crate) fn is_list(code: &str) -> bool {
-    matches!(code, "mozzi::mjcf::ignored_element" | "mozzi::mjcf::renamed_site")
+    matches!(code, "mozzi::mjcf::ignored_attribute" | "mozzi::mjcf::ignored_element" | "mozzi::mjcf::renamed_site")
 }
 
 /// What the readers of a model share.

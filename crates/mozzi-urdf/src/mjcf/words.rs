@@ -39,7 +39,7 @@ pub(crate) const COMPILER: Vocabulary = Vocabulary {
         "settotalmass",
     ],
     once: &["lengthrange"],
-    silent: &[
+    listed: &[
         "alignfree",
         "assetdir",
         "conflict",
@@ -62,7 +62,7 @@ pub(crate) const COMPILER: Vocabulary = Vocabulary {
 pub(crate) const OPTION: Vocabulary = Vocabulary {
     attributes: &["gravity", "density", "viscosity"],
     once: &["flag"],
-    silent: &[
+    listed: &[
         "actuatorgroupdisable",
         "apirate",
         "ccd_iterations",
@@ -96,7 +96,7 @@ pub(crate) const OPTION: Vocabulary = Vocabulary {
 };
 pub(crate) const FLAG: Vocabulary = Vocabulary {
     attributes: &["gravity", "damper", "spring", "passive", "frictionloss", "equality", "constraint"],
-    silent: &[
+    listed: &[
         "actuation",
         "autoreset",
         "clampctrl",
@@ -172,13 +172,19 @@ pub(crate) const DEFAULT: Vocabulary = Vocabulary {
 };
 const INSIDE: [&str; 10] =
     ["joint", "geom", "site", "body", "frame", "camera", "light", "replicate", "attach", "composite"];
-pub(crate) const WORLD: Vocabulary =
-    Vocabulary { many: &INSIDE, silent: &["flexcomp", "plugin"], attributes: BODY.attributes, ..NOTHING };
+pub(crate) const WORLD: Vocabulary = Vocabulary {
+    many: &INSIDE,
+    silent: &["flexcomp", "plugin"],
+    attributes: BODY.attributes,
+    listed: BODY.listed,
+    ..NOTHING
+};
 pub(crate) const BODY: Vocabulary = Vocabulary {
     attributes: &["name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass", "mocap", "gravcomp"],
     once: &["inertial", "freejoint"],
     many: &INSIDE,
-    silent: &["user", "sleep", "simple", "fuse", "flexcomp", "plugin"],
+    silent: &["flexcomp", "plugin"],
+    listed: &["user", "sleep", "simple", "fuse"],
 };
 pub(crate) const FRAME: Vocabulary = Vocabulary {
     attributes: &["name", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "childclass"],
@@ -205,11 +211,10 @@ pub(crate) const JOINT: Vocabulary = Vocabulary {
         "frictionloss",
         "stiffness",
         "springdamper",
-        "springref",
-    ],
-    silent: &[
         "actuatorfrclimited",
         "actuatorfrcrange",
+    ],
+    listed: &[
         "actuatorgravcomp",
         "group",
         "margin",
@@ -219,6 +224,7 @@ pub(crate) const JOINT: Vocabulary = Vocabulary {
         "solreflimit",
         "solimp",
         "solref",
+        "springref",
         "springyield",
         "user",
     ],
@@ -243,7 +249,7 @@ pub(crate) const GEOM: Vocabulary = Vocabulary {
         "group",
         "shellinertia",
     ],
-    silent: &[
+    listed: &[
         "adhesion",
         "castshadow",
         "conaffinity",
@@ -264,13 +270,13 @@ pub(crate) const GEOM: Vocabulary = Vocabulary {
         "solref",
         "surfacevel",
         "user",
-        "plugin",
     ],
+    silent: &["plugin"],
     ..NOTHING
 };
 pub(crate) const SITE: Vocabulary = Vocabulary {
     attributes: &["name", "class", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "fromto"],
-    silent: &["group", "material", "mesh", "rgba", "size", "type", "user"],
+    listed: &["group", "material", "mesh", "rgba", "size", "type", "user"],
     ..NOTHING
 };
 pub(crate) const EQUALITY: Vocabulary = Vocabulary {
@@ -279,7 +285,7 @@ pub(crate) const EQUALITY: Vocabulary = Vocabulary {
 };
 pub(crate) const COUPLING: Vocabulary = Vocabulary {
     attributes: &["name", "class", "active", "joint1", "joint2", "polycoef"],
-    silent: &["solimp", "solref"],
+    listed: &["solimp", "solref"],
     ..NOTHING
 };
 pub(crate) const TENDONS: Vocabulary = Vocabulary { many: &["spatial", "fixed"], ..NOTHING };

@@ -51,13 +51,12 @@ fn run(name: &str, target: fn(&[u8]), mut make: impl FnMut(&mut Random) -> Vec<u
     println!("{name}: {count} inputs");
 }
 
-/// Robots that are right, and robots that are not.
-fn corpus() -> Vec<Vec<u8>> {
+/// Robots that are right, and robots that are not, of one ending.
+fn corpus(folders: &[&str], ending: &str) -> Vec<Vec<u8>> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = [here.join("tests/broken"), here.join("../../models")];
-    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten());
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(here.join(folder)).into_iter().flatten());
     let mut paths: Vec<_> = files.map(|entry| entry.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "urdf"));
+    paths.retain(|path| path.extension().is_some_and(|found| found == ending));
     paths.sort();
     assert!(paths.len() > 50, "{paths:?}");
     paths.iter().map(|path| std::fs::read(path).expect("a readable file")).collect()
@@ -137,8 +136,71 @@ const NUMBERS: &[&str] = &[
     "1e300 1e300 1e300",
 ];
 
+const MJCF_WORDS: &[&str] = &[
+    "<",
+    "/>",
+    "'",
+    "\"",
+    "&",
+    "<!--",
+    "-->",
+    "ä",
+    "<body name='c'>",
+    "</body>",
+    "<joint/>",
+    "<joint type='slide' ref='1'/>",
+    "<joint class='a'/>",
+    "<freejoint/>",
+    "<frame euler='0 90 0'>",
+    "</frame>",
+    "<geom size='0.1 0.2 0.3'/>",
+    "<geom type='box' size='1 1 1' mass='2'/>",
+    "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>",
+    "<inertial mass='1' fullinertia='1 1 1 0 0 0'/>",
+    "<site name='s' fromto='0 0 0 0 0 1'/>",
+    "<compiler settotalmass='3'/>",
+    "<compiler angle='radian' eulerseq='XYZ'/>",
+    "<compiler boundmass='1' boundinertia='1' balanceinertia='true'/>",
+    "<compiler inertiafromgeom='true'/>",
+    "<option gravity='0 0 -1'/>",
+    "<default><default class='a'><joint armature='1'/></default></default>",
+    "<default><geom density='1e300'/></default>",
+    "<include file='a.xml'/>",
+    "<equality><joint joint1='elbow' joint2='shoulder' polycoef='1 2'/></equality>",
+    "<tendon><fixed name='t' range='0 1'/></tendon>",
+    "<extension><plugin plugin='p'><instance/></plugin></extension>",
+    "capsule",
+    "cylinder",
+    "ellipsoid",
+    "sphere",
+    "mesh",
+    "plane",
+    "slide",
+    "hinge",
+    "ball",
+    "true",
+    "false",
+    "auto",
+    "shoulder",
+    "elbow",
+    "name",
+    "quat",
+    "euler",
+    "axisangle",
+    "xyaxes",
+    "zaxis",
+    "class",
+    "range",
+    "actuatorfrcrange",
+    "mass",
+    "density",
+    "fromto",
+    "childclass='a'",
+    "damping='1 2 3'",
+];
+
 /// One change: of a number, of a word, of bytes.
-fn mutate(text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
+fn mutate(text: &mut Vec<u8>, other: &[u8], words: &[&str], random: &mut Random) {
     let at = random.below(text.len() + 1);
     let most = if random.below(8) == 0 { 400 } else { 8 };
     let length = 1 + random.below(most);
@@ -154,8 +216,8 @@ fn mutate(text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
             let value = if random.below(8) == 0 { value.to_string() } else { vec![value; numbers].join(" ") };
             text.splice(open + 1..close, value.bytes());
         }
-        3 => drop(text.splice(at..at, WORDS[random.below(WORDS.len())].bytes())),
-        4 => drop(text.splice(at..end, WORDS[random.below(WORDS.len())].bytes())),
+        3 => drop(text.splice(at..at, words[random.below(words.len())].bytes())),
+        4 => drop(text.splice(at..end, words[random.below(words.len())].bytes())),
         5 => drop(text.drain(at..end)),
         6 => {
             let piece = text[at..end].to_vec();
@@ -171,19 +233,34 @@ fn mutate(text: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     }
 }
 
-#[test]
-#[ignore = "takes its time; cargo xtask test runs it"]
-fn urdf() {
-    let corpus = corpus();
-    corpus.iter().for_each(|text| targets::urdf(text));
-    run("urdf", targets::urdf, |random| {
+/// Each text of the corpus, and then texts made of them.
+fn texts(name: &str, target: fn(&[u8]), corpus: &[Vec<u8>], words: &[&str]) {
+    corpus.iter().for_each(|text| target(text));
+    run(name, target, |random| {
         let mut text = corpus[random.below(corpus.len())].clone();
         for _ in 0..=random.below(5) {
             let other = &corpus[random.below(corpus.len())];
-            mutate(&mut text, other, random);
+            mutate(&mut text, other, words, random);
         }
         text
     });
+}
+
+#[test]
+#[ignore = "takes its time; cargo xtask test runs it"]
+fn urdf() {
+    texts("urdf", targets::urdf, &corpus(&["tests/broken", "../../models"], "urdf"), WORDS);
+}
+
+#[test]
+#[ignore = "takes its time; cargo xtask test runs it"]
+fn mjcf() {
+    texts(
+        "mjcf",
+        targets::mjcf,
+        &corpus(&["tests/broken/mjcf", "../../oracles", "../../oracles/parts"], "xml"),
+        MJCF_WORDS,
+    );
 }
 
 #[test]

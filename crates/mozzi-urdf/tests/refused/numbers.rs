@@ -118,3 +118,16 @@ fn lenient() {
     let negative = inertial(&inertia("1").replace("value='1'", "value='-1'")).replace('§', "");
     assert!(parse_with("a.urdf", negative, Policy::Lenient).is_err());
 }
+
+#[test]
+fn a_negative_mass_is_told_whatever_else_is_wrong() {
+    let codes = |text: &str| {
+        let error = mozzi_urdf::parse("a.urdf", inertial(text)).expect_err("a negative mass");
+        error.errors().map(|error| error.to_string()).collect::<Vec<_>>()
+    };
+    let mass = "a.urdf:4:48: error: link `b`: mass: is -1 kg, expected at least 0";
+    let origin = "a.urdf:4:29: error: link `b`: inertial: origin: xyz: is `0,5`, expected a number";
+    assert_eq!(codes(&format!("<origin xyz='0 0 0,5'/><mass value='-1'/>{SOUND}")), [origin, mass]);
+    let moments = "a.urdf:4:3: error: link `b`: inertial: has no <inertia>";
+    assert_eq!(codes("<mass value='-1'/>"), [moments, &mass.replace(":48", ":25")]);
+}

@@ -64,7 +64,7 @@ fn encodings() {
 
     let latin: Vec<u8> = robot.chars().map(|c| c as u8).collect();
     let error = parse("a.urdf", latin).expect_err("Latin-1").to_string();
-    assert!(error.ends_with("a.urdf:1:14: error: byte 13 of the text is 0xe4, which is not UTF-8"), "{error}");
+    assert!(error.ends_with("a.urdf:1:14: error: byte 13 of the file is 0xe4, which is not UTF-8"), "{error}");
 
     let wide: Vec<u8> = robot.encode_utf16().flat_map(u16::to_le_bytes).collect();
     let error = parse("a.urdf", [vec![0xff, 0xfe], wide].concat()).expect_err("UTF-16").to_string();

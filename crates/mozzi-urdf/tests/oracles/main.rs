@@ -4,6 +4,9 @@
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
 #![allow(clippy::unwrap_used)]
 
+mod models;
+
+use mozzi::accuracy::{TermSizes, normalized_error};
 use mozzi::{Environment, FrameId, Model, Wrench};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -70,8 +73,7 @@ struct Worst(BTreeMap<&'static str, f64>);
 impl Worst {
     fn add(&mut self, what: &'static str, found: &DMatrix<f64>, reference: &DMatrix<f64>, terms: f64) {
         assert_eq!(found.shape(), reference.shape(), "{what}");
-        let scale = terms.max(reference.amax());
-        let error = (found - reference).amax() / (f64::EPSILON * if scale > 0.0 { scale } else { 1.0 });
+        let error = normalized_error(found.as_slice(), reference.as_slice(), terms);
         let worst = self.0.entry(what).or_insert(0.0);
         // NaN must not hide
         *worst = if error >= *worst || error.is_nan() { error } else { *worst };
@@ -96,12 +98,12 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     let has = |key: &str| state.get(key).is_some();
 
     let M = matrix(&state["mass_matrix"]);
-    let quadratic = M.amax() * largest_square(&dtheta); // size of what c is made of
     let g = model.gravity_forces(&theta).unwrap().amax();
-    let total = M.amax() * largest_square(&ddtheta).sqrt() + quadratic + g;
+    let sizes = TermSizes::new(M.amax(), g, &dtheta, &ddtheta);
+    let (quadratic, bias, total) = (sizes.velocity_product, sizes.bias_forces, sizes.inverse_dynamics);
     worst.add("M", &both(model.mass_matrix(&theta).unwrap()), &M, 0.0);
     let found = model.bias_forces(&theta, &dtheta, &environment).unwrap();
-    worst.add("h", &theirs(found), &list("bias_forces"), quadratic + g);
+    worst.add("h", &theirs(found), &list("bias_forces"), bias);
     let found = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).unwrap();
     worst.add("τ", &theirs(found), &list("inverse_dynamics"), total);
     if has("velocity_product") {
@@ -118,7 +120,7 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
         // backward: the torque that mozzi's accelerations need by the oracle's M and h, against the torque given
         let found = theirs(model.forward_dynamics(&theta, &dtheta, &tau, &environment).unwrap());
         let needed = &M * &found + list("bias_forces");
-        worst.add("θ̈", &needed, &list("tau"), M.amax() * found.amax() + quadratic + g);
+        worst.add("θ̈", &needed, &list("tau"), M.amax() * found.amax() + bias);
     }
     let pose = model.forward_kinematics(&theta, tip).unwrap().to_matrix();
     worst.add("T", &DMatrix::from_fn(4, 4, |i, j| pose[i][j]), &matrix(&state["pose"]), 0.0);
@@ -156,6 +158,21 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
     }
 }
 
+/// All states of a file of oracles; how its joints are ordered is looked up by name.
+fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
+    let names: Vec<&str> =
+        oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    assert_eq!(names.len(), model.n(), "{name}");
+    let order: Vec<usize> =
+        names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
+    if oracle.get("mjcf").is_some() {
+        assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
+    }
+    let mut worst = Worst::default();
+    oracle["states"].as_array().unwrap().iter().for_each(|state| compare(model, &order, state, &mut worst));
+    worst
+}
+
 /// Every file of a folder; a line for each robot, and the worst of all.
 fn compare_folder(folder: &Path) {
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -176,17 +193,8 @@ fn compare_folder(folder: &Path) {
                 continue;
             }
         };
-        let names: Vec<&str> =
-            oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        assert_eq!(names.len(), model.n(), "{}", path.display());
-        let order: Vec<usize> =
-            names.iter().map(|name| model.joint_names().position(|mine| mine == *name).unwrap()).collect();
-        if oracle.get("mjcf").is_some() {
-            assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
-        }
-        let mut worst = Worst::default();
+        let worst = compare_all(&name, &oracle, &model);
         let states = oracle["states"].as_array().unwrap();
-        states.iter().for_each(|state| compare(&model, &order, state, &mut worst));
         let text: Vec<String> = worst.0.iter().map(|(what, error)| format!("{what} {error:.1}")).collect();
         println!("{name:<34} n {:>3}, {:>3} states: {}", model.n(), states.len(), text.join(", "));
         if worst.0.values().any(|error| !(*error < BOUND)) {

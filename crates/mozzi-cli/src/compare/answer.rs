@@ -1,0 +1,164 @@
+//! What a library answered.
+
+use super::constants::{Constants, JointConstants, body};
+use super::numbers::{Numbers, Side};
+use nalgebra::{DMatrix, DVector};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A way around what MuJoCo refuses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// Without visual and collision elements.
+    Geometry,
+    /// Without inertias of links that no joint moves.
+    Fixed,
+    /// With balanceinertia.
+    Balance,
+    /// With boundmass and boundinertia.
+    Bound,
+}
+
+/// Why a library computes nothing.
+#[derive(Clone, Debug)]
+pub enum Silence {
+    NotInstalled(String),
+    Refuses(String),
+    /// The script ended without an answer.
+    Died(String),
+}
+
+/// A library that has the robot.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    pub constants: Constants,
+    pub side: Side,
+    /// τ without the forces of constraints, and what these are: "limits", "contacts".
+    pub unconstrained: Vec<DVector<f64>>,
+    pub constraints: BTreeSet<String>,
+    /// Other forces that τ contains and mozzi does not compute, by the library's name, one vector a state.
+    pub forces: BTreeMap<String, Vec<DVector<f64>>>,
+    /// Joints that the library holds to others by a constraint.
+    pub couplings: Vec<(String, String)>,
+    /// Bodies without an inertia in the file, whose shapes gave one.
+    pub from_geometry: Vec<String>,
+    pub settings: Value,
+}
+
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// "Pinocchio" or "MuJoCo".
+    pub library: &'static str,
+    pub version: Option<String>,
+    /// What it said of the file as it stands, and what was done then.
+    pub attempts: Vec<(String, Remedy)>,
+    pub robot: Result<Robot, Silence>,
+}
+
+pub fn name_of(library: &str) -> &'static str {
+    if library == "pinocchio" { "Pinocchio" } else { "MuJoCo" }
+}
+
+impl Answer {
+    pub fn silent(library: &str, silence: Silence) -> Self {
+        Answer { library: name_of(library), version: None, attempts: Vec::new(), robot: Err(silence) }
+    }
+
+    /// From the script's JSON; `None` where that is not as the script writes it.
+    pub fn read(value: &Value) -> Option<Self> {
+        let attempt = |step: &Value| {
+            let remedy = match step["then"].as_str()? {
+                "geometry" => Remedy::Geometry,
+                "fixed" => Remedy::Fixed,
+                "balance" => Remedy::Balance,
+                "bound" => Remedy::Bound,
+                _ => return None,
+            };
+            Some((step["message"].as_str()?.to_string(), remedy))
+        };
+        let error = &value["error"];
+        let robot = match error["stage"].as_str() {
+            None => Ok(robot(value)?),
+            Some("import") => Err(Silence::NotInstalled(error["message"].as_str()?.to_string())),
+            Some(_) => Err(Silence::Refuses(error["message"].as_str()?.to_string())),
+        };
+        Some(Answer {
+            library: name_of(value["library"].as_str()?),
+            version: value["version"].as_str().map(str::to_string),
+            attempts: value["attempts"].as_array()?.iter().map(attempt).collect::<Option<_>>()?,
+            robot,
+        })
+    }
+}
+
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    let number = |x: &Value| if x.is_null() { Some(f64::NAN) } else { x.as_f64() };
+    value.as_array()?.iter().map(number).collect()
+}
+
+fn array<const K: usize>(value: &Value) -> Option<[f64; K]> {
+    numbers(value)?.try_into().ok()
+}
+
+fn joint(value: &Value) -> Option<JointConstants> {
+    let axes: Vec<[f64; 6]> = value["axes"].as_array()?.iter().map(array).collect::<Option<_>>()?;
+    let rows: Vec<[f64; 3]> = value["inertia"].as_array()?.iter().map(array).collect::<Option<_>>()?;
+    let first = |key: &str| Some(numbers(&value[key])?.first().copied().unwrap_or(0.0));
+    Some(JointConstants {
+        name: value["name"].as_str()?.to_string(),
+        called: value["called"].as_str()?.to_string(),
+        parent: value["parent"].as_u64().map(|k| k as usize),
+        nq: value["nq"].as_u64()? as usize,
+        nv: value["nv"].as_u64()? as usize,
+        axes,
+        body: body(value["mass"].as_f64()?, array(&value["center"])?, rows.try_into().ok()?),
+        armature: first("armature")?,
+        damping: first("damping")?,
+        friction: first("friction")?,
+    })
+}
+
+fn robot(value: &Value) -> Option<Robot> {
+    let joints: Vec<JointConstants> = value["joints"].as_array()?.iter().map(joint).collect::<Option<_>>()?;
+    if joints.iter().enumerate().any(|(k, joint)| joint.parent.is_some_and(|up| up >= k)) {
+        return None;
+    }
+    // one name for each velocity
+    let name = |joint: &JointConstants| match joint.nv {
+        1 => vec![joint.name.clone()],
+        many => (1..=many).map(|k| format!("{} ({k} of {many})", joint.name)).collect(),
+    };
+    let names: Vec<String> = joints.iter().flat_map(name).collect();
+    let n = names.len();
+    let vector = |value: &Value| Some(DVector::from_vec(numbers(value)?)).filter(|v| v.len() == n);
+    let (mut states, mut forces) = (Vec::new(), BTreeMap::<String, Vec<DVector<f64>>>::new());
+    let (mut unconstrained, mut constraints) = (Vec::new(), BTreeSet::new());
+    for state in value["states"].as_array()? {
+        let rows: Vec<f64> = state["M"].as_array()?.iter().map(numbers).collect::<Option<Vec<_>>>()?.concat();
+        states.push(Numbers {
+            M: (rows.len() == n * n).then(|| DMatrix::from_row_slice(n, n, &rows))?,
+            g: vector(&state["g"])?,
+            h: vector(&state["h"])?,
+            tau: vector(&state["tau"])?,
+        });
+        unconstrained.push(vector(state.get("unconstrained").unwrap_or(&state["tau"]))?);
+        let kinds = state["constraints"].as_array().map_or(&[][..], Vec::as_slice);
+        constraints.extend(kinds.iter().filter_map(|kind| kind.as_str().map(str::to_string)));
+        for (name, force) in state["parts"].as_object()? {
+            forces.entry(name.clone()).or_default().push(vector(force)?);
+        }
+    }
+    forces.retain(|_, list| list.iter().any(|force| force.amax() > 0.0));
+    let text = |value: &Value| value.as_str().map(str::to_string);
+    let coupling = |entry: &Value| Some((text(&entry["joint"])?, text(&entry["master"])?));
+    Some(Robot {
+        constants: Constants { joints, gravity: array(&value["gravity"])? },
+        side: Side { names, states },
+        unconstrained,
+        constraints,
+        forces,
+        couplings: value["couplings"].as_array()?.iter().map(coupling).collect::<Option<_>>()?,
+        from_geometry: value["from_geometry"].as_array()?.iter().map(text).collect::<Option<_>>()?,
+        settings: value["settings"].clone(),
+    })
+}

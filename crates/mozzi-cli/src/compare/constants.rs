@@ -1,0 +1,109 @@
+//! A robot's constants in the base frame at home, where all joints are at 0: what two libraries can compare, whatever
+//! frames each of them keeps.
+
+use crate::failure::Result;
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, SE3, SpatialInertia, Sym3, Vec3};
+use std::collections::BTreeMap;
+
+/// A joint, and the body that it moves with all that is fixed to it.
+#[derive(Clone, Debug)]
+pub struct JointConstants {
+    /// mozzi's name.
+    pub name: String,
+    /// The library's own.
+    pub called: String,
+    /// The joint that carries it.
+    pub parent: Option<usize>,
+    /// Positions that it takes, and velocities.
+    pub nq: usize,
+    pub nv: usize,
+    /// Its screw axis, one for each velocity: (ω, v).
+    pub axes: Vec<[f64; 6]>,
+    pub body: SpatialInertia,
+    pub armature: f64,
+    pub damping: f64,
+    pub friction: f64,
+}
+
+#[derive(Clone, Debug)]
+pub struct Constants {
+    pub joints: Vec<JointConstants>,
+    pub gravity: [f64; 3],
+}
+
+/// The robot with every follower moving on its own.
+pub fn freed(robot: &Description) -> Description {
+    let mut robot = robot.clone();
+    robot.joints.iter_mut().for_each(|joint| joint.mimic = None);
+    robot
+}
+
+/// Where each link is when every joint, followers too, is at 0.
+pub fn home(robot: &Description) -> Result<BTreeMap<String, SE3>> {
+    let model = freed(robot).build()?;
+    let poses = model.frame_poses(&vec![0.0; model.nq()])?;
+    Ok(model.frames().zip(poses).map(|((_, name), T)| (name.to_string(), T)).collect())
+}
+
+impl Constants {
+    pub fn of(robot: &Description) -> Result<Self> {
+        let (model, home) = (freed(robot).build()?, home(robot)?);
+        let inertia: BTreeMap<&str, SpatialInertia> =
+            robot.links.iter().map(|link| (link.name.as_str(), link.inertia)).collect();
+        let moving: Vec<&Joint> = model.moving_joints().collect();
+        let up: BTreeMap<&str, &Joint> = robot.joints.iter().map(|joint| (joint.child.as_str(), joint)).collect();
+        let carrier = |joint: &Joint| {
+            let mut link = joint.parent.as_str();
+            loop {
+                if let Some(k) = moving.iter().position(|joint| joint.child == link) {
+                    return Some(k);
+                }
+                link = &up.get(link)?.parent;
+            }
+        };
+        let bodies = model.folded_links();
+        let joint = |(joint, body): (&&Joint, &mozzi::model::FoldedBody)| {
+            let sum = (body.links.iter())
+                .fold(SpatialInertia::zero(), |sum, (link, _)| sum + inertia[link].seen_from(home[*link]));
+            let axis = match joint.kind {
+                JointKind::Screw(A) => A.seen_from(home[&joint.child]).twist().to_array(),
+                JointKind::Fixed => [0.0; 6],
+            };
+            JointConstants {
+                name: joint.name.clone(),
+                called: joint.name.clone(),
+                parent: carrier(joint),
+                nq: 1,
+                nv: 1,
+                axes: vec![axis],
+                body: sum,
+                armature: joint.armature,
+                damping: joint.damping,
+                friction: joint.friction,
+            }
+        };
+        let joints = moving.iter().zip(&bodies[1..]).map(joint).collect();
+        Ok(Constants { joints, gravity: robot.gravity })
+    }
+
+    pub fn joint(&self, name: &str) -> Option<&JointConstants> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+}
+
+/// A body by its mass, its centre and the inertia about that, along the base's axes.
+pub fn body(mass: f64, center: [f64; 3], inertia: [[f64; 3]; 3]) -> SpatialInertia {
+    SpatialInertia::new(mass, Vec3(center), Sym3::symmetric_part(mozzi::Mat3::from_rows(inertia)))
+}
+
+/// Are these the same body, to the digits that a file has?
+pub fn same_body(a: &SpatialInertia, b: &SpatialInertia) -> bool {
+    let (rows, others) = (a.to_matrix(), b.to_matrix());
+    let size = |r: usize, c: usize| {
+        let block = |k: usize| if k < 3 { 0..3 } else { 3..6 };
+        let entries = block(r).flat_map(|i| block(c).map(move |j| (i, j)));
+        entries.fold(0.0_f64, |m, (i, j)| m.max(rows[i][j].abs()).max(others[i][j].abs()))
+    };
+    (0..6).all(|r| (0..6).all(|c| (rows[r][c] - others[r][c]).abs() <= 1e-9 * size(r, c)))
+}

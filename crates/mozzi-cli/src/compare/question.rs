@@ -1,0 +1,104 @@
+//! What a library is asked: the file, and states of every joint by name.
+
+use super::constants::Constants;
+use crate::failure::Result;
+use mozzi::Description;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// How the robot is handed over.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// "urdf" or "mjcf".
+    pub language: &'static str,
+    /// The file, where the library can read it itself.
+    pub path: Option<String>,
+    /// Its text, where it cannot.
+    pub text: Option<String>,
+}
+
+/// One number for each joint that moves, followers included, which are where they follow to.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub theta: Vec<f64>,
+    pub dtheta: Vec<f64>,
+    pub ddtheta: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Question {
+    pub source: Source,
+    /// Every joint that moves.
+    pub names: Vec<String>,
+    /// Its screw axis at home, by which a library's joint of another name is known.
+    pub axes: Vec<[f64; 6]>,
+    pub states: Vec<State>,
+}
+
+impl Question {
+    pub fn new(source: Source, robot: &Description, states: usize, seed: u64) -> Result<Self> {
+        let constants = Constants::of(robot)?;
+        let names: Vec<String> = constants.joints.iter().map(|joint| joint.name.clone()).collect();
+        let axes = constants.joints.iter().map(|joint| joint.axes[0]).collect();
+        let mut random = Random(seed);
+        let states = (0..states).map(|_| State::random(robot, &names, &mut random)).collect();
+        Ok(Question { source, names, axes, states })
+    }
+
+    /// As a library's script reads it. `mimic` asks Pinocchio to couple followers.
+    pub fn json(&self, library: &str, mimic: bool) -> Value {
+        let joint = |(name, axis): (&String, &[f64; 6])| json!({ "name": name, "axis": axis });
+        let state = |state: &State| json!({ "theta": state.theta, "dtheta": state.dtheta, "ddtheta": state.ddtheta });
+        json!({
+            "library": library, "mimic": mimic,
+            "language": self.source.language, "path": self.source.path, "text": self.source.text,
+            "joints": self.names.iter().zip(&self.axes).map(joint).collect::<Value>(),
+            "names": self.names,
+            "states": self.states.iter().map(state).collect::<Value>(),
+        })
+    }
+}
+
+impl State {
+    /// Within the limits, so that no library adds the force of an end stop; rates about 1.
+    fn random(robot: &Description, names: &[String], random: &mut Random) -> Self {
+        let joints: BTreeMap<&str, _> = robot.joints.iter().map(|joint| (joint.name.as_str(), joint)).collect();
+        let mut values: BTreeMap<&str, [f64; 3]> = BTreeMap::new();
+        for name in names {
+            let Some(joint) = joints.get(name.as_str()) else { continue };
+            let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
+            let [low, high] = joint.limits.position.unwrap_or([-reach, reach]);
+            // limits that exclude 0 by far are kept to; half a per mille off the stops themselves
+            let (low, high) =
+                if low > reach || high < -reach { (low, high) } else { (low.max(-reach), high.min(reach)) };
+            let at = 0.0005 + 0.999 * (0.5 + 0.5 * random.number());
+            values.insert(name, [low + (high - low) * at, random.number(), 2.0 * random.number()]);
+        }
+        let of = |name: &String| {
+            let (mut name, mut ratio, mut offset) = (name.as_str(), 1.0, 0.0);
+            while let Some(mimic) = joints.get(name).and_then(|joint| joint.mimic.as_ref()) {
+                offset += ratio * mimic.offset;
+                ratio *= mimic.ratio;
+                name = &mimic.joint;
+            }
+            let [theta, dtheta, ddtheta] = values.get(name).copied().unwrap_or_default();
+            [ratio * theta + offset, ratio * dtheta, ratio * ddtheta]
+        };
+        let all: Vec<[f64; 3]> = names.iter().map(of).collect();
+        let column = |k: usize| all.iter().map(|values| values[k]).collect();
+        State { theta: column(0), dtheta: column(1), ddtheta: column(2) }
+    }
+}
+
+/// Numbers in [−1, 1) from a seed (Steele, Lea and Flood's SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}

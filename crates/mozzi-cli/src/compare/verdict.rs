@@ -1,0 +1,102 @@
+//! Does a library agree; if not, which causes make the difference vanish?
+
+use super::answer::{Answer, Robot};
+use super::cause::{Cause, suspects};
+use super::numbers::{Entry, Errors, Pair, Side};
+use super::question::Question;
+use crate::failure::Result;
+use mozzi::Description;
+
+/// A cause, and the errors where all others are accounted for and this is not.
+#[derive(Clone, Debug)]
+pub struct Found {
+    pub cause: Cause,
+    pub without: Errors,
+}
+
+/// What comparing with a library that has the robot gave.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// As both read the file, on the joints that both have.
+    pub before: Errors,
+    /// With the causes accounted for.
+    pub after: Errors,
+    pub causes: Vec<Found>,
+    /// Joints that move there and not here, with their velocities; held at 0.
+    pub extra: Vec<(String, usize)>,
+    /// The first entry that differs still.
+    pub first: Option<Entry>,
+    /// mozzi's numbers of the joints in the library's order, where that is another.
+    pub order: Option<Vec<usize>>,
+}
+
+impl Verdict {
+    pub fn agrees(&self) -> bool {
+        self.before.agree() && self.causes.is_empty() && self.extra.is_empty()
+    }
+
+    /// Agrees, or differs for reasons that are known.
+    pub fn is_explained(&self) -> bool {
+        self.after.agree() && self.causes.iter().all(|found| found.cause.is_explanation())
+    }
+}
+
+/// Tries the causes together, then drops those that make no difference. `coupled`: as in [`suspects`].
+pub fn judge(
+    robot: &Description,
+    question: &Question,
+    answer: &Answer,
+    from: &Robot,
+    coupled: bool,
+) -> Result<Verdict> {
+    let with = |causes: &[&Cause]| -> Result<(Side, Side)> {
+        let (mut robot, mut theirs) = (robot.clone(), from.side.clone());
+        causes.iter().try_for_each(|cause| cause.apply(&mut robot, &mut theirs, from))?;
+        Ok((Side::of(&robot, question)?, theirs))
+    };
+    let errors = |causes: &[&Cause]| -> Errors {
+        match with(causes) {
+            Ok((mine, theirs)) => Pair::new(&mine, &theirs, question).errors(),
+            Err(_) => Errors([f64::NAN; 4]), // a robot that mozzi does not build explains nothing
+        }
+    };
+    let all = suspects(robot, answer, from, coupled)?;
+    let mut kept: Vec<&Cause> = all.iter().collect();
+    let (mine, theirs) = with(&[])?;
+    let before = Pair::new(&mine, &theirs, question).errors();
+    let is_structure = |cause: &Cause| matches!(cause, Cause::Followers(_) | Cause::Held(_));
+    // what is known comes first: a body whose place alone is known is no explanation where a reason will do
+    let mut droppable: Vec<&Cause> = kept.iter().copied().filter(|cause| !is_structure(cause)).collect();
+    droppable.sort_by_key(|cause| cause.is_explanation());
+    let mut after = errors(&kept);
+    if after.agree() {
+        for cause in droppable {
+            let fewer: Vec<&Cause> = kept.iter().copied().filter(|other| !std::ptr::eq(*other, cause)).collect();
+            let errors = errors(&fewer);
+            if errors.agree() {
+                (kept, after) = (fewer, errors);
+            }
+        }
+    }
+    let found = |cause: &&Cause| {
+        let others: Vec<&Cause> = kept.iter().copied().filter(|other| !std::ptr::eq(*other, *cause)).collect();
+        Found { cause: (*cause).clone(), without: errors(&others) }
+    };
+    let causes: Vec<Found> = kept.iter().map(found).collect();
+    let first = match with(&kept) {
+        Ok((mine, theirs)) => Pair::new(&mine, &theirs, question).first(),
+        Err(_) => Pair::new(&mine, &theirs, question).first(),
+    };
+    let joints = &from.constants.joints;
+    let is_extra = |name: &String| !question.names.contains(name);
+    let extra =
+        joints.iter().filter(|joint| is_extra(&joint.name)).map(|joint| (joint.name.clone(), joint.nv)).collect();
+    Ok(Verdict { before, after, causes, extra, first, order: order(question, from) })
+}
+
+/// Places in mozzi's order of the joints in the library's.
+fn order(question: &Question, from: &Robot) -> Option<Vec<usize>> {
+    let names = from.side.names.iter();
+    let order: Vec<usize> = names.filter_map(|name| question.names.iter().position(|known| known == name)).collect();
+    (!order.is_sorted()).then_some(order)
+}

@@ -1,0 +1,136 @@
+//! Causes in words.
+
+use super::answer::{Answer, Remedy, Silence};
+use super::bodies::{BodyChange, Reason};
+use super::cause::{Cause, Change};
+use crate::text::{about, scalar, tuple};
+
+/// More are counted.
+const LISTED: usize = 4;
+
+/// A few, and how many more.
+pub fn some<T>(list: &[T], say: impl Fn(&T) -> String) -> String {
+    let mut words: Vec<String> = list.iter().take(LISTED).map(say).collect();
+    if list.len() > LISTED {
+        words.push(format!("and {} more", list.len() - LISTED));
+    }
+    words.join(", ")
+}
+
+/// What differs, and why.
+pub fn cause(cause: &Cause, answer: &Answer) -> String {
+    let library = answer.library;
+    match cause {
+        Cause::Followers(list) => {
+            let names = some(list, |freed| format!("`{}` follows `{}`", freed.joint, freed.master));
+            let there = if list.iter().all(|freed| freed.constrained) {
+                "is a joint of its own, which the force of a constraint (equality) pulls after its master"
+            } else if library == "Pinocchio" {
+                "is a joint of its own: its reader drops <mimic> unless it is told mimic=True"
+            } else {
+                "is a joint of its own"
+            };
+            format!("followers: {names} here; in {library} each {there}")
+        }
+        Cause::Held(list) => {
+            format!("joints: {} move here and not in {library}; held at 0", some(list, |name| format!("`{name}`")))
+        }
+        Cause::Gravity { mozzi, theirs } => {
+            format!("gravity: {} here, {} in {library}, m/s²", tuple(mozzi), tuple(theirs))
+        }
+        Cause::Armature(list) => format!("armature (rotor inertia), here and in {library}: {}", changes(list)),
+        Cause::Damping(list) if library == "Pinocchio" => {
+            format!("damping: τ contains it here, Pinocchio's rnea leaves it out: {}", changes(list))
+        }
+        Cause::Damping(list) => format!("damping, here and in {library}: {}", changes(list)),
+        Cause::Friction(list) if library == "Pinocchio" => {
+            format!("friction: τ contains it here, Pinocchio's rnea leaves it out: {}", changes(list))
+        }
+        Cause::Friction(list) => {
+            format!("friction: μ sgn θ̇ here, the force of a constraint (frictionloss) in {library}: {}", changes(list))
+        }
+        Cause::Constraints(kinds) => format!(
+            "constraints: τ of {library} contains their forces (qfrc_constraint), of {}; mozzi computes none",
+            kinds.join(", ")
+        ),
+        Cause::Force(name) => force(name, library),
+        Cause::Bodies(reason, list) => bodies(*reason, list, library),
+        Cause::Axes(list) => {
+            format!(
+                "screw axes: {library} reads others: {}",
+                some(list, |(name, axis)| format!("`{name}` {}", tuple(axis)))
+            )
+        }
+    }
+}
+
+fn changes(list: &[Change]) -> String {
+    some(list, |change| format!("`{}` {} / {}", change.joint, scalar(change.mozzi), scalar(change.theirs)))
+}
+
+fn force(name: &str, library: &str) -> String {
+    let what = match name {
+        "spring" => "springs: stiffness (qfrc_spring)",
+        "gravcomp" => "gravity compensation of bodies (qfrc_gravcomp)",
+        "fluid" => "the drag of a fluid (qfrc_fluid)",
+        other => other,
+    };
+    format!("{name}: τ of {library} contains {what}, which mozzi does not compute")
+}
+
+fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
+    let why = match reason {
+        Reason::Balanced => {
+            "inertias that break the triangle inequality are those of spheres in MuJoCo (balanceinertia); as given here"
+        }
+        Reason::Dropped => "MuJoCo drops the moments of links without mass that are fixed to others; counted here",
+        Reason::Bounded => "bodies without mass or inertia get some in MuJoCo (boundmass, boundinertia); as given here",
+        Reason::Shapes => "MuJoCo computes inertias from the shapes (inertiafromgeom); no <inertial>, no mass here",
+        Reason::Scaled => "MuJoCo scales all masses to a sum (settotalmass); as given here",
+        Reason::Unknown => "bodies that weigh differently, for a reason that is not known",
+    };
+    let here = |change: &BodyChange| {
+        let (a, b) = (&change.mozzi, &change.theirs);
+        let by = change.joint.as_str();
+        let name = change.links.first().map_or(by, String::as_str);
+        let moments = |inertia: &mozzi::SpatialInertia| inertia.verdict().principal_moments.map(about).join(", ");
+        let centers = [a.center_of_mass().0, b.center_of_mass().0];
+        let far = (0..3).any(|k| (centers[0][k] - centers[1][k]).abs() > 1e-9);
+        let mut words = Vec::new();
+        if (a.mass - b.mass).abs() > 1e-9 * a.mass.abs() {
+            words.push(format!("{} / {} kg", scalar(a.mass), scalar(b.mass)));
+        }
+        if far && a.mass != 0.0 {
+            let [a, b] = centers.map(|center| center.map(about).join(", "));
+            words.push(format!("centre ({a}) / ({b}) m"));
+        }
+        if words.is_empty() || reason == Reason::Balanced {
+            words.push(format!("moments ({}) / ({}) kg m²", moments(a), moments(b)));
+        }
+        let more = match change.links.len() {
+            0 | 1 => String::new(),
+            many => format!(" with {} fixed to it", many - 1),
+        };
+        format!("`{name}`{more} {}", words.join(", "))
+    };
+    format!("inertia, here and in {library}: {why}: {}", some(list, here))
+}
+
+/// What was done that the library takes the file.
+pub fn remedy(remedy: Remedy) -> &'static str {
+    match remedy {
+        Remedy::Geometry => "without <visual> and <collision>",
+        Remedy::Fixed => "without the <inertial> of links that no joint moves",
+        Remedy::Balance => "with balanceinertia=\"true\"",
+        Remedy::Bound => "with boundmass and boundinertia = 1e-9",
+    }
+}
+
+pub fn silence(silence: &Silence, library: &str) -> String {
+    let package = if library == "Pinocchio" { "pin" } else { "mujoco" };
+    match silence {
+        Silence::NotInstalled(message) => format!("not installed: {message}; pip install {package}"),
+        Silence::Refuses(message) => format!("refuses the file: {message}"),
+        Silence::Died(message) => format!("gave no answer: {message}"),
+    }
+}

@@ -1,0 +1,103 @@
+//! `docs/diagnostics.md`: every code, what it means, how to mend it, and an example.
+//!
+//! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports`, writes it anew.
+
+use crate::{Broken, folder, models, report, robots};
+use mozzi_urdf::{Severity, codes, explain, mjcf, remedy};
+use std::fmt::Write;
+use std::path::Path;
+
+const HEAD: &str = "\
+# Diagnostics
+
+What `mozzi check` and every other command that reads a robot may say, with an example of each. The same texts are printed
+by `mozzi explain CODE`. An *error* refuses the file; all errors of meaning are reported in one run, of syntax the first. A
+*warning* is said, and the file is loaded: `--strict` makes an error of it (but for the lists of what MJCF holds and a tree
+does not need). `--lenient` repairs inertias, and says so.
+
+This page is made by `cargo xtask docs`.
+";
+
+/// Lines of an example are cut here: some are of names of 300 letters.
+const WIDTH: usize = 130;
+const LINES: usize = 24;
+
+/// The plain example of a code, or its first variant.
+fn example<'b>(all: &'b [Broken], code: &str) -> Option<&'b Broken> {
+    let mut of = all.iter().filter(|broken| broken.code() == code);
+    let first = of.next()?;
+    Some(all.iter().find(|broken| broken.name == code).unwrap_or(first))
+}
+
+/// How its findings are meant: an error, a warning, or either.
+fn severity(all: &[Broken], language: &str, code: &str) -> &'static str {
+    let full = format!("mozzi::{language}::{code}");
+    let (mut error, mut warning) = (false, false);
+    for broken in all.iter().filter(|broken| broken.code() == code) {
+        let diagnostics = match broken.load() {
+            Ok(robot) => robot.warnings,
+            Err(refused) => refused.diagnostics().to_vec(),
+        };
+        for found in diagnostics.iter().filter(|found| found.code() == full) {
+            error |= found.severity() == Severity::Error;
+            warning |= found.severity() == Severity::Warning;
+        }
+    }
+    match (error, warning) {
+        (true, true) => "error or warning",
+        (true, false) => "error",
+        _ => "warning",
+    }
+}
+
+/// The entry of one code.
+fn entry(page: &mut String, all: &[Broken], language: &str, code: &str) {
+    let full = format!("mozzi::{language}::{code}");
+    let (meaning, mend) = (explain(&full).unwrap_or_default(), remedy(&full).unwrap_or_default());
+    let _ =
+        writeln!(page, "\n### `{full}`\n\n*{}*. {meaning}\n\n**To mend it**: {mend}.", severity(all, language, code));
+    let Some(broken) = example(all, code) else { return };
+    let cut = |line: &str| match line.char_indices().nth(WIDTH) {
+        Some((at, _)) => format!("{}…\n", &line[..at]),
+        None => format!("{line}\n"),
+    };
+    let (text, _) = report(broken);
+    let lines: String = text.trim_end().lines().take(LINES).map(cut).collect();
+    let _ = write!(page, "\n```text\n{lines}```\n");
+}
+
+fn page() -> String {
+    let (robots, models) = (robots(), models());
+    let mut page = String::from(HEAD);
+    let _ = writeln!(page, "\n## URDF");
+    codes().for_each(|code| entry(&mut page, &robots, "urdf", code));
+    let own: Vec<&str> = mjcf::codes().collect();
+    let is_own = |code: &&str| own.contains(code);
+    let shared: Vec<String> = codes()
+        .filter(|code| !is_own(code) && example(&models, code).is_some())
+        .map(|code| format!("`{code}`"))
+        .collect();
+    let _ = writeln!(
+        page,
+        "\n## MJCF\n\nThese mean what they mean in URDF, and begin with `mozzi::mjcf::`: {}.",
+        shared.join(", ")
+    );
+    own.iter().for_each(|code| entry(&mut page, &models, "mjcf", code));
+    page
+}
+
+#[test]
+fn the_page_of_all_codes_is_current() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/diagnostics.md");
+    let page = page();
+    if std::env::var_os("MOZZI_BLESS").is_some() {
+        std::fs::create_dir_all(file.parent().expect("docs")).expect("a writable folder");
+        std::fs::write(&file, &page).expect("a writable folder");
+    }
+    let written = std::fs::read_to_string(&file).unwrap_or_default().replace("\r\n", "\n");
+    assert!(
+        written == page,
+        "docs/diagnostics.md is not current: run `cargo xtask docs` (from {})",
+        folder().display()
+    );
+}

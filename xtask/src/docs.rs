@@ -1,0 +1,20 @@
+//! The pages of `docs/`, written by the tests that otherwise hold them current.
+
+use crate::command;
+use crate::oracles;
+use crate::report::Outcome;
+use crate::tests::give;
+use crate::workspace::Workspace;
+
+/// The tests that write pages.
+const PAGES: [&str; 3] = ["reports", "published", "oracles"];
+
+pub fn write(workspace: &Workspace) -> Outcome {
+    let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf"]);
+    for page in PAGES {
+        cargo.args(["--test", page]);
+    }
+    give(&mut cargo, "MOZZI_ORACLES", oracles::folder(workspace));
+    give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
+    command::outcome(cargo.args(["--", "page"]).env("MOZZI_BLESS", "1"))
+}
