@@ -40,6 +40,21 @@ fn wrong_robots() {
 }
 
 #[test]
+fn xacro_is_refused_with_the_command_that_expands_it() {
+    let folder = folder("xacro");
+    let text = "<robot name='arm' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:arm mass='1'/></robot>";
+    let robot = file(&folder, "arm.xacro", text);
+    for command in ["info", "check", "terms"] {
+        wrong(&[command, &robot], &["<xacro:arm> is a word of xacro", "2:2", "pip install xacro; xacro"]);
+    }
+    let output = mozzi(&["check", &robot, "--json"]);
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
+    assert_eq!((&found["code"], &found["line"]), (&"mozzi::urdf::xacro".into(), &2.into()));
+    let help = found["help"].as_str().expect("a command");
+    assert!(help.starts_with("`pip install xacro; xacro ") && help.contains("arm.urdf"), "{help}");
+}
+
+#[test]
 fn policies_are_of_every_command() {
     let folder = folder("policies");
     let inertia = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
@@ -68,6 +83,8 @@ fn codes_are_explained() {
     let page = common::text(&["explain", "zero_axis"]);
     assert!(page.starts_with("mozzi::urdf::zero_axis\n\n") && page.contains("no direction"), "{page}");
     assert_eq!(common::text(&["explain", "mozzi::urdf::zero_axis"]), page);
+    let page = common::text(&["explain", "xacro"]).replace('\n', " ");
+    assert!(page.contains("`xacro robot.xacro name:=value > robot.urdf`"), "{page}");
     wrong(&["explain", "zero-axes"], &["`zero-axes` is not the code", "did you mean `zero_axis`?"]);
     wrong(&["explain", "mozzi::urdf::mising_limits"], &["did you mean `missing_limit`?"]);
     wrong(&["explain", "xyz"], &["`mozzi explain` lists them"]);

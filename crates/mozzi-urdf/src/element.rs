@@ -222,11 +222,6 @@ impl<'a> Element<'a> {
     /// Reports a name that is not known in the parent.
     fn check_name(&self, parent: &Element<'a>, words: &Vocabulary, cx: &mut Context) {
         if self.has_prefix() {
-            if self.node.tag_name().namespace().is_some_and(|space| space.ends_with("/xacro")) {
-                let message = format!("{}: has <{}>, a xacro macro", parent.subject, shown(self.written_name()));
-                let help = "expand the file first: `xacro robot.xacro > robot.urdf`";
-                cx.findings.add(Finding::error("xacro", self.span(), message).help(help));
-            }
             return;
         }
         let name = self.name();

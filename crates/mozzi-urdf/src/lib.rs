@@ -14,6 +14,7 @@
 //!   Floating joints inside the tree and ball joints are refused.
 //! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
 //!   namespaces) silent, other unknown ones a warning once per kind.
+//! - A file that xacro has not expanded is an error, with the command that expands it. Meshes are never looked for.
 //! - An axis that is not of length 1 is a direction, with a warning beyond 10⁻³; positions stay radians or metres.
 //! - A missing limit is a warning, and no limit; limits do not enter the dynamics.
 //! - An inertia that breaks the triangle inequality is computed as given, with a warning. A negative principal moment is an
@@ -67,6 +68,7 @@ mod spelling;
 mod syntax;
 mod words;
 mod write;
+mod xacro;
 
 pub use diagnostic::Diagnostic;
 pub use error::LoadError;

@@ -18,6 +18,7 @@ pub(crate) enum NotANumber {
     NotFinite,
     TooLarge,
     Comma,
+    /// MJCF's alone: a URDF with xacro's expressions is refused before its numbers are read.
     Macro,
     Unit,
     Nonsense,
@@ -36,7 +37,6 @@ impl NotANumber {
 
     pub fn help(self) -> Option<&'static str> {
         match self {
-            NotANumber::Macro => Some("this is a xacro file; expand it first: `xacro robot.xacro > robot.urdf`"),
             NotANumber::Unit => {
                 Some("a number stands alone, without a unit: metres, radians, kilograms, seconds are meant")
             }

@@ -1,10 +1,11 @@
-//! The XML parser's complaints, at their places and in our words.
+//! From text to XML: the parser's complaints, at their places and in our words. What xacro has yet to expand is refused.
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
 use crate::scan::{Unfinished, scan};
 use crate::source::Source;
 use crate::words::shown;
+use crate::xacro;
 use roxmltree::{Document, Error, ParsingOptions};
 
 /// More nodes (elements, texts, comments) are refused: a parsed node is some ten times its text.
@@ -23,7 +24,12 @@ pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, F
 fn parse_text(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
     let unfinished = scan(&source.text)?;
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(&source.text, options).map_err(|error| explain(source, dialect, error, unfinished))
+    let parsed = Document::parse_with_options(&source.text, options);
+    let document = parsed.map_err(|error| explain(source, dialect, error, unfinished))?;
+    match xacro::refuse(&document, &source.name, dialect) {
+        Some(finding) => Err(finding),
+        None => Ok(document),
+    }
 }
 
 fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<Unfinished>) -> Finding {
@@ -60,8 +66,9 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
         }
         Error::UnknownNamespace(prefix, pos) => {
             let prefix = shown(&prefix);
+            let (root, space) = (dialect.root(), if prefix == "xacro" { "http://www.ros.org/wiki/xacro" } else { "…" });
             syntax(at(pos), format!("the prefix `{prefix}:` is not declared"))
-                .help(format!("declare it on the root: <{} xmlns:{prefix}=\"…\">", dialect.root()))
+                .help(format!("declare it on the root: <{root} xmlns:{prefix}=\"{space}\">"))
         }
         Error::DuplicatedAttribute(name, pos) => {
             syntax(at(pos), format!("the attribute `{}` stands twice on one element", shown(&name)))

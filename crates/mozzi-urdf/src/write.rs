@@ -1,5 +1,6 @@
 //! Back to URDF text.
 
+use crate::xacro::has_expression;
 use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::fmt::{self, Write};
@@ -24,7 +25,8 @@ impl std::error::Error for NotUrdf {}
 ///
 /// # Errors
 /// [`NotUrdf`] with all that would be lost: helical joints, axes beside the child's frame, armature, further frames, a
-/// named end effector, gravity other than (0, 0, −9.81), control characters in names.
+/// named end effector, gravity other than (0, 0, −9.81), control characters in names, names
+/// that xacro would evaluate.
 pub fn write(description: &Description) -> Result<String, NotUrdf> {
     let reasons = not_urdf(description);
     if !reasons.is_empty() {
@@ -65,7 +67,8 @@ fn not_urdf(d: &Description) -> Vec<String> {
     ]);
     let is_control =
         |c: char| c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{fffe}' | '\u{ffff}');
-    reasons.extend(names.filter(|name| name.contains(is_control)).map(|name| format!("the name {name:?}")));
+    let is_lost = |name: &&String| name.contains(is_control) || has_expression(name); // xacro would evaluate it
+    reasons.extend(names.filter(is_lost).map(|name| format!("the name {name:?}")));
     reasons.extend(d.frames.iter().map(|frame| format!("frame `{}`", frame.name)));
     reasons.extend(d.end_effector.iter().map(|name| format!("the end effector `{name}`")));
     if d.gravity != [0.0, 0.0, -9.81] {

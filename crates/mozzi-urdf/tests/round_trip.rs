@@ -93,6 +93,13 @@ fn odd_names() {
 }
 
 #[test]
+fn names_for_xacro_are_not_written() {
+    let description = Description::new("${a}").link("$5 (b)", mozzi::SpatialInertia::zero());
+    let message = write(&description).expect_err("xacro would evaluate it").to_string();
+    assert_eq!(message, "URDF has no words for the name \"${a}\"");
+}
+
+#[test]
 fn what_would_be_lost_is_refused() {
     let mut description = open("ur5").expect("embedded").description;
     description.gravity = [0.0, 0.0, -1.62];

@@ -177,7 +177,7 @@ fn words() {
         (
             "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/><§xacro:arm/></robot>",
             "xacro",
-            "robot: has <xacro:arm>, a xacro macro",
+            "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
         ),
     ]);
     warned(&[

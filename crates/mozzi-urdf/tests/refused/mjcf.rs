@@ -76,6 +76,12 @@ fn what_has_no_place_is_refused_by_name() {
             "body `b`: geom: shellinertia: is the inertia of a hollow body, which mozzi does not compute",
         ),
         (
+            "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><§xacro:arm/></mujoco>",
+            "xacro",
+            "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+        ),
+        (body!("<joint/><geom size='1' mass='§${m}'/>"), "xacro", "body `b`: geom: mass: is `${m}`, expected a number"),
+        (
             body!("<joint name='j' springdamper='§1 1'/><geom size='1'/>"),
             "unsupported_attribute",
             "joint `j`: springdamper: lets MuJoCo choose a spring and a damping, which mozzi does not",

@@ -31,7 +31,11 @@ fn no_numbers() {
             "link `b`: inertial: mass: value: is `1e999`, expected a number below 1.8e308",
         ),
         (mass("§1,5"), "decimal_comma", "link `b`: inertial: mass: value: is `1,5`, expected a number"),
-        (mass("§${m}"), "xacro", "link `b`: inertial: mass: value: is `${m}`, expected a number"),
+        (
+            mass("§${m}"),
+            "xacro",
+            "mass: value: is `${m}`, an expression of xacro, expected a file that xacro has expanded",
+        ),
         (mass("§1 2"), "wrong_count", "link `b`: inertial: mass: value: `1 2` has 2 numbers, expected 1"),
         (mass("§-1"), "negative_mass", "link `b`: mass: is -1 kg, expected at least 0"),
         (origin("0 0 §0,5"), "decimal_comma", "link `b`: inertial: origin: xyz: is `0,5`, expected a number"),

@@ -1,0 +1,202 @@
+//! xacro: files that are programs, and write a URDF when they are run. They are refused, with the command that runs them.
+
+use crate::dialect::Dialect;
+use crate::finding::Finding;
+use crate::words::shown;
+use roxmltree::{Document, Node};
+use std::ops::Range;
+
+/// Elements whose attributes URDF's reader looks at. What stands in others, such as `$(find …)` in a mesh's name, is
+/// nothing to it.
+const READ: [&str; 13] = [
+    "robot", "link", "inertial", "mass", "inertia", "origin", "joint", "parent", "child", "axis", "limit", "dynamics",
+    "mimic",
+];
+
+/// What an expression begins with. A `$(` alone is none: it may stand in a name.
+const EXPRESSIONS: [&str; 9] =
+    ["${", "$(arg ", "$(find ", "$(env ", "$(optenv ", "$(eval ", "$(anon ", "$(dirname)", "$(cwd)"];
+
+/// What was expected instead.
+const EXPECTED: &str = "expected a file that xacro has expanded";
+
+/// More arguments than these are not asked for in a command.
+const MOST_ARGUMENTS: usize = 8;
+
+/// Does the text hold something that xacro evaluates?
+pub(crate) fn has_expression(text: &str) -> bool {
+    EXPRESSIONS.iter().any(|start| text.contains(start))
+}
+
+/// The first thing in a text that xacro has to expand, with the command that does it. A declaration of its namespace
+/// is none: xacro leaves it in what it writes.
+pub(crate) fn refuse(document: &Document, file: &str, dialect: Dialect) -> Option<Finding> {
+    let (span, message) = document.root().descendants().filter(Node::is_element).find_map(|node| {
+        let span = name(node);
+        if is_xacro(node) {
+            let written = shown(&document.input_text()[span.clone()]);
+            return Some((span, format!("<{written}> is a word of xacro, {EXPECTED}")));
+        }
+        // in MJCF any word may be a value: there, numbers alone are looked at, where they are read
+        let expression = node.attributes().find(|attribute| has_expression(attribute.value()));
+        let attribute = expression.filter(|_| dialect == Dialect::Urdf && is_read(node))?;
+        let (element, value) = (node.tag_name().name(), shown(attribute.value()));
+        let message = format!("{element}: {}: is `{value}`, an expression of xacro, {EXPECTED}", attribute.name());
+        Some((attribute.range_value(), message))
+    })?;
+    Some(Finding::error("xacro", span, message).help(command(document, file, dialect)))
+}
+
+/// The place of the name in the start tag.
+fn name(node: Node) -> Range<usize> {
+    let start = node.range().start + 1;
+    let rest = node.document().input_text().get(start..).unwrap_or_default();
+    let ends = |c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>');
+    start..start + rest.find(ends).unwrap_or(rest.len())
+}
+
+/// By the prefix, as xacro itself judges, or by the namespace.
+fn is_xacro(node: Node) -> bool {
+    node.document().input_text()[name(node)].starts_with("xacro:")
+        || node.tag_name().namespace().is_some_and(|space| space.ends_with("/xacro"))
+}
+
+fn is_read(node: Node) -> bool {
+    node.ancestors().filter(Node::is_element).all(|ancestor| READ.contains(&ancestor.tag_name().name()))
+}
+
+/// How to expand the file: PyPI's xacro finds no packages without ROS, xacrodoc does.
+fn command(document: &Document, file: &str, dialect: Dialect) -> String {
+    let (input, output) = (quoted(file), quoted(&expanded(file, dialect)));
+    let values: String = arguments(document).map(|name| format!(" {name}:=VALUE")).collect();
+    if document.input_text().contains("$(find ") {
+        return format!(
+            "`pip install xacrodoc; xacrodoc {input}{values} --pkg-dir DIR -o {output}` expands it, DIR holding the \
+             folders of the packages"
+        );
+    }
+    format!("`pip install xacro; xacro {input}{values} > {output}` expands it")
+}
+
+/// The names of arguments that have no default.
+fn arguments<'d>(document: &'d Document) -> impl Iterator<Item = &'d str> {
+    let is_plain = |name: &&str| name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    document
+        .root()
+        .descendants()
+        .filter(|node| node.tag_name().name() == "arg" && is_xacro(*node) && !node.has_attribute("default"))
+        .filter_map(|node| node.attribute("name"))
+        .filter(is_plain)
+        .take(MOST_ARGUMENTS)
+}
+
+/// The file that is written: never the one that is read.
+fn expanded(file: &str, dialect: Dialect) -> String {
+    let ending = match dialect {
+        Dialect::Urdf => ".urdf",
+        Dialect::Mjcf => ".xml",
+    };
+    match (file.strip_suffix(".xacro"), file.strip_suffix(ending)) {
+        (Some(stem), _) => format!("{}{ending}", stem.strip_suffix(ending).unwrap_or(stem)),
+        (None, Some(stem)) => format!("{stem}-expanded{ending}"),
+        (None, None) => format!("{file}-expanded{ending}"),
+    }
+}
+
+/// A file's name as a shell takes it.
+fn quoted(file: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-+/:@%,=~".contains(c);
+    let file = if file.starts_with(['-', '~']) { format!("./{file}") } else { file.to_string() };
+    match file.chars().all(is_plain) && !file.is_empty() {
+        true => file,
+        false => format!("'{}'", file.replace('\'', r"'\''").replace(char::is_control, "?")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of a text, and how to mend it.
+    fn refused(file: &str, text: &str) -> Option<(String, String)> {
+        let document = Document::parse(text).expect("well-formed");
+        let finding = refuse(&document, file, Dialect::of(text))?;
+        Some((finding.message, finding.help.expect("a command")))
+    }
+
+    fn help(file: &str, text: &str) -> String {
+        refused(file, text).expect("refused").1
+    }
+
+    const MACRO: &str = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm/></robot>";
+
+    #[test]
+    fn what_is_expanded_is_read() {
+        for text in [
+            "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><!-- ${a} <xacro:arm/> --><link name='a'/></robot>",
+            "<robot><link name='a'><visual><geometry><mesh filename='$(find p)/a.stl'/></geometry></visual></link></robot>",
+            "<robot><gazebo><plugin ns='${a}'/></gazebo></robot>",
+            "<robot><link name='costs $ (5)'/></robot>",
+            "<mujoco><asset><mesh file='${a}'/></asset></mujoco>",
+        ] {
+            assert_eq!(refused("a.xacro", text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_expanded_is_named() {
+        for (text, message) in [
+            (MACRO, "<xacro:arm> is a word of xacro, expected a file that xacro has expanded"),
+            (
+                "<robot xmlns:x='http://ros.org/wiki/xacro'><gazebo><x:if value='1'/></gazebo></robot>",
+                "<x:if> is a word of xacro, expected a file that xacro has expanded",
+            ),
+            (
+                "<robot xmlns:xacro='http://example.org/#interface'><xacro:arm/></robot>",
+                "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+            ),
+            (
+                "<robot><link name='${side}_arm'/></robot>",
+                "link: name: is `${side}_arm`, an expression of xacro, expected a file that xacro has expanded",
+            ),
+            (
+                "<robot><joint><child link='$(arg side)_arm'/></joint></robot>",
+                "child: link: is `$(arg side)_arm`, an expression of xacro, expected a file that xacro has expanded",
+            ),
+            (
+                "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm/></mujoco>",
+                "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+            ),
+        ] {
+            assert_eq!(refused("a.xacro", text).map(|(found, _)| found).as_deref(), Some(message), "{text}");
+        }
+    }
+
+    #[test]
+    fn commands() {
+        let plain = |input: &str, output: &str| format!("`pip install xacro; xacro {input} > {output}` expands it");
+        for (file, input, output) in [
+            ("arm.xacro", "arm.xacro", "arm.urdf"),
+            ("robots/arm.urdf.xacro", "robots/arm.urdf.xacro", "robots/arm.urdf"),
+            ("arm.urdf", "arm.urdf", "arm-expanded.urdf"),
+            ("arm.xml", "arm.xml", "arm.xml-expanded.urdf"),
+            ("my arm's.xacro", r"'my arm'\''s.xacro'", r"'my arm'\''s.urdf'"),
+            ("-arm.xacro", "./-arm.xacro", "./-arm.urdf"),
+            ("a\nb.xacro", "'a?b.xacro'", "'a?b.urdf'"),
+        ] {
+            assert_eq!(help(file, MACRO), plain(input, output));
+        }
+        let model = "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm/></mujoco>";
+        assert_eq!(help("arm.xml.xacro", model), plain("arm.xml.xacro", "arm.xml"));
+        let arguments = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arg name='side'/>\
+            <xacro:arg name='gripper' default='none'/><xacro:arg name='$(rm)'/><link name='a'/></robot>";
+        assert_eq!(help("arm.xacro", arguments), plain("arm.xacro side:=VALUE", "arm.urdf"));
+        let packages =
+            "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:include filename='$(find p)/a.xacro'/></robot>";
+        assert_eq!(
+            help("arm.xacro", packages),
+            "`pip install xacrodoc; xacrodoc arm.xacro --pkg-dir DIR -o arm.urdf` expands it, DIR holding the folders of \
+             the packages"
+        );
+    }
+}
