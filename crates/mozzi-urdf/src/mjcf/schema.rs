@@ -17,6 +17,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
         "mujoco/default" => &words::DEFAULT,
         "mujoco/body" => &words::BODY,
         "mujoco/body/inertial" => &words::INERTIAL,
+        "mujoco/body/freejoint" => &words::FREE_JOINT,
         "mujoco/body/joint" | "mujoco/default/joint" => &words::JOINT,
         "mujoco/body/geom" | "mujoco/default/geom" => &words::GEOM,
         "mujoco/body/site" | "mujoco/default/site" => &words::SITE,
@@ -27,7 +28,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
 }
 
 /// Elements that are told as a whole, with all that is in them: the path, such an element, and the code.
-const TOLD: [(&str, &str, &str); 25] = [
+const TOLD: [(&str, &str, &str); 24] = [
     ("mujoco/compiler/lengthrange", "<compiler><§/></compiler>", "ignored_attribute"),
     ("mujoco/size", "<§/>", "ignored_element"),
     ("mujoco/statistic", "<§/>", "ignored_element"),
@@ -35,7 +36,6 @@ const TOLD: [(&str, &str, &str); 25] = [
     ("mujoco/default/", "<default><§/></default>", "ignored_attribute"),
     ("mujoco/extension", "<§/>", "ignored_element"),
     ("mujoco/asset", "<§/>", "ignored_element"),
-    ("mujoco/body/freejoint", "<worldbody><body><§/><geom size='1'/></body></worldbody>", "unsupported_joint"),
     ("mujoco/body/geom/plugin", "<worldbody><body><geom size='1'><§/></geom></body></worldbody>", "ignored_element"),
     ("mujoco/body/attach", "<worldbody><body><§/></body></worldbody>", "unsupported_element"),
     ("mujoco/body/camera", "<worldbody><body><§/></body></worldbody>", "ignored_element"),
@@ -75,6 +75,7 @@ fn model(path: &str, attribute: &str) -> String {
             let rest = if attribute.starts_with("mass") { "" } else { "mass='1'" };
             body(&format!("<joint/><inertial {rest} {attribute}/>"), "")
         }
+        "mujoco/body/freejoint" => body(&format!("<freejoint {attribute}/><geom size='1'/>"), ""),
         "mujoco/body/joint" => body(&format!("<joint {attribute}/><geom size='1'/>"), ""),
         "mujoco/body/geom" => {
             let rest = if attribute.starts_with("type") { "" } else { "type='capsule'" };

@@ -197,7 +197,7 @@ pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     ..NOTHING
 };
 pub(crate) const FREE_JOINT: Vocabulary =
-    Vocabulary { attributes: &["name", "align"], silent: &["group", "sleep"], ..NOTHING };
+    Vocabulary { attributes: &["name", "align"], listed: &["group"], ..NOTHING };
 pub(crate) const JOINT: Vocabulary = Vocabulary {
     attributes: &[
         "name",
