@@ -28,7 +28,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// ```
 /// # use mozzi::{Base, Description, Solid};
-/// let drone = Description::new("drone").link("body", Solid::Sphere(0.2).inertia(1.5));
+/// let drone = Description::new("drone").link("body", Solid::Box([0.3, 0.3, 0.1]).inertia(1.5));
 /// let model = drone.build()?.with_base(Base::Floating)?;
 /// let pinocchio = mozzi::conventions::Pinocchio::new(&model);
 /// let q = pinocchio.configuration(&[1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3])?;
