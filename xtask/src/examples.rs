@@ -1,6 +1,7 @@
 //! The numbered examples: each `examples/NN_name.rs`, and its `.py` twin where the Python package is built.
 
 use crate::command;
+use crate::oracles;
 use crate::report::Outcome;
 use crate::venv;
 use crate::workspace::Workspace;
@@ -54,7 +55,11 @@ impl Example {
             Self::Rust(name) => {
                 // The profile in which `cargo test` has just built it.
                 let arguments = ["--quiet", "--profile", "test", "-p", "mozzi-examples", "--example", name];
-                command::outcome(workspace.cargo_run_in(&folder, &arguments))
+                let mut cargo = workspace.cargo_run_in(&folder, &arguments);
+                if let Some(robots) = oracles::robots(workspace) {
+                    cargo.env("MOZZI_ROBOTS", robots);
+                }
+                command::outcome(cargo)
             }
             Self::Python(_) if !has_mozzi(workspace) => Outcome::Skipped("the Python package is not built yet".into()),
             Self::Python(file) => command::outcome(Command::new(venv::python(workspace)).arg(file).current_dir(folder)),

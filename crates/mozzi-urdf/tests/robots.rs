@@ -18,7 +18,7 @@ fn the_robots_that_mozzi_brings_along_are_flawless() {
         assert!(robot.warnings.is_empty(), "{name}: {:#?}", robot.warnings);
         assert_eq!(robot.build().expect(name).n(), n, "{name}");
     }
-    assert_eq!(embedded::names().len(), 5);
+    assert_eq!(embedded::names().len(), 6);
 }
 
 #[test]

@@ -196,8 +196,7 @@ pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     attributes: &["pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia"],
     ..NOTHING
 };
-pub(crate) const FREE_JOINT: Vocabulary =
-    Vocabulary { attributes: &["name", "align"], listed: &["group"], ..NOTHING };
+pub(crate) const FREE_JOINT: Vocabulary = Vocabulary { attributes: &["name", "align"], listed: &["group"], ..NOTHING };
 pub(crate) const JOINT: Vocabulary = Vocabulary {
     attributes: &[
         "name",

@@ -31,7 +31,7 @@ const WHY: [(&str, &str); 9] = [
          mozzi's equation, so it is not left out.",
     ),
     ("unsupported_equality", "Tendons are tied to each other, by forces that a tree does not have."),
-    ("unsupported_joint", "Free and ball joints have six and three freedoms."),
+    ("unsupported_joint", "A ball joint has three freedoms; a second free body would be a second robot."),
     ("unsupported_tendon", "A tendon with stiffness, damping or limits puts forces on several joints at once."),
     (
         "missing_attribute",
@@ -111,7 +111,7 @@ fn page(entries: &[Entry], written: &BTreeMap<&str, f64>) -> String {
     let trees = entries.iter().filter(|entry| entry.verdict == "compared").count();
     let _ = write!(
         page,
-        "\nOf {} files {trees} are models with hinges and slides alone. {} of them are trees: they load, and agree with MuJoCo \
+        "\nOf {} files {trees} are models with hinges, slides and at most one free body alone. {} of them are trees: they load, and agree with MuJoCo \
          at 100 random states each. The other {} are refused by name.\n\n\
          ## Trees\n\n\
          Poses of all bodies, Jacobians, M, h, τ, θ̈ and the kinetic energy, without springs, damping and friction, which are \
