@@ -18,9 +18,9 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-mujoco.set_mju_user_warning(lambda message: None)  # which would write a file
-
 from make import Failure, Worst, plain, regular, rng_of, write
+
+mujoco.set_mju_user_warning(lambda message: None)  # which would write a file
 
 HERE = Path(__file__).resolve().parent
 FOLDERS = {"gymnasium": "envs/mujoco/assets", "dm_control": "."}
