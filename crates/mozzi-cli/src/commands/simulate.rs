@@ -248,7 +248,7 @@ pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
     let heads = positions.into_iter().chain(["K [J]", "P [J]", "drift [J]"].map(str::to_string));
     let mut cells = vec![std::iter::once("t [s]".to_string()).chain(heads).collect::<Vec<_>>()];
     let decimals = |pick: &dyn Fn(usize) -> f64| Decimals::of(&picked.iter().map(|&k| pick(k)).collect::<Vec<_>>());
-    let theta = decimals(&|k| motion.sample(k).theta.iter().take(n).fold(0.0, |m: f64, x| m.max(x.abs())));
+    let theta = Decimals::of(picked.iter().flat_map(|&k| &motion.sample(k).theta[..n]));
     let [time, kinetic, potential] = [
         decimals(&|k| motion.t[k]),
         decimals(&|k| motion.energy[k].kinetic),
