@@ -1,7 +1,7 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
 use crate::columns::{Columns, save};
-use crate::failure::{self, Failure, Result};
+use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::{WRENCH, array, number};
 use crate::robot::{RobotArguments, Units};
@@ -109,12 +109,6 @@ impl SimulateArguments {
     fn torque<'m>(&self, model: &'m Model) -> Result<Box<dyn Input + 'm>> {
         match self.torque.as_str() {
             "zero" => Ok(Box::new(Zero)),
-            "gravity-compensation" if model.is_floating() => {
-                failure::note(
-                    "gravity-compensation holds the free base too: the first six entries of τ are a wrench on it",
-                );
-                Ok(Box::new(GravityCompensation::new(model)))
-            }
             "gravity-compensation" => Ok(Box::new(GravityCompensation::new(model))),
             file => {
                 let samples = Samples::read(file, model)?;

@@ -96,3 +96,16 @@ fn a_tumbling_robot_keeps_its_momentum() {
         assert!(lost < bound && (length - 1.0).abs() < 1e-15, "{steps} steps: {lost:e} {length}");
     }
 }
+
+#[test]
+fn motors_against_gravity_leave_a_free_base_to_fall() {
+    let model = floating_tree(30, 5, 1);
+    let [theta, _, _] = state(&model, 2);
+    let still = std::vec![0.0; model.n()];
+    let motors = super::GravityCompensation::new(&model);
+    let fall = model.simulate(&theta, &still, motors, &Options::new(0.1, 100)).expect("a motion");
+    assert_eq!(fall.tau[..6], [0.0; 6]);
+    let (start, end) = (model.center_of_mass(&theta), model.center_of_mass(fall.last().theta));
+    let fallen = end.expect("a mass") - start.expect("a mass");
+    assert!((fallen - model.gravity() * 0.005).norm() < 1e-9, "{fallen:?}");
+}

@@ -68,7 +68,8 @@ pub struct Zero;
 impl Input for Zero {}
 
 /// τ = g(θ), and nothing against friction: a robot at rest stays, a moving one coasts. (With Coulomb friction that is not
-/// smooth it trembles instead of staying, see [`Friction::Coulomb`](super::Friction::Coulomb).)
+/// smooth it trembles instead of staying, see [`Friction::Coulomb`](super::Friction::Coulomb).) A free base has no motors: it
+/// falls.
 #[derive(Clone, Debug)]
 pub struct GravityCompensation<'m> {
     model: &'m Model,
@@ -83,7 +84,7 @@ impl<'m> GravityCompensation<'m> {
         Self::against(model, model.gravity())
     }
 
-    /// Against another gravity, in base coordinates, m/s²: that of [`Options`](super::Options), or a wrong one.
+    /// Against another gravity, in {s} coordinates, m/s²: that of [`Options`](super::Options), or a wrong one.
     pub fn against(model: &'m Model, gravity: Vec3) -> Self {
         GravityCompensation { model, gravity, workspace: Workspace::new(model), g: vec![0.0; model.n()] }
     }
@@ -96,7 +97,8 @@ impl Input for GravityCompensation<'_> {
             return Err(Error::WrongLength { what: "theta", found: theta.len(), expected: self.model.nq() });
         }
         gravity_forces(self.model, theta, self.gravity, &mut self.workspace, &mut self.g);
-        for (tau, g) in tau.iter_mut().zip(&self.g) {
+        let base = self.model.base().velocities(); // without motors
+        for (tau, g) in tau.iter_mut().zip(&self.g).skip(base) {
             *tau += g;
         }
         Ok(())
