@@ -27,6 +27,11 @@ pub struct PolicyArguments {
 }
 
 impl PolicyArguments {
+    /// Was a base freed that the file may bolt down?
+    pub fn frees(&self) -> bool {
+        self.floating
+    }
+
     /// An embedded robot by its name, or a file.
     pub fn open(&self, name_or_path: &str) -> std::result::Result<Loaded, LoadError> {
         let policy = match (self.strict, self.lenient) {

@@ -84,6 +84,8 @@ fn with_the_real_libraries() {
         assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "explained".into(), "explained".into()));
         assert_eq!(report["libraries"][0]["comparison"]["causes"].as_array().unwrap().len(), kinds, "{report}");
     }
+    let (code, report) = run(&format!("{PEERS}/floating.urdf"));
+    assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "agrees".into(), "agrees".into()), "{report}");
     // JSON is handed over as URDF; a file that mozzi refuses is shown to the others
     let folder = folder("compare");
     let json = folder.join("ur5.json").to_str().unwrap().to_string();
@@ -92,4 +94,10 @@ fn with_the_real_libraries() {
     let refused = file(&folder, "two.urdf", "<robot name='two'><link name='a'/><link name='b'/></robot>");
     let (code, report) = run(&refused);
     assert_eq!((code, &report["refused"]), (1, &Value::Bool(true)), "{report}");
+}
+
+#[test]
+fn a_base_that_the_file_bolts_down_is_not_compared_as_free() {
+    let (_, message) = common::complaint(&["compare", "ur5", "--floating"]);
+    assert!(message.contains("--floating is not for compare: other libraries read the file as it stands"), "{message}");
 }

@@ -38,6 +38,12 @@ pub struct CompareArguments {
 }
 
 pub fn run(arguments: &CompareArguments) -> Result<String> {
+    if arguments.policy.frees() {
+        return Err(Failure::wrong(
+            "--floating is not for compare: other libraries read the file as it stands; free its base there, by a floating joint at \
+             the root (URDF) or a freejoint (MJCF)",
+        ));
+    }
     let python = python::find(arguments.python.as_deref());
     let model = match arguments.policy.model(&arguments.model) {
         Ok(model) => model,
@@ -121,7 +127,7 @@ fn refused(arguments: &CompareArguments, python: &Path, refusal: Failure) -> Res
     }
     refusal.say();
     let source = source(&arguments.model, &Description::new("refused"))?;
-    let question = Question { source, names: Vec::new(), axes: Vec::new(), states: Vec::new() };
+    let question = Question { source, names: Vec::new(), axes: Vec::new(), states: Vec::new(), floating: false };
     let answers = python::ask(python, &question, &[Peer::Pinocchio, Peer::MuJoCo])?;
     somebody(python, &answers)?;
     let findings: Vec<Finding> =

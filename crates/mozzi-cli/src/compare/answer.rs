@@ -119,7 +119,8 @@ fn joint(value: &Value) -> Option<JointConstants> {
 }
 
 fn robot(value: &Value) -> Option<Robot> {
-    let joints: Vec<JointConstants> = value["joints"].as_array()?.iter().map(joint).collect::<Option<_>>()?;
+    let mut joints: Vec<JointConstants> = value["joints"].as_array()?.iter().map(joint).collect::<Option<_>>()?;
+    let has_base = value["joints"].get(0).is_some_and(|first| first["base"].as_bool() == Some(true));
     if joints.iter().enumerate().any(|(k, joint)| joint.parent.is_some_and(|up| up >= k)) {
         return None;
     }
@@ -128,7 +129,18 @@ fn robot(value: &Value) -> Option<Robot> {
         1 => vec![joint.name.clone()],
         many => (1..=many).map(|k| format!("{} ({k} of {many})", joint.name)).collect(),
     };
-    let names: Vec<String> = joints.iter().flat_map(name).collect();
+    let names = joints.iter().flat_map(name);
+    let names: Vec<String> = if has_base {
+        // both libraries have the linear three first
+        let base = ["vx", "vy", "vz", "wx", "wy", "wz"].map(|axis| format!("base.{axis}"));
+        base.into_iter().chain(names.skip(6)).collect()
+    } else {
+        names.collect()
+    };
+    if has_base {
+        joints.remove(0);
+        joints.iter_mut().for_each(|joint| joint.parent = joint.parent.and_then(|up| up.checked_sub(1)));
+    }
     let n = names.len();
     let vector = |value: &Value| Some(DVector::from_vec(numbers(value)?)).filter(|v| v.len() == n);
     let (mut states, mut forces) = (Vec::new(), BTreeMap::<String, Vec<DVector<f64>>>::new());

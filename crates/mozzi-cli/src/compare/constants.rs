@@ -39,10 +39,10 @@ pub fn freed(robot: &Description) -> Description {
     robot
 }
 
-/// Where each link is when every joint, followers too, is at 0.
+/// Where each link is when every joint, followers too, is at 0, and a free base at {s}.
 pub fn home(robot: &Description) -> Result<BTreeMap<String, SE3>> {
     let model = freed(robot).build()?;
-    let poses = model.frame_poses(&vec![0.0; model.nq()])?;
+    let poses = model.frame_poses(&model.neutral_configuration::<f64>())?;
     Ok(model.frames().zip(poses).map(|((_, name), T)| (name.to_string(), T)).collect())
 }
 

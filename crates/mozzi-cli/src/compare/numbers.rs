@@ -57,15 +57,18 @@ impl Side {
     /// mozzi's.
     pub fn of(robot: &Description, question: &Question) -> Result<Self> {
         let model = robot.clone().build()?;
-        let names: Vec<String> = model.joint_names().map(str::to_string).collect();
+        let names: Vec<String> = model.velocity_names().map(str::to_string).collect();
         let environment = model.environment();
         let at = |values: &[f64]| -> Vec<f64> {
             let value =
                 |name: &String| question.names.iter().position(|known| known == name).map_or(0.0, |k| values[k]);
-            names.iter().map(value).collect()
+            names.iter().map(value).collect() // a free base is at rest
         };
+        let base = model.base();
         let numbers = |state: &super::question::State| {
-            let (theta, dtheta, ddtheta) = (at(&state.theta), at(&state.dtheta), at(&state.ddtheta));
+            let (dtheta, ddtheta) = (at(&state.dtheta), at(&state.ddtheta));
+            let mut theta = model.neutral_configuration::<f64>();
+            theta[base.positions()..].copy_from_slice(&at(&state.theta)[base.velocities()..]);
             Ok(Numbers {
                 M: model.mass_matrix(&theta)?,
                 g: model.gravity_forces(&theta)?,

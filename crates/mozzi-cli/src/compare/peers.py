@@ -234,6 +234,9 @@ class MuJoCo:
 
     def place(self, theta, dtheta):
         self.data.qpos[:] = self.model.qpos0
+        for at, (nq, _) in zip(self.model.jnt_qposadr, self.sizes):
+            if nq == 7:
+                self.data.qpos[at:at + 7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
         self.data.qvel[:] = 0.0
         self.set(theta, self.model.jnt_qposadr, self.data.qpos)
         self.set(dtheta, self.model.jnt_dofadr, self.data.qvel)
@@ -356,6 +359,8 @@ def answer(question):
         return {**result, "error": {"stage": "load", "message": str(error)}}
     joints = [joint for joint in robot.joints() if joint["nv"] > 0]
     rename(joints, question["joints"])
+    if question["floating"] and joints and joints[0]["nv"] == 6:
+        joints[0]["base"] = True
     theirs = {joint["name"]: joint["called"] for joint in joints}
     result.update(robot.about(), joints=joints, states=[])
     for state in question["states"]:

@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use crate::failure::Result;
-use mozzi::Description;
+use mozzi::{Base, Description};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -34,6 +34,8 @@ pub struct Question {
     /// Its screw axis at home, by which a library's joint of another name is known.
     pub axes: Vec<[f64; 6]>,
     pub states: Vec<State>,
+    /// The file's own base is free: it is compared at rest at {s}, where every convention has the same axes.
+    pub floating: bool,
 }
 
 impl Question {
@@ -43,7 +45,7 @@ impl Question {
         let axes = constants.joints.iter().map(|joint| joint.axes[0]).collect();
         let mut random = Random(seed);
         let states = (0..states).map(|_| State::random(robot, &names, &mut random)).collect();
-        Ok(Question { source, names, axes, states })
+        Ok(Question { source, names, axes, states, floating: robot.base == Base::Floating })
     }
 
     /// As a library's script reads it. `mimic` asks Pinocchio to couple followers.
@@ -51,7 +53,7 @@ impl Question {
         let joint = |(name, axis): (&String, &[f64; 6])| json!({ "name": name, "axis": axis });
         let state = |state: &State| json!({ "theta": state.theta, "dtheta": state.dtheta, "ddtheta": state.ddtheta });
         json!({
-            "library": library, "mimic": mimic,
+            "library": library, "mimic": mimic, "floating": self.floating,
             "language": self.source.language, "path": self.source.path, "text": self.source.text,
             "joints": self.names.iter().zip(&self.axes).map(joint).collect::<Value>(),
             "names": self.names,

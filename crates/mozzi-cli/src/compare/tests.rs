@@ -12,7 +12,7 @@ use mozzi::model::description::JointKind;
 use std::path::{Path, PathBuf};
 
 /// Model, library, the record.
-const RECORDS: [(&str, Peer, &str); 7] = [
+const RECORDS: [(&str, Peer, &str); 9] = [
     ("doctor.urdf", Peer::Pinocchio, "doctor_pinocchio.json"),
     ("doctor.urdf", Peer::PinocchioMimic, "doctor_pinocchio_mimic.json"),
     ("doctor.urdf", Peer::MuJoCo, "doctor_mujoco.json"),
@@ -20,6 +20,8 @@ const RECORDS: [(&str, Peer, &str); 7] = [
     ("massless.urdf", Peer::MuJoCo, "massless_mujoco.json"),
     ("springs.xml", Peer::Pinocchio, "springs_pinocchio.json"),
     ("springs.xml", Peer::MuJoCo, "springs_mujoco.json"),
+    ("floating.urdf", Peer::Pinocchio, "floating_pinocchio.json"),
+    ("floating.urdf", Peer::MuJoCo, "floating_mujoco.json"),
 ];
 
 fn folder() -> PathBuf {
@@ -81,7 +83,7 @@ fn kinds(verdict: &Verdict) -> Vec<&'static str> {
 
 #[test]
 fn every_record_is_explained_by_its_causes() {
-    let expected: [&[&str]; 7] = [
+    let expected: [&[&str]; 9] = [
         &["followers", "damping", "friction"],
         &["damping", "friction"],
         &["followers", "friction", "constraints", "balanced", "dropped", "shapes"],
@@ -89,6 +91,8 @@ fn every_record_is_explained_by_its_causes() {
         &["gravity", "bounded"],
         &["damping", "friction"],
         &["friction", "constraints", "fluid", "gravcomp", "spring"],
+        &[],
+        &[],
     ];
     for (k, expected) in expected.into_iter().enumerate() {
         let (verdict, answer) = judged(k, |_| {});
@@ -103,6 +107,21 @@ fn every_record_is_explained_by_its_causes() {
     assert_eq!(remedies, [Remedy::Geometry, Remedy::Fixed, Remedy::Bound]);
     let (verdict, _) = judged(0, |_| {});
     assert!(verdict.order.is_some(), "Pinocchio sorts siblings by name");
+}
+
+#[test]
+fn a_free_base_is_compared_with_its_own_rows() {
+    let heavier = |robot: &mut Description| {
+        let body = robot.links.iter_mut().find(|link| link.name == "body").unwrap();
+        body.inertia = body.inertia * 1.5;
+    };
+    for record in [7, 8] {
+        let (verdict, _) = judged(record, |_| {});
+        assert!(verdict.agrees());
+        let (verdict, _) = judged(record, heavier);
+        let first = verdict.first.as_ref().unwrap();
+        assert_eq!((first.quantity, first.joints[0].as_str()), ("M", "base.wx"), "{first:?}");
+    }
 }
 
 #[test]
