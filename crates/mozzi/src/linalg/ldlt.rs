@@ -99,6 +99,57 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]
     }
 }
 
+/// Overwrites B, n × n by rows, with −M⁻¹B, where M = LᵀDL: every step of [`solve`] on whole rows.
+#[inline(always)]
+pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
+    for k in (0..n).rev() {
+        let (above, row) = B.split_at_mut(k * n);
+        for i in pattern.ancestors(k) {
+            add_row(&mut above[i * n..][..n], -L[k * n + i], &row[..n]);
+        }
+    }
+    for k in 0..n {
+        let (above, row) = B.split_at_mut(k * n);
+        let minus_one_over = -(S::one() / L[k * n + k]);
+        for x in &mut row[..n] {
+            *x = *x * minus_one_over;
+        }
+        for i in pattern.ancestors(k) {
+            add_row(&mut row[..n], -L[k * n + i], &above[i * n..][..n]);
+        }
+    }
+}
+
+/// Overwrites L and D with M⁻¹, both triangles. In LM⁻¹ = D⁻¹L⁻ᵀ the right side is upper triangular: row k of M⁻¹ follows from the
+/// rows before it. `memory` is for n numbers.
+#[inline(always)]
+pub(crate) fn invert<S: Scalar>(pattern: &Pattern, n: usize, L: &mut [S], memory: &mut [S]) {
+    for k in 0..n {
+        let row = &mut memory[..k];
+        row.fill(S::zero());
+        for i in pattern.ancestors(k) {
+            add_row(row, -L[k * n + i], &L[i * n..][..k]);
+        }
+        let mut diagonal = S::one() / L[k * n + k];
+        for i in pattern.ancestors(k) {
+            diagonal = row[i].mul_add(-L[k * n + i], diagonal);
+        }
+        L[k * n + k] = diagonal;
+        for (i, &entry) in row.iter().enumerate() {
+            L[k * n + i] = entry;
+            L[i * n + k] = entry;
+        }
+    }
+}
+
+/// y + a x.
+#[inline(always)]
+fn add_row<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
+    for (y, &x) in y.iter_mut().zip(x) {
+        *y = x.mul_add(a, *y);
+    }
+}
+
 /// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of the last row
 /// first eliminated, for the caller to check.
 #[inline(always)]
@@ -171,8 +222,15 @@ mod tests {
         }
         let x = random.vector(n, 1.0);
         let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * x[j]).sum()).collect();
+        let (mut rows, right) = (M.clone(), b.clone());
         factor(&pattern, n, &mut M);
         solve(&pattern, n, &M, &mut b);
+        solve_rows(&pattern, n, &M, &mut rows);
+        let minus_one = |k: usize| if k % (n + 1) == 0 { -1.0 } else { 0.0 };
+        assert!(rows.iter().enumerate().all(|(k, x)| (x - minus_one(k)).abs() < 1e-14), "−M⁻¹M {rows:?}");
         assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
+        invert(&pattern, n, &mut M, &mut vec![f64::NAN; n]);
+        let found = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * right[j]).sum::<f64>());
+        assert!(found.zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
     }
 }
