@@ -177,7 +177,9 @@ pub fn inverse_dynamics_derivatives(
             let (state, derivatives) = ([theta, dtheta, ddtheta].map(fused), derivatives.map(fused_mut));
             #[allow(unused_unsafe)] // no target feature elsewhere
             // SAFETY: the variant exists only where the processor has AVX2 and FMA.
-            unsafe { entry(model, state, environment, workspace, derivatives) }
+            unsafe {
+                entry(model, state, environment, workspace, derivatives)
+            }
         }
     }
 }
@@ -217,7 +219,9 @@ pub fn forward_dynamics_derivatives(
             let (state, derivatives) = ([theta, dtheta, tau].map(fused), derivatives.map(fused_mut));
             #[allow(unused_unsafe)] // no target feature elsewhere
             // SAFETY: the variant exists only where the processor has AVX2 and FMA.
-            unsafe { entry(model, state, environment, workspace, fused_mut(ddtheta), derivatives) }
+            unsafe {
+                entry(model, state, environment, workspace, fused_mut(ddtheta), derivatives)
+            }
         }
     }
 }
@@ -244,7 +248,12 @@ mod tests {
                 velocity_product(&model, &theta, &dtheta, &mut w, &mut c);
                 mass_matrix(&model, &theta, &mut w, &mut M);
                 coriolis_matrix(&model, &theta, &dtheta, &mut w, &mut C);
-                [tau, ddtheta, h, c, M, C]
+                let mut by = [(); 6].map(|()| vec![0.0; n * n]);
+                let ([a, b, c_, d, e, f], mut again) = (by.each_mut().map(|x| &mut x[..]), vec![0.0; n]);
+                inverse_dynamics_derivatives(&model, &theta, &dtheta, &x, &environment, &mut w, [a, b, c_]);
+                let three = [d, e, f];
+                forward_dynamics_derivatives(&model, &theta, &dtheta, &x, &environment, &mut w, &mut again, three);
+                [vec![tau, ddtheta, h, c, M, C, again], by.to_vec()].concat()
             };
             let portable = run(Workspace::portable(&model));
             for (a, b) in run(Workspace::new(&model)).iter().zip(&portable) {

@@ -86,11 +86,7 @@ impl Model<f64> {
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
-    pub fn tip_forces_derivative(
-        &self,
-        theta: &[f64],
-        applied: &[(FrameId, Wrench)],
-    ) -> Result<DMatrix<f64>, Error> {
+    pub fn tip_forces_derivative(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DMatrix<f64>, Error> {
         self.check_lengths(theta, [])?;
         applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))?;
         Ok(self.matrix(|w, dtau| kernel::tip_forces_derivative(self, theta, applied, w, dtau)))

@@ -44,7 +44,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// Entries are 0 unless [`couples`](Model::couples) i and j.
 ///
-/// Cost O(n · depth) and 3 n² zeros, no allocation.
+/// Cost O(n · depth) beside 3 n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or a derivative not n².
@@ -119,6 +119,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
         let column  = G * ddA + BdA - ad_t * F[i];                           // ∂𝓕 by θ_j, felt below joint i
         let dcolumn = GdA + GdA + dGA + HA;                                  // by θ̇_j
         let BtA     = dGA - HA;                                              // 𝓑ᵀA
+        let wrenches = [column, dcolumn, BtA, GA].map(Wrench::to_array);
         by_theta[j * n + j] += A.dot(column);
         if let Some([by_dtheta, M]) = &mut by_rates {
             by_dtheta[j * n + j] += A.dot(dcolumn);
@@ -128,14 +129,15 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
         while k > 0 {
             let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
             let (ij, ji) = (below.j * n + j, j * n + below.j);
-            by_theta[ij] += A.dot(column);
+            let [AF, dAF, ABtA, AGA] = products(A, wrenches);
+            by_theta[ij] += AF;
             by_theta[ji] += ddA.dot(GA) + dA.dot(BtA);
             if let Some([by_dtheta, M]) = &mut by_rates {
-                let (dAGA, entry) = (dA.dot(GA), A.dot(GA));
-                by_dtheta[ij] += A.dot(dcolumn);
-                by_dtheta[ji] += dAGA + dAGA + A.dot(BtA);
-                M[ij] += entry;
-                M[ji] += entry;
+                let dAGA = dA.dot(GA);
+                by_dtheta[ij] += dAF;
+                by_dtheta[ji] += dAGA + dAGA + ABtA;
+                M[ij] += AGA;
+                M[ji] += AGA;
             }
             k = below.parent;
         }
@@ -171,6 +173,19 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+/// AᵀF of four wrenches, side by side.
+#[inline(always)]
+fn products<S: Scalar>(A: Twist<S>, F: [[S; 6]; 4]) -> [S; 4] {
+    let A = A.to_array();
+    let mut sum = F.map(|F| F[0] * A[0]);
+    for c in 1..6 {
+        for l in 0..4 {
+            sum[l] = F[l][c].mul_add(A[c], sum[l]);
+        }
+    }
+    sum
+}
+
 /// n × n zeros.
 #[inline(always)]
 #[track_caller]
@@ -200,11 +215,10 @@ fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
 /// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is bolted: g is a gradient. Of a free base along its body
 /// twist, as [`inverse_dynamics_derivatives`].
 ///
-/// Cost O(n · depth) and n² zeros, no allocation.
+/// Cost O(n · depth) beside n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, or `dg` not n².
-#[inline(always)]
 pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -217,11 +231,10 @@ pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 
 /// ∂(JᵀF)/∂θ, n × n, row-major into `dtau`, of wrenches that keep their coordinates in their frames.
 ///
-/// Cost O(n · depth) and n² zeros, no allocation.
+/// Cost O(n · depth) beside n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, or `dtau` not n².
-#[inline(always)]
 pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -235,11 +248,10 @@ pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 
 /// ∂(M(θ)x)/∂θ for a constant x, n × n, row-major into `dMx`. Armature is constant and drops out.
 ///
-/// Cost O(n · depth) and n² zeros, no allocation.
+/// Cost O(n · depth) beside n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, x not n, or `dMx` not n².
-#[inline(always)]
 pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -251,7 +263,6 @@ pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// ∂τ/∂θ of inverse dynamics at θ̇ = 0, and θ̈ = 0 or as given.
-#[inline(always)]
 fn at_rest<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

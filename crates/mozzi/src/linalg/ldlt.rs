@@ -67,14 +67,12 @@ impl Pattern {
 #[inline(always)]
 pub(crate) fn factor<S: Scalar>(pattern: &Pattern, n: usize, M: &mut [S]) {
     for k in (0..n).rev() {
-        let pivot = M[k * n + k];
+        let one_over = S::one() / M[k * n + k];
         for i in pattern.ancestors(k) {
-            let a = M[k * n + i] / pivot;
-            let Mki = M[k * n + i];
-            M[i * n + i] -= a * Mki;
+            let a = M[k * n + i] * one_over;
+            M[i * n + i] = M[k * n + i].mul_add(-a, M[i * n + i]);
             for j in pattern.ancestors(i) {
-                let Mkj = M[k * n + j];
-                M[i * n + j] -= a * Mkj;
+                M[i * n + j] = M[k * n + j].mul_add(-a, M[i * n + j]);
             }
             M[k * n + i] = a;
         }
@@ -99,24 +97,40 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]
     }
 }
 
-/// Overwrites B, n × n by rows, with −M⁻¹B, where M = LᵀDL: every step of [`solve`] on whole rows.
+/// Overwrites B, n × n by rows, with −M⁻¹B, where M = LᵀDL.
 #[inline(always)]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
+    let mut c = 0;
+    while c + 4 <= n {
+        solve_columns::<4, S>(pattern, n, L, &mut B[c..]);
+        c += 4;
+    }
+    if c + 2 <= n {
+        solve_columns::<2, S>(pattern, n, L, &mut B[c..]);
+        c += 2;
+    }
+    if c < n {
+        solve_columns::<1, S>(pattern, n, L, &mut B[c..]);
+    }
+}
+
+/// Every step of [`solve`], up to the sign, on the W columns that B begins with.
+#[inline(always)]
+fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
+    let at = |B: &[S], k: usize| -> [S; W] { core::array::from_fn(|c| B[k * n..][..W][c]) };
     for k in (0..n).rev() {
-        let (above, row) = B.split_at_mut(k * n);
+        let row = at(B, k);
         for i in pattern.ancestors(k) {
-            add_row(&mut above[i * n..][..n], -L[k * n + i], &row[..n]);
+            add(&mut B[i * n..][..W], -L[k * n + i], &row);
         }
     }
     for k in 0..n {
-        let (above, row) = B.split_at_mut(k * n);
         let minus_one_over = -(S::one() / L[k * n + k]);
-        for x in &mut row[..n] {
-            *x = *x * minus_one_over;
-        }
+        let mut row = at(B, k).map(|x| x * minus_one_over);
         for i in pattern.ancestors(k) {
-            add_row(&mut row[..n], -L[k * n + i], &above[i * n..][..n]);
+            add(&mut row, -L[k * n + i], &B[i * n..][..W]);
         }
+        B[k * n..][..W].copy_from_slice(&row);
     }
 }
 
@@ -128,7 +142,7 @@ pub(crate) fn invert<S: Scalar>(pattern: &Pattern, n: usize, L: &mut [S], memory
         let row = &mut memory[..k];
         row.fill(S::zero());
         for i in pattern.ancestors(k) {
-            add_row(row, -L[k * n + i], &L[i * n..][..k]);
+            add(row, -L[k * n + i], &L[i * n..][..k]);
         }
         let mut diagonal = S::one() / L[k * n + k];
         for i in pattern.ancestors(k) {
@@ -144,7 +158,7 @@ pub(crate) fn invert<S: Scalar>(pattern: &Pattern, n: usize, L: &mut [S], memory
 
 /// y + a x.
 #[inline(always)]
-fn add_row<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
+fn add<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = x.mul_add(a, *y);
     }
@@ -226,7 +240,7 @@ mod tests {
         factor(&pattern, n, &mut M);
         solve(&pattern, n, &M, &mut b);
         solve_rows(&pattern, n, &M, &mut rows);
-        let minus_one = |k: usize| if k % (n + 1) == 0 { -1.0 } else { 0.0 };
+        let minus_one = |k: usize| if k.is_multiple_of(n + 1) { -1.0 } else { 0.0 };
         assert!(rows.iter().enumerate().all(|(k, x)| (x - minus_one(k)).abs() < 1e-14), "−M⁻¹M {rows:?}");
         assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
         invert(&pattern, n, &mut M, &mut vec![f64::NAN; n]);
