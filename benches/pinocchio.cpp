@@ -1,8 +1,10 @@
 // Pinocchio behind a small C interface, for benches/src/peer.rs: a robot is given by numbers, so that no loader is
 // timed; the states are stored once, and one call runs one algorithm over all of them.
 
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 #include <vector>
 
@@ -41,7 +43,7 @@ pin::JointModel joint_model(const Vector3d& axis, bool revolute) {
 }
 
 // The order of `Algorithm` in peer.rs.
-enum Algorithm { Rnea, AbaWorld, AbaLocal, CrbaWorld, CrbaLocal, Coriolis, NonLinearEffects };
+enum Algorithm { Rnea, AbaWorld, AbaLocal, CrbaWorld, CrbaLocal, Coriolis, NonLinearEffects, RneaDerivatives, AbaDerivatives };
 
 // One evaluation; returns where its result is: a vector, or a matrix by columns.
 const double* evaluate(Robot& r, Algorithm algorithm, const State& s) {
@@ -53,8 +55,23 @@ const double* evaluate(Robot& r, Algorithm algorithm, const State& s) {
     case CrbaLocal: return pin::crba(r.model, r.data, s.q, pin::Convention::LOCAL).data();
     case Coriolis: return pin::computeCoriolisMatrix(r.model, r.data, s.q, s.v).data();
     case NonLinearEffects: return pin::nonLinearEffects(r.model, r.data, s.q, s.v).data();
+    case RneaDerivatives:
+        pin::computeRNEADerivatives(r.model, r.data, s.q, s.v, s.a);
+        return r.data.dtau_dq.data();
+    case AbaDerivatives:
+        pin::computeABADerivatives(r.model, r.data, s.q, s.v, s.tau);
+        return r.data.ddq_dq.data();
     }
     return nullptr;
+}
+
+// The matrices that the derivatives of one algorithm are, each by columns; none of the others.
+std::vector<MatrixXd> matrices(const pin::Data& data, Algorithm algorithm) {
+    MatrixXd M = data.M.selfadjointView<Eigen::Upper>();
+    MatrixXd M_inverse = data.Minv.selfadjointView<Eigen::Upper>();
+    if (algorithm == RneaDerivatives) return {data.dtau_dq, data.dtau_dv, M};
+    if (algorithm == AbaDerivatives) return {data.ddq_dq, data.ddq_dv, M_inverse};
+    return {};
 }
 
 } // namespace
@@ -119,6 +136,8 @@ void peer_run(Robot* robot, int algorithm) {
 // The result at one state.
 void peer_result(Robot* robot, int algorithm, int state, double* out, int length) {
     auto result = evaluate(*robot, Algorithm(algorithm), robot->states[state]);
-    std::copy(result, result + length, out);
+    auto derivatives = matrices(robot->data, Algorithm(algorithm));
+    if (derivatives.empty()) std::copy(result, result + length, out);
+    for (const auto& matrix : derivatives) out = std::copy(matrix.data(), matrix.data() + matrix.size(), out);
 }
 }

@@ -31,6 +31,8 @@ pub enum Algorithm {
     CrbaLocal,
     Coriolis,
     NonLinearEffects,
+    RneaDerivatives,
+    AbaDerivatives,
 }
 
 impl Algorithm {
@@ -43,6 +45,8 @@ impl Algorithm {
             Algorithm::CrbaLocal => "crba, LOCAL",
             Algorithm::Coriolis => "computeCoriolisMatrix",
             Algorithm::NonLinearEffects => "nonLinearEffects",
+            Algorithm::RneaDerivatives => "computeRNEADerivatives",
+            Algorithm::AbaDerivatives => "computeABADerivatives",
         }
     }
 }
@@ -130,7 +134,7 @@ impl Robot {
         move || unsafe { run(self.this, algorithm as c_int) }
     }
 
-    /// The result at one state: a vector, or a matrix by columns.
+    /// The result at one state: a vector, or matrices by columns. No longer than `length`.
     pub fn result(&self, algorithm: Algorithm, state: usize, length: usize) -> Vec<f64> {
         let mut out = vec![0.0; length];
         // SAFETY: the type is that of pinocchio.cpp; `out` is as long as said.

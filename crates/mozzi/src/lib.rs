@@ -50,7 +50,7 @@ mod task_space;
 #[cfg(test)]
 mod testing;
 
-pub use api::{BodyFrame, NewtonEuler};
+pub use api::{BodyFrame, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, NewtonEuler};
 pub use dynamics::*;
 pub use kinematics::*;
 pub use lie::{SE3, SO3};

@@ -145,6 +145,87 @@ entry! {
     coriolis_matrix(theta, dtheta; C)
 }
 
+/// [`inverse_dynamics_derivatives`](kernel::inverse_dynamics_derivatives()): `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`.
+///
+/// # Panics
+/// On slices of a wrong length.
+pub fn inverse_dynamics_derivatives(
+    model: &Model,
+    theta: &[f64],
+    dtheta: &[f64],
+    ddtheta: &[f64],
+    environment: &Environment,
+    workspace: &mut Workspace,
+    derivatives: [&mut [f64]; 3],
+) {
+    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2,fma"))]
+    fn entry(
+        model: &Model,
+        [theta, dtheta, ddtheta]: [&[Fused]; 3],
+        environment: &Environment<Fused>,
+        workspace: &mut crate::Workspace<Fused>,
+        derivatives: [&mut [Fused]; 3],
+    ) {
+        kernel::inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, workspace, derivatives);
+    }
+    match &mut workspace.0 {
+        Inner::Plain(workspace) => {
+            kernel::inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, workspace, derivatives);
+        }
+        Inner::Fused(workspace, applied) => {
+            let environment = &fused_environment(environment, applied);
+            let (state, derivatives) = ([theta, dtheta, ddtheta].map(fused), derivatives.map(fused_mut));
+            #[allow(unused_unsafe)] // no target feature elsewhere
+            // SAFETY: the variant exists only where the processor has AVX2 and FMA.
+            unsafe {
+                entry(model, state, environment, workspace, derivatives)
+            }
+        }
+    }
+}
+
+/// [`forward_dynamics_derivatives`](kernel::forward_dynamics_derivatives()): θ̈, and `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`.
+///
+/// # Panics
+/// On slices of a wrong length.
+#[allow(clippy::too_many_arguments)] // the kernel's
+pub fn forward_dynamics_derivatives(
+    model: &Model,
+    theta: &[f64],
+    dtheta: &[f64],
+    tau: &[f64],
+    environment: &Environment,
+    workspace: &mut Workspace,
+    ddtheta: &mut [f64],
+    derivatives: [&mut [f64]; 3],
+) {
+    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2,fma"))]
+    fn entry(
+        model: &Model,
+        [theta, dtheta, tau]: [&[Fused]; 3],
+        environment: &Environment<Fused>,
+        workspace: &mut crate::Workspace<Fused>,
+        ddtheta: &mut [Fused],
+        derivatives: [&mut [Fused]; 3],
+    ) {
+        kernel::forward_dynamics_derivatives(model, theta, dtheta, tau, environment, workspace, ddtheta, derivatives);
+    }
+    match &mut workspace.0 {
+        Inner::Plain(w) => {
+            kernel::forward_dynamics_derivatives(model, theta, dtheta, tau, environment, w, ddtheta, derivatives);
+        }
+        Inner::Fused(workspace, applied) => {
+            let environment = &fused_environment(environment, applied);
+            let (state, derivatives) = ([theta, dtheta, tau].map(fused), derivatives.map(fused_mut));
+            #[allow(unused_unsafe)] // no target feature elsewhere
+            // SAFETY: the variant exists only where the processor has AVX2 and FMA.
+            unsafe {
+                entry(model, state, environment, workspace, fused_mut(ddtheta), derivatives)
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,7 +248,12 @@ mod tests {
                 velocity_product(&model, &theta, &dtheta, &mut w, &mut c);
                 mass_matrix(&model, &theta, &mut w, &mut M);
                 coriolis_matrix(&model, &theta, &dtheta, &mut w, &mut C);
-                [tau, ddtheta, h, c, M, C]
+                let mut by = [(); 6].map(|()| vec![0.0; n * n]);
+                let ([a, b, c_, d, e, f], mut again) = (by.each_mut().map(|x| &mut x[..]), vec![0.0; n]);
+                inverse_dynamics_derivatives(&model, &theta, &dtheta, &x, &environment, &mut w, [a, b, c_]);
+                let three = [d, e, f];
+                forward_dynamics_derivatives(&model, &theta, &dtheta, &x, &environment, &mut w, &mut again, three);
+                [vec![tau, ddtheta, h, c, M, C, again], by.to_vec()].concat()
             };
             let portable = run(Workspace::portable(&model));
             for (a, b) in run(Workspace::new(&model)).iter().zip(&portable) {

@@ -43,6 +43,7 @@ fn kernels_allocate_nothing() {
         let (theta, dtheta, ddtheta) = (vec![0.3; n], vec![-0.2; n], vec![0.7; n]);
         let (mut tau, mut M, mut J) = (vec![0.0; n], vec![0.0; n * n], vec![Twist::zero(); n]);
         let mut H = vec![Twist::zero(); n * n];
+        let mut by = [vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]];
         let tip = model.end_effector().unwrap();
         let push = [(tip, mozzi::Wrench::from_array([1.0; 6]))];
         let environment = mozzi::Environment { applied: &push, ..model.environment() };
@@ -82,8 +83,20 @@ fn kernels_allocate_nothing() {
         native::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut fast, &mut tau);
         native::mass_matrix(&model, &theta, &mut fast, &mut M);
         native::coriolis_matrix(&model, &theta, &dtheta, &mut fast, &mut M);
+        let x = &ddtheta;
+        mozzi::gravity_forces_derivative(&model, &theta, model.gravity(), &mut w, &mut M);
+        mozzi::tip_forces_derivative(&model, &theta, &push, &mut w, &mut M);
+        mozzi::mass_matrix_product_derivative(&model, &theta, x, &mut w, &mut M);
+        let three = by.each_mut().map(|matrix| &mut matrix[..]);
+        mozzi::inverse_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut w, three);
+        let three = by.each_mut().map(|matrix| &mut matrix[..]);
+        mozzi::forward_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut w, &mut tau, three);
+        let three = by.each_mut().map(|matrix| &mut matrix[..]);
+        native::inverse_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut fast, three);
+        let three = by.each_mut().map(|matrix| &mut matrix[..]);
+        native::forward_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut fast, &mut tau, three);
         assert_eq!(ALLOCATIONS.get() - before, 0);
-        assert!(tau.iter().chain(&M).all(|x| x.is_finite()));
+        assert!(tau.iter().chain(&M).chain(by.iter().flatten()).all(|x| x.is_finite()));
     }
 }
 

@@ -1,12 +1,14 @@
 //! The methods of [`Model`]: the kernels on plain numbers, answering with an error where a kernel would panic, and with
 //! nalgebra's vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
 
+mod derivatives;
 mod dynamics;
 mod forward_dynamics;
 mod kinematics;
 mod momentum;
 mod newton_euler;
 
+pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 
 use crate::model::{Environment, Error, FrameId, Model};

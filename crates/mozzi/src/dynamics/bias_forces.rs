@@ -97,7 +97,7 @@ fn rest<S: Scalar + From<C>, C: Scalar>(
 
 /// n zeros, lent by the workspace: to be given back.
 #[inline(always)]
-fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
+pub(super) fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
     let mut zero = core::mem::take(&mut workspace.vector);
     zero.fill(S::zero());
     zero

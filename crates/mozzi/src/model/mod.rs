@@ -3,6 +3,7 @@
 mod base;
 mod build;
 mod check;
+mod couples;
 pub mod description;
 mod edit;
 mod environment;

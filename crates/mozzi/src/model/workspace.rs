@@ -19,6 +19,8 @@ pub struct Workspace<S = f64> {
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
     pub(crate) F: Vec<Wrench<S>>,
+    /// A, Ȧ and Ä of each joint's axis, as the parent carries it.
+    pub(crate) axes: Vec<[Twist<S>; 3]>,
     /// Composite inertia 𝒢ᶜ.
     pub(crate) G_c: Vec<SpatialInertia<S>>,
     /// Its rate.
@@ -48,6 +50,7 @@ impl<S: Scalar> Workspace<S> {
             V: vec![Twist::zero(); slots.max(n)],
             dV: vec![Twist::zero(); slots],
             F: vec![Wrench::zero(); slots],
+            axes: vec![[Twist::zero(); 3]; slots],
             G_c: vec![SpatialInertia::zero(); slots],
             dG_c: vec![SpatialInertia::zero(); slots],
             G_hat: vec![SpatialInertia::zero().into(); slots],
@@ -70,6 +73,7 @@ impl<S: Scalar> Workspace<S> {
         self.dV.fill(V);
         self.F.fill(F);
         self.U.fill(F);
+        self.axes.fill([V; 3]);
         self.G_c.fill(G);
         self.dG_c.fill(G);
         self.G_hat.fill(G.into());

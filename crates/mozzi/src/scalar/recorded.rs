@@ -28,6 +28,7 @@ enum Step {
 
 std::thread_local!(static TAPE: RefCell<Vec<Step>> = const { RefCell::new(Vec::new()) });
 
+#[inline(never)] // thousands of calls in one function
 fn record(step: Step) -> Recorded {
     TAPE.with_borrow_mut(|tape| {
         tape.push(step);

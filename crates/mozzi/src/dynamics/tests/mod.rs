@@ -1,5 +1,6 @@
 //! The kernels against the closed form, against each other, and against the identities of mechanics, on random trees.
 
+mod derivatives;
 mod numbers;
 
 use crate::model::{Environment, Model, Workspace};

@@ -39,6 +39,30 @@ fn the_workspace_has_no_meaning_between_calls() {
             all.push(kernel::kinetic_energy(&model, &theta, &dtheta, crate::Twist::zero(), workspace));
             poison(workspace);
             all.push(kernel::potential_energy(&model, &theta, environment.gravity, workspace));
+            let mut three = [(); 3].map(|()| alloc::vec![f64::NAN; n * n]);
+            poison(workspace);
+            let slices = three.each_mut().map(|x| &mut x[..]);
+            kernel::inverse_dynamics_derivatives(&model, &theta, &dtheta, &ddtheta, &environment, workspace, slices);
+            three.iter().for_each(|x| all.extend_from_slice(x));
+            poison(workspace);
+            let slices = three.each_mut().map(|x| &mut x[..]);
+            kernel::forward_dynamics_derivatives(
+                &model,
+                &theta,
+                &dtheta,
+                &ddtheta,
+                &environment,
+                workspace,
+                &mut out,
+                slices,
+            );
+            three.iter().chain([&out]).for_each(|x| all.extend_from_slice(x));
+            poison(workspace);
+            kernel::gravity_forces_derivative(&model, &theta, environment.gravity, workspace, &mut square);
+            all.extend_from_slice(&square);
+            poison(workspace);
+            kernel::mass_matrix_product_derivative(&model, &theta, &ddtheta, workspace, &mut square);
+            all.extend_from_slice(&square);
             all
         };
         let clean = run(&mut Workspace::new(&model), true);
@@ -116,6 +140,7 @@ fn a_massless_tip_is_a_singular_mass_matrix() {
         model.forward_dynamics(&x, &x, &x, &environment),
         model.forward_dynamics_by_mass_matrix(&x, &x, &x, &environment),
         model.forward_dynamics_by_inverse_dynamics(&x, &x, &x, &environment),
+        model.forward_dynamics_derivatives(&x, &x, &x, &environment).map(|found| found.ddtheta),
     ] {
         let message = result.expect_err("nothing to accelerate").to_string();
         assert!(message.contains("singular at joint `last`"), "{message}");
@@ -152,6 +177,11 @@ fn a_recording_plays_back_bit_for_bit() {
         kernel::inverse_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut tau);
         kernel::forward_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut found);
         kernel::coriolis_matrix(&model, &q, &dq, &mut w, &mut M);
+        let mut by = [(); 6].map(|()| alloc::vec![zero; n * n]);
+        let [a, b, c, d, e, f] = by.each_mut().map(|x| &mut x[..]);
+        kernel::inverse_dynamics_derivatives(&model, &q, &dq, &ddq, &environment, &mut w, [a, b, c]);
+        let mut x = alloc::vec![zero; n];
+        kernel::forward_dynamics_derivatives(&model, &q, &dq, &ddq, &environment, &mut w, &mut x, [d, e, f]);
         let value = play(&[&theta[..], &dtheta, &ddtheta].concat());
         let played = |list: &[Recorded]| list.iter().map(|&x| value(x)).collect::<alloc::vec::Vec<f64>>();
         let environment = model.environment();
@@ -164,6 +194,12 @@ fn a_recording_plays_back_bit_for_bit() {
             model.forward_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("regular").as_slice()
         );
         assert_eq!(played(&M), model.coriolis_matrix(&theta, &dtheta).expect("lengths").transpose().as_slice());
+        let of_tau = model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+        let of_ddtheta = model.forward_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("regular");
+        assert_eq!(played(&by[0]), of_tau.by_theta.transpose().as_slice());
+        assert_eq!(played(&by[1]), of_tau.by_dtheta.transpose().as_slice());
+        assert_eq!(played(&by[3]), of_ddtheta.by_theta.transpose().as_slice());
+        assert_eq!(played(&by[5]), of_ddtheta.by_tau.as_slice());
     }
 }
 

@@ -1,0 +1,278 @@
+//! ∂τ of inverse dynamics, analytic (Carpentier and Mansard 2018; Singh, Russell and Wensing 2022).
+//!
+//! All twists and wrenches are in the coordinates of the base link, in which axes move and composite bodies add up. Ad maps
+//! drop out; what is left of a joint that turns or slides is its bracket.
+//!
+//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p. So its rates are, θ̇ and θ̈ being per unit,
+//!
+//! > Ȧ = `[ad_𝒱_p]` A, Ä = `[ad_𝒱̇_p]` A + `[ad_𝒱_p]` Ȧ, and 𝒱 = 𝒱_p + A θ̇, 𝒱̇ = 𝒱̇_p + Ȧ θ̇ + A θ̈
+//!
+//! **What a body beyond the joint sees.** A small motion of the joint carries all links beyond it along, without a change of
+//! the joints between them. Seen from such a link, whose own coordinates are carried too, its twist, its acceleration and the
+//! wrench 𝓕 = 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 change by
+//!
+//! > ∂𝒱 = Ȧ, ∂𝒱̇ = Ä − `[ad_𝒱]` Ȧ, ∂𝓕 = 𝒢 Ä + (−𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢) Ȧ − `[ad_Ȧ]`ᵀ 𝒢𝒱 = 𝒢 Ä + 𝓑 Ȧ, by θ
+//! >
+//! > ∂𝒱 = A, ∂𝒱̇ = 2 Ȧ − `[ad_𝒱]` A, ∂𝓕 = 2 𝒢 Ȧ + 𝓑 A, by θ̇
+//! >
+//! > ∂𝒱 = 0, ∂𝒱̇ = A, ∂𝓕 = 𝒢 A, by θ̈
+//!
+//! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia, ten numbers, and H(P)A = −`[ad_A]`ᵀP, skew. The axes
+//! do not depend on the link, so 𝒢, 𝒢̇, the momentum 𝒢𝒱 and 𝓕 add up over all that hangs from the joint: 32 numbers, no
+//! 6 × 6 matrix. A wrench that is applied to a link is constant in its coordinates and adds to 𝓕 alone.
+//!
+//! **What a joint i carries**, τ_i = A_iᵀ𝓕ᶜ_i. By a joint j at i or between it and the base, axis and wrench are both carried, and what is
+//! left is ∂𝓕 of the bodies beyond i. By a joint j beyond i, they are the bodies beyond j that change, and are carried past an axis that is not:
+//!
+//! > ∂τ_i/∂θ_j = A_iᵀ (𝒢ᶜ_i Ä_j + 𝓑ᶜ_i Ȧ_j), j at or before i; A_iᵀ (𝒢ᶜ_j Ä_j + 𝓑ᶜ_j Ȧ_j − `[ad_A_j]`ᵀ 𝓕ᶜ_j), j beyond i
+//! >
+//! > ∂τ_i/∂θ̇_j = A_iᵀ (2 𝒢ᶜ Ȧ_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
+
+use super::bias_forces::take_zeros;
+use crate::kinematics::{base_motion, base_pose, joint_transforms};
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::{Twist, Wrench};
+
+/// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n, row-major: row i is τ_i's.
+///
+/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ for a joint, the
+/// body twist of a free base, in its own coordinates. The wrenches that are applied keep their coordinates in their frames, {s} its
+/// motion. Friction adds d to the diagonal of ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
+///
+/// Entries are 0 unless [`couples`](Model::couples) i and j.
+///
+/// Cost O(n · depth) beside 3 n² zeros, no allocation.
+///
+/// # Panics
+/// When θ is not nq long, θ̇ or θ̈ not n, or a derivative not n².
+#[inline(always)]
+#[rustfmt::skip]
+pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, [by_theta, by_dtheta, M]: [&mut [S]; 3],
+) {
+    joint_transforms(model, theta, workspace);
+    derivatives(model, theta, dtheta, ddtheta, environment, workspace, by_theta, Some([by_dtheta, M]));
+}
+
+/// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
+#[inline(always)]
+#[rustfmt::skip] // one equation a line
+#[allow(clippy::too_many_arguments)]
+pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>,
+    workspace: &mut Workspace<S>, by_theta: &mut [S], mut by_rates: Option<[&mut [S]; 2]>,
+) {
+    let n = model.n();
+    model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
+    clear(model, by_theta);
+    if let Some([by_dtheta, M]) = &mut by_rates {
+        clear(model, by_dtheta);
+        clear(model, M);
+        for j in 0..n {
+            by_dtheta[j * n + j] = S::from(model.damping[j]);
+            M[j * n + j] = S::from(model.armature[j]);
+        }
+    }
+    let Workspace { T, V, dV, F, axes, G_c, dG_c, U: P, .. } = workspace;
+
+    // base: {s}, which carries the axes of a free base, seen from it; then its own motion
+    let Ad = base_pose(model, theta).inverse().Ad();
+    let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
+    (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
+    let G = model.base_inertia.map(S::from);
+    T[0] = SE3::identity();
+    (G_c[0], dG_c[0], P[0]) = (G, G.rate(V[0]), G * V[0]);
+    F[0] = G * dV[0] - V[0].ad().transpose() * P[0];
+
+    // base to tips: axes with their rates, twists, accelerations
+    for (i, link) in model.outward::<S>() {
+        let (p, j) = (link.parent, link.j);
+        T[i]  = T[i] * T[p];                                                 // T_i0
+        let A   = link.A.seen_through(T[i]) * link.ratio;
+        let dA  = V[p].ad() * A;
+        let ddA = dV[p].ad() * A + V[p].ad() * dA;
+        V[i]  = V[p] + A * dtheta[j];
+        dV[i] = dV[p] + dA * dtheta[j] + A * ddtheta[j];
+        axes[i] = [A, dA, ddA];
+    }
+    // inertia, its rate, momentum and wrench of each link
+    for (i, link) in model.outward::<S>() {
+        let G = link.G.congruence(T[i].Ad());
+        (G_c[i], dG_c[i], P[i]) = (G, G.rate(V[i]), G * V[i]);
+        F[i]  = G * dV[i] - V[i].ad().transpose() * P[i];
+    }
+    for &(frame, F_b) in environment.applied {
+        let frame = model.frame_at::<S>(frame);
+        F[frame.slot] += (frame.T.inverse() * T[frame.slot]).Ad().transpose() * F_b;
+    }
+
+    // tips to base: link i with all that hangs from it
+    for (i, link) in model.inward::<S>() {
+        let (p, j, [A, dA, ddA]) = (link.parent, link.j, axes[i]);
+        let (G, dG, ad_t) = (G_c[i], dG_c[i], A.ad().transpose());
+        let (GA, GdA, dGA, HA) = (G * A, G * dA, dG * A, -(ad_t * P[i]));
+        let BdA     = dG * dA - dA.ad().transpose() * P[i];
+        let column  = G * ddA + BdA - ad_t * F[i];                           // ∂𝓕 by θ_j, felt below joint i
+        let dcolumn = GdA + GdA + dGA + HA;                                  // by θ̇_j
+        let BtA     = dGA - HA;                                              // 𝓑ᵀA
+        let wrenches = [column, dcolumn, BtA, GA].map(Wrench::to_array);
+        by_theta[j * n + j] += A.dot(column);
+        if let Some([by_dtheta, M]) = &mut by_rates {
+            by_dtheta[j * n + j] += A.dot(dcolumn);
+            M[j * n + j]         += A.dot(GA);
+        }
+        let mut k = p;
+        while k > 0 {
+            let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
+            let (ij, ji) = (below.j * n + j, j * n + below.j);
+            let [AF, dAF, ABtA, AGA] = products(A, wrenches);
+            by_theta[ij] += AF;
+            by_theta[ji] += ddA.dot(GA) + dA.dot(BtA);
+            if let Some([by_dtheta, M]) = &mut by_rates {
+                let dAGA = dA.dot(GA);
+                by_dtheta[ij] += dAF;
+                by_dtheta[ji] += dAGA + dAGA + ABtA;
+                M[ij] += AGA;
+                M[ji] += AGA;
+            }
+            k = below.parent;
+        }
+        if model.is_floating() {
+            let (s_t, ds_t) = (V_s.ad().transpose(), dV_s.ad().transpose());
+            let row  = ds_t * GA + s_t * (s_t * GA + BtA);                   // (𝒢A)ᵀÄ_e + (𝓑ᵀA)ᵀȦ_e for each e
+            let drow = (V_s + V[0]).ad().transpose() * GA + BtA;
+            add_cross(by_theta, n, j, column, row);
+            if let Some([by_dtheta, M]) = &mut by_rates {
+                add_cross(by_dtheta, n, j, dcolumn, drow);
+                add_cross(M, n, j, GA, GA);
+            }
+        }
+        let (P_i, F_i) = (P[i], F[i]);
+        G_c[p]  += G;
+        dG_c[p] += dG;
+        P[p]    += P_i;
+        F[p]    += F_i;
+    }
+
+    // a free base: the axes e, which {s} carries
+    if model.is_floating() {
+        let (G, dG) = (G_c[0], dG_c[0]);
+        for (r, e) in Twist::axes().into_iter().enumerate() {
+            let de = V_s.ad() * e;
+            let column = G * (dV_s.ad() * e + V_s.ad() * de) + dG * de - de.ad().transpose() * P[0];
+            set_column(by_theta, n, r, column);
+            if let Some([by_dtheta, M]) = &mut by_rates {
+                set_column(by_dtheta, n, r, G * (de + V[0].ad() * e) + dG * e - e.ad().transpose() * P[0]);
+                set_column(M, n, r, G * e);
+            }
+        }
+    }
+}
+
+/// AᵀF of four wrenches, side by side.
+#[inline(always)]
+fn products<S: Scalar>(A: Twist<S>, F: [[S; 6]; 4]) -> [S; 4] {
+    let A = A.to_array();
+    let mut sum = F.map(|F| F[0] * A[0]);
+    for c in 1..6 {
+        for l in 0..4 {
+            sum[l] = F[l][c].mul_add(A[c], sum[l]);
+        }
+    }
+    sum
+}
+
+/// n × n zeros.
+#[inline(always)]
+#[track_caller]
+fn clear<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
+    let n = model.n();
+    assert!(X.len() == n * n, "a derivative has {} entries, expected n² = {}", X.len(), n * n);
+    X.fill(S::zero());
+}
+
+/// Column j and row j at a free base's six.
+#[inline(always)]
+fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
+    for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
+        X[r * n + j] += column;
+        X[j * n + r] += row;
+    }
+}
+
+/// A column of a free base's 6 × 6 block.
+#[inline(always)]
+fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
+    for (s, entry) in column.to_array().into_iter().enumerate() {
+        X[s * n + r] = entry;
+    }
+}
+
+/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is bolted: g is a gradient. Of a free base along its body
+/// twist, as [`inverse_dynamics_derivatives`].
+///
+/// Cost O(n · depth) beside n² zeros, no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `dg` not n².
+pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    gravity: Vec3<S>,
+    workspace: &mut Workspace<S>,
+    dg: &mut [S],
+) {
+    at_rest(model, theta, None, &Environment::with_gravity(gravity), workspace, dg);
+}
+
+/// ∂(JᵀF)/∂θ, n × n, row-major into `dtau`, of wrenches that keep their coordinates in their frames.
+///
+/// Cost O(n · depth) beside n² zeros, no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `dtau` not n².
+pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    applied: &[(FrameId, Wrench<S>)],
+    workspace: &mut Workspace<S>,
+    dtau: &mut [S],
+) {
+    let environment = Environment { applied, ..Environment::with_gravity(Vec3::zero()) };
+    at_rest(model, theta, None, &environment, workspace, dtau);
+}
+
+/// ∂(M(θ)x)/∂θ for a constant x, n × n, row-major into `dMx`. Armature is constant and drops out.
+///
+/// Cost O(n · depth) beside n² zeros, no allocation.
+///
+/// # Panics
+/// When θ is not nq long, x not n, or `dMx` not n².
+pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    x: &[S],
+    workspace: &mut Workspace<S>,
+    dMx: &mut [S],
+) {
+    at_rest(model, theta, Some(x), &Environment::with_gravity(Vec3::zero()), workspace, dMx);
+}
+
+/// ∂τ/∂θ of inverse dynamics at θ̇ = 0, and θ̈ = 0 or as given.
+fn at_rest<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    ddtheta: Option<&[S]>,
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    by_theta: &mut [S],
+) {
+    let zero = take_zeros(workspace);
+    joint_transforms(model, theta, workspace);
+    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, by_theta, None);
+    workspace.vector = zero;
+}
