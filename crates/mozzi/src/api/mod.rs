@@ -6,6 +6,7 @@ mod forward_dynamics;
 mod kinematics;
 mod momentum;
 mod newton_euler;
+mod regressor;
 
 pub use newton_euler::{BodyFrame, NewtonEuler};
 

@@ -1,6 +1,7 @@
 //! The kernels against the closed form, against each other, and against the identities of mechanics, on random trees.
 
 mod numbers;
+mod regressor;
 
 use crate::model::{Environment, Model, Workspace};
 use crate::testing::{floating_tree, moving, state, tree, twist, wrench};
