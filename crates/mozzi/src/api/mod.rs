@@ -1,6 +1,7 @@
 //! The methods of [`Model`]: the kernels on plain numbers, answering with an error where a kernel would panic, and with
 //! nalgebra's vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
 
+mod derivative;
 mod dynamics;
 mod forward_dynamics;
 mod kinematics;
