@@ -223,6 +223,14 @@ mod tests {
     }
 
     #[test]
+    fn a_free_body_shows_all_of_itself_and_a_bolted_one_nothing() {
+        let body = Description::new("body").link("it", inertia(1));
+        let free = body.clone().floating().build().expect("sound");
+        assert_eq!(free.base_parameters().names(), free.parameter_names());
+        assert_eq!(body.build().expect("sound").base_parameters().count(), 0);
+    }
+
+    #[test]
     fn they_give_the_same_forces_and_their_number_is_the_rank() {
         for (seed, model) in tests::models().filter(|(_, model)| model.n() < 16) {
             let base = model.base_parameters();
