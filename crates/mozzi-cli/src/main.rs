@@ -45,6 +45,8 @@ enum Command {
     /// θ̈ from θ, θ̇, τ: one state, or a table of states
     #[command(after_help = TABLES)]
     ForwardDynamics(forward_dynamics::ForwardArguments),
+    /// ∂τ and ∂θ̈ with respect to θ, θ̇, θ̈ and τ, exact, at one state
+    Derivatives(commands::derivatives::DerivativesArguments),
     /// The motion from a state, under torques and a tip wrench
     #[command(after_help = TABLES)]
     Simulate(simulate::SimulateArguments),
@@ -74,6 +76,7 @@ Examples:
   mozzi inverse-dynamics panda --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
   mozzi inverse-dynamics ur5 --in motion.csv --out torques.csv
   mozzi forward-dynamics ur5 --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
+  mozzi derivatives ur5 --theta 0,-1.2,1.5,0.3,1.1,0    exact derivatives of τ and θ̈
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
 
@@ -123,6 +126,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Terms(arguments)) => terms::run(arguments),
         Some(Command::InverseDynamics(arguments)) => inverse_dynamics::run(arguments),
         Some(Command::ForwardDynamics(arguments)) => forward_dynamics::run(arguments),
+        Some(Command::Derivatives(arguments)) => commands::derivatives::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),

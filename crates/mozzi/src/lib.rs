@@ -25,6 +25,8 @@
 //!   kernels on `f64` with the machine's instruction set, for control loops.
 //! - To look at: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
 //! - In time: [`simulation`].
+//! - Derivatives: along any direction, [`Model::derivative_along`]; by a robot's parameters, [`Model::varying`], and
+//!   linear in them, [`Model::regressor`]; through time, [`Model::step_sensitivity`].
 //! - Beside Pinocchio and MuJoCo: [`conventions`].
 //!
 //! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is

@@ -1,7 +1,5 @@
 //! Random values for the tests.
 
-use crate::Dual;
-use crate::kinematics::integrate;
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
 use crate::model::description::{Joint, JointKind, Mimic};
@@ -104,13 +102,7 @@ pub fn floating_tree(seed: u64, links: usize, followers: usize) -> Model {
     tree(seed, links, followers).with_base(Base::Floating).expect("a sound robot")
 }
 
-/// θ ⊕ θ̇ε: the positions as dual numbers whose derivative is along θ̇.
-pub fn moving(model: &Model, theta: &[f64], dtheta: &[f64]) -> alloc::vec::Vec<Dual> {
-    let mut theta: alloc::vec::Vec<Dual> = theta.iter().map(|&x| Dual::constant(x)).collect();
-    let dtheta: alloc::vec::Vec<Dual> = dtheta.iter().map(|&x| Dual::constant(x)).collect();
-    integrate(model, &mut theta, &dtheta, Dual { value: 0.0, derivative: 1.0 });
-    theta
-}
+pub use crate::kinematics::moving_along as moving;
 
 /// A random state (θ, θ̇, θ̈) of a model.
 pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {

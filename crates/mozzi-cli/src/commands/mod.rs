@@ -3,6 +3,7 @@
 pub mod check;
 pub mod compare;
 pub mod convert;
+pub mod derivatives;
 pub mod explain;
 pub mod forward_dynamics;
 pub mod info;

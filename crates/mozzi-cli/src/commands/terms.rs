@@ -1,5 +1,6 @@
 //! `mozzi terms`: every quantity of the dynamics at one state.
 
+use super::derivatives::Derivatives;
 use super::{terms_json, terms_text};
 use crate::failure::{self, Failure, Result};
 use crate::json;
@@ -68,6 +69,7 @@ pub struct Terms<'m> {
     pub forward_dynamics: Option<DVector<f64>>,
     pub kinetic_energy: f64,
     pub potential_energy: f64,
+    pub derivatives: Derivatives,
     pub newton_euler: NewtonEuler,
     /// None without end effector, and where the task is singular.
     pub task: Option<TaskSpaceDynamics>,
@@ -142,6 +144,7 @@ impl<'m> Terms<'m> {
             forward_dynamics,
             kinetic_energy: model.kinetic_energy(&theta, &dtheta)?,
             potential_energy: model.potential_energy(&theta)?,
+            derivatives: Derivatives::at(model, [&theta, &dtheta, &ddtheta], environment)?,
             newton_euler: model.newton_euler(&theta, &dtheta, &ddtheta, environment, BodyFrame::CenterOfMass)?,
             task: None,
             task_rows: (0..6).collect(),

@@ -49,6 +49,7 @@ pub fn object(terms: &Terms) -> Value {
             "J": matrix(&task.J),
             "dJ_dtheta": dvector(&task.dJ_dtheta),
         })),
+        "derivatives": terms.derivatives.object(),
         "newton_euler": {
             "links": model.moving_joints().map(|joint| joint.child.as_str()).collect::<Vec<_>>(),
             "frames": "center_of_mass",

@@ -33,6 +33,7 @@ pub fn page(terms: &Terms) -> String {
     }
     page.title("the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ̇)").lines(&matrices(terms));
     page.blank().lines(&sum(terms)).blank().lines(&further(terms));
+    page.title("derivatives of inverse and forward dynamics").lines(&terms.derivatives.lines());
     page.title("the Newton-Euler recursion, in frames {i} at the links' centres of mass, angular first");
     page.lines(&recursion(terms));
     page.title("the dynamics in the task space, F = Λ V̇ + η").lines(&task(terms));

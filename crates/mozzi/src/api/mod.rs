@@ -2,11 +2,13 @@
 //! nalgebra's vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
 
 mod derivatives;
+mod derivative;
 mod dynamics;
 mod forward_dynamics;
 mod kinematics;
 mod momentum;
 mod newton_euler;
+mod regressor;
 
 pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};

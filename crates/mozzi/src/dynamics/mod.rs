@@ -1,5 +1,6 @@
 //! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇).
 
+mod base_parameters;
 mod bias_forces;
 mod closed_form;
 mod coriolis_matrix;
@@ -12,10 +13,12 @@ mod joint_friction;
 mod mass_matrix;
 mod mass_matrix_solve;
 mod momentum;
+mod regressor;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
+pub use base_parameters::BaseParameters;
 pub use bias_forces::{bias_forces, gravity_forces, tip_forces, velocity_product};
 pub use closed_form::ClosedForm;
 pub use coriolis_matrix::{coriolis_matrix, mass_matrix_rate};
@@ -30,3 +33,4 @@ pub use joint_friction::joint_friction;
 pub use mass_matrix::mass_matrix;
 pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;
 pub use momentum::{momentum, momentum_matrix, momentum_rate, total_inertia};
+pub use regressor::{energy_regressors, regressor};

@@ -3,7 +3,7 @@
 use crate::lie::{SE3, SO3, series};
 use crate::linalg::Vec3;
 use crate::model::{Base, Model};
-use crate::scalar::{Real, Scalar};
+use crate::scalar::{Dual, Real, Scalar};
 use crate::spatial::Twist;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -49,6 +49,17 @@ pub fn difference<S: Real, C: Scalar>(model: &Model<C>, theta0: &[S], theta1: &[
     for ((d, &q0), &q1) in difference[velocities..].iter_mut().zip(&theta0[positions..]).zip(&theta1[positions..]) {
         *d = q1 - q0;
     }
+}
+
+/// θ ⊕ δθ ε: the positions as dual numbers that move along δθ, n numbers as velocities are. What is computed of them has beside its
+/// value its derivative in this direction. With θ of [`Dual`]s, and those of another direction, come second derivatives.
+///
+/// # Panics
+/// When θ is not nq long, or δθ not n.
+pub fn moving_along<S: Real, C: Scalar>(model: &Model<C>, theta: &[S], along: &[S]) -> Vec<Dual<S>> {
+    let mut theta = Dual::constants(theta);
+    integrate(model, &mut theta, &Dual::constants(along), Dual { value: S::zero(), derivative: S::one() });
+    theta
 }
 
 /// [`integrate`] by what of the model it needs.

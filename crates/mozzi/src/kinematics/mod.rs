@@ -15,7 +15,7 @@ pub(crate) use base::{base_motion, base_pose, base_twist};
 pub(crate) use configuration::{advance, rate_of_logarithm};
 pub(crate) use joint_transforms::joint_transforms;
 
-pub use configuration::{difference, integrate};
+pub use configuration::{difference, integrate, moving_along};
 pub use forward::{forward_kinematics, frame_poses};
 pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
 pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};

@@ -159,7 +159,7 @@ impl Model<f64> {
 }
 
 impl Description {
-    fn joint_at(&self, name: &str) -> Result<usize, Error> {
+    pub(super) fn joint_at(&self, name: &str) -> Result<usize, Error> {
         self.joints.iter().position(|joint| joint.name == name).ok_or_else(|| Error::NoSuchJoint {
             name: name.to_string(),
             known: self.joints.iter().map(|joint| joint.name.clone()).collect(),

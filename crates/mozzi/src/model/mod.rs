@@ -10,9 +10,11 @@ mod environment;
 mod error;
 mod frame;
 mod link;
+mod parameters;
 mod provenance;
 mod screws;
 mod traverse;
+mod variation;
 mod workspace;
 
 use crate::linalg::{Vec3, ldlt::Pattern};
@@ -30,6 +32,7 @@ pub use frame::{Frame, FrameId};
 pub(crate) use link::Link;
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
+pub use variation::Variation;
 pub use workspace::Workspace;
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;

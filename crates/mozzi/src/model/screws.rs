@@ -161,11 +161,6 @@ impl Model<f64> {
         }
     }
 
-    /// The file's frame of the link on a slot, seen from the slot's normal frame.
-    pub(crate) fn link_frame(&self, slot: usize) -> SE3 {
-        if slot == 0 { SE3::identity() } else { self.frames[self.structure.moving_links[slot - 1]].T }
-    }
-
     /// The book's frame {i} seen from the slot's normal frame; the base frame itself for slot 0.
     pub(crate) fn body_frame(&self, slot: usize) -> SE3 {
         let link = self.link_frame(slot);

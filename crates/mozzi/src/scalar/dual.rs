@@ -1,6 +1,7 @@
 //! Dual numbers: a value with its derivative in one direction.
 
 use super::{Real, Scalar, assign_ops};
+use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -25,6 +26,20 @@ impl<S: Scalar> Dual<S> {
     /// A constant: derivative 0.
     pub fn constant(value: S) -> Self {
         Dual { value, derivative: S::zero() }
+    }
+
+    /// Constants: derivatives 0.
+    pub fn constants(values: &[S]) -> Vec<Self> {
+        values.iter().map(|&value| Self::constant(value)).collect()
+    }
+
+    /// Each value with its derivative.
+    ///
+    /// # Panics
+    /// When there are not as many of one as of the other.
+    pub fn list(values: &[S], derivatives: &[S]) -> Vec<Self> {
+        assert!(values.len() == derivatives.len(), "a derivative for each value");
+        values.iter().zip(derivatives).map(|(&value, &derivative)| Dual { value, derivative }).collect()
     }
 
     /// f(value) with the chain rule: f′(value) · derivative.

@@ -12,6 +12,7 @@ mod free_base;
 mod input;
 mod method;
 mod options;
+mod sensitivity;
 mod table;
 mod trajectory;
 
@@ -21,6 +22,7 @@ mod robots;
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
 pub use method::{Method, Motion};
 pub use options::{Friction, Options};
+pub use sensitivity::{EndSensitivity, StepSensitivity};
 pub use table::{Outside, Table, TorqueTable, WrenchTable};
 pub use trajectory::{Energy, Sample, Trajectory};
 

@@ -2,6 +2,7 @@
 
 mod articulated_inertia;
 mod inertia;
+mod inertia_parameters;
 mod joint_axis;
 mod nearest_physical;
 mod screw_axis;

@@ -2,6 +2,7 @@
 
 mod derivatives;
 mod numbers;
+mod regressor;
 
 use crate::model::{Environment, Model, Workspace};
 use crate::testing::{floating_tree, moving, state, tree, twist, wrench};

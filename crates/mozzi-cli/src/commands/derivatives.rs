@@ -1,0 +1,125 @@
+//! `mozzi derivatives`: how τ and θ̈ change with θ, θ̇ and each other, at one state.
+
+use crate::failure::{self, Result};
+use crate::json;
+use crate::robot::RobotArguments;
+use crate::state::{StartArguments, TipArguments, environment, velocities};
+use crate::text::{Page, beside, flow, matrix};
+use clap::Args;
+use mozzi::{Environment, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, Model};
+use nalgebra::DMatrix;
+use serde_json::{Value, json};
+
+#[derive(Args, Debug)]
+pub struct DerivativesArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    #[command(flatten)]
+    start: StartArguments,
+    /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
+    #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
+    ddtheta: Option<String>,
+    /// Forces τ of the motors, N m or N, in place of θ̈, which is then computed
+    #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
+    tau: Option<String>,
+    #[command(flatten)]
+    tip: TipArguments,
+}
+
+/// All derivatives at one state.
+pub struct Derivatives {
+    pub inverse: InverseDynamicsDerivatives,
+    /// None where the mass matrix is singular.
+    pub forward: Option<ForwardDynamicsDerivatives>,
+    /// ∂g/∂θ.
+    pub gravity: DMatrix<f64>,
+}
+
+impl Derivatives {
+    /// At (θ, θ̇, θ̈), τ being what that motion takes. A singular mass matrix is a note.
+    pub fn at(model: &Model, [theta, dtheta, ddtheta]: [&[f64]; 3], environment: &Environment) -> Result<Self> {
+        let tau = model.inverse_dynamics(theta, dtheta, ddtheta, environment)?;
+        let forward = match model.forward_dynamics_derivatives(theta, dtheta, tau.as_slice(), environment) {
+            Ok(forward) => Some(forward),
+            Err(error) => {
+                failure::note(&format!("no derivatives of forward dynamics: {error}"));
+                None
+            }
+        };
+        let inverse = model.inverse_dynamics_derivatives(theta, dtheta, ddtheta, environment)?;
+        Ok(Derivatives { inverse, forward, gravity: model.gravity_forces_derivative(theta)? })
+    }
+
+    /// Matrices beside each other.
+    pub fn lines(&self) -> Vec<String> {
+        let named = |name: &str, values: &DMatrix<f64>| (name.to_string(), matrix(values));
+        let mut lines = beside(&[
+            named("∂τ/∂θ", &self.inverse.by_theta),
+            named("∂τ/∂θ̇", &self.inverse.by_dtheta),
+            named("∂τ/∂θ̈ = M", &self.inverse.by_ddtheta),
+            named("∂g/∂θ", &self.gravity),
+        ]);
+        if let Some(forward) = &self.forward {
+            lines.extend(beside(&[
+                named("∂θ̈/∂θ", &forward.by_theta),
+                named("∂θ̈/∂θ̇", &forward.by_dtheta),
+                named("∂θ̈/∂τ = M⁻¹", &forward.by_tau),
+            ]));
+        }
+        lines
+    }
+
+    /// By the library's names.
+    pub fn object(&self) -> Value {
+        json!({
+            "inverse_dynamics": {
+                "by_theta": json::matrix(&self.inverse.by_theta),
+                "by_dtheta": json::matrix(&self.inverse.by_dtheta),
+                "by_ddtheta": json::matrix(&self.inverse.by_ddtheta),
+            },
+            "forward_dynamics": self.forward.as_ref().map(|forward| json!({
+                "by_theta": json::matrix(&forward.by_theta),
+                "by_dtheta": json::matrix(&forward.by_dtheta),
+                "by_tau": json::matrix(&forward.by_tau),
+            })),
+            "gravity_forces": { "by_theta": json::matrix(&self.gravity) },
+        })
+    }
+}
+
+pub fn run(arguments: &DerivativesArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    let (theta, dtheta) = arguments.start.read(&model)?;
+    let applied = arguments.tip.read(&model)?;
+    let environment = environment(&model, &applied);
+    let ddtheta = match &arguments.tau {
+        None => velocities("--ddtheta", arguments.ddtheta.as_deref(), &model)?,
+        Some(tau) => {
+            let tau = velocities("--tau", Some(tau), &model)?;
+            model.forward_dynamics(&theta, &dtheta, &tau, &environment)?.as_slice().to_vec()
+        }
+    };
+    let derivatives = Derivatives::at(&model, [&theta, &dtheta, &ddtheta], &environment)?;
+    if arguments.robot.json {
+        return Ok(json::print(&json!({
+            "robot": model.description().name,
+            "base": json::base(&model),
+            "positions": json::names(model.position_names()),
+            "velocities": json::names(model.velocity_names()),
+            "theta": json::vector(&theta),
+            "dtheta": json::vector(&dtheta),
+            "ddtheta": json::vector(&ddtheta),
+            "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
+            "derivatives": derivatives.object(),
+        })));
+    }
+    let mut page = Page::default();
+    page.line(format!("{}: rows and columns in the order of", model.description().name));
+    let names: Vec<String> = model.velocity_names().zip(1..).map(|(name, j)| format!("{j} {name}")).collect();
+    page.lines(&flow(&names));
+    if model.is_floating() {
+        page.line("a column by θ is along the velocity: of the free base along its twist in its own coordinates");
+    }
+    page.title("derivatives of inverse and forward dynamics").lines(&derivatives.lines());
+    Ok(page.end())
+}

@@ -1,0 +1,110 @@
+//! Forces and energies, linear in the model's parameters: the regressor (Khosla and Kanade 1985; Atkeson, An and Hollerbach 1986).
+
+use super::inverse_dynamics::newton_euler;
+use crate::kinematics::{base_pose, base_twist, joint_transforms};
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Environment, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::{SpatialInertia, Twist};
+
+/// The regressor Y(θ, θ̇, θ̈), n × p with p = [`parameter_count`](Model::parameter_count), row-major into `Y`:
+///
+/// > Y π = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ̇)
+///
+/// with π = [`parameters`](Model::parameters). Gravity and a {s} that moves are in it; `environment.applied` is not, since no
+/// parameter is in JᵀF: τ = Y π + JᵀF.
+///
+/// The wrench that a body needs is linear in its ten parameters: its columns are the wrenches of ten unit inertias in
+/// the link's frame, each felt by every joint between the body and the base.
+///
+/// > F_k = 𝒢_k 𝒱̇ − `[ad_𝒱]`ᵀ 𝒢_k 𝒱, Y_jk = Σ ratio A_jᵀ `[Ad_T]`ᵀ F_k
+///
+/// A joint's armature, damping and friction have the columns θ̈_j, θ̇_j and sgn θ̇_j in its own row. Entries are N m or N over
+/// the parameter's unit.
+///
+/// Cost O(N · depth), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, θ̇ or θ̈ not n, or `Y` not n p.
+#[rustfmt::skip]
+pub fn regressor<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, Y: &mut [S],
+) {
+    let (n, p) = (model.n(), model.parameter_count());
+    assert!(Y.len() == n * p, "Y has {} entries, expected n p = {}", Y.len(), n * p);
+    // 𝒱 and 𝒱̇ of each link, as in inverse dynamics; its forces are not asked for
+    let mut tau = core::mem::take(&mut workspace.vector);
+    newton_euler(model, theta, dtheta, ddtheta, environment, workspace, &mut tau);
+    workspace.vector = tau;
+    let Workspace { T, V, dV, .. } = workspace;
+
+    Y.fill(S::zero());
+    for (body, slot) in model.bodies().enumerate() {
+        let Ad = model.link_frame(slot).map(S::from).inverse().Ad();                     // to the link's frame
+        let (V_b, dV_b) = (Ad * V[slot], Ad * dV[slot]);
+        for (k, G) in SpatialInertia::units().into_iter().enumerate() {
+            let column = 10 * body + k;
+            let F_b = G * dV_b - V_b.ad().transpose() * (G * V_b);               // (8.53) of a unit
+            let mut F = Ad.transpose() * F_b;
+            for (i, link) in model.to_base::<S>(slot) {
+                Y[link.j * p + column] += link.ratio * (link.A * F);             // (8.54)
+                F = T[i].Ad().transpose() * F;
+            }
+            if model.is_floating() {
+                for (row, entry) in F.to_array().into_iter().enumerate() {
+                    Y[row * p + column] = entry;
+                }
+            }
+        }
+    }
+    for (k, j) in (model.base().velocities()..n).enumerate() {
+        let column = p - 3 * (n - model.base().velocities()) + 3 * k;
+        Y[j * p + column..][..3].copy_from_slice(&[ddtheta[j], dtheta[j], dtheta[j].sgn()]);
+    }
+}
+
+/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π, as [`kinetic_energy`](super::kinetic_energy) and
+/// [`potential_energy`](super::potential_energy) have them, with π = [`parameters`](Model::parameters); `V_s` is the twist
+/// of {s}.
+///
+/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments
+///
+/// Joules over the parameter's unit. Cost O(N), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, θ̇ not n, or `kinetic` or `potential` not p.
+#[rustfmt::skip]
+#[allow(clippy::too_many_arguments)] // the energies' five, memory and two answers
+pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, gravity: Vec3<S>,
+    workspace: &mut Workspace<S>, kinetic: &mut [S], potential: &mut [S],
+) {
+    let p = model.parameter_count();
+    assert!(kinetic.len() == p && potential.len() == p, "expected {p} entries, one for each parameter");
+    model.assert_lengths(theta.len(), [dtheta.len()]);
+    joint_transforms(model, theta, workspace);
+    let (Workspace { T, V, .. }, half) = (workspace, S::from_f64(0.5));
+
+    kinetic.fill(S::zero());
+    potential.fill(S::zero());
+    (T[0], V[0]) = (base_pose(model, theta), base_twist(model, theta, dtheta, V_s));
+    for (i, link) in model.outward::<S>() {
+        V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
+        T[i] = T[link.parent] * T[i].inverse();                                  // T_si
+    }
+    for (body, slot) in model.bodies().enumerate() {
+        let T_b = model.link_frame(slot).map(S::from);
+        let (V_b, SE3 { R, p }) = (T_b.inverse().Ad() * V[slot], T[slot] * T_b);
+        for (k, G) in SpatialInertia::units().into_iter().enumerate() {
+            kinetic[10 * body + k] = half * V_b.dot(G * V_b);
+        }
+        let down = R.inverse() * gravity;
+        potential[10 * body] = -gravity.dot(p);
+        potential[10 * body + 1..][..3].copy_from_slice(&(-down).0);
+    }
+    for (armature, &rate) in kinetic[10 * model.bodies().len()..].iter_mut().step_by(3).zip(&dtheta[model.base().velocities()..]) {
+        *armature = half * rate * rate;
+    }
+}

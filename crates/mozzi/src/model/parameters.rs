@@ -1,0 +1,90 @@
+//! The vector π of a model's parameters in which its forces and energies are linear.
+
+use super::Model;
+use crate::lie::SE3;
+use crate::scalar::Scalar;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// Of a body, in the order of [`SpatialInertia::to_parameters`](crate::SpatialInertia::to_parameters).
+const OF_BODY: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz"];
+const OF_JOINT: [&str; 3] = ["armature", "damping", "friction"];
+
+impl<C: Scalar> Model<C> {
+    /// The length of π: ten for each moving link and a free base, three for each independent joint.
+    pub fn parameter_count(&self) -> usize {
+        10 * self.bodies().len() + 3 * self.structure.joints.len()
+    }
+
+    /// π, the parameters in which τ and the energies are linear:
+    ///
+    /// - of a free base and then of each moving link, base to tips, ten numbers in the coordinates of that **link's frame in
+    ///   the file**: mass, m c, and the rotational inertia about the frame's origin, (m, m c_x, m c_y, m c_z, I_xx, I_xy,
+    ///   I_xz, I_yy, I_yz, I_zz) in kg, kg m, kg m². What is fixed to the link is counted in;
+    /// - of each independent joint its armature, damping and Coulomb friction, those of its followers counted in as M and f
+    ///   have them: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ.
+    ///
+    /// Names: [`parameter_names`](Self::parameter_names). Their matrix: [`regressor`](crate::dynamics::regressor()).
+    pub fn parameters(&self) -> Vec<C> {
+        let bodies = self.bodies().flat_map(|slot| {
+            let G = if slot == 0 { self.base_inertia } else { self.links[slot - 1].G };
+            G.congruence(self.link_frame(slot).Ad()).to_parameters()
+        });
+        let joints =
+            (self.base.velocities()..self.n()).flat_map(|j| [self.armature[j], self.damping[j], self.friction[j]]);
+        bodies.chain(joints).collect()
+    }
+
+    /// The names of [`parameters`](Self::parameters): `link.m`, `link.mcx`, …, `link.Izz`, and `joint.armature`,
+    /// `joint.damping`, `joint.friction`.
+    pub fn parameter_names(&self) -> Vec<String> {
+        let named = |name: &str, of: &[&str]| of.iter().map(|kind| format!("{name}.{kind}")).collect::<Vec<_>>();
+        let bodies = self.bodies().flat_map(|slot| named(&self.description().links[self.link_at(slot)].name, &OF_BODY));
+        bodies.chain(self.joint_names().flat_map(|joint| named(joint, &OF_JOINT))).collect()
+    }
+
+    /// The slots of all that moves: of a free base, and of the moving links.
+    pub(crate) fn bodies(&self) -> core::ops::Range<usize> {
+        usize::from(!self.is_floating())..self.links.len() + 1
+    }
+
+    /// The link of the description whose frame a slot's body is told in: the base, or the one that a joint moves.
+    fn link_at(&self, slot: usize) -> usize {
+        slot.checked_sub(1).map_or(self.structure.base, |i| self.structure.moving_links[i])
+    }
+
+    /// That link's frame, seen from the slot's normal frame.
+    #[inline(always)]
+    pub(crate) fn link_frame(&self, slot: usize) -> SE3<C> {
+        self.frames[self.link_at(slot)].T
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{floating_tree, tree};
+    use crate::{Description, SE3};
+    use nalgebra::DVector;
+
+    #[test]
+    fn they_are_told_in_the_files_frames() {
+        for model in [tree(3, 6, 1), floating_tree(4, 5, 0)] {
+            let (pi, names) = (model.parameters(), model.parameter_names());
+            assert_eq!((pi.len(), names.len()), (model.parameter_count(), model.parameter_count()));
+            // link3 carries nothing that is fixed to it
+            let link3 = &model.description().links.iter().find(|link| link.name == "link3").expect("a link").inertia;
+            let k = names.iter().position(|name| name == "link3.m").expect("a body");
+            let error = DVector::from_column_slice(&pi[k..k + 10]) - DVector::from_column_slice(&link3.to_parameters());
+            assert!(error.amax() < 1e-13 * link3.mass.max(1.0), "{error}");
+            let total = names.iter().zip(&pi).filter(|(name, _)| name.ends_with(".m")).map(|(_, m)| m);
+            assert!((total.sum::<f64>() - model.mass()).abs() < 1e-12 * model.mass());
+            assert_eq!(
+                names.last().map(String::as_str),
+                Some(&*format!("{}.friction", model.joint_names().last().expect("one")))
+            );
+        }
+        let body = Description::new("body").link("it", crate::testing::inertia(1)).floating().build().expect("sound");
+        assert_eq!(body.parameters(), crate::testing::inertia(1).congruence(SE3::identity().Ad()).to_parameters());
+    }
+}

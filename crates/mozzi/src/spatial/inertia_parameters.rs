@@ -1,0 +1,41 @@
+//! A spatial inertia as the ten numbers in which forces and energies are linear.
+
+use super::SpatialInertia;
+use crate::linalg::{Sym3, Vec3};
+use crate::scalar::Scalar;
+
+impl<S: Scalar> SpatialInertia<S> {
+    /// (m, m c_x, m c_y, m c_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz), I about the frame's origin; kg, kg m, kg m².
+    pub fn to_parameters(self) -> [S; 10] {
+        let (SpatialInertia { mass, I, .. }, [x, y, z]) = (self, self.mc.0);
+        [mass, x, y, z, I.xx, I.xy, I.xz, I.yy, I.yz, I.zz]
+    }
+
+    /// From the ten numbers of [`to_parameters`](Self::to_parameters).
+    #[inline(always)]
+    pub fn from_parameters([mass, x, y, z, xx, xy, xz, yy, yz, zz]: [S; 10]) -> Self {
+        SpatialInertia { mass, mc: Vec3([x, y, z]), I: Sym3 { xx, xy, xz, yy, yz, zz } }
+    }
+
+    /// The ten inertias of which one parameter is 1 and the others 0; only the sums with weights are bodies.
+    #[inline(always)]
+    pub fn units() -> [Self; 10] {
+        core::array::from_fn(|k| {
+            Self::from_parameters(core::array::from_fn(|i| if i == k { S::one() } else { S::zero() }))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::inertia;
+
+    #[test]
+    fn an_inertia_is_the_weighted_sum_of_units() {
+        let G = inertia(3);
+        let terms = SpatialInertia::units().into_iter().zip(G.to_parameters()).map(|(unit, weight)| unit * weight);
+        assert_eq!(terms.fold(SpatialInertia::zero(), |sum, term| sum + term), G);
+        assert_eq!(SpatialInertia::from_parameters(G.to_parameters()), G);
+    }
+}
