@@ -17,9 +17,10 @@
 //! >
 //! > ∂𝒱 = 0, ∂𝒱̇ = A, ∂𝓕 = 𝒢 A, by θ̈
 //!
-//! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia, ten numbers, and H(P)A = −`[ad_A]`ᵀP, skew. The axes
-//! do not depend on the link, so 𝒢, 𝒢̇, the momentum 𝒢𝒱 and 𝓕 add up over all that hangs from the joint: 32 numbers, no
-//! 6 × 6 matrix. A wrench that is applied to a link is constant in its coordinates and adds to 𝓕 alone.
+//! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia and H(P)A = −`[ad_A]`ᵀP, skew. Half of 𝓑 cancels: it is
+//! `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. The axes do not depend on the link, so 𝒢, K, f and 𝓕 add up over all that
+//! hangs from the joint: 28 numbers, no 6 × 6 matrix. A wrench that is applied to a link is constant in its coordinates and adds to
+//! 𝓕 alone.
 //!
 //! **What a joint i carries**, τ_i = A_iᵀ𝓕ᶜ_i. By a joint j at i or between it and the base, axis and wrench are both carried, and what is
 //! left is ∂𝓕 of the bodies beyond i. By a joint j beyond i, they are the bodies beyond j that change, and are carried past an axis that is not:
@@ -34,7 +35,7 @@ use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
 use crate::scalar::Scalar;
-use crate::spatial::{Twist, Wrench};
+use crate::spatial::{BodyCoriolis, Twist, Wrench};
 
 /// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n, row-major: row i is τ_i's.
 ///
@@ -77,16 +78,17 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
             M[j * n + j] = S::from(model.armature[j]);
         }
     }
-    let Workspace { T, V, dV, F, axes, G_c, dG_c, U: P, .. } = workspace;
+    let Workspace { T, V, dV, F, axes, G_c, B, .. } = workspace;
 
     // base: {s}, which carries the axes of a free base, seen from it; then its own motion
     let Ad = base_pose(model, theta).inverse().Ad();
     let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
     let G = model.base_inertia.map(S::from);
+    let P = G * V[0];
     T[0] = SE3::identity();
-    (G_c[0], dG_c[0], P[0]) = (G, G.rate(V[0]), G * V[0]);
-    F[0] = G * dV[0] - V[0].ad().transpose() * P[0];
+    (G_c[0], B[0]) = (G, BodyCoriolis::new(G, V[0], P));
+    F[0] = G * dV[0] - V[0].ad().transpose() * P;
 
     // base to tips: axes with their rates, twists, accelerations
     for (i, link) in model.outward::<S>() {
@@ -99,11 +101,12 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
         dV[i] = dV[p] + dA * dtheta[j] + A * ddtheta[j];
         axes[i] = [A, dA, ddA];
     }
-    // inertia, its rate, momentum and wrench of each link
+    // 𝒢, 𝓑 and 𝓕 of each link
     for (i, link) in model.outward::<S>() {
         let G = link.G.congruence(T[i].Ad());
-        (G_c[i], dG_c[i], P[i]) = (G, G.rate(V[i]), G * V[i]);
-        F[i]  = G * dV[i] - V[i].ad().transpose() * P[i];
+        let P = G * V[i];
+        (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V[i], P));
+        F[i]  = G * dV[i] - V[i].ad().transpose() * P;
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
@@ -113,13 +116,11 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     // tips to base: link i with all that hangs from it
     for (i, link) in model.inward::<S>() {
         let (p, j, [A, dA, ddA]) = (link.parent, link.j, axes[i]);
-        let (G, dG, ad_t) = (G_c[i], dG_c[i], A.ad().transpose());
-        let (GA, GdA, dGA, HA) = (G * A, G * dA, dG * A, -(ad_t * P[i]));
-        let BdA     = dG * dA - dA.ad().transpose() * P[i];
-        let column  = G * ddA + BdA - ad_t * F[i];                           // ∂𝓕 by θ_j, felt below joint i
-        let dcolumn = GdA + GdA + dGA + HA;                                  // by θ̇_j
-        let BtA     = dGA - HA;                                              // 𝓑ᵀA
-        let wrenches = [column, dcolumn, BtA, GA].map(Wrench::to_array);
+        let (G_i, B_i) = (G_c[i], B[i]);
+        let (GA, GdA) = (G_i * A, G_i * dA);
+        let column  = G_i * ddA + B_i * dA - A.ad().transpose() * F[i];      // ∂𝓕 by θ_j, felt below joint i
+        let dcolumn = GdA + GdA + B_i * A;                                   // by θ̇_j
+        let BtA     = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
         by_theta[j * n + j] += A.dot(column);
         if let Some([by_dtheta, M]) = &mut by_rates {
             by_dtheta[j * n + j] += A.dot(dcolumn);
@@ -129,19 +130,19 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
         while k > 0 {
             let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
             let (ij, ji) = (below.j * n + j, j * n + below.j);
-            let [AF, dAF, ABtA, AGA] = products(A, wrenches);
-            by_theta[ij] += AF;
-            by_theta[ji] += ddA.dot(GA) + dA.dot(BtA);
+            by_theta[ij] += A.dot(column);
+            by_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
             if let Some([by_dtheta, M]) = &mut by_rates {
-                let dAGA = dA.dot(GA);
-                by_dtheta[ij] += dAF;
-                by_dtheta[ji] += dAGA + dAGA + ABtA;
-                M[ij] += AGA;
-                M[ji] += AGA;
+                let (dAGA, entry) = (dA.dot(GA), A.dot(GA));
+                by_dtheta[ij] += A.dot(dcolumn);
+                by_dtheta[ji] += dAGA + dAGA + A.w.dot(BtA);
+                M[ij] += entry;
+                M[ji] += entry;
             }
             k = below.parent;
         }
         if model.is_floating() {
+            let BtA = Wrench { m: BtA, f: Vec3::zero() };
             let (s_t, ds_t) = (V_s.ad().transpose(), dV_s.ad().transpose());
             let row  = ds_t * GA + s_t * (s_t * GA + BtA);                   // (𝒢A)ᵀÄ_e + (𝓑ᵀA)ᵀȦ_e for each e
             let drow = (V_s + V[0]).ad().transpose() * GA + BtA;
@@ -151,39 +152,24 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
                 add_cross(M, n, j, GA, GA);
             }
         }
-        let (P_i, F_i) = (P[i], F[i]);
-        G_c[p]  += G;
-        dG_c[p] += dG;
-        P[p]    += P_i;
-        F[p]    += F_i;
+        let F_i = F[i];
+        G_c[p] += G_i;
+        B[p]   += B_i;
+        F[p]   += F_i;
     }
 
     // a free base: the axes e, which {s} carries
     if model.is_floating() {
-        let (G, dG) = (G_c[0], dG_c[0]);
+        let (G, B) = (G_c[0], B[0]);
         for (r, e) in Twist::axes().into_iter().enumerate() {
             let de = V_s.ad() * e;
-            let column = G * (dV_s.ad() * e + V_s.ad() * de) + dG * de - de.ad().transpose() * P[0];
-            set_column(by_theta, n, r, column);
+            set_column(by_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
             if let Some([by_dtheta, M]) = &mut by_rates {
-                set_column(by_dtheta, n, r, G * (de + V[0].ad() * e) + dG * e - e.ad().transpose() * P[0]);
+                set_column(by_dtheta, n, r, G * (de + V[0].ad() * e) + B * e);
                 set_column(M, n, r, G * e);
             }
         }
     }
-}
-
-/// AᵀF of four wrenches, side by side.
-#[inline(always)]
-fn products<S: Scalar>(A: Twist<S>, F: [[S; 6]; 4]) -> [S; 4] {
-    let A = A.to_array();
-    let mut sum = F.map(|F| F[0] * A[0]);
-    for c in 1..6 {
-        for l in 0..4 {
-            sum[l] = F[l][c].mul_add(A[c], sum[l]);
-        }
-    }
-    sum
 }
 
 /// n × n zeros.

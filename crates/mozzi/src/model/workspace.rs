@@ -2,9 +2,9 @@
 
 use super::Model;
 use crate::lie::SE3;
-use crate::linalg::Vec3;
+use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
-use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, BodyCoriolis, SpatialInertia, Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -25,6 +25,8 @@ pub struct Workspace<S = f64> {
     pub(crate) G_c: Vec<SpatialInertia<S>>,
     /// Its rate.
     pub(crate) dG_c: Vec<SpatialInertia<S>>,
+    /// 𝓑 of the composite bodies.
+    pub(crate) B: Vec<BodyCoriolis<S>>,
     /// Articulated inertia Ĝ.
     pub(crate) G_hat: Vec<ArticulatedInertia<S>>,
     /// ĜA.
@@ -53,6 +55,7 @@ impl<S: Scalar> Workspace<S> {
             axes: vec![[Twist::zero(); 3]; slots],
             G_c: vec![SpatialInertia::zero(); slots],
             dG_c: vec![SpatialInertia::zero(); slots],
+            B: vec![BodyCoriolis { K: Mat3::zero(), f: Vec3::zero() }; slots],
             G_hat: vec![SpatialInertia::zero().into(); slots],
             U: vec![Wrench::zero(); slots],
             u: vec![o; slots],
@@ -76,6 +79,7 @@ impl<S: Scalar> Workspace<S> {
         self.axes.fill([V; 3]);
         self.G_c.fill(G);
         self.dG_c.fill(G);
+        self.B.fill(BodyCoriolis { K: Mat3::zero().map(|_: S| nan), f: V.v });
         self.G_hat.fill(G.into());
         for list in [&mut self.u, &mut self.pivots, &mut self.vector, &mut self.matrix] {
             list.fill(nan);

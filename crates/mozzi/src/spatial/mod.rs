@@ -1,6 +1,7 @@
 //! The nouns of rigid-body mechanics: one noun, one file.
 
 mod articulated_inertia;
+mod body_coriolis;
 mod inertia;
 mod inertia_parameters;
 mod joint_axis;
@@ -11,6 +12,7 @@ mod twist;
 mod wrench;
 
 pub use articulated_inertia::ArticulatedInertia;
+pub(crate) use body_coriolis::BodyCoriolis;
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};

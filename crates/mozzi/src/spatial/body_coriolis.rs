@@ -1,0 +1,56 @@
+//! What a body's velocity adds to the change of its wrench.
+
+use super::{SpatialInertia, Twist, Wrench};
+use crate::linalg::{Mat3, Skew, Vec3, linear_space};
+use crate::scalar::Scalar;
+use core::ops::Mul;
+
+/// 𝓑 = 𝒢̇ + H(𝒢𝒱) : se(3) → se(3)*, with 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 and H(P)A = −`[ad_A]`ᵀP. The first moment of 𝒢̇ is the linear
+/// momentum f, so that half of it cancels against H:
+///
+/// > 𝓑 = `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, with (m, f) = 𝒢𝒱
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BodyCoriolis<S> {
+    pub K: Mat3<S>,
+    pub f: Vec3<S>,
+}
+linear_space!(BodyCoriolis { K, f });
+
+impl<S: Scalar> BodyCoriolis<S> {
+    /// Of a body with the momentum P = 𝒢𝒱.
+    #[inline(always)]
+    pub fn new(G: SpatialInertia<S>, V: Twist<S>, P: Wrench<S>) -> Self {
+        BodyCoriolis { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
+    }
+
+    /// 𝓑ᵀA, which has no force: Kᵀω + 2 f × v.
+    #[inline(always)]
+    pub fn transpose_mul(self, A: Twist<S>) -> Vec3<S> {
+        (self.f + self.f).cross_add(A.v, self.K.transpose_mul(A.w))
+    }
+}
+
+/// 𝓑A.
+impl<S: Scalar> Mul<Twist<S>> for BodyCoriolis<S> {
+    type Output = Wrench<S>;
+    #[inline(always)]
+    fn mul(self, A: Twist<S>) -> Wrench<S> {
+        Wrench { m: self.K * A.w, f: A.w.cross(self.f + self.f) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{inertia, twist};
+
+    #[test]
+    fn it_is_the_rate_of_the_inertia_and_the_bracket_of_the_momentum() {
+        let (G, V, A, X) = (inertia(1), twist(1), twist(2), twist(3));
+        let P = G * V;
+        let B = BodyCoriolis::new(G, V, P);
+        let defined = |A: Twist| -(G * (V.ad() * A)) - V.ad().transpose() * (G * A) - A.ad().transpose() * P;
+        assert!((B * A - defined(A)).norm() < 1e-13);
+        assert!((B.transpose_mul(A).dot(X.w) - A.dot(defined(X))).abs() < 1e-13);
+    }
+}
