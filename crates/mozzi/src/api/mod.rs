@@ -2,7 +2,7 @@
 //! nalgebra's vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
 
 mod derivatives;
-mod derivative;
+mod directional_derivative;
 mod dynamics;
 mod forward_dynamics;
 mod kinematics;
