@@ -19,7 +19,7 @@ const STATE: [&str; 8] = [
 #[test]
 fn help_names_every_subcommand_and_gives_examples() {
     let help = text(&["--help"]);
-    let all = ["info", "screws", "terms", "inverse-dynamics", "forward-dynamics", "simulate", "check"];
+    let all = ["info", "screws", "terms", "inverse-dynamics", "forward-dynamics", "derivatives", "simulate", "check"];
     for name in all {
         assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
         assert!(help.contains(&format!("mozzi {name} ")), "an example of {name}");
@@ -98,6 +98,47 @@ fn terms_satisfy_the_equation_of_motion() {
     let tau: Vec<String> = of("inverse_dynamics").iter().map(f64::to_string).collect();
     let by_tau = json(&[&["terms", "ur5"], &STATE[..4], &["--tau", &tau.join(",")], &STATE[6..]].concat());
     assert_close(&numbers(&by_tau["ddtheta"]), &ddtheta, 1e-10);
+}
+
+#[test]
+fn derivatives_are_what_small_steps_make_of_the_answers() {
+    let h = 1e-6;
+    let tau = |theta: f64, dtheta: f64| {
+        let (theta, dtheta) =
+            (format!("0,{},1.5,0.3,1.1,0", -1.2 + theta), format!("0.5,{},0.4,0.2,-0.6,1", -0.3 + dtheta));
+        let found = json(&[
+            "inverse-dynamics",
+            "ur5",
+            "--theta",
+            &theta,
+            "--dtheta",
+            &dtheta,
+            "--ddtheta",
+            "1,0.5,-1,2,0,-0.5",
+        ]);
+        numbers(&found["inverse_dynamics"])
+    };
+    let arguments = ["derivatives", "ur5", "--theta", "0,-1.2,1.5,0.3,1.1,0", "--dtheta", "0.5,-0.3,0.4,0.2,-0.6,1"];
+    let found = json(&[&arguments[..], &["--ddtheta", "1,0.5,-1,2,0,-0.5"]].concat());
+    let derivatives = &found["derivatives"];
+    let column = |key: &str| rows(&derivatives["inverse_dynamics"][key]).iter().map(|row| row[1]).collect::<Vec<_>>();
+    let slope = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<_>>();
+    assert_close(&column("by_theta"), &slope(tau(h, 0.0), tau(-h, 0.0)), 1e-7);
+    assert_close(&column("by_dtheta"), &slope(tau(0.0, h), tau(0.0, -h)), 1e-7);
+    // M and its inverse; `terms` has the same
+    let (M, inverse) = (&derivatives["inverse_dynamics"]["by_ddtheta"], &derivatives["forward_dynamics"]["by_tau"]);
+    let columns = rows(inverse);
+    for (j, row) in columns.iter().enumerate() {
+        let product = times(&rows(M), row);
+        let unit: Vec<f64> = (0..6).map(|i| f64::from(u8::from(i == j))).collect();
+        assert_close(&product, &unit, 1e-10);
+    }
+    let terms = json(&[&["terms"], &arguments[1..], &["--ddtheta", "1,0.5,-1,2,0,-0.5"]].concat());
+    assert_eq!(&terms["derivatives"], derivatives);
+    let page = text(&["derivatives", "anymal", "--floating"]);
+    for word in ["∂τ/∂θ̇", "∂θ̈/∂τ = M⁻¹", "base.wx", "along its twist"] {
+        assert!(page.contains(word), "{word} in {page}");
+    }
 }
 
 #[test]
