@@ -100,35 +100,41 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]
 /// Overwrites B, n × n by rows, with −M⁻¹B, where M = LᵀDL.
 #[inline(always)]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
-    let mut c = 0;
-    while c + 4 <= n {
-        solve_columns::<4, S>(pattern, n, L, &mut B[c..]);
-        c += 4;
-    }
-    if c + 2 <= n {
-        solve_columns::<2, S>(pattern, n, L, &mut B[c..]);
-        c += 2;
-    }
-    if c < n {
-        solve_columns::<1, S>(pattern, n, L, &mut B[c..]);
+    for c in (0..n).step_by(8) {
+        let B = &mut B[c..];
+        match n - c {
+            1 => solve_columns::<1, S>(pattern, n, L, B),
+            2 => solve_columns::<2, S>(pattern, n, L, B),
+            3 => solve_columns::<3, S>(pattern, n, L, B),
+            4 => solve_columns::<4, S>(pattern, n, L, B),
+            5 => solve_columns::<5, S>(pattern, n, L, B),
+            6 => solve_columns::<6, S>(pattern, n, L, B),
+            7 => solve_columns::<7, S>(pattern, n, L, B),
+            _ => solve_columns::<8, S>(pattern, n, L, B),
+        }
     }
 }
 
 /// Every step of [`solve`], up to the sign, on the W columns that B begins with.
 #[inline(always)]
 fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
-    let at = |B: &[S], k: usize| -> [S; W] { core::array::from_fn(|c| B[k * n..][..W][c]) };
+    let at = |B: &[S], k: usize| -> [S; W] {
+        let row = &B[k * n..][..W];
+        core::array::from_fn(|c| row[c])
+    };
     for k in (0..n).rev() {
         let row = at(B, k);
         for i in pattern.ancestors(k) {
-            add(&mut B[i * n..][..W], -L[k * n + i], &row);
+            let (above, a) = (at(B, i), -L[k * n + i]);
+            B[i * n..][..W].copy_from_slice(&core::array::from_fn::<S, W, _>(|c| row[c].mul_add(a, above[c])));
         }
     }
     for k in 0..n {
         let minus_one_over = -(S::one() / L[k * n + k]);
         let mut row = at(B, k).map(|x| x * minus_one_over);
         for i in pattern.ancestors(k) {
-            add(&mut row, -L[k * n + i], &B[i * n..][..W]);
+            let (above, a) = (at(B, i), -L[k * n + i]);
+            row = core::array::from_fn(|c| above[c].mul_add(a, row[c]));
         }
         B[k * n..][..W].copy_from_slice(&row);
     }
