@@ -2,7 +2,7 @@
 
 use mozzi::{Base, Jacobian, Model, SE3};
 use nalgebra::{DMatrix, DVector};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 pub fn vector(values: &[f64]) -> Value {
     values.iter().copied().map(Value::from).collect()
@@ -38,6 +38,21 @@ pub fn base(model: &Model) -> &'static str {
 
 pub fn names<'n>(names: impl Iterator<Item = &'n str>) -> Value {
     names.map(Value::from).collect()
+}
+
+/// An object about a robot: its name and those of its joints, positions and velocities, then these entries.
+pub fn of_robot(model: &Model, entries: Value) -> Value {
+    let mut object = json!({
+        "robot": model.description().name,
+        "joints": names(model.joint_names()),
+        "base": base(model),
+        "positions": names(model.position_names()),
+        "velocities": names(model.velocity_names()),
+    });
+    if let (Value::Object(object), Value::Object(entries)) = (&mut object, entries) {
+        object.extend(entries);
+    }
+    object
 }
 
 /// An object over lines: a list without lists or objects in it is one line.

@@ -22,6 +22,42 @@ pub struct TipArguments {
     pub tip_wrench: Option<String>,
 }
 
+/// A state of motion and what the tip applies: θ, θ̇, and θ̈ or the τ that makes it.
+#[derive(Args, Debug)]
+pub struct MotionArguments {
+    #[command(flatten)]
+    start: StartArguments,
+    /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
+    #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
+    ddtheta: Option<String>,
+    /// Forces τ of the motors, N m or N, in place of θ̈, which is then computed
+    #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
+    tau: Option<String>,
+    #[command(flatten)]
+    tip: TipArguments,
+}
+
+/// (θ, θ̇, θ̈), and the tip's wrench with its frame, where there is one.
+pub struct Motion {
+    pub state: [Vec<f64>; 3],
+    pub applied: Vec<(FrameId, Wrench)>,
+}
+
+impl MotionArguments {
+    pub fn read(&self, model: &Model) -> Result<Motion> {
+        let (theta, dtheta) = self.start.read(model)?;
+        let applied = self.tip.read(model)?;
+        let ddtheta = match &self.tau {
+            None => velocities("--ddtheta", self.ddtheta.as_deref(), model)?,
+            Some(tau) => {
+                let tau = velocities("--tau", Some(tau), model)?;
+                model.forward_dynamics(&theta, &dtheta, &tau, &environment(model, &applied))?.as_slice().to_vec()
+            }
+        };
+        Ok(Motion { state: [theta, dtheta, ddtheta], applied })
+    }
+}
+
 impl StartArguments {
     /// (θ, θ̇).
     pub fn read(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {

@@ -1,8 +1,12 @@
 //! Robots that exist: those that mozzi brings along, and, where `MOZZI_ROBOTS` names the folder of the package
 //! `example-robot-data`, all of that package.
 
+#[path = "common/files.rs"]
+mod files;
+
+use files::urdf_files;
 use mozzi_urdf::{LoadError, Policy, Severity, embedded, load, load_with, open};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 #[test]
 fn the_robots_that_mozzi_brings_along_are_flawless() {
@@ -64,16 +68,6 @@ fn published_robots() {
             }
             (Ok(_), Some((_, code, _))) => panic!("{name} loads, expected {code}"),
             (Err(error), None) => panic!("{error}"),
-        }
-    }
-}
-
-fn urdf_files(folder: &Path, files: &mut Vec<PathBuf>) {
-    for path in std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path()) {
-        if path.is_dir() {
-            urdf_files(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "urdf") {
-            files.push(path);
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::{self, Result};
 use crate::json;
 use crate::robot::RobotArguments;
-use crate::state::{StartArguments, TipArguments, environment, velocities};
+use crate::state::{Motion, MotionArguments, environment};
 use crate::text::{Page, beside, flow, matrix};
 use clap::Args;
 use mozzi::{Environment, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, Model};
@@ -15,15 +15,7 @@ pub struct DerivativesArguments {
     #[command(flatten)]
     robot: RobotArguments,
     #[command(flatten)]
-    start: StartArguments,
-    /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
-    #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
-    ddtheta: Option<String>,
-    /// Forces τ of the motors, N m or N, in place of θ̈, which is then computed
-    #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
-    tau: Option<String>,
-    #[command(flatten)]
-    tip: TipArguments,
+    motion: MotionArguments,
 }
 
 /// All derivatives at one state.
@@ -89,29 +81,20 @@ impl Derivatives {
 
 pub fn run(arguments: &DerivativesArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let (theta, dtheta) = arguments.start.read(&model)?;
-    let applied = arguments.tip.read(&model)?;
+    let Motion { state: [theta, dtheta, ddtheta], applied } = arguments.motion.read(&model)?;
     let environment = environment(&model, &applied);
-    let ddtheta = match &arguments.tau {
-        None => velocities("--ddtheta", arguments.ddtheta.as_deref(), &model)?,
-        Some(tau) => {
-            let tau = velocities("--tau", Some(tau), &model)?;
-            model.forward_dynamics(&theta, &dtheta, &tau, &environment)?.as_slice().to_vec()
-        }
-    };
     let derivatives = Derivatives::at(&model, [&theta, &dtheta, &ddtheta], &environment)?;
     if arguments.robot.json {
-        return Ok(json::print(&json!({
-            "robot": model.description().name,
-            "base": json::base(&model),
-            "positions": json::names(model.position_names()),
-            "velocities": json::names(model.velocity_names()),
-            "theta": json::vector(&theta),
-            "dtheta": json::vector(&dtheta),
-            "ddtheta": json::vector(&ddtheta),
-            "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
-            "derivatives": derivatives.object(),
-        })));
+        return Ok(json::print(&json::of_robot(
+            &model,
+            json!({
+                "theta": json::vector(&theta),
+                "dtheta": json::vector(&dtheta),
+                "ddtheta": json::vector(&ddtheta),
+                "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
+                "derivatives": derivatives.object(),
+            }),
+        )));
     }
     let mut page = Page::default();
     page.line(format!("{}: rows and columns in the order of", model.description().name));

@@ -70,18 +70,16 @@ pub fn run(arguments: &ForwardArguments) -> Result<String> {
     let applied = arguments.tip.read(&model)?;
     let ddtheta = by.solve(&model, &theta, &dtheta, &tau, &environment(&model, &applied))?;
     if arguments.robot.json {
-        return Ok(json::print(&json!({
-            "robot": model.description().name,
-            "joints": model.joint_names().collect::<Vec<_>>(),
-            "base": json::base(&model),
-            "positions": json::names(model.position_names()),
-            "velocities": json::names(model.velocity_names()),
-            "theta": json::vector(&theta),
-            "dtheta": json::vector(&dtheta),
-            "tau": json::vector(&tau),
-            "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
-            "forward_dynamics": json::dvector(&ddtheta),
-        })));
+        return Ok(json::print(&json::of_robot(
+            &model,
+            json!({
+                "theta": json::vector(&theta),
+                "dtheta": json::vector(&dtheta),
+                "tau": json::vector(&tau),
+                "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
+                "forward_dynamics": json::dvector(&ddtheta),
+            }),
+        )));
     }
     let units = Units::of(&model);
     let lines = quantities(

@@ -38,18 +38,16 @@ pub fn run(arguments: &InverseArguments) -> Result<String> {
     let applied = arguments.tip.read(&model)?;
     let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment(&model, &applied))?;
     if arguments.robot.json {
-        return Ok(json::print(&json!({
-            "robot": model.description().name,
-            "joints": model.joint_names().collect::<Vec<_>>(),
-            "base": json::base(&model),
-            "positions": json::names(model.position_names()),
-            "velocities": json::names(model.velocity_names()),
-            "theta": json::vector(&theta),
-            "dtheta": json::vector(&dtheta),
-            "ddtheta": json::vector(&ddtheta),
-            "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
-            "inverse_dynamics": json::dvector(&tau),
-        })));
+        return Ok(json::print(&json::of_robot(
+            &model,
+            json!({
+                "theta": json::vector(&theta),
+                "dtheta": json::vector(&dtheta),
+                "ddtheta": json::vector(&ddtheta),
+                "F_tip": applied.first().map(|(_, F)| json::vector(&F.to_array())),
+                "inverse_dynamics": json::dvector(&tau),
+            }),
+        )));
     }
     let units = Units::of(&model);
     let lines = quantities(

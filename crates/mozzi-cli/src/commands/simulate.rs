@@ -198,27 +198,25 @@ fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
 fn object(model: &Model, motion: &Trajectory, options: &Options) -> Value {
     let lists = |values: &[f64], n: usize| values.chunks(n.max(1)).map(json::vector).collect::<Value>();
     let [kinetic, potential, motor, friction, applied] = energies(motion).map(|list| json::vector(&list));
-    json!({
-        "robot": model.description().name,
-        "joints": model.joint_names().collect::<Vec<_>>(),
-        "base": json::base(model),
-        "positions": json::names(model.position_names()),
-        "velocities": json::names(model.velocity_names()),
-        "method": options.method.name(),
-        "step": options.step(),
-        "steps": motion.steps,
-        "t": json::vector(&motion.t),
-        "theta": lists(&motion.theta, motion.nq),
-        "dtheta": lists(&motion.dtheta, motion.n),
-        "ddtheta": lists(&motion.ddtheta, motion.n),
-        "tau": lists(&motion.tau, motion.n),
-        "kinetic_energy": kinetic,
-        "potential_energy": potential,
-        "motor_work": motor,
-        "friction_loss": friction,
-        "applied_work": applied,
-        "largest_drift": motion.largest_drift(),
-    })
+    json::of_robot(
+        model,
+        json!({
+            "method": options.method.name(),
+            "step": options.step(),
+            "steps": motion.steps,
+            "t": json::vector(&motion.t),
+            "theta": lists(&motion.theta, motion.nq),
+            "dtheta": lists(&motion.dtheta, motion.n),
+            "ddtheta": lists(&motion.ddtheta, motion.n),
+            "tau": lists(&motion.tau, motion.n),
+            "kinetic_energy": kinetic,
+            "potential_energy": potential,
+            "motor_work": motor,
+            "friction_loss": friction,
+            "applied_work": applied,
+            "largest_drift": motion.largest_drift(),
+        }),
+    )
 }
 
 /// Positions that a row has room for: eight, or a free base's seven.

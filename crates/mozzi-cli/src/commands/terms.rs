@@ -6,7 +6,7 @@ use crate::failure::{self, Failure, Result};
 use crate::json;
 use crate::numbers::TWIST;
 use crate::robot::{RobotArguments, end_effector};
-use crate::state::{StartArguments, TipArguments, environment, velocities};
+use crate::state::{Motion, MotionArguments, environment};
 use clap::{Args, ValueEnum};
 use mozzi::{
     BodyFrame, ClosedForm, Environment, FrameId, Jacobian, Model, NewtonEuler, SE3, Task, TaskFrame, TaskSpaceDynamics,
@@ -19,15 +19,7 @@ pub struct TermsArguments {
     #[command(flatten)]
     robot: RobotArguments,
     #[command(flatten)]
-    start: StartArguments,
-    /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
-    #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
-    ddtheta: Option<String>,
-    /// Forces τ of the motors, N m or N, in place of θ̈, which is then computed
-    #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
-    tau: Option<String>,
-    #[command(flatten)]
-    tip: TipArguments,
+    motion: MotionArguments,
     /// Rows of the task: of wx, wy, wz, vx, vy, vz those that matter, such as vx,vz for a planar arm [default: all six]
     #[arg(long, value_name = "ROWS")]
     task: Option<String>,
@@ -92,21 +84,13 @@ pub struct Tip {
 
 pub fn run(arguments: &TermsArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let (theta, dtheta) = arguments.start.read(&model)?;
-    let applied = arguments.tip.read(&model)?;
+    let Motion { state, applied } = arguments.motion.read(&model)?;
     let environment = environment(&model, &applied);
-    let ddtheta = match &arguments.tau {
-        None => velocities("--ddtheta", arguments.ddtheta.as_deref(), &model)?,
-        Some(tau) => {
-            let tau = velocities("--tau", Some(tau), &model)?;
-            model.forward_dynamics(&theta, &dtheta, &tau, &environment)?.as_slice().to_vec()
-        }
-    };
     let task_frame = match arguments.task_frame {
         Coordinates::Body => TaskFrame::Body,
         Coordinates::Space => TaskFrame::Space,
     };
-    let mut terms = Terms::at(&model, [theta, dtheta, ddtheta], &environment)?;
+    let mut terms = Terms::at(&model, state, &environment)?;
     terms.add_task(arguments.task.as_deref(), task_frame, &environment)?;
     if arguments.stacked {
         terms.closed_form = Some(model.closed_form(&terms.theta, &terms.dtheta, &environment)?);

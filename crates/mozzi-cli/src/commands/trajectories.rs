@@ -66,11 +66,6 @@ pub fn run(
     if as_json {
         let lists = |rows: &[Vec<f64>]| rows.iter().map(|row| json::vector(row)).collect::<Value>();
         let mut object = Map::new();
-        object.insert("robot".into(), model.description().name.clone().into());
-        object.insert("joints".into(), json::names(model.joint_names()));
-        object.insert("base".into(), json::base(model).into());
-        object.insert("positions".into(), json::names(model.position_names()));
-        object.insert("velocities".into(), json::names(model.velocity_names()));
         if let Some(t) = &samples.t {
             object.insert("t".into(), json::vector(t));
         }
@@ -81,7 +76,7 @@ pub fn run(
             object.insert("F_tip".into(), list.iter().map(|F| json::vector(&F.to_array())).collect());
         }
         object.insert(quantity.into(), lists(&results));
-        let text = json::print(&Value::Object(object));
+        let text = json::print(&json::of_robot(model, Value::Object(object)));
         return finish(arguments.output.as_deref(), text, count);
     }
     let mut table = Columns::default();

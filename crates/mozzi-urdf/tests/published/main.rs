@@ -3,6 +3,10 @@
 //!
 //! `cargo xtask docs` writes the page anew.
 
+#[path = "../common/files.rs"]
+mod files;
+
+use files::urdf_files;
 use mozzi_urdf::{Diagnostic, Severity, load};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -75,16 +79,6 @@ struct Robot {
     /// Degrees of freedom and links; None where it is refused.
     size: Option<(usize, usize)>,
     said: Vec<Diagnostic>,
-}
-
-fn urdf_files(folder: &Path, files: &mut Vec<PathBuf>) {
-    for path in std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path()) {
-        if path.is_dir() {
-            urdf_files(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "urdf") {
-            files.push(path);
-        }
-    }
 }
 
 fn robots(folder: &Path) -> Vec<Robot> {
