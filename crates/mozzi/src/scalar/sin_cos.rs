@@ -8,7 +8,7 @@
 use super::{Fused, Scalar};
 
 /// `f64` or `f32`, with the numbers of its [`sin_cos`].
-pub trait Float: Scalar + PartialOrd + Send + Sync + 'static {
+pub trait Float: super::Real + Send + Sync + 'static {
     /// [`sin_cos`] is exact to rounding up to this |x|.
     const LARGEST: Self;
     /// 1.5 · 2⁵² or 1.5 · 2²³: adding and subtracting it rounds to the nearest integer.
