@@ -10,6 +10,8 @@ use alloc::vec::Vec;
 pub(crate) struct Pattern {
     /// `usize::MAX` for a root.
     parent: Vec<usize>,
+    /// One beyond the last descendant of k, or beyond k.
+    end: Vec<usize>,
 }
 
 impl Pattern {
@@ -30,7 +32,7 @@ impl Pattern {
                     _ => parent[j] = links[carrier - 1].1,
                 }
             }
-            return Pattern { parent };
+            return Pattern::of(parent);
         }
         let mut rows: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
         for &(carrier, j) in &links {
@@ -51,122 +53,259 @@ impl Pattern {
                 rows[last].extend(rest);
             }
         }
-        Pattern { parent }
+        Pattern::of(parent)
     }
 
-    /// k's ancestors, nearest (largest) first.
+    /// With each one's parent before it.
+    fn of(parent: Vec<usize>) -> Self {
+        let mut end: Vec<usize> = (1..=parent.len()).collect();
+        for (k, &i) in parent.iter().enumerate().rev().filter(|&(_, &i)| i != usize::MAX) {
+            end[i] = end[i].max(end[k]);
+        }
+        Pattern { parent, end }
+    }
+
+    /// Does k follow its parent?
+    #[inline(always)]
+    fn is_next(&self, k: usize) -> bool {
+        self.parent.get(k).is_some_and(|i| i.wrapping_add(1) == k && k > 0)
+    }
+
+    /// n.
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.parent.len()
+    }
+
+    /// k's ancestors, nearest (largest) first. A row of n numbers can be indexed by them without a further look at its length.
     #[inline(always)]
     pub fn ancestors(&self, k: usize) -> impl Iterator<Item = usize> {
-        core::iter::successors(self.parent.get(k).copied(), |&i| self.parent.get(i).copied())
-            .take_while(|&i| i != usize::MAX)
+        let mut i = self.parent[k];
+        core::iter::from_fn(move || {
+            let &next = self.parent.get(i)?;
+            Some(core::mem::replace(&mut i, next))
+        })
     }
 }
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
 /// The caller checks that the pivots D are positive.
 #[inline(always)]
-pub(crate) fn factor<S: Scalar>(pattern: &Pattern, n: usize, M: &mut [S]) {
+pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S]) {
+    let n = pattern.len();
     for k in (0..n).rev() {
-        let one_over = S::one() / M[k * n + k];
+        let (above, row) = M.split_at_mut(k * n);
+        let row = &mut row[..n];
+        let one_over = S::one() / row[k];
         for i in pattern.ancestors(k) {
-            let a = M[k * n + i] * one_over;
-            M[i * n + i] = M[k * n + i].mul_add(-a, M[i * n + i]);
+            let (above, a) = (&mut above[i * n..][..n], row[i] * one_over);
+            above[i] = row[i].mul_add(-a, above[i]);
             for j in pattern.ancestors(i) {
-                M[i * n + j] = M[k * n + j].mul_add(-a, M[i * n + j]);
+                above[j] = row[j].mul_add(-a, above[j]);
             }
-            M[k * n + i] = a;
+            row[i] = a;
         }
     }
 }
 
 /// Overwrites b with x, where LᵀDLx = b.
 #[inline(always)]
-pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]) {
+pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
+    let n = pattern.len();
+    let b = &mut b[..n];
     for k in (0..n).rev() {
+        let (L, b_k) = (&L[k * n..][..n], b[k]);
         for i in pattern.ancestors(k) {
-            let Lki_bk = L[k * n + i] * b[k];
-            b[i] -= Lki_bk;
+            b[i] = L[i].mul_add(-b_k, b[i]);
         }
     }
     for k in 0..n {
-        b[k] = b[k] / L[k * n + k];
+        let L = &L[k * n..][..n];
+        let mut b_k = b[k] / L[k];
         for i in pattern.ancestors(k) {
-            let Lki_xi = L[k * n + i] * b[i];
-            b[k] -= Lki_xi;
+            b_k = L[i].mul_add(-b[i], b_k);
         }
+        b[k] = b_k;
     }
 }
 
-/// Overwrites B, n × n by rows, with −M⁻¹B, where M = LᵀDL.
+/// Overwrites two right sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column are relatives.
 #[inline(always)]
-pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
+pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S]; 2]) {
+    let n = pattern.len();
+    let mut B = [&mut X[..n * n], &mut Y[..n * n]];
     for c in (0..n).step_by(8) {
-        let B = &mut B[c..];
         match n - c {
-            1 => solve_columns::<1, S>(pattern, n, L, B),
-            2 => solve_columns::<2, S>(pattern, n, L, B),
-            3 => solve_columns::<3, S>(pattern, n, L, B),
-            4 => solve_columns::<4, S>(pattern, n, L, B),
-            5 => solve_columns::<5, S>(pattern, n, L, B),
-            6 => solve_columns::<6, S>(pattern, n, L, B),
-            7 => solve_columns::<7, S>(pattern, n, L, B),
-            _ => solve_columns::<8, S>(pattern, n, L, B),
+            1 => solve_columns::<1, S>(pattern, L, c, &mut B),
+            2 => solve_columns::<2, S>(pattern, L, c, &mut B),
+            3 => solve_columns::<3, S>(pattern, L, c, &mut B),
+            4 => solve_columns::<4, S>(pattern, L, c, &mut B),
+            5 => solve_columns::<5, S>(pattern, L, c, &mut B),
+            6 => solve_columns::<6, S>(pattern, L, c, &mut B),
+            7 => solve_columns::<7, S>(pattern, L, c, &mut B),
+            _ => solve_columns::<8, S>(pattern, L, c, &mut B),
         }
     }
 }
 
-/// Every step of [`solve`], up to the sign, on the W columns that B begins with.
+/// Every step of [`solve`], up to the sign, on W columns of each from c on: a step waits for the one before it, so that several columns
+/// take no longer than one. Two rows on a path have the same ancestors: they go together.
 #[inline(always)]
-fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
-    let at = |B: &[S], k: usize| -> [S; W] {
-        let row = &B[k * n..][..W];
-        core::array::from_fn(|c| row[c])
-    };
-    for k in (0..n).rev() {
-        let row = at(B, k);
-        for i in pattern.ancestors(k) {
-            let (above, a) = (at(B, i), -L[k * n + i]);
-            B[i * n..][..W].copy_from_slice(&core::array::from_fn::<S, W, _>(|c| row[c].mul_add(a, above[c])));
+fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize, B: &mut [&mut [S]; 2]) {
+    let mut k = pattern.end[c..c + W].iter().fold(0, |end, &e| end.max(e));
+    while k > 0 {
+        k -= 1;
+        if k < c && pattern.end[k] <= c {
+            continue; // no relative of these columns
+        }
+        if pattern.is_next(k) {
+            k -= 1;
+            eliminate::<2, W, S>(pattern, L, c, k, B);
+        } else {
+            eliminate::<1, W, S>(pattern, L, c, k, B);
         }
     }
-    for k in 0..n {
-        let minus_one_over = -(S::one() / L[k * n + k]);
-        let mut row = at(B, k).map(|x| x * minus_one_over);
-        for i in pattern.ancestors(k) {
-            let (above, a) = (at(B, i), -L[k * n + i]);
-            row = core::array::from_fn(|c| above[c].mul_add(a, row[c]));
+    while k < pattern.len() {
+        if pattern.is_next(k + 1) {
+            substitute::<2, W, S>(pattern, L, c, k, B);
+            k += 2;
+        } else {
+            substitute::<1, W, S>(pattern, L, c, k, B);
+            k += 1;
         }
-        B[k * n..][..W].copy_from_slice(&row);
     }
 }
 
-/// Overwrites L and D with M⁻¹, both triangles. In LM⁻¹ = D⁻¹L⁻ᵀ the right side is upper triangular: row k of M⁻¹ follows from the
-/// rows before it. `memory` is for n numbers.
+/// X of LᵀX = B by rows k to k + R, a path: they leave their ancestors' rows.
 #[inline(always)]
-pub(crate) fn invert<S: Scalar>(pattern: &Pattern, n: usize, L: &mut [S], memory: &mut [S]) {
-    for k in 0..n {
-        let row = &mut memory[..k];
-        row.fill(S::zero());
-        for i in pattern.ancestors(k) {
-            add(row, -L[k * n + i], &L[i * n..][..k]);
+fn eliminate<const R: usize, const W: usize, S: Scalar>(
+    pattern: &Pattern,
+    L: &[S],
+    c: usize,
+    k: usize,
+    [X, Y]: &mut [&mut [S]; 2],
+) {
+    let n = pattern.len();
+    let L: [&[S]; R] = core::array::from_fn(|r| &L[(k + r) * n..][..n]);
+    let (X, Y) = (&mut X[..n * n], &mut Y[..n * n]);
+    let [mut x, mut y] = [[[S::zero(); W]; R]; 2];
+    for r in (0..R).rev() {
+        let at = (k + r) * n + c;
+        (x[r], y[r]) = (row(X, at), row(Y, at));
+        for q in r + 1..R {
+            let a = -L[q][k + r];
+            (x[r], y[r]) = (add(x[r], a, x[q]), add(y[r], a, y[q]));
         }
-        let mut diagonal = S::one() / L[k * n + k];
-        for i in pattern.ancestors(k) {
-            diagonal = row[i].mul_add(-L[k * n + i], diagonal);
+        set_row(X, at, x[r]);
+        set_row(Y, at, y[r]);
+    }
+    for i in pattern.ancestors(k) {
+        let at = i * n + c;
+        let (mut above_x, mut above_y) = (row(X, at), row(Y, at));
+        for r in 0..R {
+            let a = -L[r][i];
+            (above_x, above_y) = (add(above_x, a, x[r]), add(above_y, a, y[r]));
         }
-        L[k * n + k] = diagonal;
-        for (i, &entry) in row.iter().enumerate() {
-            L[k * n + i] = entry;
-            L[i * n + k] = entry;
+        set_row(X, at, above_x);
+        set_row(Y, at, above_y);
+    }
+}
+
+/// X of DLX = −B by rows k to k + R, a path.
+#[inline(always)]
+fn substitute<const R: usize, const W: usize, S: Scalar>(
+    pattern: &Pattern,
+    L: &[S],
+    c: usize,
+    k: usize,
+    [X, Y]: &mut [&mut [S]; 2],
+) {
+    let n = pattern.len();
+    let L: [&[S]; R] = core::array::from_fn(|r| &L[(k + r) * n..][..n]);
+    let (X, Y) = (&mut X[..n * n], &mut Y[..n * n]);
+    let [mut x, mut y] = [[[S::zero(); W]; R]; 2];
+    for r in 0..R {
+        let (at, minus_one_over) = ((k + r) * n + c, -(S::one() / L[r][k + r]));
+        let zero = [S::zero(); W];
+        (x[r], y[r]) = (add(zero, minus_one_over, row(X, at)), add(zero, minus_one_over, row(Y, at)));
+    }
+    for i in pattern.ancestors(k) {
+        let at = i * n + c;
+        let (above_x, above_y) = (row(X, at), row(Y, at));
+        for r in 0..R {
+            let a = -L[r][i];
+            (x[r], y[r]) = (add(x[r], a, above_x), add(y[r], a, above_y));
         }
     }
+    for r in 0..R {
+        for q in 0..r {
+            let a = -L[r][k + q];
+            (x[r], y[r]) = (add(x[r], a, x[q]), add(y[r], a, y[q]));
+        }
+        set_row(X, (k + r) * n + c, x[r]);
+        set_row(Y, (k + r) * n + c, y[r]);
+    }
+}
+
+/// W numbers from `at` on.
+#[inline(always)]
+fn row<const W: usize, S: Scalar>(B: &[S], at: usize) -> [S; W] {
+    let mut row = [S::zero(); W];
+    row.copy_from_slice(&B[at..at + W]);
+    row
+}
+
+#[inline(always)]
+fn set_row<const W: usize, S: Scalar>(B: &mut [S], at: usize, row: [S; W]) {
+    B[at..at + W].copy_from_slice(&row);
 }
 
 /// y + a x.
 #[inline(always)]
-fn add<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
-    for (y, &x) in y.iter_mut().zip(x) {
-        *y = x.mul_add(a, *y);
+fn add<const W: usize, S: Scalar>(mut y: [S; W], a: S, x: [S; W]) -> [S; W] {
+    for w in 0..W {
+        y[w] = x[w].mul_add(a, y[w]);
+    }
+    y
+}
+
+/// Overwrites L and D with M⁻¹, both triangles; above the diagonal may stand any number. In LM⁻¹ = D⁻¹L⁻ᵀ the right side is upper
+/// triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
+#[inline(always)]
+pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]) {
+    match pattern.len() {
+        0..4 => invert_by::<1, S>(pattern, L, memory),
+        4..8 => invert_by::<4, S>(pattern, L, memory),
+        8..16 => invert_by::<8, S>(pattern, L, memory),
+        _ => invert_by::<16, S>(pattern, L, memory),
+    }
+}
+
+/// By W columns at a time, W ≤ n; the last of them overlap with others.
+#[inline(always)]
+fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut [S]) {
+    let n = pattern.len();
+    let (M, L) = (&mut M[..n * n], &mut L[..n]);
+    for k in 0..n {
+        let (above, row_k) = M.split_at_mut(k * n);
+        let row_k = &mut row_k[..n];
+        L.copy_from_slice(row_k);
+        for c in (0..k).step_by(W) {
+            let c = c.min(n - W);
+            let mut x = [S::zero(); W];
+            for i in pattern.ancestors(k) {
+                x = add(x, -L[i], row(above, i * n + c));
+            }
+            set_row(row_k, c, x);
+        }
+        let mut diagonal = S::one() / L[k];
+        for i in pattern.ancestors(k) {
+            diagonal = row_k[i].mul_add(-L[i], diagonal);
+        }
+        row_k[k] = diagonal;
+        for i in 0..k {
+            above[i * n + k] = row_k[i];
+        }
     }
 }
 
@@ -223,7 +362,7 @@ mod tests {
         assert!(found.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {x:?}");
         let pattern = Pattern::new(6, 6, core::iter::empty::<(usize, usize)>());
         let mut M = A.as_flattened().to_vec();
-        factor(&pattern, 6, &mut M);
+        factor(&pattern, &mut M);
         assert!((0..6).all(|k| (pivots[k] - M[7 * k]).abs() < 1e-14 * pivots[k]));
     }
 
@@ -243,13 +382,15 @@ mod tests {
         let x = random.vector(n, 1.0);
         let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * x[j]).sum()).collect();
         let (mut rows, right) = (M.clone(), b.clone());
-        factor(&pattern, n, &mut M);
-        solve(&pattern, n, &M, &mut b);
-        solve_rows(&pattern, n, &M, &mut rows);
+        factor(&pattern, &mut M);
+        solve(&pattern, &M, &mut b);
+        let mut twice = rows.clone();
+        solve_rows(&pattern, &M, [&mut rows, &mut twice]);
+        assert_eq!(rows, twice);
         let minus_one = |k: usize| if k.is_multiple_of(n + 1) { -1.0 } else { 0.0 };
         assert!(rows.iter().enumerate().all(|(k, x)| (x - minus_one(k)).abs() < 1e-14), "−M⁻¹M {rows:?}");
         assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
-        invert(&pattern, n, &mut M, &mut vec![f64::NAN; n]);
+        invert(&pattern, &mut M, &mut vec![f64::NAN; n]);
         let found = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * right[j]).sum::<f64>());
         assert!(found.zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
     }
