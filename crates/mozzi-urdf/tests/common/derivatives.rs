@@ -1,8 +1,8 @@
 //! Derivatives and the regressor, beside Pinocchio's.
 
 use super::{Worst, column, matrix};
+use mozzi::Model;
 use mozzi::conventions::Pinocchio;
-use mozzi::{Environment, Model};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
