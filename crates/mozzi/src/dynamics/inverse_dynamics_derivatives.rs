@@ -49,7 +49,7 @@ use crate::spatial::{BodyCoriolis, Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or a derivative not n².
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
@@ -60,7 +60,7 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[allow(clippy::too_many_arguments)]
 fn derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -78,7 +78,7 @@ fn derivatives<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Axes with their rates, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
 pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>,
@@ -120,7 +120,7 @@ pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
 
 /// Adds θ̈ to what was carried and filled without: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by `[ad_𝒱̇'_p]` A,
 /// and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn accelerate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
     let Workspace { dV, F, U, axes, G_c, .. } = workspace;
@@ -145,7 +145,7 @@ pub(super) fn accelerate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddthe
 
 /// ∂τ/∂θ, ∂τ/∂θ̇ and M, what is asked for. Tips to base, 𝒢, 𝓑 and 𝓕 of a link become those of the link with all that hangs from it; `carried`
 /// says that they are so far those of links.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>, carried: bool,
@@ -250,7 +250,7 @@ pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// What joints and a free base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(super) fn forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
     let Workspace { F, axes, .. } = workspace;
     tau.fill(S::zero());
@@ -263,7 +263,7 @@ pub(super) fn forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace
 }
 
 /// n × n zeros.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[track_caller]
 fn clear<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
     let n = model.n();
@@ -272,7 +272,7 @@ fn clear<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
 }
 
 /// Column j and row j at a free base's six.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
     for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
         X[r * n + j] += column;
@@ -281,7 +281,7 @@ fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row:
 }
 
 /// A column of a free base's 6 × 6 block.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     for (s, entry) in column.to_array().into_iter().enumerate() {
         X[s * n + r] = entry;

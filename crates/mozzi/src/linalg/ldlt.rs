@@ -90,7 +90,7 @@ impl Pattern {
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
 /// The caller checks that the pivots D are positive.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S]) {
     let n = pattern.len();
     for k in (0..n).rev() {
@@ -109,7 +109,7 @@ pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S]) {
 }
 
 /// Overwrites b with x, where LᵀDLx = b.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     let n = pattern.len();
     let b = &mut b[..n];
@@ -130,7 +130,7 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
 }
 
 /// Overwrites two right sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column are relatives.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S]; 2]) {
     let n = pattern.len();
     let mut B = [&mut X[..n * n], &mut Y[..n * n]];
@@ -150,7 +150,7 @@ pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S
 
 /// Every step of [`solve`], up to the sign, on W columns of each from c on: a step waits for the one before it, so that several columns
 /// take no longer than one. Two rows on a path have the same ancestors: they go together.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize, B: &mut [&mut [S]; 2]) {
     let mut k = pattern.end[c..c + W].iter().fold(0, |end, &e| end.max(e));
     while k > 0 {
@@ -177,7 +177,7 @@ fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize
 }
 
 /// X of LᵀX = B by rows k to k + R, a path: they leave their ancestors' rows.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn eliminate<const R: usize, const W: usize, S: Scalar>(
     pattern: &Pattern,
     L: &[S],
@@ -212,7 +212,7 @@ fn eliminate<const R: usize, const W: usize, S: Scalar>(
 }
 
 /// X of DLX = −B by rows k to k + R, a path.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn substitute<const R: usize, const W: usize, S: Scalar>(
     pattern: &Pattern,
     L: &[S],
@@ -271,7 +271,7 @@ fn add<const W: usize, S: Scalar>(mut y: [S; W], a: S, x: [S; W]) -> [S; W] {
 
 /// Overwrites L and D with M⁻¹, both triangles; above the diagonal may stand any number. In LM⁻¹ = D⁻¹L⁻ᵀ the right side is upper
 /// triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]) {
     match pattern.len() {
         0..4 => invert_by::<1, S>(pattern, L, memory),
@@ -282,7 +282,7 @@ pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]
 }
 
 /// By W columns at a time, W ≤ n; the last of them overlap with others.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut [S]) {
     let n = pattern.len();
     let (M, L) = (&mut M[..n * n], &mut L[..n]);
@@ -311,7 +311,7 @@ fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut 
 
 /// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of the last row
 /// first eliminated, for the caller to check.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], [S; 6]) {
     let mut pivots = [S::zero(); 6];
     for k in (0..6).rev() {
