@@ -1,92 +1,7 @@
 //! M = LᵀDL along the tree's sparsity: no pivoting, no square root (Featherstone 2008, section 6.5).
 
+pub(crate) use super::pattern::Pattern;
 use crate::scalar::Scalar;
-use alloc::collections::BTreeSet;
-use alloc::vec;
-use alloc::vec::Vec;
-
-/// The elimination tree: row k of L is nonzero only in the columns of k's ancestors.
-#[derive(Clone, Debug)]
-pub(crate) struct Pattern {
-    /// `usize::MAX` for a root.
-    parent: Vec<usize>,
-    /// One beyond the last descendant of k, or beyond k.
-    end: Vec<usize>,
-}
-
-impl Pattern {
-    /// From the number of the base's own rows, which couple with all, and from each moving link's parent slot and row, base to tips. In a plain tree the ancestors are the tree's;
-    /// a follower couples its master's row with another path, and eliminating that row couples both paths.
-    pub fn new(base: usize, n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
-        let coupled = n < base + links.len();
-        let links: Vec<(usize, usize)> = links.collect();
-        let mut parent = vec![usize::MAX; n];
-        for j in 1..base {
-            parent[j] = j - 1;
-        }
-        if !coupled {
-            for &(carrier, j) in &links {
-                match carrier {
-                    0 if base == 0 => {}
-                    0 => parent[j] = base - 1,
-                    _ => parent[j] = links[carrier - 1].1,
-                }
-            }
-            return Pattern::of(parent);
-        }
-        let mut rows: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
-        for &(carrier, j) in &links {
-            rows[j].extend(0..base);
-            let mut slot = carrier;
-            while slot > 0 {
-                let (next, k) = links[slot - 1];
-                if k != j {
-                    rows[j.max(k)].insert(j.min(k));
-                }
-                slot = next;
-            }
-        }
-        for k in (base..n).rev() {
-            if let Some(last) = rows[k].pop_last() {
-                parent[k] = last;
-                let rest = core::mem::take(&mut rows[k]);
-                rows[last].extend(rest);
-            }
-        }
-        Pattern::of(parent)
-    }
-
-    /// With each one's parent before it.
-    fn of(parent: Vec<usize>) -> Self {
-        let mut end: Vec<usize> = (1..=parent.len()).collect();
-        for (k, &i) in parent.iter().enumerate().rev().filter(|&(_, &i)| i != usize::MAX) {
-            end[i] = end[i].max(end[k]);
-        }
-        Pattern { parent, end }
-    }
-
-    /// Does k follow its parent?
-    #[inline(always)]
-    fn is_next(&self, k: usize) -> bool {
-        self.parent.get(k).is_some_and(|i| i.wrapping_add(1) == k && k > 0)
-    }
-
-    /// n.
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.parent.len()
-    }
-
-    /// k's ancestors, nearest (largest) first. A row of n numbers can be indexed by them without a further look at its length.
-    #[inline(always)]
-    pub fn ancestors(&self, k: usize) -> impl Iterator<Item = usize> {
-        let mut i = self.parent[k];
-        core::iter::from_fn(move || {
-            let &next = self.parent.get(i)?;
-            Some(core::mem::replace(&mut i, next))
-        })
-    }
-}
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
 /// The caller checks that the pivots D are positive.
@@ -339,16 +254,8 @@ pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], 
 mod tests {
     use super::*;
     use crate::testing::Random;
-
-    #[test]
-    fn a_follower_couples_two_paths() {
-        // slots 1 → 2 → 3 and 1 → 4; slot 4 follows joint 2 (of slot 3): joints 0, 1, 2, 2
-        let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (2, 2), (1, 2)].into_iter());
-        assert_eq!(pattern.ancestors(2).collect::<Vec<_>>(), [1, 0]);
-        // two arms whose last joints are one: joints 0, 1 and 2, 1
-        let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (0, 2), (3, 1)].into_iter());
-        assert_eq!(pattern.parent, [usize::MAX, 0, 1], "joint 2 couples with 1, and 1 with 0");
-    }
+    use alloc::vec;
+    use alloc::vec::Vec;
 
     #[test]
     fn a_six_by_six_system() {
@@ -366,32 +273,67 @@ mod tests {
         assert!((0..6).all(|k| (pivots[k] - M[7 * k]).abs() < 1e-14 * pivots[k]));
     }
 
+    /// Behind the base's rows, limbs: each hangs from a slot (0: the base) and has so many joints.
+    fn limbs(base: usize, limbs: &[(usize, usize)]) -> Pattern {
+        let mut links = Vec::new();
+        for &(mut carrier, joints) in limbs {
+            for _ in 0..joints {
+                links.push((carrier, base + links.len()));
+                carrier = links.len();
+            }
+        }
+        Pattern::new(base, base + links.len(), links.into_iter())
+    }
+
     #[test]
-    fn factor_and_solve_a_tree_shaped_matrix() {
-        // a trunk 0 with two branches 1 → 2 and 3 → 4
-        let pattern = Pattern::new(0, 5, [(0, 0), (1, 1), (2, 2), (1, 3), (4, 4)].into_iter());
-        let (n, mut random) = (5, Random(4));
+    fn factor_and_solve_tree_shaped_matrices() {
+        let trunk_and_branches: [(usize, &[(usize, usize)]); 6] = [
+            (0, &[(0, 1)]),
+            (0, &[(0, 3)]),
+            (0, &[(0, 1), (1, 2), (1, 2)]),
+            (0, &[(0, 4), (0, 7)]),
+            (6, &[(0, 3), (0, 3), (0, 1)]),
+            (6, &[(0, 6), (0, 6), (0, 2), (14, 8), (14, 8), (14, 2)]),
+        ];
+        for (base, branches) in trunk_and_branches {
+            solve_a_random_system(&limbs(base, branches));
+        }
+        // two arms on joint 1, the last joint of the second following joint 8 of the first
+        let arms: Vec<_> = (0..9).map(|j| (j, j)).chain([(2, 9), (10, 10), (11, 8)]).collect();
+        solve_a_random_system(&Pattern::new(0, 11, arms.into_iter()));
+    }
+
+    /// M and B are random where the pattern has entries.
+    fn solve_a_random_system(pattern: &Pattern) {
+        let (n, mut random) = (pattern.len(), Random(4));
         let mut M = vec![0.0; n * n];
+        let mut B = M.clone();
         for k in 0..n {
-            M[k * n + k] = 3.0 + random.next();
+            M[k * n + k] = n as f64 + 2.0 + random.next();
+            B[k * n + k] = random.next();
             for i in pattern.ancestors(k) {
                 M[k * n + i] = random.next();
                 M[i * n + k] = M[k * n + i];
+                (B[k * n + i], B[i * n + k]) = (random.next(), random.next());
             }
         }
         let x = random.vector(n, 1.0);
         let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * x[j]).sum()).collect();
-        let (mut rows, right) = (M.clone(), b.clone());
-        factor(&pattern, &mut M);
-        solve(&pattern, &M, &mut b);
-        let mut twice = rows.clone();
-        solve_rows(&pattern, &M, [&mut rows, &mut twice]);
-        assert_eq!(rows, twice);
+        let (mut rows, mut more, right) = (M.clone(), B.clone(), b.clone());
+        factor(pattern, &mut M);
+        solve(pattern, &M, &mut b);
+        assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
+        solve_rows(pattern, &M, [&mut rows, &mut more]);
         let minus_one = |k: usize| if k.is_multiple_of(n + 1) { -1.0 } else { 0.0 };
         assert!(rows.iter().enumerate().all(|(k, x)| (x - minus_one(k)).abs() < 1e-14), "−M⁻¹M {rows:?}");
-        assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
-        invert(&pattern, &mut M, &mut vec![f64::NAN; n]);
+        for j in 0..n {
+            let mut column: Vec<f64> = (0..n).map(|i| B[i * n + j]).collect();
+            solve(pattern, &M, &mut column);
+            assert!((0..n).all(|i| (column[i] + more[i * n + j]).abs() < 1e-14), "column {j} of −M⁻¹B");
+        }
+        invert(pattern, &mut M, &mut vec![f64::NAN; n]);
         let found = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * right[j]).sum::<f64>());
-        assert!(found.zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
+        assert!(found.zip(&x).all(|(a, b)| (a - b).abs() < 1e-13));
+        assert!((0..n * n).all(|k| M[k] == M[k % n * n + k / n]), "symmetric");
     }
 }
