@@ -4,6 +4,9 @@
 //! Results agree with the plain kernels to rounding, not bit for bit. AVX-512 is deliberately left out: for one state it
 //! makes code slower.
 //!
+//! Derivatives of g, JᵀF and Mx alone are not here: ∂τ/∂θ of [`inverse_dynamics_derivatives`] at θ̇ = 0 is their sum, and each entry is
+//! compiled once more for each instruction set.
+//!
 //! ```
 //! # use mozzi::{Description, native};
 //! # fn example(model: &mozzi::Model) {

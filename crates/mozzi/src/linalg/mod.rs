@@ -2,6 +2,7 @@
 
 pub(crate) mod ldlt;
 mod mat3;
+mod pattern;
 mod skew;
 mod sym3;
 mod vec3;
