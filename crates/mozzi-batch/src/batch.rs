@@ -8,7 +8,7 @@ use crate::quantity::{self as q, Quantity};
 use crate::threads::Threads;
 use crate::{Error, Surroundings};
 use mozzi::simulation::Method;
-use mozzi::{FrameId, Model, Wrench};
+use mozzi::{Environment, FrameId, Model, Wrench};
 use std::sync::Arc;
 
 /// A chunk's tables fill about half of a core's second cache.
@@ -261,7 +261,7 @@ impl<T: Number> Batch<T> {
             let F = self.at((table, 6), index);
             applied.push((frame, Wrench::from_array(core::array::from_fn(|k| F[k]))));
         }
-        let environment = mozzi::Environment { applied: &applied, ..surroundings.environment };
+        let environment = Environment { applied: &applied, ..surroundings.environment };
         let state: Vec<Vec<f64>> = inputs.iter().map(|&(_, table)| self.at(table, index)).collect();
         let result = self.model.forward_dynamics(&state[0], &state[1], &state[2], &environment);
         result.map(drop).map_err(|source| Error::State { index, source })
@@ -297,19 +297,26 @@ impl<T: Number, Q: Quantity> OnLanes<T, Q> for Run<'_, '_, T, Q> {
     }
 }
 
+/// The wrenches alone.
+fn of_wrenches<T>(all: Surroundings<T>) -> Surroundings<T> {
+    let environment =
+        Environment { applied: all.environment.applied, ..Environment::with_gravity(mozzi::Vec3::zero()) };
+    Surroundings { environment, ..all }
+}
+
 /// Methods: their tables, numbers a state, and the kernel.
 macro_rules! methods {
     ($(
         $(#[$doc:meta])*
-        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
+        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident $(|$given:ident| $part:expr)?)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
     )*) => {
-        methods!(@of f64; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings)?) -> $($output: |$n| $out_width),* => $Q;)*);
-        methods!(@of f32; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings)?) -> $($output: |$n| $out_width),* => $Q;)*);
+        methods!(@of f64; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings $(|$given| $part)?)?) -> $($output: |$n| $out_width),* => $Q;)*);
+        methods!(@of f32; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings $(|$given| $part)?)?) -> $($output: |$n| $out_width),* => $Q;)*);
     };
     // of each number, not of any: so they are compiled once, here
     (@of $T:ty; $(
         $(#[$doc:meta])*
-        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
+        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident $(|$given:ident| $part:expr)?)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
     )*) => { impl Batch<$T> { $(
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)] // the kernel's
@@ -320,8 +327,8 @@ macro_rules! methods {
             let inputs = [$((stringify!($input), ($input, self.model.$in_width()))),*];
             let outputs = vec![$((stringify!($output), ($output, { let $n = self.model.n(); $out_width }))),*];
             #[allow(unused_mut, unused_assignments)] // of a quantity that nothing surrounds
-            let mut all = Surroundings::from(mozzi::Environment::with_gravity(mozzi::Vec3::zero()));
-            $(all = *$surroundings;)?
+            let mut all = Surroundings::from(Environment::with_gravity(mozzi::Vec3::zero()));
+            $(all = *$surroundings; $(let $given = all; all = $part;)?)?
             self.run(&$Q, &inputs, outputs, all)
         }
     )*
@@ -367,32 +374,32 @@ methods! {
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    mass_matrix_rate(theta: nq, dtheta: n; ) -> dM: |n| n * n => q::MassMatrixRate;
+    mass_matrix_rate(theta: nq, dtheta: n; ) -> dM: |n| n * n => q::CoriolisMatrix { rate: true };
     /// C (N, n, n) of θ and θ̇: see [`mozzi::coriolis_matrix`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    coriolis_matrix(theta: nq, dtheta: n; ) -> C: |n| n * n => q::CoriolisMatrix;
+    coriolis_matrix(theta: nq, dtheta: n; ) -> C: |n| n * n => q::CoriolisMatrix { rate: false };
     /// c (N, n) of θ and θ̇: see [`mozzi::velocity_product`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    velocity_product(theta: nq, dtheta: n; ) -> c: |n| n => q::VelocityProduct;
+    velocity_product(theta: nq, dtheta: n; ) -> c: |n| n => q::BiasForces { at_rest: false };
     /// g (N, n) of θ, in the environment's gravity: see [`mozzi::gravity_forces`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    gravity_forces(theta: nq; surroundings) -> g: |n| n => q::GravityForces;
+    gravity_forces(theta: nq; surroundings |given| Environment::with_gravity(given.environment.gravity).into()) -> g: |n| n => q::BiasForces { at_rest: true };
     /// h = c + g and what the surroundings add (N, n), of θ and θ̇: see [`mozzi::bias_forces`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    bias_forces(theta: nq, dtheta: n; surroundings) -> h: |n| n => q::BiasForces;
+    bias_forces(theta: nq, dtheta: n; surroundings) -> h: |n| n => q::BiasForces { at_rest: false };
     /// JᵀF (N, n) of the surroundings' wrenches: see [`mozzi::tip_forces`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    tip_forces(theta: nq; surroundings) -> tau: |n| n => q::TipForces;
+    tip_forces(theta: nq; surroundings |given| of_wrenches(given)) -> tau: |n| n => q::BiasForces { at_rest: true };
     /// ½θ̇ᵀMθ̇ (N): see [`mozzi::kinetic_energy`]; the surroundings' base twist counts.
     ///
     /// # Errors

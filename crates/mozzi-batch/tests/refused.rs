@@ -26,7 +26,7 @@ fn lengths() {
     let blocks = batch.clone().with_layout(Layout::Blocks).with_instruction_set(InstructionSet::Portable).unwrap();
     assert_eq!(
         text(blocks.mass_matrix(&x, &mut tau)),
-        "theta has 21 numbers, expected a multiple of 7: 7 positions a state, in whole blocks of 4 states"
+        "theta has 21 numbers, expected a multiple of 7: 7 positions a state, in whole blocks of 2 states"
     );
     // no state is no error
     batch.inverse_dynamics(&[], &[], &[], &s, &mut []).unwrap();

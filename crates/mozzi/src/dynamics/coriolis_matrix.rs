@@ -1,6 +1,7 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
 use crate::kinematics::{base_twist, joint_transforms};
+use crate::linalg::add_transpose;
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
@@ -99,11 +100,5 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
     dM: &mut [S],
 ) {
     coriolis_matrix(model, theta, dtheta, workspace, dM);
-    let n = model.n();
-    for i in 0..n {
-        for j in 0..=i {
-            let sum = dM[i * n + j] + dM[j * n + i];
-            (dM[i * n + j], dM[j * n + i]) = (sum, sum);
-        }
-    }
+    add_transpose(model.n(), dM);
 }
