@@ -1,4 +1,4 @@
-//! 16 bytes of numbers in an array, for any processor: bit for bit the plain numbers' results.
+//! Numbers in an array, for any processor: bit for bit the plain numbers' results.
 
 use super::Lane;
 use mozzi::Scalar;
@@ -99,7 +99,7 @@ impl<T: Float + Bits<Number = T>, const W: usize> Lane for Portable<T, W> {
     }
     #[inline(always)]
     fn zip(self, other: Self) -> (Self, Self) {
-        let of = |k: usize| if k % 2 == 0 { self.0[k / 2] } else { other.0[k / 2] };
+        let of = |k: usize| if k.is_multiple_of(2) { self.0[k / 2] } else { other.0[k / 2] };
         (Portable(core::array::from_fn(of)), Portable(core::array::from_fn(|k| of(k + W))))
     }
     #[inline(always)]

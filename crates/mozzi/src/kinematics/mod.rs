@@ -13,6 +13,7 @@ mod tests;
 
 pub(crate) use base::{base_motion, base_pose, base_twist};
 pub(crate) use configuration::{advance, rate_of_logarithm};
+pub(crate) use jacobian::twist_of;
 pub(crate) use joint_transforms::joint_transforms;
 
 pub use configuration::{difference, integrate, moving_along};
