@@ -58,9 +58,9 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
 
     // base to tips: twists, and what each link's motion needs at no acceleration
     for (i, link) in model.outward::<S>() {
-        let (A, G, dq) = (link.A, link.G, link.rate(dtheta));
+        let (A, G, dq) = (link.A(), link.G(), link.rate(dtheta));
         V[i]  = T[i].Ad() * V[link.parent] + A * dq;
-        dV[i] = V[i].ad() * (A * dq);                                        // velocity-product acceleration
+        dV[i] = (V[i].ad() * (A * dq)).twist();                                        // velocity-product acceleration
         F[i]  = -(V[i].ad().transpose() * (G * V[i]));
         G_hat[i] = G.into();
     }
@@ -71,7 +71,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
 
     // tips to base: free each joint and hand what is left to the parent
     for (i, link) in model.inward::<S>() {
-        let (A, j) = (link.A, link.j);
+        let (A, j) = (link.A(), link.j);
         let GA = G_hat[i] * A;
         let d  = A * GA + S::from(model.armature[j]);
         let one_over_d = S::one() / d;
@@ -101,6 +101,6 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         let dV_i = T[i].Ad() * dV[link.parent] + dV[i];
         ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
-        dV[i] = dV_i + link.A * ddtheta[link.j];
+        dV[i] = dV_i + link.A() * ddtheta[link.j];
     }
 }

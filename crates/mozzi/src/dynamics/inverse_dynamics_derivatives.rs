@@ -94,7 +94,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         let (p, j) = (link.parent, link.j);
         T[i]  = T[i] * T[p];                                                 // T_i0
-        let A   = link.A.seen_through(T[i]) * link.ratio;
+        let A   = link.A().seen_through(T[i]) * link.ratio();
         let dA  = V[p].ad() * A;
         let ddA = dV[p].ad() * A + V[p].ad() * dA;
         V[i]  = V[p] + A * dtheta[j];
@@ -103,7 +103,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     }
     // 𝒢, 𝓑 and 𝓕 of each link
     for (i, link) in model.outward::<S>() {
-        let G = link.G.congruence(T[i].Ad());
+        let G = link.G().congruence(T[i].Ad());
         let P = G * V[i];
         (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V[i], P));
         F[i]  = G * dV[i] - V[i].ad().transpose() * P;

@@ -29,18 +29,18 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     }
     G_c[0] = model.base_inertia.map(S::from);
     for (i, link) in model.outward::<S>() {
-        G_c[i] = link.G;
+        G_c[i] = link.G();
     }
     for (i, link) in model.inward::<S>() {
         let j = link.j;
-        let mut F = G_c[i] * link.A * link.ratio;                            // 𝒢ᶜ A
-        M[j * n + j] += link.ratio * (link.A * F);
+        let mut F = G_c[i] * link.A() * link.ratio();                            // 𝒢ᶜ A
+        M[j * n + j] += link.ratio() * (link.A() * F);
         let mut k = i;
         while model.links[k - 1].parent > 0 {
             F = T[k].Ad().transpose() * F;                                   // seen from the link below
             k = model.links[k - 1].parent;
-            let below = model.links[k - 1].lift::<S>();
-            let entry = below.ratio * (below.A * F);
+            let below = model.link::<S>(k);
+            let entry = below.ratio() * (below.A() * F);
             M[j * n + below.j] += entry;
             M[below.j * n + j] += entry;
         }

@@ -34,6 +34,16 @@ impl<S: Scalar> Adjoint<S> {
     }
 }
 
+impl<S: Scalar> AdjointTranspose<S> {
+    /// `[Ad_T]`ᵀ F + `to`.
+    #[inline(always)]
+    pub(crate) fn mul_add(self, F: Wrench<S>, to: Wrench<S>) -> Wrench<S> {
+        let SE3 { R, p } = self.0;
+        let R = R.matrix();
+        Wrench { m: R.transpose_mul_add(F.f.cross_add(p, F.m), to.m), f: R.transpose_mul_add(F.f, to.f) }
+    }
+}
+
 impl<S: Scalar> LieBracket<S> {
     /// `[ad_V]`ᵀ.
     #[inline(always)]

@@ -70,6 +70,13 @@ impl<S: Scalar> Mat3<S> {
         self.x.mul_add(vx, self.y.mul_add(vy, self.z * vz))
     }
 
+    /// Bᵀv + c.
+    #[inline(always)]
+    pub(crate) fn transpose_mul_add(self, v: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
+        let [vx, vy, vz] = v.0;
+        self.x.mul_add(vx, self.y.mul_add(vy, self.z.mul_add(vz, c)))
+    }
+
     /// Each entry by f.
     #[inline(always)]
     pub fn map<U>(self, f: impl Fn(S) -> U) -> Mat3<U> {

@@ -20,13 +20,13 @@ macro_rules! sin_cos {
 
             #[inline(always)]
             pub fn sin_cos(x: $f, mul_add: impl Fn($f, $f, $f) -> $f) -> ($f, $f) {
-                let shifted = x * core::$f::consts::FRAC_2_PI + ROUND;
+                let shifted = mul_add(x, core::$f::consts::FRAC_2_PI, ROUND);
                 let k = shifted - ROUND; // x = k π/2 + r
                 let quadrant = shifted.to_bits();
                 let [p0, p1, p2] = HALF_PI;
-                let (t, w) = (x - k * p0, k * p1); // both exact
+                let (t, w) = (mul_add(-k, p0, x), k * p1); // both exact
                 let hi = t - w;
-                let lo = k * p2 - ((t - hi) - w);
+                let lo = mul_add(k, p2, w - (t - hi));
                 let r = hi - lo;
                 let tail = (hi - r) - lo; // what the rounding of r lost
                 let z = r * r;
@@ -42,16 +42,15 @@ macro_rules! sin_cos {
                     i += 1;
                 }
                 // sin(r + tail) = r + (tail + r³ s(z)); cos(r + tail) = 1 − z/2 + (z² c(z) − r tail), 1 − z/2 compensated
-                let sin = r + mul_add(r * z, s, tail * (1.0 - 0.5 * z));
-                let half = 0.5 * z;
-                let one = 1.0 - half;
-                let cos = one + (((1.0 - one) - half) + mul_add(z * z, c, -(r * tail)));
+                let one = mul_add(-0.5, z, 1.0);
+                let sin = r + mul_add(r * z, s, tail * one);
+                let cos = one + (mul_add(-0.5, z, 1.0 - one) + mul_add(z * z, c, -(r * tail)));
                 // exchange in odd quadrants, then the signs, on the bits
                 let (s, c) = (sin.to_bits(), cos.to_bits());
+                let odd = quadrant << (8 * size_of::<$f>() - 1);
+                let sign = (quadrant << (8 * size_of::<$f>() - 2)) & (1 << (8 * size_of::<$f>() - 1));
                 let exchange = (s ^ c) & (quadrant & 1).wrapping_neg();
-                let sign = |q| (q & 2) << (8 * size_of::<$f>() - 2);
-                let negative = sign(quadrant.wrapping_add(1));
-                ($f::from_bits(s ^ exchange ^ sign(quadrant)), $f::from_bits(c ^ exchange ^ negative))
+                ($f::from_bits(s ^ exchange ^ sign), $f::from_bits(c ^ exchange ^ (sign ^ odd)))
             }
         }
     };

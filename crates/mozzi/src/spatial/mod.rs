@@ -8,6 +8,7 @@ mod joint_axis;
 mod nearest_physical;
 mod screw_axis;
 pub mod solids;
+mod spin;
 mod twist;
 mod wrench;
 
@@ -16,5 +17,6 @@ pub(crate) use body_coriolis::BodyCoriolis;
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};
+pub(crate) use spin::Spin;
 pub use twist::Twist;
 pub use wrench::Wrench;
