@@ -18,7 +18,7 @@ use crate::spatial::Wrench;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, θ̈ or τ not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -43,7 +43,7 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
 /// this moment, along with the origin of link i: for him 𝒱_i = (ω, 0), and 𝒱̇_i = (ω̇, a) with the acceleration a = v̇ + ω × v of the
 /// origin. So link i's motion is computed from its parent's as the parent's observer sees it, by the book's equations, and handed on
 /// as its own does. The wrench 𝓕_i is the same for both; the linear part of 𝒱 costs nothing.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],

@@ -4,7 +4,7 @@ use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 
 /// `workspace.T[i]` = T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1} of every link.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
     joint_sines(model, theta, workspace);
@@ -14,7 +14,7 @@ pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>,
 
 /// `workspace.sin_cos[i]` of every joint's angle: all come first, for they do not wait for one another, as the recursions that
 /// follow do.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn joint_sines<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
     model.assert_lengths(theta.len(), []);

@@ -6,7 +6,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// `workspace.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; the workspace holds T_{i,i−1}(θ).
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
