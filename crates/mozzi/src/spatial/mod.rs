@@ -17,6 +17,5 @@ pub(crate) use body_coriolis::BodyCoriolis;
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};
-pub(crate) use spin::Spin;
 pub use twist::Twist;
 pub use wrench::Wrench;

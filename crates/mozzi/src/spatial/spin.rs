@@ -4,7 +4,7 @@ use super::{SpatialInertia, Twist, Wrench};
 use crate::lie::Adjoint;
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
-use core::ops::{Mul, Sub};
+use core::ops::{Mul, Neg, Sub};
 
 /// (ω, 0): the twist of a body that turns about its frame's origin. Products with it cost no multiplication by its zeros.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +72,14 @@ impl<S: Scalar> Mul<Wrench<S>> for SpinBracketTranspose<S> {
     #[inline(always)]
     fn mul(self, P: Wrench<S>) -> SpinBracketWrench<S> {
         SpinBracketWrench { w: self.0, P }
+    }
+}
+
+impl<S: Scalar> Neg for SpinBracketWrench<S> {
+    type Output = Wrench<S>;
+    #[inline(always)]
+    fn neg(self) -> Wrench<S> {
+        Wrench { m: self.w.cross(self.P.m), f: self.w.cross(self.P.f) }
     }
 }
 
