@@ -53,6 +53,7 @@ pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S
 ///
 /// # Panics
 /// When θ is not nq long, or `J` not n.
+#[cfg_attr(not(test), inline(always))]
 pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -69,6 +70,7 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `J` not n.
+#[cfg_attr(not(test), inline(always))]
 pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
