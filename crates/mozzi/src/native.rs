@@ -1,8 +1,8 @@
-//! The kernels on `f64`, with the instruction set of the machine that runs them: fused multiply-add and AVX2 where the
-//! processor has them, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation.
+//! The kernels on `f64`, with the instruction set of the machine that runs them: fused multiply-add where the processor has
+//! it, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation.
 //!
-//! Results agree with the plain kernels to rounding, not bit for bit. AVX-512 is deliberately left out: for one state it
-//! makes code slower.
+//! Results agree with the plain kernels to rounding, not bit for bit. AVX2 and AVX-512 are deliberately left out: for one state
+//! they make code slower.
 //!
 //! ```
 //! # use mozzi::{Description, native};

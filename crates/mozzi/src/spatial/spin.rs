@@ -93,7 +93,6 @@ impl<S: Scalar> Sub<SpinBracketWrench<S>> for Wrench<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::lie::SE3;
     use crate::testing::{inertia, twist, wrench};
 
