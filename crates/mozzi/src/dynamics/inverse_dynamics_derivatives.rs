@@ -84,7 +84,10 @@ pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>,
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
+    let slots = model.links.len() + 1;
     let Workspace { T, V, dV, F, axes, G_c, B, .. } = workspace;
+    let (T, V, dV, F) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
+    let (axes, G_c, B) = (&mut axes[..slots], &mut G_c[..slots], &mut B[..slots]);
 
     // base: its own motion
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
@@ -94,23 +97,20 @@ pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
     (G_c[0], B[0]) = (G, BodyCoriolis::new(G, V[0], P));
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
 
-    // base to tips: axes with their rates, twists, accelerations
+    // base to tips: axes with their rates, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
     for (i, link) in model.outward::<S>() {
         let (p, j) = (link.parent, link.j);
         T[i]  = T[i] * T[p];                                                 // T_i0
-        let A   = link.A.seen_through(T[i]) * link.ratio;
+        let A   = link.A().seen_through(T[i]) * link.ratio();
         let dA  = V[p].ad() * A;
-        let ddA = dV[p].ad() * A + V[p].ad() * dA;
-        V[i]  = V[p] + A * dtheta[j];
-        dV[i] = dV[p] + dA * dtheta[j] + A * ddtheta[j];
-        axes[i] = [A, dA, ddA];
-    }
-    // 𝒢, 𝓑 and 𝓕 of each link
-    for (i, link) in model.outward::<S>() {
-        let G = link.G.congruence(T[i].Ad());
-        let P = G * V[i];
-        (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V[i], P));
-        F[i]  = G * dV[i] - V[i].ad().transpose() * P;
+        let ddA = dV[p].ad().mul_add(A, V[p].ad() * dA);
+        let V_i  = A.mul_add(dtheta[j], V[p]);
+        let dV_i = A.mul_add(ddtheta[j], dA.mul_add(dtheta[j], dV[p]));
+        (V[i], dV[i], axes[i]) = (V_i, dV_i, [A, dA, ddA]);
+        let G = link.G().congruence(T[i].Ad());
+        let P = G * V_i;
+        (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V_i, P));
+        F[i]  = G * dV_i - V_i.ad().transpose() * P;
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
