@@ -72,12 +72,14 @@ KDL::Segment segment(const Body& body) {
 
 } // namespace
 
-const std::vector<Algorithm> ALGORITHMS = {
-    {"inverse_dynamics", "ChainIdSolver_RNE", inverse_dynamics, put_vector},
-    {"forward_dynamics", "ChainFdSolver_RNE", forward_dynamics, put_vector},
-    {"mass_matrix", "JntToMass", mass_matrix, [](Robot& r, double* out) { std::copy_n(r.M.data.data(), r.n * r.n, out); }},
-    {"bias_forces", "ChainIdSolver_RNE, no acceleration", bias_forces, put_vector},
-};
+std::vector<Algorithm> algorithms(const Robot&) {
+    return {
+        {"inverse_dynamics", "ChainIdSolver_RNE", inverse_dynamics, put_vector},
+        {"forward_dynamics", "ChainFdSolver_RNE", forward_dynamics, put_vector},
+        {"mass_matrix", "JntToMass", mass_matrix, [](Robot& r, double* out) { std::copy_n(r.M.data.data(), r.n * r.n, out); }},
+        {"bias_forces", "ChainIdSolver_RNE, no acceleration", bias_forces, put_vector},
+    };
+}
 
 Robot* make_robot(const Description& description) {
     KDL::Chain chain;

@@ -114,14 +114,16 @@ mjSpec* spec(const Description& description) {
 
 } // namespace
 
-const std::vector<Algorithm> ALGORITHMS = {
-    {"inverse_dynamics", "mj_inverse", inverse, [](Robot& r, double* out) { put(r.d->qfrc_inverse, r.m->nv, out); }},
-    {"inverse_dynamics", "mj_rne", rne, put_vector},
-    {"forward_dynamics", "mj_forward", forward, [](Robot& r, double* out) { put(r.d->qacc, r.m->nv, out); }},
-    {"forward_dynamics", "mj_solveM", smooth_forward, put_vector},
-    {"mass_matrix", "mj_fullM", mass_matrix, [](Robot& r, double* out) { put(r.matrix.data(), r.m->nv * r.m->nv, out); }},
-    {"bias_forces", "mj_rne", bias, put_vector},
-};
+std::vector<Algorithm> algorithms(const Robot&) {
+    return {
+        {"inverse_dynamics", "mj_inverse", inverse, [](Robot& r, double* out) { put(r.d->qfrc_inverse, r.m->nv, out); }},
+        {"inverse_dynamics", "mj_rne", rne, put_vector},
+        {"forward_dynamics", "mj_forward", forward, [](Robot& r, double* out) { put(r.d->qacc, r.m->nv, out); }},
+        {"forward_dynamics", "mj_solveM", smooth_forward, put_vector},
+        {"mass_matrix", "mj_fullM", mass_matrix, [](Robot& r, double* out) { put(r.matrix.data(), r.m->nv * r.m->nv, out); }},
+        {"bias_forces", "mj_rne", bias, put_vector},
+    };
+}
 
 Robot* make_robot(const Description& description) {
     auto robot_spec = spec(description);

@@ -1,5 +1,5 @@
 // The C interface of a peer: what benches/src/compare/peer.rs calls. A peer includes this, defines `Robot` and the five
-// names below, and gets the rest from here. A robot is given by numbers, fixed links merged into what carries them, so that no
+// functions and names below, and gets the rest from here. A robot is given by numbers, fixed links merged into what carries them, so that no
 // loader is timed; the states are stored once, and one call runs one algorithm over all of them.
 
 #pragma once
@@ -45,8 +45,8 @@ struct Algorithm {
 // What the peer defines.
 std::string version();
 extern const char* const CONVENTION; // of a free base: mozzi, pinocchio or mujoco
-extern const std::vector<Algorithm> ALGORITHMS;
 Robot* make_robot(const Description&); // none if it cannot hold such a robot
+std::vector<Algorithm> algorithms(const Robot&);
 void free_robot(Robot*);
 
 #define STRING_(...) #__VA_ARGS__
@@ -55,6 +55,7 @@ void free_robot(Robot*);
 struct Loaded {
     Robot* robot;
     Description description;
+    std::vector<Algorithm> list;
     std::vector<double> numbers;
     std::vector<State> states;
 };
@@ -67,14 +68,15 @@ const char* peer_version() {
 }
 const char* peer_convention() { return CONVENTION; }
 const char* peer_flags() { return STRING(PEER_FLAGS); }
-const char* peer_quantity(int k) { return k < int(ALGORITHMS.size()) ? ALGORITHMS[k].quantity : nullptr; }
-const char* peer_algorithm(int k) { return ALGORITHMS[k].name; }
 
 Loaded* peer_robot(const char* name, const char* urdf, const double* gravity, int is_floating, const Body* bodies, int count) {
     Description description{name, urdf, gravity, is_floating != 0, {bodies, bodies + count}};
     auto robot = make_robot(description);
-    return robot ? new Loaded{robot, description, {}, {}} : nullptr;
+    return robot ? new Loaded{robot, description, algorithms(*robot), {}, {}} : nullptr;
 }
+
+const char* peer_quantity(Loaded* loaded, int k) { return k < int(loaded->list.size()) ? loaded->list[k].quantity : nullptr; }
+const char* peer_algorithm(Loaded* loaded, int k) { return loaded->list[k].name; }
 
 void peer_free(Loaded* loaded) {
     free_robot(loaded->robot);
@@ -93,13 +95,13 @@ void peer_states(Loaded* loaded, const double* x, int count) {
 
 // All states, one after the other.
 void peer_run(Loaded* loaded, int algorithm) {
-    auto run = ALGORITHMS[algorithm].run;
+    auto run = loaded->list[algorithm].run;
     for (const auto& state : loaded->states) run(*loaded->robot, state);
 }
 
 void peer_result(Loaded* loaded, int algorithm, int state, double* out) {
-    ALGORITHMS[algorithm].run(*loaded->robot, loaded->states[state]);
-    ALGORITHMS[algorithm].write(*loaded->robot, out);
+    loaded->list[algorithm].run(*loaded->robot, loaded->states[state]);
+    loaded->list[algorithm].write(*loaded->robot, out);
 }
 }
 

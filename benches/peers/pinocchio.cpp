@@ -93,22 +93,24 @@ void aba_derivatives(Robot& r, const State& s) {
 
 } // namespace
 
-const std::vector<Algorithm> ALGORITHMS = {
-    {"inverse_dynamics", "rnea", rnea, [](Robot& r, double* out) { put(r.data.tau, out); }},
-    {"forward_dynamics", "aba, WORLD", aba<pin::Convention::WORLD>, [](Robot& r, double* out) { put(r.data.ddq, out); }},
-    {"forward_dynamics", "aba, LOCAL", aba<pin::Convention::LOCAL>, [](Robot& r, double* out) { put(r.data.ddq, out); }},
-    {"mass_matrix", "crba, WORLD", crba<pin::Convention::WORLD>, mass_matrix},
-    {"mass_matrix", "crba, LOCAL", crba<pin::Convention::LOCAL>, mass_matrix},
-    {"coriolis_matrix", "computeCoriolisMatrix", coriolis, [](Robot& r, double* out) { put(r.data.C, out); }},
-    {"bias_forces", "nonLinearEffects", non_linear_effects, [](Robot& r, double* out) { put(r.data.nle, out); }},
-    {"inverse_dynamics_derivatives", "computeRNEADerivatives", rnea_derivatives,
-     [](Robot& r, double* out) { mass_matrix(r, put(r.data.dtau_dv, put(r.data.dtau_dq, out))); }},
-    {"forward_dynamics_derivatives", "computeABADerivatives", aba_derivatives,
-     [](Robot& r, double* out) {
-         out = put(r.data.ddq_dv, put(r.data.ddq_dq, out));
-         put(MatrixXd(r.data.Minv.selfadjointView<Eigen::Upper>()), out);
-     }},
-};
+std::vector<Algorithm> algorithms(const Robot&) {
+    return {
+        {"inverse_dynamics", "rnea", rnea, [](Robot& r, double* out) { put(r.data.tau, out); }},
+        {"forward_dynamics", "aba, WORLD", aba<pin::Convention::WORLD>, [](Robot& r, double* out) { put(r.data.ddq, out); }},
+        {"forward_dynamics", "aba, LOCAL", aba<pin::Convention::LOCAL>, [](Robot& r, double* out) { put(r.data.ddq, out); }},
+        {"mass_matrix", "crba, WORLD", crba<pin::Convention::WORLD>, mass_matrix},
+        {"mass_matrix", "crba, LOCAL", crba<pin::Convention::LOCAL>, mass_matrix},
+        {"coriolis_matrix", "computeCoriolisMatrix", coriolis, [](Robot& r, double* out) { put(r.data.C, out); }},
+        {"bias_forces", "nonLinearEffects", non_linear_effects, [](Robot& r, double* out) { put(r.data.nle, out); }},
+        {"inverse_dynamics_derivatives", "computeRNEADerivatives", rnea_derivatives,
+         [](Robot& r, double* out) { mass_matrix(r, put(r.data.dtau_dv, put(r.data.dtau_dq, out))); }},
+        {"forward_dynamics_derivatives", "computeABADerivatives", aba_derivatives,
+         [](Robot& r, double* out) {
+             out = put(r.data.ddq_dv, put(r.data.ddq_dq, out));
+             put(MatrixXd(r.data.Minv.selfadjointView<Eigen::Upper>()), out);
+         }},
+    };
+}
 
 Robot* make_robot(const Description& description) {
     pin::Model model;

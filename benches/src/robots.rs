@@ -95,9 +95,11 @@ fn of_limbs(name: &str, limbs: &[(&str, &str, usize)]) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// A body of 1 to 3 kg.
+/// A body of 1 to 3 kg: a ball with a point mass beside its centre.
 fn body(random: &mut Random) -> SpatialInertia {
-    let moments = Sym3::diagonal(0.02, 0.02, 0.02) + Sym3::outer(Vec3(random.vector()), 0.01);
+    let axis = Vec3(random.vector());
+    let moment = 0.02 + 0.01 * axis.dot(axis);
+    let moments = Sym3::diagonal(moment, moment, moment) - Sym3::outer(axis, 0.01);
     SpatialInertia::new(2.0 + random.number(), Vec3(random.vector()) * 0.1, moments)
 }
 

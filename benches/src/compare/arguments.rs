@@ -41,7 +41,8 @@ impl Arguments {
                 "--describe" => arguments.describe = Some(value),
                 "--seconds" => {
                     let seconds = value.parse().ok().filter(|&s: &f64| (0.0..=3600.0).contains(&s));
-                    arguments.seconds = Some(seconds.ok_or_else(|| format!("{value}: expected seconds, at most 3600"))?);
+                    arguments.seconds =
+                        Some(seconds.ok_or_else(|| format!("{value}: expected seconds, at most 3600"))?);
                 }
                 _ => return Err(format!("{word}: unknown\n{USAGE}")),
             }
@@ -60,7 +61,8 @@ mod tests {
 
     #[test]
     fn each_word_has_its_place() {
-        let arguments = parse("--peer KDL=a.so --missing Drake=b=c --robots ur5,panda --seconds 2.5").expect("well said");
+        let arguments =
+            parse("--peer KDL=a.so --missing Drake=b=c --robots ur5,panda --seconds 2.5").expect("well said");
         assert_eq!(arguments.peers, [("KDL".to_string(), "a.so".to_string())]);
         assert_eq!(arguments.missing, [("Drake".to_string(), "b=c".to_string())]);
         assert_eq!(arguments.robots.expect("given"), ["ur5", "panda"]);
@@ -69,7 +71,9 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named() {
-        for (text, named) in [("--peer KDL", "--peer KDL"), ("--robots", "--robots"), ("--seconds soon", "soon"), ("--x y", "--x")] {
+        for (text, named) in
+            [("--peer KDL", "--peer KDL"), ("--robots", "--robots"), ("--seconds soon", "soon"), ("--x y", "--x")]
+        {
             assert!(parse(text).expect_err(text).starts_with(named), "{text}");
         }
     }

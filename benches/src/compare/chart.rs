@@ -112,7 +112,9 @@ fn panel(
         }
         let Some(unit) = &row.times[0] else { continue };
         for (column, time) in table.columns.iter().zip(&row.times).skip(1) {
-            let (Some(time), Some(colour)) = (time, names.iter().position(|name| *name == column.name)) else { continue };
+            let (Some(time), Some(colour)) = (time, names.iter().position(|name| *name == column.name)) else {
+                continue;
+            };
             mark(svg, colour, place((time.least / unit.least).log2()), y);
         }
     }

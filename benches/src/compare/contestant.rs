@@ -1,8 +1,8 @@
 //! What takes part: a library, or one of mozzi's ways, with one robot and its states.
 
 use crate::mozzi_ways;
-use crate::peer::Peer;
 use crate::peak::Width;
+use crate::peer::Peer;
 use crate::quantity::Quantity;
 use mozzi::Model;
 use mozzi_benches::States;

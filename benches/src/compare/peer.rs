@@ -35,7 +35,7 @@ pub struct Opaque {
 pub type Body = [f64; 30];
 
 type Text = unsafe extern "C" fn() -> *const c_char;
-type TextOf = unsafe extern "C" fn(c_int) -> *const c_char;
+type TextOf = unsafe extern "C" fn(*mut Opaque, c_int) -> *const c_char;
 type NewRobot =
     unsafe extern "C" fn(*const c_char, *const c_char, *const f64, c_int, *const Body, c_int) -> *mut Opaque;
 type Free = unsafe extern "C" fn(*mut Opaque);
@@ -59,6 +59,24 @@ unsafe fn text(pointer: *const c_char) -> Option<String> {
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
+/// What the library has for a robot of its own.
+///
+/// # Safety
+/// `robot` is the library's, and alive.
+unsafe fn algorithms(library: &Library, robot: *mut Opaque) -> Result<Vec<(Quantity, String)>, String> {
+    let mut list = Vec::new();
+    // SAFETY: the types are those of peer.hpp; the second function is asked only for what the first one knows.
+    unsafe {
+        let quantity_of = function::<TextOf>(library, "peer_quantity")?;
+        let name_of = function::<TextOf>(library, "peer_algorithm")?;
+        while let Some(name) = text(quantity_of(robot, list.len() as c_int)) {
+            let quantity = Quantity::from_name(&name).ok_or_else(|| format!("{name}: no such quantity"))?;
+            list.push((quantity, text(name_of(robot, list.len() as c_int)).unwrap_or_default()));
+        }
+    }
+    Ok(list)
+}
+
 impl Peer {
     pub fn load(name: &str, path: &str) -> Result<Self, String> {
         // SAFETY: what the library runs when it is loaded is its own.
@@ -74,20 +92,6 @@ impl Peer {
     fn text(&self, name: &str) -> Result<String, String> {
         // SAFETY: all three are `const char* f()`, and answer with text that stays.
         unsafe { text(function::<Text>(&self.library, name)?()) }.ok_or_else(|| format!("{name}: no text"))
-    }
-
-    fn algorithms(&self) -> Result<Vec<(Quantity, String)>, String> {
-        let mut list = Vec::new();
-        // SAFETY: the types are those of peer.hpp; the second function is asked only for what the first one knows.
-        unsafe {
-            let quantity_of = function::<TextOf>(&self.library, "peer_quantity")?;
-            let name_of = function::<TextOf>(&self.library, "peer_algorithm")?;
-            while let Some(name) = text(quantity_of(list.len() as c_int)) {
-                let quantity = Quantity::from_name(&name).ok_or_else(|| format!("{name}: no such quantity"))?;
-                list.push((quantity, text(name_of(list.len() as c_int)).unwrap_or_default()));
-            }
-        }
-        Ok(list)
     }
 
     /// The robot, which [`merged`](mozzi_benches::robots::merged) made, at the same states; none if the library cannot hold it.
@@ -113,7 +117,7 @@ impl Peer {
             }
             set(this, numbers.as_ptr(), states.count() as c_int);
             let run = *function::<Run>(library, "peer_run")?;
-            Ok(Some(Robot { library, this, run, model, states, convention, algorithms: self.algorithms()? }))
+            Ok(Some(Robot { library, this, run, model, states, convention, algorithms: algorithms(library, this)? }))
         }
     }
 }

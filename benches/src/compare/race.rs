@@ -113,7 +113,8 @@ fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -
         }
     }
     let columns = entries.iter().zip(differences);
-    let column = |(entry, difference): (&Entry, f64)| Column { name: entry.name.clone(), width: entry.width, difference };
+    let column =
+        |(entry, difference): (&Entry, f64)| Column { name: entry.name.clone(), width: entry.width, difference };
     Ok(columns.map(|(entry, difference)| column((&*entry, difference))).collect())
 }
 

@@ -15,7 +15,7 @@ pub fn text(
 ) -> Result<String, String> {
     let mut text = format!("# One core, beside the peers\n\n{}", how());
     for peer in peers {
-        line(&mut text, &format!("- {}: {}.", peer.name, peer.version()?));
+        line(&mut text, &format!("- {}.", peer.version()?));
     }
     for (name, why) in missing {
         line(&mut text, &format!("- {name}: missing, {why}."));
@@ -27,7 +27,10 @@ pub fn text(
     let peaks_text = peaks.iter().map(peak).collect::<Vec<_>>().join("; ");
     line(&mut text, &format!("- Peak, measured, in flops a nanosecond, a fused multiply-add being two: {peaks_text}."));
     text += "\n![Times of the peers over mozzi's](results.svg)\n";
-    fastest_peers(&mut text, tables);
+    text += "\n## The fastest library's time over mozzi's\n";
+    fastest_peers(&mut text, tables, false);
+    text += "\n## The time of C generated for the one robot, over mozzi's\n";
+    fastest_peers(&mut text, tables, true);
     for table in tables {
         robot(&mut text, table, peaks);
     }
@@ -58,19 +61,23 @@ fn how() -> String {
     )
 }
 
-/// Of each robot and quantity the fastest peer over mozzi.
-fn fastest_peers(text: &mut String, tables: &[Table]) {
+/// What is written for one robot, and no library that takes any.
+const GENERATED: &str = "CasADi";
+
+/// Of each robot and quantity the fastest of the peers over mozzi, libraries or generated code.
+fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool) {
     let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
-    line(text, &format!("\n## The fastest peer's time over mozzi's\n\n| | {} |", head.join(" | ")));
+    line(text, &format!("\n| | {} |", head.join(" | ")));
     line(text, &format!("|---|{}", "---|".repeat(tables.len())));
     let Some(first) = tables.first() else { return };
     for (k, Row { quantity, .. }) in first.rows.iter().enumerate() {
         let cells = tables.iter().map(|table| {
             let row = &table.rows[k];
-            let peers = table.columns.iter().zip(&row.times).filter(|(column, _)| column.width.is_none());
+            let columns = table.columns.iter().zip(&row.times);
+            let peers = columns.filter(|(c, _)| c.width.is_none() && (c.name == GENERATED) == is_generated);
             let timed = peers.filter_map(|(column, time)| Some((&column.name, time.as_ref()?)));
-            let fastest = timed.min_by(|a, b| a.1.least.total_cmp(&b.1.least));
-            match (fastest, &row.times[0]) {
+            match (timed.min_by(|a, b| a.1.least.total_cmp(&b.1.least)), &row.times[0]) {
+                (Some((_, time)), Some(unit)) if is_generated => ratio(time, unit),
                 (Some((name, time)), Some(unit)) => format!("{} {name}", ratio(time, unit)),
                 _ => "–".into(),
             }
@@ -88,7 +95,10 @@ fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
     let (n, states, rounds) = (table.n, table.states, table.rounds);
     line(text, &format!("\n## {}, n = {n}\n\n{rounds} rounds of {states} states.", table.robot));
     let others = table.columns[1..].iter().map(|column| format!("{} {:.0e}", column.name, column.difference));
-    line(text, &format!("Largest difference from mozzi, over the largest entry: {}.\n", others.collect::<Vec<_>>().join(", ")));
+    line(
+        text,
+        &format!("Largest difference from mozzi, over the largest entry: {}.\n", others.collect::<Vec<_>>().join(", ")),
+    );
     let names = table.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>();
     line(text, &format!("| ns | {} | flops | of the peak |", names.join(" | ")));
     line(text, &format!("|---|{}---|---|", "---|".repeat(names.len())));
@@ -98,7 +108,13 @@ fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
             let _ = match (time, &row.times[0]) {
                 (None, _) => write!(cells, " – |"),
                 (Some(time), Some(unit)) if k > 0 => {
-                    write!(cells, " {} / {}, {} |", nanoseconds(time.least), nanoseconds(time.median), ratio(time, unit))
+                    write!(
+                        cells,
+                        " {} / {}, {} |",
+                        nanoseconds(time.least),
+                        nanoseconds(time.median),
+                        ratio(time, unit)
+                    )
                 }
                 (Some(time), _) => write!(cells, " {} / {} |", nanoseconds(time.least), nanoseconds(time.median)),
             };

@@ -27,12 +27,12 @@ pub extern "C" fn peer_flags() -> *const c_char {
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn peer_quantity(k: c_int) -> *const c_char {
+pub extern "C" fn peer_quantity(_robot: *const Robot, k: c_int) -> *const c_char {
     QUANTITIES.get(k as usize).map_or(std::ptr::null(), |(quantity, _)| quantity.as_ptr())
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn peer_algorithm(k: c_int) -> *const c_char {
+pub extern "C" fn peer_algorithm(_robot: *const Robot, k: c_int) -> *const c_char {
     QUANTITIES[k as usize].1.as_ptr()
 }
 

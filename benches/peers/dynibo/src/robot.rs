@@ -35,6 +35,8 @@ pub struct Robot {
     joints: usize,
     /// 6 where it is free.
     base: usize,
+    /// The number here of each of dynibo's joints, which it takes level by level.
+    order: Vec<usize>,
     states: Vec<State>,
     vector: Vec<f64>,
     matrix: Vec<f64>,
@@ -47,11 +49,11 @@ impl Robot {
         let model = RobotModel::from_urdf(&file).map_err(|error| error.to_string());
         let _ = std::fs::remove_file(&file);
         let model = model?;
+        let mut order = Vec::new();
         for k in 0..model.joint_count() {
             let name = model.joint_name(k).map_err(|error| error.to_string())?;
-            if name != format!("joint{}", k + 1) {
-                return Err(format!("joint {} is called {name}", k + 1));
-            }
+            let number = name.strip_prefix("joint").and_then(|number| number.parse::<usize>().ok());
+            order.push(number.ok_or_else(|| format!("a joint is called {name}"))? - 1);
         }
         let (joints, base) = (model.joint_count(), if is_floating { 6 } else { 0 });
         let n = joints + base;
@@ -60,7 +62,7 @@ impl Robot {
         } else {
             Kind::Bolted(model.robot())
         };
-        Ok(Robot { kind, joints, base, states: Vec::new(), vector: vec![0.0; n], matrix: vec![0.0; n * n] })
+        Ok(Robot { kind, joints, base, order, states: Vec::new(), vector: vec![0.0; n], matrix: vec![0.0; n * n] })
     }
 
     pub fn state_length(&self) -> usize {
@@ -78,7 +80,8 @@ impl Robot {
         for s in numbers.chunks_exact(self.state_length()) {
             let (theta, rest) = s.split_at(positions + self.joints);
             let (dtheta, ddtheta, tau) = (&rest[..n], &rest[n..2 * n], &rest[2 * n..]);
-            let mut forces = tau.to_vec();
+            let joints = |x: &[f64]| self.order.iter().map(|&k| x[k]).collect::<Vec<_>>();
+            let mut forces = [&tau[..base], &joints(&tau[base..])].concat();
             let still = BaseState::stationary(Frame::identity()).expect("a finite frame");
             let (mut states, mut v) = ([still, still], [Vector3::zeros(); 2]);
             if base > 0 {
@@ -93,13 +96,12 @@ impl Robot {
                 forces[..3].copy_from_slice((R * three(tau)).as_slice());
                 forces[3..6].copy_from_slice((R * three(&tau[3..])).as_slice());
             }
-            let joints = |x: &[f64]| x[base..].to_vec();
             self.states.push(State {
                 base: states,
                 v,
-                q: theta[positions..].to_vec(),
-                qd: joints(dtheta),
-                qdd: joints(ddtheta),
+                q: joints(&theta[positions..]),
+                qd: joints(&dtheta[base..]),
+                qdd: joints(&ddtheta[base..]),
                 zero: vec![0.0; self.joints],
                 forces,
             });
@@ -122,6 +124,11 @@ impl Robot {
         .expect("a sound robot and a finite state");
     }
 
+    /// Where one of dynibo's velocities stands here.
+    fn place(&self, k: usize) -> usize {
+        if k < self.base { k } else { self.base + self.order[k - self.base] }
+    }
+
     /// In mozzi's convention, matrices by rows.
     pub fn result(&mut self, algorithm: usize, state: usize) -> Vec<f64> {
         self.run(algorithm, state);
@@ -133,9 +140,17 @@ impl Robot {
             for start in (0..self.base).step_by(3) {
                 X.view_mut((start, start), (3, 3)).copy_from(&back.inverse().to_rotation_matrix().into_inner());
             }
-            return (X.transpose() * DMatrix::from_column_slice(n, n, &self.matrix) * X).as_slice().to_vec();
+            let M = X.transpose() * DMatrix::from_column_slice(n, n, &self.matrix) * X;
+            let mut out = vec![0.0; n * n];
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                out[self.place(i) * n + self.place(j)] = M[(i, j)];
+            }
+            return out;
         }
-        let mut x = self.vector.clone();
+        let mut x = vec![0.0; n];
+        for (k, &y) in self.vector.iter().enumerate() {
+            x[self.place(k)] = y;
+        }
         for start in (0..self.base).step_by(3) {
             let turned = back * Vector3::new(x[start], x[start + 1], x[start + 2]);
             x[start..start + 3].copy_from_slice(turned.as_slice());
