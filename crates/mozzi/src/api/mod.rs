@@ -24,9 +24,20 @@ impl Model<f64> {
         theta: &[f64],
         velocities: [(&'static str, &[f64]); K],
     ) -> Result<(), Error> {
+        self.check_configuration(theta)?;
+        self.check_velocities(velocities)
+    }
+
+    /// Is θ as long as it must be, and its quaternion, where the base is free, of length 1 to 10⁻³?
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::BadArgument`].
+    pub fn check_configuration(&self, theta: &[f64]) -> Result<(), Error> {
         check_length("theta", theta, self.nq())?;
-        self.check_velocities(velocities)?;
-        self.check_quaternion(theta)
+        match theta.first_chunk() {
+            Some(&q) if self.is_floating() => check_unit(q),
+            _ => Ok(()),
+        }
     }
 
     pub(crate) fn check_velocities<const K: usize>(
@@ -36,15 +47,11 @@ impl Model<f64> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
 
-    fn check_quaternion(&self, theta: &[f64]) -> Result<(), Error> {
-        match theta.first_chunk() {
-            Some(&q) if self.is_floating() => check_unit(q),
-            _ => Ok(()),
-        }
-    }
-
-    /// A frame of this model, not of a larger one.
-    pub(crate) fn check_frame(&self, frame: FrameId) -> Result<(), Error> {
+    /// Is this a frame of this model, not of a larger one?
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`].
+    pub fn check_frame(&self, frame: FrameId) -> Result<(), Error> {
         let frames = self.frames().len();
         if frame.0 < frames {
             return Ok(());
@@ -53,7 +60,11 @@ impl Model<f64> {
         Err(Error::BadArgument { what: "the frame", found, expected: "a frame of this model" })
     }
 
-    pub(crate) fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
+    /// Are the environment's wrenches on frames of this model?
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`].
+    pub fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
         environment.applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))
     }
 }

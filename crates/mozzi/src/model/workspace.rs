@@ -65,6 +65,12 @@ impl<S: Scalar> Workspace<S> {
         }
     }
 
+    /// What the last forward dynamics, or its derivatives, divided by, joint by joint: where a pivot is not above rounding of the
+    /// others, the mass matrix is singular. A kernel cannot compare numbers; the methods of [`Model`] do.
+    pub fn pivots(&self) -> &[S] {
+        &self.pivots
+    }
+
     /// Every number NaN: what stands here must not matter.
     pub fn poison(&mut self) {
         let nan = S::from_f64(f64::NAN);
