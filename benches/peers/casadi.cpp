@@ -15,7 +15,11 @@ struct Robot {
 #include "robots.inc"
 #undef FUNCTION
 
-std::string version() { return "C by CasADi " CASADI_VERSION ", compiled by " __VERSION__; }
+std::string version() {
+    return "C that CasADi " CASADI_VERSION " generates for the one robot, of "
+           "up to 40 bodies (derivatives of up to 8 velocities), "
+           "compiled by " __VERSION__;
+}
 const char* const CONVENTION = "mozzi";
 
 namespace {

@@ -21,7 +21,7 @@ struct Robot {
           none(c.getNrOfSegments(), KDL::Wrench::Zero()), theta(n), dtheta(n), x(n), result(n), M(n) {}
 };
 
-std::string version() { return "KDL " KDL_VERSION_STRING ", as Debian compiled it"; }
+std::string version() { return "KDL " KDL_VERSION_STRING ", as Debian compiled it; bolted chains alone"; }
 const char* const CONVENTION = "mozzi";
 
 namespace {

@@ -12,7 +12,7 @@ struct Robot {
     std::vector<double> vector, matrix; // results that MuJoCo hands out
 };
 
-std::string version() { return std::string("MuJoCo ") + mj_versionString() + ", the library of its wheel"; }
+std::string version() { return std::string("MuJoCo ") + mj_versionString() + ", the library of its wheel; its derivatives are differences, and left out"; }
 const char* const CONVENTION = "mujoco";
 
 namespace {

@@ -114,7 +114,7 @@ pub fn merged(model: &Model) -> Description {
     let mut inertias = vec![SpatialInertia::zero(); moving.len() + 1];
     for link in &original.links {
         let (k, T) = place(original, &moving, &link.name);
-        inertias[k] = inertias[k] + link.inertia.seen_from(T);
+        inertias[k] += link.inertia.seen_from(T);
     }
     let mut robot = Description::new(&original.name).with_gravity([0.0, 0.0, -9.80665]);
     robot.base = original.base;

@@ -56,7 +56,7 @@ impl Convention {
                 numbers.extend(match self {
                     Convention::Mozzi => block.to_vec(),
                     Convention::Pinocchio(p) => by_rows(p.from_mass_matrix(&M)?),
-                    Convention::MuJoCo(m) => by_rows(m.from_mass_matrix(&m.configuration(state[0])?.as_slice(), &M)?),
+                    Convention::MuJoCo(m) => by_rows(m.from_mass_matrix(m.configuration(state[0])?.as_slice(), &M)?),
                 });
             }
             return Ok(numbers);

@@ -3,6 +3,7 @@
 //! `cargo xtask bench` builds the peers and calls this.
 
 mod arguments;
+mod batch;
 mod chart;
 mod contestant;
 mod convention;

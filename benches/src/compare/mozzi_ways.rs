@@ -1,10 +1,12 @@
 //! mozzi's ways to compute: each is one entry of the list.
 
+use crate::batch::Batched;
 use crate::contestant::{Contestant, Entry};
 use crate::peak::Width;
 use crate::quantity::Quantity;
 use mozzi::native::{self, Workspace};
 use mozzi::{Environment, Model};
+use mozzi_batch::InstructionSet;
 use mozzi_benches::{State, States};
 use std::hint::black_box;
 
@@ -14,7 +16,15 @@ pub fn all<'a>(model: &'a Model, states: &'a States) -> Vec<Entry<'a>> {
         let contestant = Box::new(OneState::new(model, states, workspace));
         Entry { name: name.into(), width: Some(Width::Scalar), contestant }
     };
-    vec![one("mozzi", Workspace::new(model)), one("portable", Workspace::portable(model))]
+    let mut entries = vec![one("mozzi", Workspace::new(model)), one("portable", Workspace::portable(model))];
+    let registers = [(InstructionSet::Avx2, Width::Four), (InstructionSet::Avx512, Width::Eight)];
+    for (set, width) in registers.into_iter().filter(|(set, _)| set.is_available()) {
+        let batched = Batched::new(model, states, set).map(|batched| Box::new(batched) as Box<dyn Contestant>);
+        let entry =
+            batched.map(|contestant| Entry { name: format!("batch, {}", set.name()), width: Some(width), contestant });
+        entries.extend(entry);
+    }
+    entries
 }
 
 /// One state a call.

@@ -8,10 +8,8 @@ pub enum Width {
     /// One number an instruction.
     Scalar,
     /// Four: AVX2.
-    #[allow(dead_code)] // for ways that compute several states at once
     Four,
     /// Eight: AVX-512.
-    #[allow(dead_code)]
     Eight,
 }
 

@@ -112,10 +112,12 @@ fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -
             }
         }
     }
-    let columns = entries.iter().zip(differences);
-    let column =
-        |(entry, difference): (&Entry, f64)| Column { name: entry.name.clone(), width: entry.width, difference };
-    Ok(columns.map(|(entry, difference)| column((&*entry, difference))).collect())
+    let columns = entries.iter().zip(differences).map(|(entry, difference)| Column {
+        name: entry.name.clone(),
+        width: entry.width,
+        difference,
+    });
+    Ok(columns.collect())
 }
 
 /// The algorithms that an entry has for a quantity.

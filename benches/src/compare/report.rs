@@ -56,7 +56,7 @@ fn how() -> String {
   Where a library has several algorithms for a quantity, the fastest is quoted.
 - Nanoseconds for one state: least of all rounds / median. In bold the time over mozzi's, least over least; behind it median over median.
 - mozzi: {rustc}, release profile, no flags: `mozzi::native` finds AVX2 and FMA when it runs; portable is the same source
-  without them.
+  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows.
 "
     )
 }
