@@ -21,7 +21,7 @@ pub fn all<'a>(model: &'a Model, states: &'a States) -> Vec<Entry<'a>> {
     for (set, width) in registers.into_iter().filter(|(set, _)| set.is_available()) {
         let batched = Batched::new(model, states, set).map(|batched| Box::new(batched) as Box<dyn Contestant>);
         let entry =
-            batched.map(|contestant| Entry { name: format!("batch, {}", set.name()), width: Some(width), contestant });
+            batched.map(|contestant| Entry { name: format!("batch {}", set.name()), width: Some(width), contestant });
         entries.extend(entry);
     }
     entries
