@@ -23,8 +23,9 @@ pub fn read(file: &str, model: &Model) -> Result<Groups> {
     for batch in reader {
         let batch = batch.map_err(|error| cannot(&error))?;
         for c in places.all() {
-            numbers(batch.column(c).as_ref(), &mut columns[c])
-                .map_err(|(row, what)| Failure::wrong(format!("{file}: column `{}`{}", header[c], at(row, rows, what))))?;
+            numbers(batch.column(c).as_ref(), &mut columns[c]).map_err(|(row, what)| {
+                Failure::wrong(format!("{file}: column `{}`{}", header[c], at(row, rows, what)))
+            })?;
         }
         rows += batch.num_rows();
     }

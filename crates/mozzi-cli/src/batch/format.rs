@@ -23,7 +23,9 @@ impl Format {
             Some("npz") => Ok(Format::Npz),
             Some("arrow" | "feather" | "ipc") => Ok(Format::Arrow),
             Some("csv") => Ok(Format::Csv),
-            _ => Err(Failure::wrong(format!("{file}: expected a name that ends in .npy, .npz, .arrow, .feather or .csv"))),
+            _ => Err(Failure::wrong(format!(
+                "{file}: expected a name that ends in .npy, .npz, .arrow, .feather or .csv"
+            ))),
         }
     }
 

@@ -95,11 +95,11 @@ pub fn bytes<T: Precision>(shape: &[usize], values: &[T]) -> Vec<u8> {
     let size = size_of::<T>();
     let mut header = format!("{{'descr': '<f{size}', 'fortran_order': False, 'shape': {}, }}", tuple(shape));
     let before = MAGIC.len() + 4;
-    while (before + header.len() + 1) % 64 != 0 {
+    while !(before + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
     }
     header.push('\n');
-    let mut bytes = Vec::with_capacity(before + header.len() + size * values.len());
+    let mut bytes = Vec::with_capacity(before + header.len() + size_of_val(values));
     bytes.extend(MAGIC);
     bytes.extend([1, 0]);
     bytes.extend((header.len() as u16).to_le_bytes());

@@ -3,7 +3,7 @@
 use super::batch::{all_threads, wrong};
 use crate::batch::compute::Progress;
 use crate::batch::one_state::OneState;
-use crate::batch::quantity::{Precision, Quantity};
+use crate::batch::quantity::{Precision, Quantity, Shape};
 use crate::batch::results::Output;
 use crate::batch::states::width;
 use crate::failure::{Failure, Result};
@@ -106,12 +106,12 @@ struct One<'a> {
 
 impl Run for One<'_> {
     fn run(&mut self) -> Result<()> {
-        let width = self.outputs.len() / self.count;
+        let own = self.outputs.len() / self.count;
         let at = |k: usize, name: &str, state: usize| {
-            let width = width_of(self.model, name);
+            let width = width(self.model, name);
             &self.data.tables[k][state * width..][..width]
         };
-        for (state, out) in self.outputs.chunks_exact_mut(width).enumerate() {
+        for (state, out) in self.outputs.chunks_exact_mut(own).enumerate() {
             let F: [f64; 6] = std::array::from_fn(|k| self.data.wrenches[state * 6 + k]);
             let applied = self.tip.map(|tip| (tip, Wrench::from_array(F)));
             let environment = Environment { applied: applied.as_slice(), ..self.model.environment() };
@@ -128,7 +128,7 @@ impl Run for One<'_> {
     fn results(&self) -> Vec<Vec<f64>> {
         let width = self.outputs.len() / self.count;
         let mut first = 0;
-        let of_output = |output: &(&str, crate::batch::quantity::Shape)| {
+        let of_output = |output: &(&str, Shape)| {
             let own: usize = output.1.of(self.model.n()).iter().product();
             let part = first..first + own;
             first += own;
@@ -152,8 +152,7 @@ impl<T: Precision> Run for Many<'_, T> {
             let k = ["theta", "dtheta"].iter().position(|known| *known == name).unwrap_or(2);
             &self.data.tables[k][..]
         };
-        let wrenches: Vec<(FrameId, &[T])> =
-            self.tip.map(|tip| (tip, &self.data.wrenches[..])).into_iter().collect();
+        let wrenches: Vec<(FrameId, &[T])> = self.tip.map(|tip| (tip, &self.data.wrenches[..])).into_iter().collect();
         let surroundings = Surroundings { environment: self.batch.model().environment(), wrenches: &wrenches };
         let outputs = self.outputs.iter_mut().map(|output| black_box(&mut output.values[..])).collect();
         T::evaluate(&self.batch, self.quantity, &input, &surroundings, outputs).map_err(wrong)
@@ -194,11 +193,6 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     Ok(page(&model, &timings, &processor, arguments, threads))
 }
 
-/// Numbers of a table at one state.
-fn width_of(model: &Model, name: &str) -> usize {
-    width(model, name)
-}
-
 type Runs<'a> = Vec<(Way, Box<dyn Run + 'a>)>;
 
 fn runs<'a>(
@@ -210,7 +204,8 @@ fn runs<'a>(
     single: &'a Data<f32>,
 ) -> Result<Runs<'a>> {
     let count = (data.wrenches.len() / 6).min(ONE_BY_ONE);
-    let width: usize = quantity.outputs().iter().map(|(_, at_one)| at_one.of(model.n()).iter().product::<usize>()).sum();
+    let width: usize =
+        quantity.outputs().iter().map(|(_, at_one)| at_one.of(model.n()).iter().product::<usize>()).sum();
     let one = One { model, state: OneState::new(model), quantity, data, tip, outputs: vec![0.0; count * width], count };
     let mut runs: Runs = vec![(Way { set: None, precision: f64::NAME, threads: 1 }, Box::new(one))];
     let mut counts = vec![1, threads];
@@ -267,11 +262,13 @@ fn measure(quantity: Quantity, runs: &mut Runs, rounds: usize) -> Result<Vec<Tim
             times.push(start.elapsed().as_secs_f64() * 1e9 / run.states() as f64);
         }
     }
-    let timing = |(((way, _), mut times), difference): ((&(Way, Box<dyn Run + '_>), Vec<f64>), f64)| {
-        times.sort_by(f64::total_cmp);
-        Timing { quantity, way: *way, least: times[0], median: times[times.len() / 2], difference }
-    };
-    Ok(runs.iter().zip(times).zip(differences).map(timing).collect())
+    let all = runs.iter().zip(times).zip(differences);
+    Ok(all
+        .map(|(((way, _), mut times), difference)| {
+            times.sort_by(f64::total_cmp);
+            Timing { quantity, way: *way, least: times[0], median: times[times.len() / 2], difference }
+        })
+        .collect())
 }
 
 /// Of the first states, as many as are in both.
