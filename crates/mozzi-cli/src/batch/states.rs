@@ -50,6 +50,7 @@ impl States {
             Format::Arrow => arrow::read(file, model)?,
             Format::Csv => rows_of(file, model)?,
         };
+        let file = if file == "-" { "standard input" } else { file };
         let mut tables = BTreeMap::new();
         for &name in quantity.inputs() {
             let table = groups.tables.remove(name);

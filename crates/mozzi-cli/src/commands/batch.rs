@@ -25,7 +25,7 @@ pub struct BatchArguments {
     #[arg(long = "in", value_name = "STATES")]
     input: String,
     /// Where the results go, by the same endings ("-": CSV on standard output)
-    #[arg(long = "out", value_name = "RESULT", allow_hyphen_values = true)]
+    #[arg(long = "out", value_name = "RESULT")]
     output: String,
     /// The numbers that are computed with, and written
     #[arg(long, default_value = "f64")]

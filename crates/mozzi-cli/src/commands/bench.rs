@@ -169,6 +169,9 @@ impl<T: Precision> Run for Many<'_, T> {
 
 pub fn run(arguments: &BenchArguments) -> Result<String> {
     let model = arguments.robot.load()?;
+    if model.n() == 0 {
+        return Err(Failure::wrong(format!("`{}` has no joint that moves: nothing to time", model.description().name)));
+    }
     let tip = end_effector(&model);
     let needs_tip = |quantity: Quantity| quantity.is_of_a_frame() || quantity == Quantity::TipForces;
     let asked = if arguments.quantity.is_empty() { Quantity::value_variants() } else { &arguments.quantity };
