@@ -28,7 +28,9 @@ mod error;
 mod instruction_set;
 mod lanes;
 mod quantity;
+mod simulate;
 mod surroundings;
+mod threads;
 
 pub use batch::Batch;
 pub use columns::Layout;
