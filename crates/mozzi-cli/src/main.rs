@@ -1,6 +1,7 @@
 //! `mozzi`: the dynamics of open-chain robots on the command line. Converts, checks, calls, names the error; every
 //! formula is the library's.
 
+mod batch;
 mod columns;
 mod commands;
 mod compare;
@@ -8,6 +9,7 @@ mod failure;
 mod json;
 mod numbers;
 mod quantities;
+mod random;
 mod robot;
 mod robot_json;
 mod samples;
@@ -47,6 +49,11 @@ enum Command {
     ForwardDynamics(forward_dynamics::ForwardArguments),
     /// ∂τ and ∂θ̈ with respect to θ, θ̇, θ̈ and τ, exact, at one state
     Derivatives(commands::derivatives::DerivativesArguments),
+    /// A quantity at every state of a file (.npy, .npz, .arrow, .csv), on all cores
+    #[command(after_help = BATCHES)]
+    Batch(commands::batch::BatchArguments),
+    /// How long each quantity takes on this machine, at one state and at many
+    Bench(commands::bench::BenchArguments),
     /// The motion from a state, under torques and a tip wrench
     #[command(after_help = TABLES)]
     Simulate(simulate::SimulateArguments),
@@ -77,6 +84,8 @@ Examples:
   mozzi inverse-dynamics ur5 --in motion.csv --out torques.csv
   mozzi forward-dynamics ur5 --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
   mozzi derivatives ur5 --theta 0,-1.2,1.5,0.3,1.1,0    exact derivatives of τ and θ̈
+  mozzi batch ur5 --quantity mass-matrix --in states.npy --out M.npy
+  mozzi bench panda                                     nanoseconds a state on your machine
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
 
@@ -96,6 +105,19 @@ CSV files have a header and one row for each state; columns in any order:
 Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0,
 and so are the six of a free base in tau.
 What one subcommand writes, the others read.";
+
+const BATCHES: &str = "\
+The states, N of them:
+  .npy             one array (N, columns): theta | dtheta | ddtheta or tau, as far as the quantity needs
+                   them, then the tip's wrench m_x m_y m_z f_x f_y f_z where there are six columns more
+  .npz             arrays theta (N, nq), dtheta, ddtheta, tau (N, n), wrench (N, 6)
+  .arrow .feather  Arrow's IPC file (pandas.to_feather, polars.write_ipc) with columns as in CSV
+  .csv             columns theta_1 …; see mozzi inverse-dynamics --help
+Numbers are float64 or float32. Of named tables, dtheta, ddtheta and wrench may be left out: they are 0.
+The results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
+  .npy             one array; .npz: each by its name
+  .arrow .csv      a column for each entry: tau_1 …, M_1_1, M_1_2 …
+A state with a NaN gives NaN in its own results and in no other's.";
 
 fn main() -> ExitCode {
     let answer = run(&Arguments::parse());
@@ -127,6 +149,8 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::InverseDynamics(arguments)) => inverse_dynamics::run(arguments),
         Some(Command::ForwardDynamics(arguments)) => forward_dynamics::run(arguments),
         Some(Command::Derivatives(arguments)) => commands::derivatives::run(arguments),
+        Some(Command::Batch(arguments)) => commands::batch::run(arguments),
+        Some(Command::Bench(arguments)) => commands::bench::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),

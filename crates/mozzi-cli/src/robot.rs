@@ -97,7 +97,7 @@ pub struct RobotArguments {
     /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: anymal, double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
-    #[arg(long, value_name = "FRAME")]
+    #[arg(long, value_name = "FRAME", visible_alias = "frame")]
     pub end_effector: Option<String>,
     /// Gravity in {s}, which is the frame of a bolted base, m/s² [default: the robot's own, 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]

@@ -14,7 +14,7 @@ use std::io::Read;
 pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_work", "friction_loss", "applied_work"];
 
 /// The groups of columns.
-const GROUPS: [&str; 4] = ["theta", "dtheta", "ddtheta", "tau"];
+pub const GROUPS: [&str; 4] = ["theta", "dtheta", "ddtheta", "tau"];
 
 /// A file's numbers by group; each `None` where the file has no such columns.
 #[derive(Debug, Default)]
@@ -44,7 +44,7 @@ impl Samples {
             Ok(header) => header.iter().map(|cell| cell.trim_start_matches('\u{feff}').to_string()).collect(),
             Err(error) => return Err(csv_failure(name, &error)),
         };
-        let places = Places::find(name, &header, model)?;
+        let places = Places::find(&format!("{name}:1"), &header, model)?;
         let mut samples = Samples { file: name.to_string(), ..Samples::default() };
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for record in reader.records() {
@@ -93,15 +93,16 @@ pub fn first_column(model: &Model, group: &str) -> String {
 }
 
 /// Which column is what.
-struct Places {
+pub struct Places {
     t: Option<usize>,
-    /// None of an entry: its column was left out, and it is 0.
-    groups: [Option<Vec<Option<usize>>>; 4],
-    wrench: Option<[usize; 6]>,
+    /// As [`GROUPS`]. None of an entry: its column was left out, and it is 0.
+    pub groups: [Option<Vec<Option<usize>>>; 4],
+    pub wrench: Option<[usize; 6]>,
 }
 
 impl Places {
-    fn find(file: &str, header: &[String], model: &Model) -> Result<Self> {
+    /// The place is the header's: "table.csv:1".
+    pub fn find(place: &str, header: &[String], model: &Model) -> Result<Self> {
         let names = |group: &str| -> Vec<&str> {
             if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() }
         };
@@ -109,7 +110,7 @@ impl Places {
         let mut groups: [Vec<Option<usize>>; 4] = names.each_ref().map(|names| vec![None; names.len()]);
         let (mut t, mut wrench) = ([None], [None; 6]);
         for (column, name) in header.iter().enumerate() {
-            let place: Option<&mut Option<usize>> = if name == "t" {
+            let entry: Option<&mut Option<usize>> = if name == "t" {
                 t.first_mut()
             } else if let Some(k) = WRENCH.iter().position(|known| known == name) {
                 wrench.get_mut(k)
@@ -122,22 +123,22 @@ impl Places {
                     places.get_mut(names.iter().position(|known| *known == joint).or(by_number)?)
                 })
             };
-            let Some(place) = place else {
+            let Some(entry) = entry else {
                 return Err(Failure::wrong(format!(
-                    "{file}:1: column {} is called `{name}`, expected t, {}, or {}, with {}",
+                    "{place}: column {} is called `{name}`, expected t, {}, or {}, with {}",
                     column + 1,
                     GROUPS.map(|group| format!("{group}_1 …")).join(", "),
                     WRENCH.join(" "),
                     entries(model)
                 )));
             };
-            if let Some(first) = place.replace(column) {
+            if let Some(first) = entry.replace(column) {
                 let (first, second) = (first + 1, column + 1);
-                return Err(Failure::wrong(format!("{file}:1: columns {first} and {second} both give `{name}`")));
+                return Err(Failure::wrong(format!("{place}: columns {first} and {second} both give `{name}`")));
             }
         }
         let missing = |name: &str, of: usize, found: usize| {
-            Failure::wrong(format!("{file}:1: column {name} is missing; of its group there are {found} of {of}"))
+            Failure::wrong(format!("{place}: column {name} is missing; of its group there are {found} of {of}"))
         };
         let mut found = [const { None }; 4];
         for ((found, group), places) in found.iter_mut().zip(GROUPS).zip(groups) {
@@ -162,7 +163,7 @@ impl Places {
         Ok(Places { t: t[0], groups: found, wrench })
     }
 
-    fn all(&self) -> impl Iterator<Item = usize> {
+    pub fn all(&self) -> impl Iterator<Item = usize> {
         let groups = self.groups.iter().flatten().flatten().flatten();
         self.t.into_iter().chain(groups.copied()).chain(self.wrench.into_iter().flatten())
     }

@@ -1,5 +1,7 @@
 //! One file for each subcommand: convert, check, call, name the error.
 
+pub mod batch;
+pub mod bench;
 pub mod check;
 pub mod compare;
 pub mod convert;

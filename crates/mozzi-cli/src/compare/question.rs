@@ -2,6 +2,7 @@
 
 use super::constants::Constants;
 use crate::failure::Result;
+use crate::random::Random;
 use mozzi::{Base, Description};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -90,17 +91,5 @@ impl State {
         let all: Vec<[f64; 3]> = names.iter().map(of).collect();
         let column = |k: usize| all.iter().map(|values| values[k]).collect();
         State { theta: column(0), dtheta: column(1), ddtheta: column(2) }
-    }
-}
-
-/// Numbers in [−1, 1) from a seed (Steele, Lea and Flood's SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }

@@ -1,0 +1,550 @@
+//! `mozzi batch` and `mozzi bench`: every quantity beside the library at one state, every kind of file, what is wrong with one.
+#![allow(non_snake_case)]
+
+mod common;
+
+use arrow_array::{ArrayRef, Float64Array, Int64Array, RecordBatch};
+use arrow_ipc::{reader::FileReader, writer::FileWriter};
+use common::{assert_close, complaint, file, folder, json, mozzi};
+use mozzi::nalgebra::DMatrix;
+use mozzi::{Environment, Model, Wrench};
+use serde_json::Value;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// As `numpy.save` writes it, by rows or by columns.
+fn npy(shape: &[usize], values: &[f64], by_columns: bool) -> Vec<u8> {
+    let order = if by_columns { "True" } else { "False" };
+    let tuple: String = shape.iter().map(|count| format!("{count}, ")).collect();
+    let header = format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': ({tuple}), }}\n");
+    let mut bytes = [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat();
+    values.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes
+}
+
+fn save(folder: &Path, name: &str, bytes: &[u8]) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).expect("a file");
+    path.to_str().expect("text").to_string()
+}
+
+fn npz(folder: &Path, name: &str, arrays: &[(&str, &[usize], &[f64])]) -> String {
+    let path = folder.join(name);
+    let mut archive = zip::ZipWriter::new(File::create(&path).expect("a file"));
+    for (name, shape, values) in arrays {
+        // compressed, as numpy.savez_compressed does
+        let options = zip::write::SimpleFileOptions::default();
+        archive.start_file(format!("{name}.npy"), options).expect("an entry");
+        archive.write_all(&npy(shape, values, false)).expect("a file");
+    }
+    archive.finish().expect("an archive");
+    path.to_str().expect("text").to_string()
+}
+
+/// Shape and numbers of what was written.
+fn parse(bytes: &[u8]) -> (String, Vec<f64>) {
+    let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let (header, data) = bytes[10..].split_at(length);
+    let header = String::from_utf8(header.to_vec()).expect("text");
+    let shape = header.split_once("'shape': ").expect("a shape").1.split(')').next().expect("an end").to_string() + ")";
+    let values = match header.contains("'<f8'") {
+        true => data.chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().expect("8"))).collect(),
+        false => data.chunks_exact(4).map(|x| f32::from_le_bytes(x.try_into().expect("4")).into()).collect(),
+    };
+    (shape, values)
+}
+
+fn read_npz(path: &str) -> Vec<(String, String, Vec<f64>)> {
+    let mut archive = zip::ZipArchive::new(File::open(path).expect("a file")).expect("an archive");
+    (0..archive.len())
+        .map(|index| {
+            let mut entry = archive.by_index(index).expect("an entry");
+            let name = entry.name().expect("a name").trim_end_matches(".npy").to_string();
+            let mut bytes = Vec::new();
+            entry.read_to_end(&mut bytes).expect("bytes");
+            let (shape, values) = parse(&bytes);
+            (name, shape, values)
+        })
+        .collect()
+}
+
+/// N states of a robot: θ, θ̇, θ̈ or τ, and the tip's wrench.
+struct States {
+    count: usize,
+    widths: [usize; 4],
+    tables: [Vec<f64>; 4],
+}
+
+impl States {
+    fn new(model: &Model, count: usize) -> Self {
+        let widths = [model.nq(), model.n(), model.n(), 6];
+        let tables = [0, 1, 2, 3].map(|k| {
+            let number = |i: usize| ((i * 7 + k * 13) as f64 * 0.37).sin() * if k == 3 { 5.0 } else { 1.0 };
+            (0..count * widths[k]).map(number).collect()
+        });
+        let mut states = States { count, widths, tables };
+        if model.is_floating() {
+            for theta in states.tables[0].chunks_exact_mut(model.nq()) {
+                theta[..4].copy_from_slice(&[0.5, -0.5, 0.5, 0.5]);
+            }
+        }
+        states
+    }
+
+    fn at(&self, k: usize, state: usize) -> &[f64] {
+        &self.tables[k][state * self.widths[k]..][..self.widths[k]]
+    }
+
+    /// The first tables beside each other, as one array.
+    fn beside(&self, tables: &[usize]) -> Vec<f64> {
+        (0..self.count).flat_map(|state| tables.iter().flat_map(move |&k| self.at(k, state).to_vec())).collect()
+    }
+
+    fn npz(&self, folder: &Path, name: &str) -> String {
+        let shapes = self.widths.map(|width| [self.count, width]);
+        let names = [("theta", 0), ("dtheta", 1), ("ddtheta", 2), ("tau", 2), ("wrench", 3)];
+        npz(folder, name, &names.map(|(name, k)| (name, &shapes[k][..], &self.tables[k][..])))
+    }
+}
+
+/// Arrays by name.
+type Arrays = Vec<(&'static str, Vec<f64>)>;
+
+/// Everything that `mozzi batch` computes, by the library at one state: name, then each array.
+fn at_one(model: &Model, [theta, dtheta, x, F]: [&[f64]; 4]) -> Vec<(&'static str, Arrays)> {
+    let tip = model.end_effector().expect("a tip");
+    let applied = [(tip, Wrench::from_array(std::array::from_fn(|k| F[k])))];
+    let e = &Environment { applied: &applied, ..model.environment() };
+    let rows = |M: DMatrix<f64>| M.transpose().as_slice().to_vec();
+    let list = |v: mozzi::nalgebra::DVector<f64>| v.as_slice().to_vec();
+    let inverse = model.inverse_dynamics_derivatives(theta, dtheta, x, e).expect("derivatives");
+    let forward = model.forward_dynamics_derivatives(theta, dtheta, x, e).expect("derivatives");
+    let ddtheta = || list(model.forward_dynamics(theta, dtheta, x, e).expect("θ̈"));
+    let pose = model.forward_kinematics(theta, tip).expect("T").to_matrix();
+    vec![
+        ("inverse-dynamics", vec![("tau", list(model.inverse_dynamics(theta, dtheta, x, e).expect("τ")))]),
+        ("forward-dynamics", vec![("ddtheta", ddtheta())]),
+        ("mass-matrix", vec![("M", rows(model.mass_matrix(theta).expect("M")))]),
+        ("mass-matrix-rate", vec![("dM", rows(model.mass_matrix_rate(theta, dtheta).expect("Ṁ")))]),
+        ("coriolis-matrix", vec![("C", rows(model.coriolis_matrix(theta, dtheta).expect("C")))]),
+        ("velocity-product", vec![("c", list(model.velocity_product(theta, dtheta).expect("c")))]),
+        ("gravity-forces", vec![("g", list(model.gravity_forces(theta).expect("g")))]),
+        ("bias-forces", vec![("h", list(model.bias_forces(theta, dtheta, e).expect("h")))]),
+        ("tip-forces", vec![("tau", list(model.tip_forces(theta, &applied).expect("JᵀF")))]),
+        ("kinetic-energy", vec![("kinetic_energy", vec![model.kinetic_energy(theta, dtheta).expect("K")])]),
+        ("potential-energy", vec![("potential_energy", vec![model.potential_energy(theta).expect("P")])]),
+        ("forward-kinematics", vec![("T", pose.as_flattened().to_vec())]),
+        ("space-jacobian", vec![("J", rows(model.space_jacobian(theta, tip).expect("J").matrix()))]),
+        ("body-jacobian", vec![("J", rows(model.body_jacobian(theta, tip).expect("J").matrix()))]),
+        ("space-jacobian-rate", vec![("dJ", rows(model.space_jacobian_rate(theta, dtheta, tip).expect("J̇").matrix()))]),
+        ("body-jacobian-rate", vec![("dJ", rows(model.body_jacobian_rate(theta, dtheta, tip).expect("J̇").matrix()))]),
+        (
+            "inverse-dynamics-derivatives",
+            vec![
+                ("by_theta", rows(inverse.by_theta)),
+                ("by_dtheta", rows(inverse.by_dtheta)),
+                ("by_ddtheta", rows(inverse.by_ddtheta)),
+            ],
+        ),
+        (
+            "forward-dynamics-derivatives",
+            vec![
+                ("ddtheta", ddtheta()),
+                ("by_theta", rows(forward.by_theta)),
+                ("by_dtheta", rows(forward.by_dtheta)),
+                ("by_tau", rows(forward.by_tau)),
+            ],
+        ),
+    ]
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(1e-9, |m: f64, x| m.max(x.abs()))
+}
+
+#[test]
+fn every_quantity_is_that_of_one_state() {
+    let folder = folder("batch_quantities");
+    let ur5 = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
+    let shapes = [("tau", "(11, 6)"), ("M", "(11, 6, 6)"), ("J", "(11, 6, 6)"), ("T", "(11, 4, 4)")];
+    let shapes = shapes.into_iter().chain([("kinetic_energy", "(11,)"), ("by_theta", "(11, 6, 6)")]);
+    let shapes: std::collections::BTreeMap<&str, &str> = shapes.collect();
+    let states = States::new(&ur5, 11);
+    let input = states.npz(&folder, "states.npz");
+    let one: Vec<_> = (0..11).map(|s| at_one(&ur5, [0, 1, 2, 3].map(|k| states.at(k, s)))).collect();
+    for (k, (name, arrays)) in one[0].iter().enumerate() {
+        let out = folder.join(format!("{name}.npz")).to_str().expect("text").to_string();
+        let output = mozzi(&["batch", "ur5", "--quantity", name, "--in", &input, "--out", &out]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && said.starts_with("11 states in ") && said.contains("states/s"), "{said}");
+        let found = read_npz(&out);
+        assert_eq!(found.len(), arrays.len(), "{name}");
+        for (a, (array, shape, values)) in found.iter().enumerate() {
+            assert_eq!(array, arrays[a].0);
+            assert!(shapes.get(array.as_str()).is_none_or(|expected| expected == shape), "{array} {shape}");
+            let expected: Vec<f64> = one.iter().flat_map(|state| state[k].1[a].1.clone()).collect();
+            assert_close(values, &expected, 1e-11 * largest(&expected));
+        }
+    }
+}
+
+#[test]
+fn what_is_computed_with_is_chosen() {
+    let folder = folder("batch_ways");
+    let ur5 = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
+    let states = States::new(&ur5, 300);
+    let input = save(&folder, "states.npy", &npy(&[300, 18], &states.beside(&[0, 1, 2]), false));
+    let out = folder.join("tau.npy").to_str().expect("text").to_string();
+    let run = |more: &[&str]| {
+        let fixed = ["batch", "ur5", "--quantity", "inverse-dynamics", "--in", &input, "--out", &out];
+        let summary = json(&[&fixed, more].concat());
+        (summary, parse(&std::fs::read(&out).expect("a file")))
+    };
+    let (summary, (shape, portable)) = run(&["--instruction-set", "portable", "--threads", "1"]);
+    assert_eq!(
+        (shape.as_str(), summary["states"].as_u64(), summary["threads"].as_u64()),
+        ("(300, 6)", Some(300), Some(1))
+    );
+    assert_eq!((&summary["instruction_set"], &summary["arrays"][0]["name"]), (&"portable".into(), &"tau".into()));
+    let bytes = std::fs::read(&out).expect("a file");
+    assert_eq!(run(&["--instruction-set", "portable", "--threads", "2"]).1.1, portable);
+    for state in 0..300 {
+        let [theta, dtheta, x] = [0, 1, 2].map(|k| states.at(k, state));
+        let tau = ur5.inverse_dynamics(theta, dtheta, x, &ur5.environment()).expect("τ");
+        assert_eq!(tau.as_slice(), &portable[state * 6..][..6], "bit for bit");
+    }
+    let (summary, (_, single)) = run(&["--precision", "f32"]);
+    assert_eq!((&summary["precision"], summary["states_with_nan"].as_u64()), (&"f32".into(), Some(0)));
+    assert!(std::fs::read(&out).expect("a file").len() < bytes.len());
+    assert_close(&single, &portable, 1e-4 * largest(&portable));
+    let (_, (_, floating)) = run(&["--gravity", "0,0,0"]);
+    assert!(floating != portable);
+}
+
+#[test]
+fn every_kind_of_file_is_read_and_written() {
+    let folder = folder("batch_files");
+    let model = mozzi_urdf::open("two_link_planar").expect("a robot").build().expect("a model");
+    let states = States::new(&model, 5);
+    let beside = states.beside(&[0, 1, 2, 3]);
+    let mut by_columns = Vec::new();
+    (0..12).for_each(|c| by_columns.extend(beside.iter().skip(c).step_by(12)));
+    let head = "theta_1,theta_2,dtheta_1,dtheta_2,tau_1,tau_2,m_x,m_y,m_z,f_x,f_y,f_z";
+    let lines: Vec<String> =
+        beside.chunks(12).map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",")).collect();
+    let columns = head.split(',').enumerate().map(|(c, name)| {
+        let values: Vec<f64> = beside.iter().skip(c).step_by(12).copied().collect();
+        (name, Arc::new(Float64Array::from(values)) as ArrayRef)
+    });
+    let arrow = write_arrow(&folder, "states.feather", columns.collect());
+    let inputs = [
+        save(&folder, "rows.npy", &npy(&[5, 12], &beside, false)),
+        save(&folder, "columns.npy", &npy(&[5, 12], &by_columns, true)),
+        states.npz(&folder, "states.npz"),
+        arrow,
+        file(&folder, "states.csv", &format!("{head}\n{}\n", lines.join("\n"))),
+    ];
+    let mut all = Vec::new();
+    for input in &inputs {
+        for ending in ["npz", "arrow", "csv"] {
+            let out = folder.join(format!("out.{ending}")).to_str().expect("text").to_string();
+            let quantity = "forward-dynamics-derivatives";
+            let said = mozzi(&["batch", "two_link_planar", "--quantity", quantity, "--in", input, "--out", &out]);
+            assert!(said.status.success(), "{input}: {}", String::from_utf8_lossy(&said.stderr));
+            all.push(match ending {
+                "npz" => {
+                    read_npz(&out).into_iter().flat_map(|(_, shape, values)| to_columns(&shape, &values)).collect()
+                }
+                "arrow" => read_arrow(&out).into_iter().map(|(_, values)| values).collect::<Vec<_>>(),
+                _ => {
+                    let text = std::fs::read_to_string(&out).expect("a table");
+                    let names = "ddtheta_1,ddtheta_2,by_theta_1_1,by_theta_1_2,by_theta_2_1,by_theta_2_2,by_dtheta_1_1";
+                    assert!(text.starts_with(names), "{text}");
+                    let row = |line: &str| line.split(',').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>();
+                    let rows: Vec<Vec<f64>> = text.lines().skip(1).map(row).collect();
+                    (0..14).map(|c| rows.iter().map(|row| row[c]).collect()).collect()
+                }
+            });
+        }
+    }
+    assert!(all[0].len() == 14 && all[0][0].len() == 5);
+    assert!(all.iter().all(|one| *one == all[0]), "{all:?}");
+    let names: Vec<String> =
+        read_arrow(folder.join("out.arrow").to_str().expect("text")).into_iter().map(|(n, _)| n).collect();
+    assert_eq!(names[12..], ["by_tau_2_1", "by_tau_2_2"]);
+    let text =
+        common::text(&["batch", "two_link_planar", "--quantity", "kinetic-energy", "--in", &inputs[4], "--out", "-"]);
+    assert!(text.starts_with("kinetic_energy\n") && text.lines().count() == 6, "{text}");
+}
+
+/// The columns of an array by rows.
+fn to_columns(shape: &str, values: &[f64]) -> Vec<Vec<f64>> {
+    let states: usize = shape.trim_start_matches('(').split([',', ')']).next().expect("N").parse().expect("a number");
+    let width = values.len() / states;
+    (0..width).map(|c| values.iter().skip(c).step_by(width).copied().collect()).collect()
+}
+
+fn write_arrow(folder: &Path, name: &str, columns: Vec<(&str, ArrayRef)>) -> String {
+    let path = folder.join(name);
+    let batch = RecordBatch::try_from_iter(columns).expect("columns");
+    let mut writer = FileWriter::try_new(File::create(&path).expect("a file"), &batch.schema()).expect("a writer");
+    writer.write(&batch).expect("a batch");
+    writer.write(&batch.slice(0, 0)).expect("an empty batch");
+    writer.finish().expect("an end");
+    path.to_str().expect("text").to_string()
+}
+
+fn read_arrow(path: &str) -> Vec<(String, Vec<f64>)> {
+    let mut reader = FileReader::try_new(File::open(path).expect("a file"), None).expect("arrow");
+    let batch = reader.next().expect("a batch").expect("columns");
+    let column = |k: usize| batch.column(k).as_any().downcast_ref::<Float64Array>().expect("floats").values().to_vec();
+    batch.schema().fields().iter().enumerate().map(|(k, field)| (field.name().clone(), column(k))).collect()
+}
+
+#[test]
+fn a_free_base_has_its_columns_by_name() {
+    let folder = folder("batch_floating");
+    let robot = mozzi_urdf::open("two_link_planar").expect("a robot").description;
+    let model = robot.floating().build().expect("a model");
+    let states = States::new(&model, 9);
+    let input = save(&folder, "states.npy", &npy(&[9, 25], &states.beside(&[0, 1, 2]), false));
+    let out = folder.join("tau.arrow").to_str().expect("text").to_string();
+    common::text(&[
+        "batch",
+        "two_link_planar",
+        "--floating",
+        "--quantity",
+        "inverse-dynamics",
+        "--in",
+        &input,
+        "--out",
+        &out,
+    ]);
+    let columns = read_arrow(&out);
+    assert_eq!((columns.len(), columns[0].0.as_str(), columns[5].0.as_str()), (8, "tau_base.wx", "tau_base.vz"));
+    for state in 0..9 {
+        let [theta, dtheta, x] = [0, 1, 2].map(|k| states.at(k, state));
+        let tau = model.inverse_dynamics(theta, dtheta, x, &model.environment()).expect("τ");
+        let found: Vec<f64> = columns.iter().map(|(_, values)| values[state]).collect();
+        assert_close(&found, tau.as_slice(), 1e-11);
+    }
+    let mut zero = states.beside(&[0, 1, 2]);
+    zero[25 * 4..][..4].fill(0.0);
+    let input = save(&folder, "zero.npy", &npy(&[9, 25], &zero, false));
+    let (code, said) = complaint(&[
+        "batch",
+        "two_link_planar",
+        "--floating",
+        "--quantity",
+        "inverse-dynamics",
+        "--in",
+        &input,
+        "--out",
+        &out,
+    ]);
+    assert!(
+        code == 1 && said.contains("zero.npy: state 4 (counted from 0): ") && said.contains("quaternion"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_nan_stays_in_its_state_and_is_told() {
+    let folder = folder("batch_nan");
+    let model = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
+    let states = States::new(&model, 10);
+    let mut numbers = states.beside(&[0, 1, 2]);
+    numbers[18 * 3 + 1] = f64::NAN;
+    let input = save(&folder, "states.npy", &npy(&[10, 18], &numbers, false));
+    let out = folder.join("tau.npy").to_str().expect("text").to_string();
+    let output = mozzi(&["batch", "ur5", "--quantity", "inverse-dynamics", "--in", &input, "--out", &out]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("note: 1 of 10 states gave NaN\n"), "{said}");
+    let (_, tau) = parse(&std::fs::read(&out).expect("a file"));
+    let with_nan: Vec<usize> = (0..10).filter(|s| tau[s * 6..][..6].iter().any(|x| x.is_nan())).collect();
+    assert_eq!(with_nan, [3]);
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let folder = folder("batch_wrong");
+    let out = folder.join("out.npy").to_str().expect("text").to_string();
+    let model = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
+    let states = States::new(&model, 4);
+    let all = states.npz(&folder, "all.npz");
+    let flat = save(&folder, "flat.npy", &npy(&[4, 13], &[0.0; 52], false));
+    let list = save(&folder, "list.npy", &npy(&[6], &[0.0; 6], false));
+    let cut = save(&folder, "cut.npy", &npy(&[4, 18], &[0.0; 71], false));
+    let theta = npz(&folder, "theta.npz", &[("theta", &[4, 5], &[0.0; 20])]);
+    let odd = npz(&folder, "odd.npz", &[("theta", &[4, 6], &[0.0; 24]), ("thetadot", &[4, 6], &[0.0; 24])]);
+    let count = npz(&folder, "count.npz", &[("theta", &[4, 6], &[0.0; 24]), ("dtheta", &[3, 6], &[0.0; 18])]);
+    let none = npz(&folder, "none.npz", &[("dtheta", &[4, 6], &[0.0; 24])]);
+    let column = |values: Vec<Option<f64>>| Arc::new(Float64Array::from(values)) as ArrayRef;
+    let thetas = |first: ArrayRef, name: &'static str| -> Vec<(&'static str, ArrayRef)> {
+        let zero = || column(vec![Some(0.0); 2]);
+        let others = ["theta_2", "theta_3", "theta_4", "theta_5", "theta_6"].map(|name| (name, zero()));
+        [vec![(name, first)], others.to_vec()].concat()
+    };
+    let null = write_arrow(&folder, "null.arrow", thetas(column(vec![Some(1.0), None]), "theta_1"));
+    let text = Arc::new(arrow_array::StringArray::from(vec!["a", "b"])) as ArrayRef;
+    let text = write_arrow(&folder, "text.arrow", thetas(text, "theta_1"));
+    let name = write_arrow(&folder, "name.arrow", thetas(column(vec![Some(1.0); 2]), "angle"));
+    let whole = Arc::new(Int64Array::from(vec![1, 2])) as ArrayRef;
+    let whole = write_arrow(&folder, "whole.arrow", thetas(whole, "theta_1"));
+    let nothing = file(&folder, "nothing.arrow", "nothing");
+    let csv = file(&folder, "states.csv", "theta_1,theta_2,theta_3,theta_4,theta_5,theta_6\n0,0,0,0,0,x\n");
+    let said = |quantity: &str, input: &str, more: &[&str]| {
+        let (code, said) =
+            complaint(&[&["batch", "ur5", "--quantity", quantity, "--in", input, "--out", &out], more].concat());
+        (code, said)
+    };
+    for (quantity, input, expected) in [
+        (
+            "inverse-dynamics",
+            &flat,
+            "flat.npy has shape (4, 13), expected (N, 18): theta 6, dtheta 6, ddtheta 6 of `ur5`; or (N, 24) with the tip's wrench",
+        ),
+        ("mass-matrix", &list, "list.npy has shape (6,), expected (N, 6): theta 6 of `ur5`"),
+        ("tip-forces", &flat, "flat.npy has shape (4, 13), expected (N, 12): theta 6, wrench 6 of `ur5`"),
+        (
+            "inverse-dynamics",
+            &cut,
+            "cut.npy is no .npy: there are 568 bytes of numbers, expected those of shape (4, 18)",
+        ),
+        ("mass-matrix", &theta, "theta.npz: `theta` has shape (4, 5), expected (N, 6) of `ur5`"),
+        ("mass-matrix", &odd, "odd.npz has an array `thetadot`, expected only theta, dtheta, ddtheta, tau, wrench"),
+        ("mass-matrix", &count, "count.npz: `dtheta` has shape (3, 6), expected (4, 6): as many states as `theta`"),
+        ("mass-matrix", &none, "none.npz has no array `theta`, which mass-matrix needs"),
+        ("tip-forces", &whole, "whole.arrow has no columns m_x m_y m_z f_x f_y f_z, which tip-forces needs"),
+        ("forward-dynamics", &whole, "whole.arrow has no columns tau_1 …, which forward-dynamics needs"),
+        ("mass-matrix", &null, "null.arrow: column `theta_1`, row 1 (counted from 0) is null, expected a number"),
+        ("mass-matrix", &text, "text.arrow: column `theta_1` has type Utf8, expected Float64, Float32 or Int64"),
+        ("mass-matrix", &name, "name.arrow: column 1 is called `angle`, expected t, theta_1 …"),
+        ("mass-matrix", &nothing, "nothing.arrow cannot be read: "),
+        ("mass-matrix", &csv, "states.csv:2: column 6 (`theta_6`) is `x`, expected a number"),
+        (
+            "mass-matrix",
+            &"states.parquet".to_string(),
+            "states.parquet: expected a name that ends in .npy, .npz, .arrow, .feather or .csv",
+        ),
+        ("mass-matrix", &"nowhere.npy".to_string(), "nowhere.npy cannot be read: "),
+        (
+            "inverse-dynamics-derivatives",
+            &all,
+            "holds one array, and inverse-dynamics-derivatives gives 3: by_theta, by_dtheta, by_ddtheta; expected a name that ends in .npz",
+        ),
+    ] {
+        let (code, said) = said(quantity, input, &[]);
+        assert!(code == 1 && said.contains(expected), "{said}");
+    }
+    let (code, text) = said("mass-matrix", &all, &["--threads", "0"]);
+    assert!(code == 1 && text.contains("0 threads could not be started: expected at least one"), "{text}");
+    let (code, text) = said("mass-matrix", &all, &["--instruction-set", "neon"]);
+    assert!(code == 2 && text.contains("expected one of portable, avx2, avx512"), "{text}");
+    let (code, text) = complaint(&["batch", "ur5", "--quantity", "mass-matrix", "--in", &all, "--out", "-", "--json"]);
+    assert!(code == 1 && text.contains("--json and --out - both ask for standard output"), "{text}");
+    let (code, text) = complaint(&["batch", "panda", "--quantity", "body-jacobian", "--in", &all, "--out", &out]);
+    assert!(code == 1 && text.contains("end effector"), "{text}");
+    let output = mozzi(&["batch", "ur5", "--quantity", "mass-matrix", "--in", &whole, "--out", &out]);
+    assert!(output.status.success(), "whole numbers are numbers");
+}
+
+#[test]
+fn bench_tells_this_machines_times() {
+    let only = ["--quantity", "inverse-dynamics", "--quantity", "body-jacobian", "--quantity", "tip-forces"];
+    let small =
+        [&["bench", "two_link_planar", "--states", "70", "--rounds", "3", "--threads", "2"], &only[..]].concat();
+    let table: Value = json(&small);
+    let sets = table["instruction_sets"].as_array().expect("a list").len();
+    let timings = table["timings"].as_array().expect("a list");
+    // one state; f64 and f32 on each kind of registers, on one thread and on two
+    assert_eq!(timings.len(), 3 * (1 + 4 * sets));
+    for timing in timings {
+        let number = |key: &str| timing[key].as_f64().expect("a number");
+        assert!(0.0 < number("ns_least") && number("ns_least") <= number("ns_median"), "{timing}");
+        let most = if timing["precision"] == "f64" { 1e-12 } else { 1e-3 };
+        assert!(number("difference") <= most, "{timing}");
+    }
+    assert!(!table["processor"].as_str().expect("a name").is_empty());
+    let page = common::text(&small);
+    for word in ["one state", "portable f64", "portable f32", "body-jacobian", "on 2 threads", "70 states a batch"] {
+        assert!(page.contains(word), "{word} in {page}");
+    }
+}
+
+/// Of `cargo xtask test`.
+fn python(imports: &str) -> Option<String> {
+    let python = std::env::var("MOZZI_PYTHON").ok()?;
+    let mut import = std::process::Command::new(&python);
+    let has = import.args(["-c", &format!("import {imports}")]).output().is_ok_and(|output| output.status.success());
+    has.then_some(python)
+}
+
+/// Writes states, runs the program, reads the results.
+const BY_NUMPY: &str = "
+import subprocess, sys
+import numpy as np
+program, folder = sys.argv[1:]
+def run(quantity, states, result):
+    command = [program, 'batch', 'ur5', '--quantity', quantity, '--in', f'{folder}/{states}', '--out', f'{folder}/{result}']
+    subprocess.run(command, check=True)
+theta = np.random.default_rng(1).uniform(-1, 1, (50, 6))
+np.save(f'{folder}/c.npy', theta)
+np.save(f'{folder}/f.npy', np.asfortranarray(theta))
+np.savez_compressed(f'{folder}/theta.npz', theta=theta)
+for states in ['c.npy', 'f.npy', 'theta.npz']:
+    run('mass-matrix', states, 'M.npy')
+    run('mass-matrix', states, 'M.npz')
+    M = np.load(f'{folder}/M.npy')
+    assert M.shape == (50, 6, 6) and M.dtype == np.float64
+    assert np.abs(M - M.transpose(0, 2, 1)).max() < 1e-12 and np.linalg.eigvalsh(M).min() > 0
+    assert (np.load(f'{folder}/M.npz')['M'] == M).all()
+np.save(f'{folder}/single.npy', theta.astype(np.float32))
+run('potential-energy', 'single.npy', 'P.npy')
+assert np.load(f'{folder}/P.npy').shape == (50,)
+";
+
+#[test]
+fn numpy_reads_what_is_written_and_writes_what_is_read() {
+    let Some(python) = python("numpy") else {
+        println!("skipped: MOZZI_PYTHON names no Python with NumPy (cargo xtask test makes one)");
+        return;
+    };
+    by_python(&python, BY_NUMPY, "batch_numpy");
+}
+
+const BY_PYARROW: &str = "
+import subprocess, sys
+import numpy as np, pyarrow as pa, pyarrow.feather as feather
+program, folder = sys.argv[1:]
+theta = np.random.default_rng(1).uniform(-1, 1, (50, 6))
+table = pa.table({f'theta_{j + 1}': theta[:, j] for j in range(6)})
+for compression in ['uncompressed', 'lz4']:
+    feather.write_feather(table, f'{folder}/states.feather', compression=compression)
+    command = [program, 'batch', 'ur5', '--quantity', 'gravity-forces', '--in', f'{folder}/states.feather']
+    subprocess.run(command + ['--out', f'{folder}/g.arrow'], check=True)
+    subprocess.run(command + ['--out', f'{folder}/g.npy'], check=True)
+    g = feather.read_table(f'{folder}/g.arrow')
+    assert g.column_names == [f'g_{j + 1}' for j in range(6)]
+    assert (np.stack([g[name].to_numpy() for name in g.column_names], 1) == np.load(f'{folder}/g.npy')).all()
+";
+
+#[test]
+fn pyarrow_reads_what_is_written_and_writes_what_is_read() {
+    let Some(python) = python("numpy, pyarrow") else {
+        println!("skipped: MOZZI_PYTHON names no Python with pyarrow");
+        return;
+    };
+    by_python(&python, BY_PYARROW, "batch_pyarrow");
+}
+
+fn by_python(python: &str, script: &str, name: &str) {
+    let folder = folder(name);
+    let output = std::process::Command::new(python)
+        .args(["-c", script, env!("CARGO_BIN_EXE_mozzi"), folder.to_str().expect("text")])
+        .output()
+        .expect("Python runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
