@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let environment: Environment = ur5.environment();
     let surroundings = Surroundings::from(environment);
 
-    let batch = Batch::<f64>::new(&ur5);
+    let batch = Batch::new(&ur5);
     let mut tau = vec![0.0; states * n];
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // half the bits, twice the states in a register
     let [theta32, dtheta32, ddtheta32] =
         [&theta, &dtheta, &ddtheta].map(|table| table.iter().map(|&x| x as f32).collect::<Vec<f32>>());
-    let single = Batch::<f32>::new(&ur5);
+    let single = Batch::<f32>::of(&ur5);
     let mut tau32 = vec![0.0; states * n];
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {

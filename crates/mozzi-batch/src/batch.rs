@@ -27,9 +27,16 @@ pub struct Batch<T: Number = f64> {
     threads: Threads,
 }
 
-impl<T: Number> Batch<T> {
-    /// On the machine's widest registers and all its cores, with row-major tables.
+impl Batch {
+    /// In `f64`, on the machine's widest registers and all its cores, with row-major tables.
     pub fn new(model: &Model) -> Self {
+        Self::of(model)
+    }
+}
+
+impl<T: Number> Batch<T> {
+    /// As [`new`](Batch::new), in numbers of this type: `Batch::<f32>::of(&model)`.
+    pub fn of(model: &Model) -> Self {
         Batch {
             model: Arc::new(model.clone()),
             constants: Arc::new(model.map(T::from_f64)),
@@ -72,14 +79,7 @@ impl<T: Number> Batch<T> {
 
     /// How many states a register holds, and a block of [`Layout::Blocks`].
     pub fn lanes(&self) -> usize {
-        struct Width;
-        impl<T: Number> OnLanes<T, q::MassMatrix> for Width {
-            type Output = usize;
-            fn on<L: Lane<Number = T>>(self, _: Entry<q::MassMatrix, L>) -> usize {
-                L::WIDTH
-            }
-        }
-        choose::<T, _, _>(self.set, Width)
+        self.set.lanes::<T>()
     }
 
     /// The tables' layout.
@@ -87,7 +87,12 @@ impl<T: Number> Batch<T> {
         self.layout
     }
 
-    pub(crate) fn threads(&self) -> &Threads {
+    /// How many threads work at once, at most.
+    pub fn threads(&self) -> usize {
+        self.threads.count()
+    }
+
+    pub(crate) fn workers(&self) -> &Threads {
         &self.threads
     }
 

@@ -46,6 +46,17 @@ impl InstructionSet {
         }
     }
 
+    /// How many states a register of these numbers holds.
+    pub fn lanes<T: Number>(self) -> usize {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => T::Avx512::WIDTH,
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => T::Avx2::WIDTH,
+            _ => T::Portable::WIDTH,
+        }
+    }
+
     /// "portable", "avx2" or "avx512".
     pub fn name(self) -> &'static str {
         match self {

@@ -48,7 +48,7 @@ impl<T: Number> Batch<T> {
 
         let alone = self.on(Threads::One);
         let pieces: Vec<_> = theta.chunks_mut(TOGETHER * nq).zip(dtheta.chunks_mut(TOGETHER * n)).enumerate().collect();
-        let results = self.threads().map(
+        let results = self.workers().map(
             pieces,
             || (),
             |(), (k, (theta, dtheta))| {
@@ -92,6 +92,6 @@ impl<T: Number> Batch<T> {
 
 /// The first number that was one and is none now.
 fn lost<T: Number>(before: &[T], after: &[T]) -> Option<usize> {
-    let finite = |x: T| x - x == T::zero();
+    let finite = |x: T| x * T::zero() == T::zero();
     before.iter().zip(after).position(|(&before, &after)| finite(before) && !finite(after))
 }

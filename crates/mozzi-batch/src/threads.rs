@@ -27,6 +27,14 @@ impl Threads {
         }
     }
 
+    pub fn count(&self) -> usize {
+        match self {
+            Threads::All => rayon::current_num_threads(),
+            Threads::One => 1,
+            Threads::Pool(pool) => pool.current_num_threads(),
+        }
+    }
+
     /// f of every piece, in their order, with memory that a thread makes once and uses again.
     pub fn map<I: Send, M, R: Send>(
         &self,

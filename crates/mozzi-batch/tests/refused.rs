@@ -12,7 +12,7 @@ fn text(result: Result<(), Error>) -> String {
 #[test]
 fn lengths() {
     let model = tree(1, 7, 0);
-    let (batch, s) = (Batch::<f64>::new(&model), model.environment().into());
+    let (batch, s) = (Batch::new(&model), model.environment().into());
     let (x, mut tau) = (vec![0.0; 21], vec![0.0; 21]);
     assert_eq!(
         text(batch.inverse_dynamics(&x[..20], &x, &x, &s, &mut tau)),
@@ -38,7 +38,7 @@ fn lengths() {
 #[test]
 fn a_state_by_its_number() {
     let model = floating_tree(2, 4, 0);
-    let batch = Batch::<f64>::new(&model);
+    let batch = Batch::new(&model);
     let mut theta: Vec<f64> = model.neutral_configuration().repeat(30);
     theta[17 * model.nq()] = 0.9;
     let mut M = vec![0.0; 30 * model.n() * model.n()];
@@ -64,7 +64,7 @@ fn a_singular_state_names_its_joint() {
         .build()
         .unwrap();
     for set in InstructionSet::available() {
-        let batch = Batch::<f64>::new(&model).with_instruction_set(set).unwrap();
+        let batch = Batch::new(&model).with_instruction_set(set).unwrap();
         let (x, mut y) = (vec![0.1; 10], vec![0.0; 10]);
         let found = text(batch.forward_dynamics(&x, &x, &x, &model.environment().into(), &mut y));
         assert!(found.starts_with("state 0 (counted from 0): the mass matrix is singular at joint `first`"), "{found}");
@@ -74,7 +74,7 @@ fn a_singular_state_names_its_joint() {
 #[test]
 fn frames_threads_and_registers() {
     let (small, large) = (tree(1, 2, 0), tree(2, 12, 0));
-    let batch = Batch::<f64>::new(&small);
+    let batch = Batch::new(&small);
     let tip = large.end_effector().unwrap();
     let found = text(batch.forward_kinematics(tip, &[0.0; 2], &mut [0.0; 16]));
     assert!(found.starts_with("the frame is number "), "{found}");

@@ -70,7 +70,7 @@ fn run_in<T: Precision>(arguments: &BatchArguments, model: &Model) -> Result<Str
     }
     let format = Format::of_results(output, quantity)?;
     let threads = arguments.threads.unwrap_or_else(all_threads);
-    let mut batch = Batch::<T>::new(model).with_threads(threads).map_err(wrong)?;
+    let mut batch = Batch::<T>::of(model).with_threads(threads).map_err(wrong)?;
     if let Some(set) = arguments.instruction_set {
         batch = batch.with_instruction_set(set).map_err(wrong)?;
     }
