@@ -65,6 +65,12 @@ impl<S: Scalar> Workspace<S> {
         }
     }
 
+    /// What the last [`forward_dynamics`](crate::forward_dynamics()), or its derivatives, divided by: an inertia for each velocity, with
+    /// the joints beyond it free. A singular mass matrix has one that is rounding.
+    pub fn pivots(&self) -> &[S] {
+        &self.pivots
+    }
+
     /// Every number NaN: what stands here must not matter.
     pub fn poison(&mut self) {
         let nan = S::from_f64(f64::NAN);

@@ -1,0 +1,19 @@
+//! Robots as straight-line programs, and programs as machine code.
+#![allow(missing_docs)]
+
+mod count;
+mod function;
+mod program;
+mod quantity;
+mod record;
+mod tape;
+mod text;
+mod traced;
+
+pub use count::Count;
+pub use function::Function;
+pub use program::{Array, Output, Program, Step, Value};
+pub use quantity::{LeftOpen, Quantity};
+pub use record::record;
+pub use text::NotAProgram;
+pub use traced::Traced;
