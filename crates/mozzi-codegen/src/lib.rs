@@ -3,6 +3,7 @@
 
 mod count;
 mod function;
+mod jit;
 mod program;
 mod quantity;
 mod record;
@@ -12,6 +13,7 @@ mod traced;
 
 pub use count::Count;
 pub use function::Function;
+pub use jit::{Kernel, LONGEST_CODE, Number, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};
 pub use quantity::{LeftOpen, Quantity};
 pub use record::record;

@@ -9,6 +9,7 @@ mod sin_cos;
 
 pub use dual::Dual;
 pub use fused::Fused;
+pub use sin_cos::SinCos;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};

@@ -4,6 +4,36 @@
 //! that lanes can follow the same text. The tests bound the error: 1 ulp in `f64` up to |x| = 10⁶;
 //! 1.5 ulp in `f32` up to 8192, values below 10⁻³ (close to a zero of the function) held to 10⁻³'s ulp.
 
+use alloc::vec::Vec;
+
+/// The numbers of the sine and cosine that `f64` or `f32` have here, for other ways to compute the same: on r = x − k π/2, |r| ≤ π/4,
+/// with z = r²,
+///
+/// > sin r = r + r³ s(z), cos r = 1 − z/2 + z² c(z)
+#[derive(Clone, Debug, PartialEq)]
+pub struct SinCos {
+    /// The reduction is exact to rounding up to this |x|.
+    pub largest: f64,
+    /// Adding and subtracting it rounds to the nearest integer, k, of which the lowest bits are the sum's.
+    pub round: f64,
+    /// The coefficients of s, highest first.
+    pub sin: Vec<f64>,
+    /// The coefficients of c, highest first.
+    pub cos: Vec<f64>,
+}
+
+impl SinCos {
+    /// Of `f64`.
+    pub fn of_f64() -> Self {
+        self::f64::numbers()
+    }
+
+    /// Of `f32`; each is one.
+    pub fn of_f32() -> Self {
+        self::f32::numbers()
+    }
+}
+
 macro_rules! sin_cos {
     ($f:ident, $largest:expr, $round:expr, $half_pi:expr, $sin:expr, $cos:expr) => {
         pub mod $f {
@@ -17,6 +47,11 @@ macro_rules! sin_cos {
             const SIN: &[$f] = &$sin;
             /// ±1/(2k)! from the highest k down to 2.
             const COS: &[$f] = &$cos;
+
+            pub fn numbers() -> super::SinCos {
+                let list = |coefficients: &[$f]| coefficients.iter().map(|&x| x.into()).collect();
+                super::SinCos { largest: LARGEST.into(), round: ROUND.into(), sin: list(SIN), cos: list(COS) }
+            }
 
             #[inline(always)]
             pub fn sin_cos(x: $f, mul_add: impl Fn($f, $f, $f) -> $f) -> ($f, $f) {
