@@ -1,6 +1,7 @@
 //! Robots as straight-line programs, and programs as machine code.
 #![allow(missing_docs)]
 
+mod compiled;
 mod count;
 mod function;
 mod jit;
@@ -11,6 +12,7 @@ mod tape;
 mod text;
 mod traced;
 
+pub use compiled::{Compiled, Engine, compile};
 pub use count::Count;
 pub use function::Function;
 pub use jit::{Kernel, LONGEST_CODE, Number, Refusal, Shape};

@@ -108,6 +108,7 @@ impl Quantity {
         inputs.extend(open.wrench.map(|_| ("wrench", 6)));
         record(self.name(), &inputs, |arrays| {
             let (state, mut rest) = arrays.split_at(state);
+            let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
             let mut further = |is_open: bool| {
                 let (first, others) = rest.split_first().filter(|_| is_open)?;
                 rest = others;
@@ -120,27 +121,26 @@ impl Quantity {
             let gravity = Vec3(gravity.unwrap_or(model.gravity().0.map(Traced::from)));
             let environment = Environment { applied: &applied, ..Environment::with_gravity(gravity) };
             match parameters {
-                Some(parameters) => self.trace(&model.with_parameters(parameters), state, &environment, by_mass_matrix),
-                None => self.trace(model, state, &environment, by_mass_matrix),
+                Some(parameters) => {
+                    self.compute(&model.with_parameters(parameters), &state, &environment, by_mass_matrix)
+                }
+                None => self.compute(model, &state, &environment, by_mass_matrix),
             }
         })
     }
 
-    /// Runs the kernel.
-    fn trace<C: Scalar>(
+    /// Its outputs with their names, by the kernels.
+    pub(crate) fn compute<S: Scalar + From<C>, C: Scalar>(
         self,
         model: &Model<C>,
-        state: &[Vec<Traced>],
-        environment: &Environment<Traced>,
+        state: &[&[S]],
+        environment: &Environment<S>,
         by_mass_matrix: bool,
-    ) -> Vec<(&'static str, Vec<Traced>)>
-    where
-        Traced: From<C>,
-    {
-        let (n, mut w) = (model.n(), Workspace::<Traced>::new(model));
-        let theta = &state[0];
-        let (dtheta, third) = (state.get(1).unwrap_or(theta), state.get(2).unwrap_or(theta));
-        let (mut x, mut X) = (vec![Traced::zero(); n], vec![Traced::zero(); n * n]);
+    ) -> Vec<(&'static str, Vec<S>)> {
+        let (n, mut w) = (model.n(), Workspace::<S>::new(model));
+        let theta = state[0];
+        let (dtheta, third) = (state.get(1).unwrap_or(&theta), state.get(2).unwrap_or(&theta));
+        let (mut x, mut X) = (vec![S::zero(); n], vec![S::zero(); n * n]);
         match self {
             InverseDynamics => {
                 kernel::inverse_dynamics(model, theta, dtheta, third, environment, &mut w, &mut x);

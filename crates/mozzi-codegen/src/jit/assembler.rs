@@ -309,3 +309,6 @@ fn fused_offset(operation: Operation) -> u8 {
         _ => unreachable!("not a fused product"),
     }
 }
+
+#[cfg(test)]
+mod tests;

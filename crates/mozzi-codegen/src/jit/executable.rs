@@ -47,25 +47,28 @@ impl Executable {
         Some(Executable { pages, pool, lengths: [inputs, outputs].concat(), inputs: inputs.len(), shape })
     }
 
-    /// Computes all lanes: entry k of an array has its lanes at `k · lanes`.
+    /// Computes all lanes: entry k of an array has its lanes at `k · lanes`. The last output stands apart.
     ///
     /// # Panics
     /// When numbers are of another type, or an array is missing or too short.
     #[inline(always)]
-    pub fn call<S: Number>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]]) {
+    pub fn call<S: Number>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
         let lanes = self.shape.lanes();
         let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
         assert!(S::IS_F64 == self.shape.is_f64(), "numbers of another type");
-        assert!(inputs.len() == self.inputs && inputs.len() + outputs.len() == self.lengths.len(), "too few arrays");
+        let arrays = inputs.len() + outputs.len() + 1;
+        assert!(inputs.len() == self.inputs && arrays == self.lengths.len(), "another number of arrays");
         let mut lengths = self.lengths.iter();
         for ((address, input), length) in addresses.iter_mut().zip(inputs).zip(lengths.by_ref().take(self.inputs)) {
             assert!(input.len() >= length * lanes, "an input has {} entries, expected {length}", input.len());
             *address = input.as_ptr().cast_mut().cast();
         }
-        for ((address, output), length) in addresses[self.inputs..].iter_mut().zip(outputs).zip(lengths) {
+        for ((address, output), length) in addresses[self.inputs..].iter_mut().zip(outputs).zip(lengths.by_ref()) {
             assert!(output.len() >= length * lanes, "an output has {} entries, expected {length}", output.len());
             *address = output.as_mut_ptr().cast();
         }
+        assert!(lengths.all(|&length| last.len() >= length * lanes), "the last output has {} entries", last.len());
+        addresses[arrays - 1] = last.as_mut_ptr().cast();
         self.run(addresses);
     }
 

@@ -18,6 +18,8 @@ use mozzi::scalar::SinCos;
 /// Why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
+    /// Nobody asked for it.
+    NotAsked,
     /// The processor has not the instructions, or is no x86-64.
     Processor,
     /// The program has a function that there is no machine code for (tanh), or more arrays than there are registers for their addresses.
@@ -31,6 +33,7 @@ pub enum Refusal {
 impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
+            Refusal::NotAsked => "nobody asked for machine code",
             Refusal::Processor => "the processor has not the instructions",
             Refusal::Program => "the program has a function without machine code, or too many arrays",
             Refusal::Long => "the code would be longer than the instruction cache is wide",
@@ -103,8 +106,8 @@ impl Kernel {
     /// # Panics
     /// When numbers are not of the shape's type, an array is missing, or one is too short.
     #[inline(always)]
-    pub fn call<S: Number>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]]) {
-        self.executable.call(inputs, outputs);
+    pub fn call<S: Number>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
+        self.executable.call(inputs, outputs, squares);
     }
 
     /// Are the angles of a lane so small that their sines were reduced exactly? Else, and for NaN, its outputs mean nothing.
