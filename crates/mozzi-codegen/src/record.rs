@@ -78,22 +78,44 @@ fn uses(steps: &[Step], roots: impl Iterator<Item = Value>) -> Vec<u32> {
     uses
 }
 
-/// A sum takes in a product that nothing else needs: of two, the one that was recorded last.
+/// A sum takes in a product that nothing else needs, of two the one that was recorded last; then products that only sums need, each
+/// of which can take it in.
 fn fuse(steps: &mut [Step], uses: &[u32]) {
     for place in 0..steps.len() {
-        let Step::Apply(function @ (Function::Add | Function::Sub), [a, b, _]) = steps[place] else { continue };
-        let product = |x: Value| match steps[x as usize] {
-            Step::Apply(Function::Mul, [p, q, _]) if uses[x as usize] == 1 => Some([p, q]),
-            _ => None,
-        };
-        let of_b = if function == Function::Add { Function::MulAdd } else { Function::NegMulAdd };
-        let of_a = if function == Function::Add { Function::MulAdd } else { Function::MulSub };
-        let last_first = if a > b { [(of_a, a, b), (of_b, b, a)] } else { [(of_b, b, a), (of_a, a, b)] };
-        let fused = last_first.into_iter().find_map(|(function, x, rest)| {
-            product(x).filter(|_| a != b).map(|[p, q]| Step::Apply(function, [p, q, rest]))
-        });
-        steps[place] = fused.unwrap_or(steps[place]);
+        let single = |x: Value| uses[x as usize] == 1;
+        if let Some((_, fused)) = fused(steps, place, single) {
+            steps[place] = fused;
+        }
     }
+    let mut by_sums = vec![0; steps.len()];
+    for place in (0..steps.len()).filter(|&place| uses[place] > 0) {
+        if let Some((product, _)) = fused(steps, place, |_| true) {
+            by_sums[product as usize] += 1;
+        }
+    }
+    let only_by_sums: Vec<bool> = by_sums.iter().zip(uses).map(|(sums, uses)| sums == uses).collect();
+    for place in (0..steps.len()).filter(|&place| uses[place] > 0) {
+        match fused(steps, place, |_| true) {
+            Some((product, fused)) if only_by_sums[product as usize] => steps[place] = fused,
+            _ => {}
+        }
+    }
+}
+
+/// The last recorded product that this sum could take in, of those that may be, and what it is then.
+fn fused(steps: &[Step], place: usize, may_be: impl Fn(Value) -> bool) -> Option<(Value, Step)> {
+    let Step::Apply(function @ (Function::Add | Function::Sub), [a, b, _]) = steps[place] else { return None };
+    let (of_a, of_b) = match function {
+        Function::Add => (Function::MulAdd, Function::MulAdd),
+        _ => (Function::MulSub, Function::NegMulAdd),
+    };
+    let last_first = if a > b { [(of_a, a, b), (of_b, b, a)] } else { [(of_b, b, a), (of_a, a, b)] };
+    last_first.into_iter().filter(|&(_, x, rest)| x != rest && may_be(x)).find_map(|(function, x, rest)| {
+        match steps[x as usize] {
+            Step::Apply(Function::Mul, [p, q, _]) => Some((x, Step::Apply(function, [p, q, rest]))),
+            _ => None,
+        }
+    })
 }
 
 /// The step that computes the negative, at no further cost.

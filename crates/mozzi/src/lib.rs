@@ -49,8 +49,8 @@ pub mod scalar;
 pub mod simulation;
 pub mod spatial;
 mod task_space;
-#[cfg(test)]
-mod testing;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
 
 pub use api::{BodyFrame, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, NewtonEuler};
 pub use dynamics::*;

@@ -1,4 +1,4 @@
-//! Random values for the tests.
+//! Random values for tests and benchmarks: robots, states, twists and wrenches, each from a seed.
 
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
@@ -11,24 +11,29 @@ use alloc::format;
 pub struct Random(pub u64);
 
 impl Random {
+    /// One number.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
+    /// K numbers.
     pub fn array<const K: usize>(&mut self) -> [f64; K] {
         core::array::from_fn(|_| self.next())
     }
+    /// n numbers in [−size, size).
     pub fn vector(&mut self, n: usize, size: f64) -> alloc::vec::Vec<f64> {
         (0..n).map(|_| size * self.next()).collect()
     }
 }
 
+/// A twist with entries in [−1, 1).
 pub fn twist(seed: u64) -> Twist {
     Twist::from_array(Random(seed).array())
 }
 
+/// A wrench with entries in [−1, 1).
 pub fn wrench(seed: u64) -> Wrench {
     Wrench::from_array(Random(seed + 1000).array())
 }

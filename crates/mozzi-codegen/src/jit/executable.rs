@@ -12,17 +12,26 @@
 use super::allocate::Code;
 use super::assembler::MOST_ARRAYS;
 use super::shape::Shape;
+use mozzi::scalar::Float;
 
 /// The numbers that machine code works on: `f64` and `f32`.
-pub trait Number: mozzi::Scalar + Default + PartialOrd + 'static {
+pub trait Number: Float {
     /// It is `f64`.
     const IS_F64: bool;
+    /// Its bits, the lowest last.
+    fn raw(self) -> u64;
 }
 impl Number for f64 {
     const IS_F64: bool = true;
+    fn raw(self) -> u64 {
+        self.to_bits()
+    }
 }
 impl Number for f32 {
     const IS_F64: bool = false;
+    fn raw(self) -> u64 {
+        self.to_bits().into()
+    }
 }
 
 /// Machine code that can be called.

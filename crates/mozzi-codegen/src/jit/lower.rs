@@ -1,7 +1,7 @@
 //! From a program to what the processor can do.
 
 use super::instruction::{Node, Operation, Value};
-use super::sin_cos;
+use super::sin_cos::SinCos;
 use crate::function::Function;
 use crate::program::{Program, Step};
 use std::collections::HashMap;
@@ -20,7 +20,7 @@ pub(crate) struct Builder {
 }
 
 impl Builder {
-    fn push(&mut self, node: Node) -> Value {
+    pub fn push(&mut self, node: Node) -> Value {
         self.nodes.push(node);
         (self.nodes.len() - 1) as Value
     }
@@ -68,6 +68,7 @@ pub(crate) fn lower(program: &Program, is_f64: bool) -> Option<Lowered> {
     let mut place: Vec<Value> = Vec::with_capacity(program.steps.len());
     let mut angles: HashMap<u32, (Value, Value)> = HashMap::new();
     let mut squares = builder.constant(0.0);
+    let sin_cos = if is_f64 { SinCos::of::<f64>() } else { SinCos::of::<f32>() };
     for step in &program.steps {
         place.push(match *step {
             Step::Constant(x) => builder.constant(x),
@@ -95,7 +96,7 @@ pub(crate) fn lower(program: &Program, is_f64: bool) -> Option<Lowered> {
                             Some(&known) => known,
                             None => {
                                 squares = builder.apply(Operation::MulAdd, [a, a, squares]);
-                                let both = sin_cos::lower(&mut builder, a);
+                                let both = sin_cos.at(&mut builder, a);
                                 angles.insert(angle, both);
                                 both
                             }

@@ -13,7 +13,7 @@ pub use shape::Shape;
 
 use crate::program::{Array, Program};
 use executable::Executable;
-use mozzi::scalar::SinCos;
+use mozzi::scalar::Float;
 
 /// Why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl Kernel {
         if code.bytes.len() > LONGEST_CODE {
             return Err(Refusal::Long);
         }
-        let largest = if shape.is_f64() { SinCos::of_f64() } else { SinCos::of_f32() }.largest;
+        let largest = if shape.is_f64() { f64::LARGEST } else { f32::LARGEST.into() };
         let executable = Executable::new(shape, &code, &inputs, &outputs).ok_or(Refusal::Memory)?;
         let (code_bytes, instructions, frame_bytes) = (code.bytes.len(), code.instructions, code.frame);
         Ok(Kernel { executable, shape, angle_limit: largest * largest, code_bytes, instructions, frame_bytes })

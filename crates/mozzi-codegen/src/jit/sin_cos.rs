@@ -1,62 +1,172 @@
-//! Sine and cosine as `mozzi` has them for floats ([`SinCos`]), reduced by fused products.
+//! Sine and cosine: [`mozzi`]'s own text, recorded as instructions.
 
-use super::instruction::{Operation::*, Value};
+use super::executable::Number;
+use super::instruction::{Node, Operation, Value};
 use super::lower::Builder;
-use mozzi::scalar::SinCos;
+use mozzi::Scalar;
+use mozzi::scalar::{Bits, sin_cos};
+use std::cell::RefCell;
+use std::marker::PhantomData;
 
-/// π/2 as a sum, each part nearest to what those before it leave. Products that are rounded with a sum alone need no trailing zeros.
-const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591833e-33];
-/// The same in `f32`.
-const HALF_PI_F32: [f64; 3] = [1.5707963705062866, -4.371138828673793e-8, -1.7151245100059108e-15];
+/// The instructions from an angle, node 0, to its sine and cosine.
+pub(super) struct SinCos {
+    nodes: Vec<Node>,
+    sin: Value,
+    cos: Value,
+}
 
-/// (sin x, cos x) for x up to the polynomials' largest argument.
-pub(super) fn lower(b: &mut Builder, x: Value) -> (Value, Value) {
-    let of = if b.is_f64 { SinCos::of_f64() } else { SinCos::of_f32() };
-    let (two_over_pi, round) = (b.constant(std::f64::consts::FRAC_2_PI), b.constant(of.round));
-    let shifted = b.apply(MulAdd, [x, two_over_pi, round]);
-    let k = b.apply(Sub, [shifted, round]); // x = k π/2 + r
-    // k p0 and x have their bits in the same places, so that the first difference is exact; r + tail = x − k π/2 to twice the digits
-    let [p0, p1, p2] = if b.is_f64 { HALF_PI } else { HALF_PI_F32 }.map(|part| b.constant(part));
-    let hi = b.apply(NegMulAdd, [k, p0, x]);
-    let r = b.apply(NegMulAdd, [k, p1, hi]);
-    let tail = b.apply(Sub, [hi, r]);
-    let tail = b.apply(NegMulAdd, [k, p1, tail]);
-    let tail = b.apply(NegMulAdd, [k, p2, tail]);
-    let z = b.apply(Mul, [r, r]);
-    let polynomial = |b: &mut Builder, coefficients: &[f64]| {
-        let mut sum = b.constant(coefficients[0]);
-        for &coefficient in &coefficients[1..] {
-            let next = b.constant(coefficient);
-            sum = b.apply(MulAdd, [sum, z, next]);
+thread_local!(static NODES: RefCell<Vec<Node>> = const { RefCell::new(Vec::new()) });
+
+impl SinCos {
+    /// Of `f64` or `f32`.
+    pub fn of<T: Number>() -> Self {
+        NODES.replace(vec![Node::Input(0, 0)]);
+        let (sin, cos) = sin_cos(Wire::<T>(0, PhantomData));
+        let mut this = SinCos { nodes: NODES.take(), sin: sin.0, cos: cos.0 };
+        this.fuse();
+        this
+    }
+
+    /// Sums take in the products that nothing but sums need: where a product was exact without it, it still is.
+    fn fuse(&mut self) {
+        let product = |nodes: &[Node], x: Value| match nodes[x as usize] {
+            Node::Apply(Operation::Mul, [p, q, _]) => Some([p, q]),
+            _ => None,
+        };
+        let sum = |node: Node| match node {
+            Node::Apply(operation @ (Operation::Add | Operation::Sub), [a, b, _]) => Some((operation, a, b)),
+            _ => None,
+        };
+        for x in 0..self.nodes.len() as Value {
+            let Some([p, q]) = product(&self.nodes, x) else { continue };
+            let takes_it = |node: &Node| sum(*node).is_some_and(|(_, a, b)| (a == x) != (b == x));
+            if !self.nodes.iter().filter(|node| node.operands().contains(&x)).all(takes_it) {
+                continue;
+            }
+            for node in &mut self.nodes {
+                *node = match sum(*node) {
+                    Some((Operation::Add, a, b)) if a == x => Node::Apply(Operation::MulAdd, [p, q, b]),
+                    Some((Operation::Add, a, b)) if b == x => Node::Apply(Operation::MulAdd, [p, q, a]),
+                    Some((_, a, b)) if a == x => Node::Apply(Operation::MulSub, [p, q, b]),
+                    Some((_, a, b)) if b == x => Node::Apply(Operation::NegMulAdd, [p, q, a]),
+                    _ => continue,
+                }
+            }
         }
-        sum
-    };
-    let (s, c) = (polynomial(b, &of.sin), polynomial(b, &of.cos));
-    // sin(r + tail) = r + (tail + r³ s(z)); cos(r + tail) = 1 − z/2 + (z² c(z) − r tail), 1 − z/2 compensated
-    let (one, minus_half) = (b.constant(1.0), b.constant(-0.5));
-    let rz = b.apply(Mul, [r, z]);
-    let sin = b.apply(MulAdd, [rz, s, tail]);
-    let sin = b.apply(Add, [r, sin]);
-    let near = b.apply(MulAdd, [minus_half, z, one]);
-    let rest = b.apply(Sub, [one, near]);
-    let rest = b.apply(MulAdd, [minus_half, z, rest]);
-    let rest = b.apply(NegMulAdd, [r, tail, rest]);
-    let zz = b.apply(Mul, [z, z]);
-    let cos = b.apply(MulAdd, [zz, c, rest]);
-    let cos = b.apply(Add, [near, cos]);
-    // exchange in odd quadrants, then the signs, on the bits
-    let (zero, single, sign) = (b.bits(0), b.bits(1), b.sign_bit());
-    let by = if b.is_f64 { 62 } else { 30 };
-    let odd = b.apply(And, [shifted, single]);
-    let odd = b.apply(SubBits, [zero, odd]);
-    let exchange = b.apply(Xor, [sin, cos]);
-    let exchange = b.apply(And, [exchange, odd]);
-    let next = b.apply(AddBits, [shifted, single]);
-    let signed = |b: &mut Builder, x: Value, quadrant: Value| {
-        let high = b.apply(ShiftLeft(by), [quadrant]);
-        let high = b.apply(And, [high, sign]);
-        let x = b.apply(Xor, [x, exchange]);
-        b.apply(Xor, [x, high])
-    };
-    (signed(b, sin, shifted), signed(b, cos, next))
+    }
+
+    /// Of this angle.
+    pub fn at(&self, builder: &mut Builder, angle: Value) -> (Value, Value) {
+        let mut place = vec![angle];
+        for node in &self.nodes[1..] {
+            place.push(match *node {
+                Node::Constant(bits) => builder.bits(bits),
+                Node::Apply(operation, operands) => {
+                    builder.push(Node::Apply(operation, operands.map(|operand| place[operand as usize])))
+                }
+                Node::Input(..) => angle,
+            });
+        }
+        (place[self.sin as usize], place[self.cos as usize])
+    }
+}
+
+/// A number of the recording, by its node.
+#[derive(Clone, Copy, Debug)]
+struct Wire<T>(Value, PhantomData<T>);
+
+impl<T: Number> Wire<T> {
+    fn new(node: Node) -> Self {
+        let place = NODES.with_borrow_mut(|nodes| {
+            nodes.iter().position(|known| *known == node).unwrap_or_else(|| {
+                nodes.push(node);
+                nodes.len() - 1
+            })
+        });
+        Wire(place as Value, PhantomData)
+    }
+
+    fn apply<const K: usize>(operation: Operation, operands: [Self; K]) -> Self {
+        let mut three = [0; 3];
+        three.iter_mut().zip(operands).for_each(|(place, operand)| *place = operand.0);
+        Self::new(Node::Apply(operation, three))
+    }
+
+    fn sign_bit() -> Self {
+        Self::new(Node::Constant(if T::IS_F64 { 1 << 63 } else { 1 << 31 }))
+    }
+}
+
+macro_rules! operators {
+    ($($Op:ident $op:ident),*) => { $(impl<T: Number> std::ops::$Op for Wire<T> {
+        type Output = Self;
+        fn $op(self, other: Self) -> Self { Self::apply(Operation::$Op, [self, other]) }
+    })* };
+}
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl<T: Number> std::ops::Neg for Wire<T> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self.xor(Self::sign_bit())
+    }
+}
+impl<T: Number> std::ops::AddAssign for Wire<T> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<T: Number> std::ops::SubAssign for Wire<T> {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<T: Number> Scalar for Wire<T> {
+    fn from_f64(x: f64) -> Self {
+        Self::constant(T::from_f64(x))
+    }
+    fn sqrt(self) -> Self {
+        Self::apply(Operation::Sqrt, [self])
+    }
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        // with the negative of a number as a difference
+        let (sign, node) = (Self::sign_bit().0, NODES.with_borrow(|nodes| nodes[b.0 as usize]));
+        match node {
+            Node::Apply(Operation::Xor, [x, y, _]) if y == sign => {
+                Self::apply(Operation::MulSub, [self, a, Wire(x, PhantomData)])
+            }
+            _ => Self::apply(Operation::MulAdd, [self, a, b]),
+        }
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        unreachable!("sine and cosine are made of arithmetic and bits")
+    }
+    fn tanh(self) -> Self {
+        unreachable!("sine and cosine are made of arithmetic and bits")
+    }
+    fn sgn(self) -> Self {
+        unreachable!("sine and cosine are made of arithmetic and bits")
+    }
+}
+
+impl<T: Number> Bits for Wire<T> {
+    type Number = T;
+    fn constant(x: T) -> Self {
+        Self::new(Node::Constant(x.raw()))
+    }
+    fn xor(self, other: Self) -> Self {
+        Self::apply(Operation::Xor, [self, other])
+    }
+    fn and(self, other: Self) -> Self {
+        Self::apply(Operation::And, [self, other])
+    }
+    fn lowest_everywhere(self) -> Self {
+        let (zero, one) = (Self::new(Node::Constant(0)), Self::new(Node::Constant(1)));
+        Self::apply(Operation::SubBits, [zero, self.and(one)])
+    }
+    fn second_lowest_as_sign(self) -> Self {
+        let by = if T::IS_F64 { 62 } else { 30 };
+        Self::apply(Operation::ShiftLeft(by), [self]).and(Self::sign_bit())
+    }
 }

@@ -74,7 +74,7 @@ pub fn robots() -> Vec<(String, Model)> {
             (name.to_string(), model)
         })
         .collect();
-    for (seed, links, followers) in [(1, 1, 0), (2, 4, 0), (3, 9, 0), (4, 8, 2), (5, 12, 3)] {
+    for (seed, links, followers) in [(1, 2, 0), (2, 4, 0), (3, 9, 0), (4, 8, 2), (5, 12, 3)] {
         let robot = tree(seed, links, followers);
         robots.push((format!("{} free", robot.name), robot.clone().floating().build().expect("sound")));
         robots.push((robot.name.clone(), robot.build().expect("sound")));

@@ -27,9 +27,20 @@ impl Model<f64> {
         theta: &[f64],
         velocities: [(&'static str, &[f64]); K],
     ) -> Result<(), Error> {
+        self.check_configuration(theta)?;
+        self.check_velocities(velocities)
+    }
+
+    /// Is θ as long as it must be, and its quaternion, where the base is free, of length 1 to 10⁻³?
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::BadArgument`].
+    pub fn check_configuration(&self, theta: &[f64]) -> Result<(), Error> {
         check_length("theta", theta, self.nq())?;
-        self.check_velocities(velocities)?;
-        self.check_quaternion(theta)
+        match theta.first_chunk() {
+            Some(&q) if self.is_floating() => check_unit(q),
+            _ => Ok(()),
+        }
     }
 
     pub(crate) fn check_velocities<const K: usize>(
@@ -39,6 +50,7 @@ impl Model<f64> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
 
+<<<<<<< HEAD
     fn check_quaternion(&self, theta: &[f64]) -> Result<(), Error> {
         match theta.first_chunk() {
             Some(&q) if self.is_floating() => check_unit(q),
@@ -47,6 +59,9 @@ impl Model<f64> {
     }
 
     /// A frame of this model, not of a larger one.
+=======
+    /// Is this a frame of this model, not of a larger one?
+>>>>>>> main
     ///
     /// # Errors
     /// [`Error::BadArgument`].
@@ -59,7 +74,11 @@ impl Model<f64> {
         Err(Error::BadArgument { what: "the frame", found, expected: "a frame of this model" })
     }
 
-    pub(crate) fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
+    /// Are the environment's wrenches on frames of this model?
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`].
+    pub fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
         environment.applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))
     }
 }

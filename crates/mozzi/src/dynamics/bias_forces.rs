@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `h` not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -34,7 +34,7 @@ pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `c` not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn velocity_product<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -51,7 +51,7 @@ pub fn velocity_product<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `g` not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -69,7 +69,7 @@ pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or τ not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn tip_forces<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -82,7 +82,7 @@ pub fn tip_forces<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Inverse dynamics at rest.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn rest<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

@@ -18,7 +18,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `C` not n².
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     model: &Model<C0>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>, C: &mut [S],
@@ -90,7 +90,7 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `dM` not n².
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

@@ -18,7 +18,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, τ or θ̈ not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -39,7 +39,7 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
 
 /// Each link's articulated inertia Ĝ and bias wrench 𝓕 are what it presents to its joint while all joints beyond it
 /// are free.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], tau: &[S],

@@ -18,7 +18,7 @@ use crate::spatial::Wrench;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, θ̈ or τ not n.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -36,7 +36,7 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
 
 /// The links' part of τ, without armature and friction. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link;
 /// 𝓕_0 is the wrench that a bolted base applies to the chain, or that a free one, itself included, needs.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],

@@ -49,7 +49,7 @@ use crate::spatial::{BodyCoriolis, Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or a derivative not n².
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
@@ -173,7 +173,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// n × n zeros.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[track_caller]
 fn clear<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
     let n = model.n();
@@ -182,7 +182,7 @@ fn clear<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
 }
 
 /// Column j and row j at a free base's six.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
     for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
         X[r * n + j] += column;
@@ -191,7 +191,7 @@ fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row:
 }
 
 /// A column of a free base's 6 × 6 block.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     for (s, entry) in column.to_array().into_iter().enumerate() {
         X[s * n + r] = entry;

@@ -15,6 +15,7 @@ use crate::spatial::{SpatialInertia, Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
     composite_inertias(model, theta, workspace);
@@ -31,6 +32,7 @@ pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ not n.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn momentum<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
@@ -59,6 +61,7 @@ pub fn momentum<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `A` not n.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, A: &mut [Wrench<S>],
@@ -87,6 +90,7 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or θ̈ not n.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,

@@ -11,6 +11,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn forward_kinematics<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], frame: FrameId) -> SE3<S> {
     model.assert_lengths(theta.len(), []);
@@ -28,6 +29,7 @@ pub fn forward_kinematics<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
 ///
 /// # Panics
 /// When θ is not nq long, or `poses` not one for each frame.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, poses: &mut [SE3<S>]) {
     model.assert_lengths(theta.len(), []);

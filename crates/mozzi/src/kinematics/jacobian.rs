@@ -41,7 +41,7 @@ impl Jacobian<f64> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
     columns.iter().zip(dtheta).fold(Twist::zero(), |V, (&column, &rate)| V + column * rate)
 }
@@ -53,6 +53,7 @@ pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S
 ///
 /// # Panics
 /// When θ is not nq long, or `J` not n.
+#[cfg_attr(not(test), inline(always))]
 pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -69,6 +70,7 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `J` not n.
+#[cfg_attr(not(test), inline(always))]
 pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -82,7 +84,7 @@ pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Fills the body Jacobian and returns `T_sb`.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], frame: FrameId, J: &mut [Twist<S>]) -> SE3<S> {
     model.assert_lengths(theta.len(), [J.len()]);

@@ -12,6 +12,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `dJ` not n.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], dtheta: &[S], frame: FrameId, dJ: &mut [Twist<S>]) {
     model.assert_lengths(theta.len(), [dtheta.len(), dJ.len()]);
@@ -39,6 +40,7 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `dJ` not n.
+#[cfg_attr(not(test), inline(always))]
 pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

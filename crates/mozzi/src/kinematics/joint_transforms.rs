@@ -5,7 +5,7 @@ use crate::scalar::Scalar;
 
 /// `workspace.T[i]` = T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1} of every link. All sines come first: they do not wait for one
 /// another, as the recursions that follow do.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
     model.assert_lengths(theta.len(), []);

@@ -64,7 +64,7 @@ impl Pattern {
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
 /// The caller checks that the pivots D are positive.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar>(pattern: &Pattern, n: usize, M: &mut [S]) {
     for k in (0..n).rev() {
         let one_over = S::one() / M[k * n + k];
@@ -80,7 +80,7 @@ pub(crate) fn factor<S: Scalar>(pattern: &Pattern, n: usize, M: &mut [S]) {
 }
 
 /// Overwrites b with x, where LᵀDLx = b.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]) {
     for k in (0..n).rev() {
         for i in pattern.ancestors(k) {
@@ -98,7 +98,7 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], b: &mut [S]
 }
 
 /// Overwrites B, n × n by rows, with −M⁻¹B, where M = LᵀDL.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
     for c in (0..n).step_by(8) {
         let B = &mut B[c..];
@@ -116,7 +116,7 @@ pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mu
 }
 
 /// Every step of [`solve`], up to the sign, on the W columns that B begins with.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, n: usize, L: &[S], B: &mut [S]) {
     let at = |B: &[S], k: usize| -> [S; W] {
         let row = &B[k * n..][..W];
@@ -142,7 +142,7 @@ fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, n: usize, L: &[S]
 
 /// Overwrites L and D with M⁻¹, both triangles. In LM⁻¹ = D⁻¹L⁻ᵀ the right side is upper triangular: row k of M⁻¹ follows from the
 /// rows before it. `memory` is for n numbers.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn invert<S: Scalar>(pattern: &Pattern, n: usize, L: &mut [S], memory: &mut [S]) {
     for k in 0..n {
         let row = &mut memory[..k];
@@ -163,7 +163,7 @@ pub(crate) fn invert<S: Scalar>(pattern: &Pattern, n: usize, L: &mut [S], memory
 }
 
 /// y + a x.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 fn add<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = x.mul_add(a, *y);
@@ -172,7 +172,7 @@ fn add<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
 
 /// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of the last row
 /// first eliminated, for the caller to check.
-#[inline(always)]
+#[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], [S; 6]) {
     let mut pivots = [S::zero(); 6];
     for k in (0..6).rev() {

@@ -1,6 +1,6 @@
 //! `f64` and `f32` as scalars; elementary functions from `std`, or from `libm` without it.
 
-use super::{Real, Scalar, sin_cos};
+use super::{Float, Fused, Real, Scalar, sin_cos};
 
 #[cfg(feature = "std")]
 mod elementary {
@@ -38,7 +38,7 @@ macro_rules! float {
             fn from_f64(x: f64) -> Self { x as $f }
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                if self.abs() <= sin_cos::$f::LARGEST { sin_cos::$f::sin_cos(self, |a, b, c| a * b + c) } else { elementary::$f::sin_cos(self) }
+                if self.abs() <= $f::LARGEST { sin_cos(self) } else { elementary::$f::sin_cos(self) }
             }
             #[inline(always)]
             fn sqrt(self) -> Self { elementary::$f::sqrt(self) }
@@ -61,11 +61,11 @@ float!(f64, f32);
 
 /// Sine and cosine with fused multiply-add; exact reduction for arguments beyond the polynomial's range.
 #[inline(always)]
-pub(super) fn sin_cos_fused(x: f64) -> (f64, f64) {
-    if x.abs() <= sin_cos::f64::LARGEST {
-        sin_cos::f64::sin_cos(x, super::fused::mul_add)
-    } else {
-        elementary::f64::sin_cos(x)
+pub(super) fn sin_cos_fused(x: Fused) -> (Fused, Fused) {
+    if x.0.abs() <= f64::LARGEST {
+        return sin_cos(x);
     }
+    let (s, c) = elementary::f64::sin_cos(x.0);
+    (Fused(s), Fused(c))
 }
 pub(super) use elementary::f64::{sqrt, tanh};

@@ -54,8 +54,7 @@ impl Scalar for Fused {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = float::sin_cos_fused(self.0);
-        (Fused(s), Fused(c))
+        float::sin_cos_fused(self)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

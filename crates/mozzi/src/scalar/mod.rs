@@ -9,7 +9,7 @@ mod sin_cos;
 
 pub use dual::Dual;
 pub use fused::Fused;
-pub use sin_cos::SinCos;
+pub use sin_cos::{Bits, Float, sin_cos};
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};

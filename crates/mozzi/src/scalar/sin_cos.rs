@@ -1,128 +1,137 @@
 //! Sine and cosine together: reduction by π/2 in three parts (Cody and Waite), then polynomials on ±π/4.
 //!
-//! The polynomials interpolate (sin r − r)/r³ and (cos r − 1 + r²/2)/r⁴ in z = r² at Chebyshev points. No branch, so
-//! that lanes can follow the same text. The tests bound the error: 1 ulp in `f64` up to |x| = 10⁶;
-//! 1.5 ulp in `f32` up to 8192, values below 10⁻³ (close to a zero of the function) held to 10⁻³'s ulp.
+//! The polynomials interpolate (sin r − r)/r³ and (cos r − 1 + r²/2)/r⁴ in z = r² at Chebyshev points. One text for a number
+//! and for a register of numbers: no branch, and what depends on the quadrant is done on the bits. The tests bound the error:
+//! 1 ulp in `f64` up to |x| = 10⁶; 1.5 ulp in `f32` up to 8192, values below 10⁻³ (close to a zero of the function) held to
+//! 10⁻³'s ulp.
 
-use alloc::vec::Vec;
+use super::{Fused, Scalar};
 
-/// The numbers of the sine and cosine that `f64` or `f32` have here, for other ways to compute the same: on r = x − k π/2, |r| ≤ π/4,
-/// with z = r²,
-///
-/// > sin r = r + r³ s(z), cos r = 1 − z/2 + z² c(z)
-#[derive(Clone, Debug, PartialEq)]
-pub struct SinCos {
-    /// The reduction is exact to rounding up to this |x|.
-    pub largest: f64,
-    /// Adding and subtracting it rounds to the nearest integer, k, of which the lowest bits are the sum's.
-    pub round: f64,
-    /// The coefficients of s, highest first.
-    pub sin: Vec<f64>,
-    /// The coefficients of c, highest first.
-    pub cos: Vec<f64>,
+/// `f64` or `f32`, with the numbers of its [`sin_cos`].
+pub trait Float: Scalar + PartialOrd + Send + Sync + 'static {
+    /// [`sin_cos`] is exact to rounding up to this |x|.
+    const LARGEST: Self;
+    /// 1.5 · 2⁵² or 1.5 · 2²³: adding and subtracting it rounds to the nearest integer.
+    const ROUND: Self;
+    /// 2/π.
+    const TWO_OVER_PI: Self;
+    /// π/2 as a sum; the leading parts have so many trailing zeros that their products with k are exact.
+    const HALF_PI: [Self; 3];
+    /// ±1/(2k + 1)! from the highest k down to 1.
+    const SIN: &[Self];
+    /// ±1/(2k)! from the highest k down to 2.
+    const COS: &[Self];
 }
 
-impl SinCos {
-    /// Of `f64`.
-    pub fn of_f64() -> Self {
-        self::f64::numbers()
+/// What [`sin_cos`] needs of a number, or of a register of numbers, beyond its arithmetic: constants, and its bits.
+pub trait Bits: Scalar {
+    /// The number that a register is of.
+    type Number: Float;
+
+    /// A constant.
+    fn constant(x: Self::Number) -> Self;
+    /// The bits of one that are not those of the other.
+    fn xor(self, other: Self) -> Self;
+    /// The bits of both.
+    fn and(self, other: Self) -> Self;
+    /// All bits where the lowest is set, else none.
+    fn lowest_everywhere(self) -> Self;
+    /// The sign's bit where the second lowest is set, else none.
+    fn second_lowest_as_sign(self) -> Self;
+}
+
+/// (sin x, cos x) for |x| ≤ [`Float::LARGEST`]; NaN for NaN and ±∞; beyond, the caller reduces x first.
+#[inline(always)]
+pub fn sin_cos<S: Bits>(x: S) -> (S, S) {
+    let constant = S::constant;
+    let [p0, p1, p2] = S::Number::HALF_PI.map(constant);
+    let (half, one, minus_zero) = (S::from_f64(0.5), S::one(), S::from_f64(-0.0));
+    let quadrant = x * constant(S::Number::TWO_OVER_PI) + constant(S::Number::ROUND); // k in the lowest bits
+    let k = quadrant - constant(S::Number::ROUND); // x = k π/2 + r
+    let (t, w) = (x - k * p0, k * p1); // both exact
+    let hi = t - w;
+    let lo = k * p2 - ((t - hi) - w);
+    let r = hi - lo;
+    let tail = (hi - r) - lo; // what the rounding of r lost
+    let z = r * r;
+    let s = polynomial(S::Number::SIN, z);
+    let c = polynomial(S::Number::COS, z);
+    // sin(r + tail) = r + (tail + r³ s(z)); cos(r + tail) = 1 − z/2 + (z² c(z) − r tail), 1 − z/2 compensated
+    let half_z = half * z;
+    let sin = r + (r * z).mul_add(s, tail * (one - half_z));
+    let near_one = one - half_z;
+    let cos = near_one + (((one - near_one) - half_z) + (z * z).mul_add(c, -(r * tail)));
+    // exchange in odd quadrants; sin is negative in quadrants 2 and 3, cos in 1 and 2
+    let odd = quadrant.lowest_everywhere();
+    let (exchange, negative) = (sin.xor(cos).and(odd), quadrant.second_lowest_as_sign());
+    (sin.xor(exchange).xor(negative), cos.xor(exchange).xor(negative).xor(odd.and(minus_zero)))
+}
+
+#[inline(always)]
+fn polynomial<S: Bits>(coefficients: &[S::Number], z: S) -> S {
+    let mut sum = S::constant(coefficients[0]);
+    let mut i = 1;
+    while i < coefficients.len() {
+        sum = sum.mul_add(z, S::constant(coefficients[i]));
+        i += 1;
     }
-
-    /// Of `f32`; each is one.
-    pub fn of_f32() -> Self {
-        self::f32::numbers()
-    }
+    sum
 }
 
-macro_rules! sin_cos {
-    ($f:ident, $largest:expr, $round:expr, $half_pi:expr, $sin:expr, $cos:expr) => {
-        pub mod $f {
-            /// The reduction is exact to rounding up to here.
-            pub const LARGEST: $f = $largest;
-            /// Adding and subtracting this rounds to the nearest integer.
-            const ROUND: $f = $round;
-            /// π/2 as a sum; the leading parts have so many trailing zeros that their products with k are exact.
-            const HALF_PI: [$f; 3] = $half_pi;
-            /// ±1/(2k + 1)! from the highest k down to 1.
-            const SIN: &[$f] = &$sin;
-            /// ±1/(2k)! from the highest k down to 2.
-            const COS: &[$f] = &$cos;
-
-            pub fn numbers() -> super::SinCos {
-                let list = |coefficients: &[$f]| coefficients.iter().map(|&x| x.into()).collect();
-                super::SinCos { largest: LARGEST.into(), round: ROUND.into(), sin: list(SIN), cos: list(COS) }
-            }
-
-            #[inline(always)]
-            pub fn sin_cos(x: $f, mul_add: impl Fn($f, $f, $f) -> $f) -> ($f, $f) {
-                let shifted = x * core::$f::consts::FRAC_2_PI + ROUND;
-                let k = shifted - ROUND; // x = k π/2 + r
-                let quadrant = shifted.to_bits();
-                let [p0, p1, p2] = HALF_PI;
-                let (t, w) = (x - k * p0, k * p1); // both exact
-                let hi = t - w;
-                let lo = k * p2 - ((t - hi) - w);
-                let r = hi - lo;
-                let tail = (hi - r) - lo; // what the rounding of r lost
-                let z = r * r;
-                let (mut s, mut c) = (SIN[0], COS[0]);
-                let mut i = 1;
-                while i < SIN.len() {
-                    s = mul_add(s, z, SIN[i]);
-                    i += 1;
-                }
-                let mut i = 1;
-                while i < COS.len() {
-                    c = mul_add(c, z, COS[i]);
-                    i += 1;
-                }
-                // sin(r + tail) = r + (tail + r³ s(z)); cos(r + tail) = 1 − z/2 + (z² c(z) − r tail), 1 − z/2 compensated
-                let sin = r + mul_add(r * z, s, tail * (1.0 - 0.5 * z));
-                let half = 0.5 * z;
-                let one = 1.0 - half;
-                let cos = one + (((1.0 - one) - half) + mul_add(z * z, c, -(r * tail)));
-                // exchange in odd quadrants, then the signs, on the bits
-                let (s, c) = (sin.to_bits(), cos.to_bits());
-                let exchange = (s ^ c) & (quadrant & 1).wrapping_neg();
-                let sign = |q| (q & 2) << (8 * size_of::<$f>() - 2);
-                let negative = sign(quadrant.wrapping_add(1));
-                ($f::from_bits(s ^ exchange ^ sign(quadrant)), $f::from_bits(c ^ exchange ^ negative))
-            }
-        }
-    };
-}
-
-sin_cos!(
-    f64,
-    1.0e6,
-    6755399441055744.0, // 1.5 · 2⁵²
-    [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21],
-    [
+impl Float for f64 {
+    const LARGEST: f64 = 1.0e6;
+    const ROUND: f64 = 6755399441055744.0;
+    const TWO_OVER_PI: f64 = core::f64::consts::FRAC_2_PI;
+    const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
+    const SIN: &[f64] = &[
         1.591810123027412e-10,
         -2.5051131455427946e-8,
         2.755731610068303e-6,
         -0.0001984126983675497,
         0.008333333333330946,
-        -0.16666666666666666
-    ],
-    [
+        -0.16666666666666666,
+    ];
+    const COS: &[f64] = &[
         -1.1382614868556325e-11,
         2.0876146024689747e-9,
         -2.7557317270560326e-7,
         2.4801587298763433e-5,
         -0.0013888888888887395,
-        0.041666666666666664
-    ]
-);
+        0.041666666666666664,
+    ];
+}
 
-sin_cos!(
-    f32,
-    8192.0,
-    12582912.0, // 1.5 · 2²³
-    [1.5703125, 0.0004837513, 7.54979e-8],
-    [2.7249864e-6, -0.00019840086, 0.008333332, -0.16666667],
-    [-2.7300908e-7, 2.48006e-5, -0.0013888888, 0.041666668]
-);
+impl Float for f32 {
+    const LARGEST: f32 = 8192.0;
+    const ROUND: f32 = 12582912.0;
+    const TWO_OVER_PI: f32 = core::f32::consts::FRAC_2_PI;
+    const HALF_PI: [f32; 3] = [1.5703125, 0.0004837513, 7.54979e-8];
+    const SIN: &[f32] = &[2.7249864e-6, -0.00019840086, 0.008333332, -0.16666667];
+    const COS: &[f32] = &[-2.7300908e-7, 2.48006e-5, -0.0013888888, 0.041666668];
+}
+
+macro_rules! bits {
+    ($($S:ty: $f:ident, $wrap:expr, $number:expr;)*) => { $(impl Bits for $S {
+        type Number = $f;
+        #[inline(always)]
+        fn constant(x: $f) -> Self { $wrap(x) }
+        #[inline(always)]
+        fn xor(self, other: Self) -> Self { $wrap($f::from_bits($number(self).to_bits() ^ $number(other).to_bits())) }
+        #[inline(always)]
+        fn and(self, other: Self) -> Self { $wrap($f::from_bits($number(self).to_bits() & $number(other).to_bits())) }
+        #[inline(always)]
+        fn lowest_everywhere(self) -> Self { $wrap($f::from_bits(($number(self).to_bits() & 1).wrapping_neg())) }
+        #[inline(always)]
+        fn second_lowest_as_sign(self) -> Self {
+            $wrap($f::from_bits(($number(self).to_bits() & 2) << (8 * size_of::<$f>() - 2)))
+        }
+    })* };
+}
+bits! {
+    f64: f64, |x: f64| x, |x: f64| x;
+    f32: f32, |x: f32| x, |x: f32| x;
+    Fused: f64, Fused, |x: Fused| x.0;
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,0 +1,425 @@
+//! The quantities of a model at many states.
+
+use crate::chunk::{Chunk, Table, TableMut, Worker};
+use crate::columns::Layout;
+use crate::instruction_set::{Entry, InstructionSet, Number, OnLanes, choose};
+use crate::lanes::Lane;
+use crate::quantity::{self as q, Quantity};
+use crate::{Error, Surroundings};
+use mozzi::{FrameId, Model, Wrench};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A chunk's tables fill about half of a core's second cache.
+const CHUNK_BYTES: usize = 1 << 18;
+
+/// A model with what it takes to ask it of many states: constants as `T`, registers, threads, the tables' layout.
+///
+/// Every method takes tables of N states, N being given by θ's length, and writes tables of the caller's. Numbers of one state stand side
+/// by side (see [`Layout`]); matrices by rows.
+#[derive(Clone, Debug)]
+pub struct Batch<T: Number = f64> {
+    model: Arc<Model>,
+    constants: Arc<Model<T>>,
+    set: InstructionSet,
+    layout: Layout,
+    threads: Threads,
+}
+
+#[derive(Clone, Debug)]
+enum Threads {
+    /// rayon's own, one a core.
+    All,
+    One,
+    Pool(Arc<rayon::ThreadPool>),
+}
+
+impl<T: Number> Batch<T> {
+    /// On the machine's widest registers and all its cores, with row-major tables.
+    pub fn new(model: &Model) -> Self {
+        Batch {
+            model: Arc::new(model.clone()),
+            constants: Arc::new(model.map(T::from_f64)),
+            set: InstructionSet::best(),
+            layout: Layout::Rows,
+            threads: Threads::All,
+        }
+    }
+
+    /// On registers of this kind.
+    ///
+    /// # Errors
+    /// [`Error::NotAvailable`].
+    pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, Error> {
+        if set.is_available() { Ok(Batch { set, ..self }) } else { Err(Error::NotAvailable { set }) }
+    }
+
+    /// On this many threads; on one, on the caller's. Results are the same to the bit for any number.
+    ///
+    /// # Errors
+    /// [`Error::Threads`] for none, or where the system gives no more.
+    pub fn with_threads(self, threads: usize) -> Result<Self, Error> {
+        let failed = |reason| Error::Threads { threads, reason };
+        let threads = match threads {
+            0 => return Err(failed("expected at least one".into())),
+            1 => Threads::One,
+            _ => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                Threads::Pool(Arc::new(pool.map_err(|error| failed(error.to_string()))?))
+            }
+        };
+        Ok(Batch { threads, ..self })
+    }
+
+    /// With tables in this layout.
+    pub fn with_layout(self, layout: Layout) -> Self {
+        Batch { layout, ..self }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The registers in use.
+    pub fn instruction_set(&self) -> InstructionSet {
+        self.set
+    }
+
+    /// How many states a register holds, and a block of [`Layout::Blocks`].
+    pub fn lanes(&self) -> usize {
+        struct Width;
+        impl<T: Number> OnLanes<T, q::MassMatrix> for Width {
+            type Output = usize;
+            fn on<L: Lane<Number = T>>(self, _: Entry<q::MassMatrix, L>) -> usize {
+                L::WIDTH
+            }
+        }
+        choose::<T, _, _>(self.set, Width)
+    }
+
+    /// The table of rows in the layout of this batch's [`Layout::Blocks`], the last block filled up with its last state.
+    pub fn to_blocks(&self, rows: &[T], width: usize) -> Vec<T> {
+        let (lanes, states) = (self.lanes(), rows.len() / width.max(1));
+        let mut blocks = Vec::with_capacity(states.next_multiple_of(lanes) * width);
+        for first in (0..states).step_by(lanes) {
+            for column in 0..width {
+                blocks.extend((first..first + lanes).map(|state| rows[state.min(states - 1) * width + column]));
+            }
+        }
+        blocks
+    }
+
+    /// The inverse of [`to_blocks`](Self::to_blocks), of the first states.
+    pub fn to_rows(&self, blocks: &[T], width: usize, states: usize) -> Vec<T> {
+        let lanes = self.lanes();
+        let at = |state: usize, column: usize| blocks[(state / lanes * width + column) * lanes + state % lanes];
+        (0..states).flat_map(|state| (0..width).map(move |column| at(state, column))).collect()
+    }
+
+    fn states(&self, theta: &[T]) -> Result<usize, Error> {
+        let (width, lanes) = (self.model.nq(), self.block());
+        match theta.len() {
+            0 => Ok(0),
+            found if width == 0 || !found.is_multiple_of(width * lanes) => Err(Error::NotWhole { found, width, lanes }),
+            found => Ok(found / width),
+        }
+    }
+
+    /// States that cannot be divided.
+    fn block(&self) -> usize {
+        match self.layout {
+            Layout::Rows => 1,
+            Layout::Blocks => self.lanes(),
+        }
+    }
+
+    /// The number at this state's place in a table.
+    fn at(&self, (table, width): Table<T>, state: usize) -> Vec<f64> {
+        let lanes = self.block();
+        let place = |column| (state / lanes * width + column) * lanes + state % lanes;
+        (0..width).map(|column| to_f64(table[place(column)])).collect()
+    }
+
+    fn run<Q: Quantity>(
+        &self,
+        quantity: &Q,
+        inputs: &[(&'static str, Table<T>)],
+        outputs: Vec<(&'static str, TableMut<T>)>,
+        surroundings: Surroundings<T>,
+    ) -> Result<(), Error> {
+        let (model, lanes) = (&*self.model, self.block());
+        let states = self.states(inputs[0].1.0)?;
+        let wrong = |what, found, width| {
+            let expected = states * width;
+            if found == expected {
+                Ok(())
+            } else {
+                Err(Error::WrongLength { what, found, expected, states, width, lanes })
+            }
+        };
+        for &(what, (table, width)) in inputs {
+            wrong(what, table.len(), width)?;
+        }
+        for (what, (table, width)) in &outputs {
+            wrong(what, table.len(), *width)?;
+        }
+        for &(frame, table) in surroundings.wrenches {
+            model.check_frame(frame)?;
+            wrong("wrenches", table.len(), 6)?;
+        }
+        model.check_environment(&surroundings.environment)?;
+        if model.is_floating() {
+            self.check_quaternions(inputs[0].1, states)?;
+        }
+
+        let frames: Vec<FrameId> = surroundings.wrenches.iter().map(|&(frame, _)| frame).collect();
+        let tables: Vec<Table<T>> = inputs
+            .iter()
+            .map(|&(_, table)| table)
+            .chain(surroundings.wrenches.iter().map(|&(_, table)| (table, 6)))
+            .collect();
+        let outputs = outputs.into_iter().map(|(_, table)| table).collect();
+        let chunks = self.cut(states, &tables, outputs, &surroundings, &frames);
+        let mut suspects = choose(self.set, Run { batch: self, quantity, chunks });
+        suspects.sort_unstable();
+        for index in suspects {
+            self.ask_again(index, inputs, &surroundings)?;
+        }
+        Ok(())
+    }
+
+    /// Cuts the tables into pieces for the cache, and for the threads.
+    fn cut<'a>(
+        &self,
+        states: usize,
+        inputs: &[Table<'a, T>],
+        mut outputs: Vec<TableMut<'a, T>>,
+        surroundings: &'a Surroundings<'a, T>,
+        frames: &'a [FrameId],
+    ) -> Vec<Chunk<'a, T>> {
+        let width: usize = inputs.iter().map(|&(_, w)| w).chain(outputs.iter().map(|&(_, w)| w)).sum();
+        let most = (CHUNK_BYTES / (width * size_of::<T>()).max(1)).max(1).next_multiple_of(self.lanes());
+        let mut chunks = Vec::with_capacity(states.div_ceil(most));
+        for first in (0..states).step_by(most) {
+            let count = most.min(states - first);
+            let mut own = Vec::with_capacity(outputs.len());
+            for (table, width) in &mut outputs {
+                let (this, rest) = core::mem::take(table).split_at_mut(count * *width);
+                *table = rest;
+                own.push((this, *width));
+            }
+            let part = |&(table, width): &Table<'a, T>| (&table[first * width..][..count * width], width);
+            chunks.push(Chunk {
+                first,
+                states: count,
+                layout: self.layout,
+                inputs: inputs.iter().map(part).collect(),
+                outputs: own,
+                environment: &surroundings.environment,
+                frames,
+            });
+        }
+        chunks
+    }
+
+    fn check_quaternions(&self, theta: Table<T>, states: usize) -> Result<(), Error> {
+        let lanes = self.block();
+        let (near, one) = (T::from_f64(1e-4), T::one());
+        for index in 0..states {
+            let first = (index / lanes * theta.1) * lanes + index % lanes;
+            let square = (0..4).fold(T::zero(), |sum, k| {
+                let x = theta.0[first + k * lanes];
+                sum + x * x
+            });
+            if !((square - one) <= near && (one - square) <= near) {
+                let source = self.model.check_configuration(&self.at(theta, index));
+                source.map_err(|source| Error::State { index, source })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A state whose pivots spread far, at one state and in f64: the error that names the joint, if there is one.
+    fn ask_again(
+        &self,
+        index: usize,
+        inputs: &[(&'static str, Table<T>)],
+        surroundings: &Surroundings<T>,
+    ) -> Result<(), Error> {
+        let mut applied = surroundings.environment.applied.to_vec();
+        for &(frame, table) in surroundings.wrenches {
+            let F = self.at((table, 6), index);
+            applied.push((frame, Wrench::from_array(core::array::from_fn(|k| F[k]))));
+        }
+        let environment = mozzi::Environment { applied: &applied, ..surroundings.environment };
+        let state: Vec<Vec<f64>> = inputs.iter().map(|&(_, table)| self.at(table, index)).collect();
+        let result = self.model.forward_dynamics(&state[0], &state[1], &state[2], &environment);
+        result.map(drop).map_err(|source| Error::State { index, source })
+    }
+}
+
+fn to_f64<T: Number>(x: T) -> f64 {
+    // the numbers are f64 or f32, whose text is exact
+    let any: &dyn core::any::Any = &x;
+    any.downcast_ref::<f64>().copied().or(any.downcast_ref::<f32>().map(|&x| x.into())).unwrap_or(f64::NAN)
+}
+
+/// Runs every chunk on the registers chosen.
+struct Run<'r, 'a, T: Number, Q> {
+    batch: &'r Batch<T>,
+    quantity: &'r Q,
+    chunks: Vec<Chunk<'a, T>>,
+}
+
+impl<T: Number, Q: Quantity> OnLanes<T, Q> for Run<'_, '_, T, Q> {
+    type Output = Vec<usize>;
+    fn on<L: Lane<Number = T>>(self, entry: Entry<Q, L>) -> Vec<usize> {
+        let model = &*self.batch.constants;
+        let one_thread = |chunks: Vec<Chunk<T>>| {
+            let mut worker = Worker::<L>::new(model);
+            for chunk in chunks {
+                entry(self.quantity, model, &mut worker, chunk);
+            }
+            worker.suspects
+        };
+        let many = |chunks: Vec<Chunk<T>>| {
+            let of_chunk = |worker: &mut Worker<L>, chunk| {
+                entry(self.quantity, model, worker, chunk);
+                core::mem::take(&mut worker.suspects)
+            };
+            chunks.into_par_iter().map_init(|| Worker::<L>::new(model), of_chunk).flatten_iter().collect()
+        };
+        match &self.batch.threads {
+            _ if self.chunks.len() == 1 => one_thread(self.chunks),
+            Threads::One => one_thread(self.chunks),
+            Threads::All => many(self.chunks),
+            Threads::Pool(pool) => pool.install(|| many(self.chunks)),
+        }
+    }
+}
+
+/// Methods: their tables, numbers a state, and the kernel.
+macro_rules! methods {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
+    )*) => {
+        methods!(@of f64; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings)?) -> $($output: |$n| $out_width),* => $Q;)*);
+        methods!(@of f32; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings)?) -> $($output: |$n| $out_width),* => $Q;)*);
+    };
+    // of each number, not of any: so they are compiled once, here
+    (@of $T:ty; $(
+        $(#[$doc:meta])*
+        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
+    )*) => { impl Batch<$T> { $(
+        $(#[$doc])*
+        #[allow(clippy::too_many_arguments)] // the kernel's
+        pub fn $name(
+            &self, $($frame: FrameId,)? $($input: &[$T],)* $($surroundings: &Surroundings<$T>,)? $($output: &mut [$T]),*
+        ) -> Result<(), Error> {
+            $(self.model.check_frame($frame)?;)?
+            let inputs = [$((stringify!($input), ($input, self.model.$in_width()))),*];
+            let outputs = vec![$((stringify!($output), ($output, { let $n = self.model.n(); $out_width }))),*];
+            #[allow(unused_mut, unused_assignments)] // of a quantity that nothing surrounds
+            let mut all = Surroundings::from(mozzi::Environment::with_gravity(mozzi::Vec3::zero()));
+            $(all = *$surroundings;)?
+            self.run(&$Q, &inputs, outputs, all)
+        }
+    )* } };
+}
+
+methods! {
+    /// τ (N, n) of θ (N, nq), θ̇ and θ̈ (N, n): see [`mozzi::inverse_dynamics`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    inverse_dynamics(theta: nq, dtheta: n, ddtheta: n; surroundings) -> tau: |n| n => q::InverseDynamics;
+    /// θ̈ (N, n) of θ (N, nq), θ̇ and τ (N, n): see [`mozzi::forward_dynamics`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number: of a singular mass matrix the first, after all states are computed.
+    forward_dynamics(theta: nq, dtheta: n, tau: n; surroundings) -> ddtheta: |n| n => q::ForwardDynamics;
+    /// M (N, n, n) of θ: see [`mozzi::mass_matrix`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    mass_matrix(theta: nq; ) -> M: |n| n * n => q::MassMatrix;
+    /// Ṁ (N, n, n) of θ and θ̇: see [`mozzi::mass_matrix_rate`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    mass_matrix_rate(theta: nq, dtheta: n; ) -> dM: |n| n * n => q::MassMatrixRate;
+    /// C (N, n, n) of θ and θ̇: see [`mozzi::coriolis_matrix`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    coriolis_matrix(theta: nq, dtheta: n; ) -> C: |n| n * n => q::CoriolisMatrix;
+    /// c (N, n) of θ and θ̇: see [`mozzi::velocity_product`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    velocity_product(theta: nq, dtheta: n; ) -> c: |n| n => q::VelocityProduct;
+    /// g (N, n) of θ, in the environment's gravity: see [`mozzi::gravity_forces`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    gravity_forces(theta: nq; surroundings) -> g: |n| n => q::GravityForces;
+    /// h = c + g and what the surroundings add (N, n), of θ and θ̇: see [`mozzi::bias_forces`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    bias_forces(theta: nq, dtheta: n; surroundings) -> h: |n| n => q::BiasForces;
+    /// JᵀF (N, n) of the surroundings' wrenches: see [`mozzi::tip_forces`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    tip_forces(theta: nq; surroundings) -> tau: |n| n => q::TipForces;
+    /// ½θ̇ᵀMθ̇ (N): see [`mozzi::kinetic_energy`]; the surroundings' base twist counts.
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    kinetic_energy(theta: nq, dtheta: n; surroundings) -> energy: |_n| 1 => q::KineticEnergy;
+    /// The potential energy (N) in the surroundings' gravity: see [`mozzi::potential_energy`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    potential_energy(theta: nq; surroundings) -> energy: |_n| 1 => q::PotentialEnergy;
+    /// `T_sb` (N, 4, 4) of a frame {b}: see [`mozzi::forward_kinematics`].
+    ///
+    /// # Errors
+    /// A frame of another model; tables of a wrong length; a state's error with its number.
+    forward_kinematics([frame] theta: nq; ) -> T: |_n| 16 => q::ForwardKinematics(frame);
+    /// `J_s` (N, 6, n): see [`mozzi::space_jacobian`].
+    ///
+    /// # Errors
+    /// A frame of another model; tables of a wrong length; a state's error with its number.
+    space_jacobian([frame] theta: nq; ) -> J: |n| 6 * n => q::SpaceJacobian(frame);
+    /// `J_b` (N, 6, n): see [`mozzi::body_jacobian`].
+    ///
+    /// # Errors
+    /// A frame of another model; tables of a wrong length; a state's error with its number.
+    body_jacobian([frame] theta: nq; ) -> J: |n| 6 * n => q::BodyJacobian(frame);
+    /// d`J_s`/dt (N, 6, n): see [`mozzi::space_jacobian_rate`].
+    ///
+    /// # Errors
+    /// A frame of another model; tables of a wrong length; a state's error with its number.
+    space_jacobian_rate([frame] theta: nq, dtheta: n; ) -> dJ: |n| 6 * n => q::SpaceJacobianRate(frame);
+    /// d`J_b`/dt (N, 6, n): see [`mozzi::body_jacobian_rate`].
+    ///
+    /// # Errors
+    /// A frame of another model; tables of a wrong length; a state's error with its number.
+    body_jacobian_rate([frame] theta: nq, dtheta: n; ) -> dJ: |n| 6 * n => q::BodyJacobianRate(frame);
+    /// ∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M (N, n, n): see [`mozzi::inverse_dynamics_derivatives`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number.
+    inverse_dynamics_derivatives(theta: nq, dtheta: n, ddtheta: n; surroundings)
+        -> by_theta: |n| n * n, by_dtheta: |n| n * n, by_ddtheta: |n| n * n => q::InverseDynamicsDerivatives;
+    /// θ̈ (N, n); ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹ (N, n, n): see [`mozzi::forward_dynamics_derivatives`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number: of a singular mass matrix the first, after all states are computed.
+    forward_dynamics_derivatives(theta: nq, dtheta: n, tau: n; surroundings)
+        -> ddtheta: |n| n, by_theta: |n| n * n, by_dtheta: |n| n * n, by_tau: |n| n * n => q::ForwardDynamicsDerivatives;
+}

@@ -1,0 +1,68 @@
+//! What can be wrong with a batch.
+
+use crate::InstructionSet;
+
+/// Why a batch could not be computed. Nothing is left out in silence: an error names the state.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A table of a wrong length.
+    #[error("{what} has {found} numbers, expected {expected} ({states} states of {width}{})", padded(*lanes))]
+    WrongLength {
+        /// Which table.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length that goes with θ's.
+        expected: usize,
+        /// States, by θ.
+        states: usize,
+        /// Numbers a state.
+        width: usize,
+        /// States in a block, where the layout is in blocks; else 1.
+        lanes: usize,
+    },
+    /// θ is not a whole number of states.
+    #[error("theta has {found} numbers, expected a multiple of {width}: {width} positions a state{}", padded(*lanes))]
+    NotWhole {
+        /// Its length.
+        found: usize,
+        /// Positions a state.
+        width: usize,
+        /// States in a block, where the layout is in blocks; else 1.
+        lanes: usize,
+    },
+    /// A state that has no answer.
+    #[error("state {index} (counted from 0): {source}")]
+    State {
+        /// Its row.
+        index: usize,
+        /// Why.
+        source: mozzi::Error,
+    },
+    /// What concerns all states.
+    #[error(transparent)]
+    Model(#[from] mozzi::Error),
+    /// The machine has not these registers.
+    #[error("this machine has no {}; it has {}", set.name(), names())]
+    NotAvailable {
+        /// What was asked for.
+        set: InstructionSet,
+    },
+    /// Threads could not be started.
+    #[error("{threads} threads could not be started: {reason}")]
+    Threads {
+        /// As many as were asked for.
+        threads: usize,
+        /// The system's words.
+        reason: String,
+    },
+}
+
+fn padded(lanes: usize) -> String {
+    if lanes == 1 { String::new() } else { format!(", in whole blocks of {lanes} states") }
+}
+
+fn names() -> String {
+    InstructionSet::available().iter().map(|set| set.name()).collect::<Vec<_>>().join(", ")
+}

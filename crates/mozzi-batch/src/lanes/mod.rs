@@ -1,0 +1,114 @@
+//! Registers of numbers, one number of each state: scalars that mozzi's kernels run on unchanged.
+
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use portable::Portable;
+#[cfg(target_arch = "x86_64")]
+pub use x86::{F32x8, F32x16, F64x4, F64x8};
+
+use mozzi::Scalar;
+use mozzi::scalar::{Bits, Float, sin_cos};
+
+/// A register.
+pub trait Lane: Scalar + Bits + From<Self::Number> + Send + Sync + 'static {
+    /// How many numbers it holds, a power of two, at most [`MOST`].
+    const WIDTH: usize;
+
+    /// The first numbers of the slice.
+    fn load(from: &[Self::Number]) -> Self;
+    /// Into the first numbers of the slice.
+    fn store(self, to: &mut [Self::Number]);
+    /// (a₀ b₀ a₁ b₁ …), the first register of it and the second.
+    fn zip(self, other: Self) -> (Self, Self);
+    /// The smaller ones; of a NaN, either.
+    fn min(self, other: Self) -> Self;
+    /// The larger ones; of a NaN, either.
+    fn max(self, other: Self) -> Self;
+    /// Is every |x| at most this? No for NaN.
+    fn within(self, bound: Self::Number) -> bool;
+}
+
+/// The widest register's numbers.
+pub const MOST: usize = 16;
+
+/// One of the sine and cosine of every number: the polynomial, or beyond its range each number's own exact reduction.
+#[inline(always)]
+fn sin_cos_or_exact<L: Lane>(x: L) -> (L, L) {
+    if x.within(L::Number::LARGEST) { sin_cos(x) } else { one_by_one(x) }
+}
+
+#[cold]
+#[inline(never)]
+fn one_by_one<L: Lane>(x: L) -> (L, L) {
+    let [mut s, mut c] = [[L::Number::zero(); MOST]; 2];
+    x.store(&mut s);
+    for (s, c) in s.iter_mut().zip(&mut c).take(L::WIDTH) {
+        (*s, *c) = s.sin_cos();
+    }
+    (L::load(&s), L::load(&c))
+}
+
+/// A function without a vector's instruction, number by number.
+fn each<L: Lane>(x: L, f: impl Fn(L::Number) -> L::Number) -> L {
+    let mut numbers = [L::Number::zero(); MOST];
+    x.store(&mut numbers);
+    for x in &mut numbers[..L::WIDTH] {
+        *x = f(*x);
+    }
+    L::load(&numbers)
+}
+
+/// What lanes have in common: operators by their functions, and the scalar's methods.
+macro_rules! lane {
+    ([$($generics:tt)*] $L:ty) => {
+        impl<$($generics)*> core::ops::Add for $L {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self { <$L>::add(self, other) }
+        }
+        impl<$($generics)*> core::ops::Sub for $L {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self { <$L>::sub(self, other) }
+        }
+        impl<$($generics)*> core::ops::Mul for $L {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self { <$L>::mul(self, other) }
+        }
+        impl<$($generics)*> core::ops::Div for $L {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, other: Self) -> Self { <$L>::div(self, other) }
+        }
+        impl<$($generics)*> core::ops::AddAssign for $L {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) { *self = *self + other }
+        }
+        impl<$($generics)*> core::ops::SubAssign for $L {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) { *self = *self - other }
+        }
+        impl<$($generics)*> core::ops::Neg for $L {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self { self.negative() }
+        }
+        impl<$($generics)*> mozzi::Scalar for $L {
+            #[inline(always)]
+            fn from_f64(x: f64) -> Self { mozzi::scalar::Bits::constant(mozzi::Scalar::from_f64(x)) }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) { crate::lanes::sin_cos_or_exact(self) }
+            #[inline(always)]
+            fn sqrt(self) -> Self { self.square_root() }
+            fn tanh(self) -> Self { crate::lanes::each(self, mozzi::Scalar::tanh) }
+            #[inline(always)]
+            fn sgn(self) -> Self { self.sign() }
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self { self.times_plus(a, b) }
+        }
+    };
+}
+pub(crate) use lane;

@@ -1,0 +1,173 @@
+//! What can be asked of a batch: each quantity is the kernel of that name on one register of states. Inputs and outputs lie one after the
+//! other, in the kernel's order.
+
+use crate::lanes::Lane;
+use mozzi::dynamics as kernel;
+use mozzi::{Environment, FrameId, Model, Twist, Workspace};
+
+/// A kernel on registers.
+pub(crate) trait Quantity: Sync {
+    /// Does it divide by pivots that must be looked at?
+    const PIVOTS: bool = false;
+
+    fn evaluate<L: Lane>(
+        &self,
+        model: &Model<L::Number>,
+        input: &[L],
+        environment: &Environment<L>,
+        memory: &mut Memory<L>,
+        output: &mut [L],
+    );
+}
+
+/// Memory without meaning between calls.
+pub(crate) struct Memory<L> {
+    pub workspace: Workspace<L>,
+    /// Columns of a Jacobian.
+    pub columns: Vec<Twist<L>>,
+}
+
+impl<L: Lane> Memory<L> {
+    pub fn new(model: &Model<L::Number>) -> Self {
+        Memory { workspace: Workspace::new(model), columns: vec![Twist::zero(); model.n()] }
+    }
+}
+
+/// The first numbers of a list, and the rest.
+macro_rules! split {
+    ($list:expr => $($name:ident: $count:expr),*) => {
+        let rest = $list;
+        $(let ($name, rest) = rest.split_at($count);)*
+        let _ = rest;
+    };
+}
+
+macro_rules! quantity {
+    ($Q:ident, $this:pat, [$model:ident, $environment:pat, $memory:pat, $output:ident]; $($name:ident: $count:expr),*; $(PIVOTS = $pivots:expr;)? $body:block) => {
+        impl Quantity for $Q {
+            $(const PIVOTS: bool = $pivots;)?
+            #[inline(always)]
+            fn evaluate<L: Lane>(
+                &self, $model: &Model<L::Number>, input: &[L], $environment: &Environment<L>, $memory: &mut Memory<L>, $output: &mut [L],
+            ) {
+                let $this = self;
+                split!(input => $($name: $count),*);
+                $body
+            }
+        }
+    };
+}
+
+pub(crate) struct InverseDynamics;
+quantity!(InverseDynamics, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), ddtheta: model.n(); {
+    kernel::inverse_dynamics(model, theta, dtheta, ddtheta, environment, workspace, output);
+});
+
+pub(crate) struct ForwardDynamics;
+quantity!(ForwardDynamics, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), tau: model.n(); PIVOTS = true; {
+    kernel::forward_dynamics(model, theta, dtheta, tau, environment, workspace, output);
+});
+
+pub(crate) struct MassMatrix;
+quantity!(MassMatrix, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(); {
+    kernel::mass_matrix(model, theta, workspace, output);
+});
+
+pub(crate) struct MassMatrixRate;
+quantity!(MassMatrixRate, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+    kernel::mass_matrix_rate(model, theta, dtheta, workspace, output);
+});
+
+pub(crate) struct CoriolisMatrix;
+quantity!(CoriolisMatrix, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+    kernel::coriolis_matrix(model, theta, dtheta, workspace, output);
+});
+
+pub(crate) struct VelocityProduct;
+quantity!(VelocityProduct, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+    kernel::velocity_product(model, theta, dtheta, workspace, output);
+});
+
+pub(crate) struct GravityForces;
+quantity!(GravityForces, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(); {
+    kernel::gravity_forces(model, theta, environment.gravity, workspace, output);
+});
+
+pub(crate) struct BiasForces;
+quantity!(BiasForces, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+    kernel::bias_forces(model, theta, dtheta, environment, workspace, output);
+});
+
+pub(crate) struct TipForces;
+quantity!(TipForces, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(); {
+    kernel::tip_forces(model, theta, environment.applied, workspace, output);
+});
+
+pub(crate) struct KineticEnergy;
+quantity!(KineticEnergy, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+    output[0] = kernel::kinetic_energy(model, theta, dtheta, environment.base_twist, workspace);
+});
+
+pub(crate) struct PotentialEnergy;
+quantity!(PotentialEnergy, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(); {
+    output[0] = kernel::potential_energy(model, theta, environment.gravity, workspace);
+});
+
+pub(crate) struct InverseDynamicsDerivatives;
+quantity!(InverseDynamicsDerivatives, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), ddtheta: model.n(); {
+    kernel::inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, workspace, thirds(output));
+});
+
+pub(crate) struct ForwardDynamicsDerivatives;
+quantity!(ForwardDynamicsDerivatives, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), tau: model.n(); PIVOTS = true; {
+    let (ddtheta, derivatives) = output.split_at_mut(model.n());
+    kernel::forward_dynamics_derivatives(model, theta, dtheta, tau, environment, workspace, ddtheta, thirds(derivatives));
+});
+
+#[inline(always)]
+fn thirds<L>(list: &mut [L]) -> [&mut [L]; 3] {
+    let third = list.len() / 3;
+    let (a, rest) = list.split_at_mut(third);
+    let (b, c) = rest.split_at_mut(third);
+    [a, b, c]
+}
+
+pub(crate) struct ForwardKinematics(pub FrameId);
+quantity!(ForwardKinematics, &ForwardKinematics(frame), [model, _, _, output]; theta: model.nq(); {
+    let T = mozzi::kinematics::forward_kinematics(model, theta, frame);
+    output.copy_from_slice(T.to_matrix().as_flattened());
+});
+
+/// A 6 × n matrix by rows, from its columns.
+#[inline(always)]
+fn by_rows<L: Lane>(columns: &[Twist<L>], output: &mut [L]) {
+    for (j, column) in columns.iter().enumerate() {
+        for (row, entry) in column.to_array().into_iter().enumerate() {
+            output[row * columns.len() + j] = entry;
+        }
+    }
+}
+
+pub(crate) struct SpaceJacobian(pub FrameId);
+quantity!(SpaceJacobian, &SpaceJacobian(frame), [model, _, Memory { columns, .. }, output]; theta: model.nq(); {
+    mozzi::kinematics::space_jacobian(model, theta, frame, columns);
+    by_rows(columns, output);
+});
+
+pub(crate) struct BodyJacobian(pub FrameId);
+quantity!(BodyJacobian, &BodyJacobian(frame), [model, _, Memory { columns, .. }, output]; theta: model.nq(); {
+    mozzi::kinematics::body_jacobian(model, theta, frame, columns);
+    by_rows(columns, output);
+});
+
+pub(crate) struct SpaceJacobianRate(pub FrameId);
+quantity!(SpaceJacobianRate, &SpaceJacobianRate(frame), [model, _, Memory { workspace, columns }, output]; theta: model.nq(), dtheta: model.n(); {
+    mozzi::kinematics::space_jacobian_rate(model, theta, dtheta, frame, workspace, columns);
+    by_rows(columns, output);
+});
+
+pub(crate) struct BodyJacobianRate(pub FrameId);
+quantity!(BodyJacobianRate, &BodyJacobianRate(frame), [model, _, Memory { columns, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+    mozzi::kinematics::body_jacobian_rate(model, theta, dtheta, frame, columns);
+    by_rows(columns, output);
+});
