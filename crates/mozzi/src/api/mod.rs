@@ -50,18 +50,7 @@ impl Model<f64> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
 
-<<<<<<< HEAD
-    fn check_quaternion(&self, theta: &[f64]) -> Result<(), Error> {
-        match theta.first_chunk() {
-            Some(&q) if self.is_floating() => check_unit(q),
-            _ => Ok(()),
-        }
-    }
-
-    /// A frame of this model, not of a larger one.
-=======
     /// Is this a frame of this model, not of a larger one?
->>>>>>> main
     ///
     /// # Errors
     /// [`Error::BadArgument`].

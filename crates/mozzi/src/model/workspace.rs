@@ -65,13 +65,8 @@ impl<S: Scalar> Workspace<S> {
         }
     }
 
-<<<<<<< HEAD
-    /// What the last [`forward_dynamics`](crate::forward_dynamics()), or its derivatives, divided by: an inertia for each velocity, with
-    /// the joints beyond it free. A singular mass matrix has one that is rounding.
-=======
     /// What the last forward dynamics, or its derivatives, divided by, joint by joint: where a pivot is not above rounding of the
     /// others, the mass matrix is singular. A kernel cannot compare numbers; the methods of [`Model`] do.
->>>>>>> main
     pub fn pivots(&self) -> &[S] {
         &self.pivots
     }
