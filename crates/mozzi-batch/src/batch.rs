@@ -76,6 +76,11 @@ impl<T: Number> Batch<T> {
         Batch { layout, ..self }
     }
 
+    /// The tables' layout.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
     /// The model.
     pub fn model(&self) -> &Model {
         &self.model
@@ -141,7 +146,7 @@ impl<T: Number> Batch<T> {
         (0..width).map(|column| to_f64(table[place(column)])).collect()
     }
 
-    fn run<Q: Quantity>(
+    pub(crate) fn run<Q: Quantity>(
         &self,
         quantity: &Q,
         inputs: &[(&'static str, Table<T>)],

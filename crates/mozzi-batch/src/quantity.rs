@@ -21,15 +21,17 @@ pub(crate) trait Quantity: Sync {
 }
 
 /// Memory without meaning between calls.
-pub(crate) struct Memory<L> {
+pub(crate) struct Memory<L: Lane> {
     pub workspace: Workspace<L>,
     /// Columns of a Jacobian.
     pub columns: Vec<Twist<L>>,
+    /// A block's numbers, for what is computed elsewhere.
+    pub numbers: Vec<L::Number>,
 }
 
 impl<L: Lane> Memory<L> {
     pub fn new(model: &Model<L::Number>) -> Self {
-        Memory { workspace: Workspace::new(model), columns: vec![Twist::zero(); model.n()] }
+        Memory { workspace: Workspace::new(model), columns: vec![Twist::zero(); model.n()], numbers: Vec::new() }
     }
 }
 
@@ -161,7 +163,7 @@ quantity!(BodyJacobian, &BodyJacobian(frame), [model, _, Memory { columns, .. },
 });
 
 pub(crate) struct SpaceJacobianRate(pub FrameId);
-quantity!(SpaceJacobianRate, &SpaceJacobianRate(frame), [model, _, Memory { workspace, columns }, output]; theta: model.nq(), dtheta: model.n(); {
+quantity!(SpaceJacobianRate, &SpaceJacobianRate(frame), [model, _, Memory { workspace, columns, .. }, output]; theta: model.nq(), dtheta: model.n(); {
     mozzi::kinematics::space_jacobian_rate(model, theta, dtheta, frame, workspace, columns);
     by_rows(columns, output);
 });

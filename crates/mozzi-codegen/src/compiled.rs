@@ -3,6 +3,7 @@
 use crate::jit::{Kernel, Refusal, Shape};
 use crate::quantity::{LeftOpen, Quantity};
 use mozzi::nalgebra::{DMatrix, DVector};
+use mozzi_batch::{Batch, InstructionSet};
 use mozzi::{
     Error, ForwardDynamicsDerivatives, FrameId, InverseDynamicsDerivatives, Jacobian, Mat3, Model, SE3, SO3, Twist, Vec3,
 };
@@ -15,17 +16,18 @@ use std::fmt;
 /// It is constant and belongs to no thread: share it.
 #[derive(Debug)]
 pub struct Compiled {
-    model: Model,
-    quantities: Vec<Machine>,
+    pub(crate) model: Model,
+    pub(crate) batch: Batch,
+    pub(crate) quantities: Vec<Machine>,
 }
 
 #[derive(Debug)]
-struct Machine {
+pub(crate) struct Machine {
     quantity: Quantity,
     one: Result<Kernel, Refusal>,
-    lanes: Result<Kernel, Refusal>,
+    pub lanes: Result<Kernel, Refusal>,
     /// The lengths of its outputs.
-    lengths: Vec<usize>,
+    pub lengths: Vec<usize>,
 }
 
 /// The machine code of these quantities of a robot. About a quarter of a millisecond for an arm's inverse dynamics.
@@ -48,9 +50,10 @@ struct Machine {
 /// [`Error::BadArgument`] for a frame of another model.
 pub fn compile(model: &Model, quantities: &[Quantity]) -> Result<Compiled, Error> {
     quantities.iter().filter_map(|quantity| quantity.frame()).try_for_each(|frame| model.check_frame(frame))?;
+    let batch = Batch::new(model);
+    let lanes = if batch.instruction_set() == InstructionSet::Avx512 { Shape::EightF64 } else { Shape::FourF64 };
     let machine = |&quantity: &Quantity| {
         let program = quantity.record(model, LeftOpen::default());
-        let lanes = if Shape::EightF64.is_supported() { Shape::EightF64 } else { Shape::FourF64 };
         Machine {
             quantity,
             one: Kernel::new(&program, Shape::OneF64),
@@ -58,7 +61,7 @@ pub fn compile(model: &Model, quantities: &[Quantity]) -> Result<Compiled, Error
             lengths: program.outputs().iter().map(|output| output.values.len()).collect(),
         }
     };
-    Ok(Compiled { model: model.clone(), quantities: quantities.iter().map(machine).collect() })
+    Ok(Compiled { model: model.clone(), quantities: quantities.iter().map(machine).collect(), batch })
 }
 
 /// What computes a quantity.
@@ -103,7 +106,7 @@ impl Compiled {
         engine(self.machine(quantity).map(|machine| &machine.lanes))
     }
 
-    fn machine(&self, quantity: Quantity) -> Option<&Machine> {
+    pub(crate) fn machine(&self, quantity: Quantity) -> Option<&Machine> {
         self.quantities.iter().find(|machine| machine.quantity == quantity)
     }
 
@@ -283,7 +286,7 @@ impl Compiled {
 }
 
 /// Far from a singular matrix; nearer, the model's method looks again.
-fn are_regular(pivots: &[f64]) -> bool {
+pub(crate) fn are_regular(pivots: &[f64]) -> bool {
     let largest = pivots.iter().fold(0.0_f64, |m, &d| m.max(d));
     pivots.iter().all(|&d| d > 1e-8 * largest && d.is_finite())
 }

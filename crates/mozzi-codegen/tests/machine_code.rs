@@ -5,7 +5,8 @@ mod common;
 
 use common::{Random, error, quantities, robots, state};
 use mozzi::Model;
-use mozzi_codegen::{Kernel, LeftOpen, Number, Program, Quantity, Refusal, Shape, record};
+use mozzi::scalar::Float as Number;
+use mozzi_codegen::{Kernel, LeftOpen, Program, Quantity, Refusal, Shape, record};
 
 /// The outputs of each lane, and the sums of squares, at one state for each lane.
 fn run<S: Number>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> (Vec<Vec<Vec<S>>>, Vec<S>) {

@@ -125,7 +125,6 @@ impl Assembler {
             Operation::Sqrt => self.arithmetic(0x51),
             Operation::And => self.bits(0xdb, 0xdb),
             Operation::Xor => self.bits(0xef, 0xef),
-            Operation::AddBits => self.bits(0xd4, 0xfe),
             Operation::SubBits => self.bits(0xfb, 0xfa),
             Operation::ShiftLeft(by) => {
                 // the target stands where others have their first operand, and 6 where others have their target

@@ -13,26 +13,7 @@ use super::allocate::Code;
 use super::assembler::MOST_ARRAYS;
 use super::shape::Shape;
 use mozzi::scalar::Float;
-
-/// The numbers that machine code works on: `f64` and `f32`.
-pub trait Number: Float {
-    /// It is `f64`.
-    const IS_F64: bool;
-    /// Its bits, the lowest last.
-    fn raw(self) -> u64;
-}
-impl Number for f64 {
-    const IS_F64: bool = true;
-    fn raw(self) -> u64 {
-        self.to_bits()
-    }
-}
-impl Number for f32 {
-    const IS_F64: bool = false;
-    fn raw(self) -> u64 {
-        self.to_bits().into()
-    }
-}
+use std::any::TypeId;
 
 /// Machine code that can be called.
 #[derive(Debug)]
@@ -61,10 +42,11 @@ impl Executable {
     /// # Panics
     /// When numbers are of another type, or an array is missing or too short.
     #[inline(always)]
-    pub fn call<S: Number>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
+    pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
         let lanes = self.shape.lanes();
         let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
-        assert!(S::IS_F64 == self.shape.is_f64(), "numbers of another type");
+        let number = if self.shape.is_f64() { TypeId::of::<f64>() } else { TypeId::of::<f32>() };
+        assert!(TypeId::of::<S>() == number, "numbers of another type");
         let arrays = inputs.len() + outputs.len() + 1;
         assert!(inputs.len() == self.inputs && arrays == self.lengths.len(), "another number of arrays");
         let mut lengths = self.lengths.iter();

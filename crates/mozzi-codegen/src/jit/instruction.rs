@@ -25,7 +25,6 @@ pub(crate) enum Operation {
     /// Of bits; likewise the rest.
     And,
     Xor,
-    AddBits,
     SubBits,
     ShiftLeft(u8),
 }
@@ -42,12 +41,12 @@ impl Operation {
     }
 
     pub fn commutes(self) -> bool {
-        matches!(self, Add | Mul | And | Xor | AddBits)
+        matches!(self, Add | Mul | And | Xor)
     }
 
     /// On bits, and not on numbers.
     pub fn is_of_bits(self) -> bool {
-        matches!(self, And | Xor | AddBits | SubBits | ShiftLeft(_))
+        matches!(self, And | Xor | SubBits | ShiftLeft(_))
     }
 }
 

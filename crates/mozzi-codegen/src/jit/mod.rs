@@ -8,7 +8,6 @@ mod lower;
 mod shape;
 mod sin_cos;
 
-pub use executable::Number;
 pub use shape::Shape;
 
 use crate::program::{Array, Program};
@@ -106,13 +105,13 @@ impl Kernel {
     /// # Panics
     /// When numbers are not of the shape's type, an array is missing, or one is too short.
     #[inline(always)]
-    pub fn call<S: Number>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
+    pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
         self.executable.call(inputs, outputs, squares);
     }
 
     /// Are the angles of a lane so small that their sines were reduced exactly? Else, and for NaN, its outputs mean nothing.
     #[inline(always)]
-    pub fn is_exact<S: Number>(&self, squares: S) -> bool {
+    pub fn is_exact<S: Float>(&self, squares: S) -> bool {
         squares <= S::from_f64(self.angle_limit)
     }
 }

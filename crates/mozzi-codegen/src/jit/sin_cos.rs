@@ -1,10 +1,9 @@
 //! Sine and cosine: [`mozzi`]'s own text, recorded as instructions.
 
-use super::executable::Number;
 use super::instruction::{Node, Operation, Value};
 use super::lower::Builder;
 use mozzi::Scalar;
-use mozzi::scalar::{Bits, sin_cos};
+use mozzi::scalar::{Bits, Float, sin_cos};
 use std::cell::RefCell;
 use std::marker::PhantomData;
 
@@ -71,6 +70,24 @@ impl SinCos {
     }
 }
 
+/// `f64` or `f32`, with its bits.
+pub(super) trait Number: Float {
+    const SIGN: u64;
+    fn raw(self) -> u64;
+}
+impl Number for f64 {
+    const SIGN: u64 = 1 << 63;
+    fn raw(self) -> u64 {
+        self.to_bits()
+    }
+}
+impl Number for f32 {
+    const SIGN: u64 = 1 << 31;
+    fn raw(self) -> u64 {
+        self.to_bits().into()
+    }
+}
+
 /// A number of the recording, by its node.
 #[derive(Clone, Copy, Debug)]
 struct Wire<T>(Value, PhantomData<T>);
@@ -93,7 +110,7 @@ impl<T: Number> Wire<T> {
     }
 
     fn sign_bit() -> Self {
-        Self::new(Node::Constant(if T::IS_F64 { 1 << 63 } else { 1 << 31 }))
+        Self::new(Node::Constant(T::SIGN))
     }
 }
 
@@ -166,7 +183,7 @@ impl<T: Number> Bits for Wire<T> {
         Self::apply(Operation::SubBits, [zero, self.and(one)])
     }
     fn second_lowest_as_sign(self) -> Self {
-        let by = if T::IS_F64 { 62 } else { 30 };
+        let by = T::SIGN.trailing_zeros() as u8 - 1;
         Self::apply(Operation::ShiftLeft(by), [self]).and(Self::sign_bit())
     }
 }

@@ -106,7 +106,6 @@ fn operations_on_two_numbers() {
             (Operation::Max, numbers("max")),
             (Operation::And, if evex { format!("vpand{letter}") } else { "vpand".to_string() }),
             (Operation::Xor, if evex { format!("vpxor{letter}") } else { "vpxor".to_string() }),
-            (Operation::AddBits, format!("vpadd{letter}")),
             (Operation::SubBits, format!("vpsub{letter}")),
         ];
         for (operation, mnemonic) in table {
