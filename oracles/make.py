@@ -187,6 +187,56 @@ class Worst:
 
 # Pinocchio -----------------------------------------------------------------------------------------------------------
 
+# Derivatives and the regressor are many numbers: of so many states alone, the first ones.
+DIFFERENTIATED, REGRESSED = 2, 1
+
+
+def derivatives(robot, G, index, motion, forward, worst):
+    """Of the index-th state, at the motion (q, v, a, tau) of all joints, where `forward` accelerations answer tau, or None.
+
+    Columns along Pinocchio's velocities. Of a robot with followers, those of the free robot projected by G.
+    """
+    pin, model, data, (q, v, a, tau) = robot.pin, robot.model, robot.data, motion
+    if index >= DIFFERENTIATED:
+        return {}
+
+    def inverse(a):
+        dq, dv, _ = pin.computeRNEADerivatives(model, data, q, v, a)
+        return G.T @ dq @ G, G.T @ dv @ G
+
+    r = {}
+    r["dtau_dq"], r["dtau_dv"] = inverse(a)
+    step = 1e-6
+    force = lambda t: G.T @ pin.rnea(model, data, pin.integrate(model, q, v * t), v, a)
+    found, size = (force(step) - force(-step)) / (2 * step), np.abs(r["dtau_dq"]) @ np.abs(np.linalg.pinv(G) @ v)
+    worst.check("differences: dtau_dq", r["dtau_dq"] @ (np.linalg.pinv(G) @ v), found, 1e-6, size.max())
+    force = lambda t: G.T @ pin.rnea(model, data, q, v + t * a, a)
+    along = np.linalg.pinv(G) @ a
+    size = np.abs(r["dtau_dv"]) @ np.abs(along)
+    worst.check("differences: dtau_dv", r["dtau_dv"] @ along, (force(step) - force(-step)) / (2 * step), 1e-6, size.max())
+
+    if index < REGRESSED:
+        r["regressor"] = G.T @ pin.computeJointTorqueRegressor(model, data, q, v, a)
+        parameters = np.concatenate([inertia.toDynamicParameters() for inertia in list(model.inertias)[1:]])
+        rotors = G.T @ (model.armature * a)
+        size = np.abs(r["regressor"]) @ np.abs(parameters)
+        needed = G.T @ pin.rnea(model, data, q, v, a)
+        worst.check("regressor parameters = rnea", r["regressor"] @ parameters + rotors, needed, 1e-11, size.max())
+
+    if forward is not None:
+        M = np.triu(pin.crba(model, data, q))
+        M = G.T @ (M + np.triu(M, 1).T) @ G
+        by_q, by_v = inverse(G @ forward)
+        if G.shape[0] == G.shape[1]:
+            ddq_dq, ddq_dv, Minv = (x.copy() for x in pin.computeABADerivatives(model, data, q, v, G @ tau))
+            Minv = np.triu(Minv) + np.triu(Minv, 1).T
+        else:
+            ddq_dq, ddq_dv, Minv = -np.linalg.solve(M, by_q), -np.linalg.solve(M, by_v), np.linalg.inv(M)
+        for name, x, y in (("ddq_dq", ddq_dq, -by_q), ("ddq_dv", ddq_dv, -by_v), ("Minv", Minv, np.eye(len(M)))):
+            worst.check(f"M {name}", M @ x, y, 1e-10, (np.abs(M) @ np.abs(x)).max())
+        r["ddq_dq"], r["ddq_dv"], r["Minv"] = ddq_dq, ddq_dv, Minv
+    return r
+
 
 class PinocchioRobot:
     def __init__(self, name):
@@ -289,6 +339,11 @@ class PinocchioRobot:
         r["potential_energy"] = pin.computePotentialEnergy(model, data, q)
         return r
 
+    def derivatives(self, r, index, worst):
+        G = self.coupling.matrix
+        motion = self.configuration(self.model, self.all_angles(r["theta"])), G @ r["dtheta"], G @ r["ddtheta"], r["tau"]
+        return derivatives(self, G, index, motion, r.get("forward_dynamics"), worst)
+
     def check(self, r, worst, first):
         pin, G = self.pin, self.coupling.matrix
         M, dtheta, theta = r["mass_matrix"], r["dtheta"], r["theta"]
@@ -357,6 +412,7 @@ def pinocchio_record(name, states, absolute):
         state = random_state(rng, robot.urdf, robot.names)
         records.append(robot.evaluate(state, rng.standard_normal(6)))
         robot.check(records[-1], worst, index == 0)
+        records[-1].update(robot.derivatives(records[-1], index, worst))
     record = {
         "robot": Path(name).name if is_own(name) else name,
         "urdf": robot.shown,
@@ -366,6 +422,7 @@ def pinocchio_record(name, states, absolute):
         "tip_frame": robot.tip,
         "joint_names": robot.names,
         "mimic": robot.coupling.followers,
+        "bodies": list(robot.model.names)[1:],
         "states": records,
     }
     if absolute:

@@ -16,7 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from make import GRAVITY, PACKAGE, Coupling, Failure, Urdf, Worst, find_urdf, is_own, random_state, regular, rng_of, write
+from make import (
+    GRAVITY, PACKAGE, Coupling, Failure, Urdf, Worst, derivatives, find_urdf, is_own, random_state, regular, rng_of, write,
+)
 
 HERE = Path(__file__).resolve().parent
 ROBOTS = {
@@ -207,8 +209,11 @@ def pinocchio_record(name, count):
     for index in range(count):
         r, place = robot.evaluate(rng, rotors if index % 2 else None)
         robot.check(r, place, worst, index == 0)
+        motion = robot.q(place[0], place[1]), robot.G @ r["v"], robot.G @ r["a"], r["tau"]
+        r.update(derivatives(robot, robot.G, index, motion, r.get("forward_dynamics"), worst))
         states.append(r)
     record = robot.record("pinocchio", states, rotors)
+    record["bodies"] = list(robot.model.names)[2:]  # behind the base
     record["nqs"] = [int(nq) for nq, row in zip(list(robot.model.nqs)[2:], robot.rows) if row is not None]
     return finish(record, robot, name), worst
 

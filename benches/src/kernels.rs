@@ -2,7 +2,7 @@
 #![allow(missing_docs)] // criterion's main
 
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
-use mozzi::{Twist, body_jacobian, forward_kinematics, native};
+use mozzi::{Twist, Workspace, body_jacobian, forward_kinematics, gravity_forces_derivative, native};
 use mozzi_benches::{State, States, robots};
 use std::hint::black_box;
 use std::time::Duration;
@@ -19,6 +19,7 @@ fn kernels(criterion: &mut Criterion) {
         let (states, n, environment) = (States::new(&model), model.n(), model.environment());
         let frame = model.frames().last().expect("a frame").0;
         let (mut x, mut M, mut J) = (vec![0.0; n], vec![0.0; n * n], vec![Twist::zero(); n]);
+        let mut matrices = [(); 3].map(|()| vec![0.0; n * n]);
         let mut group = |kernel: &str, run: &mut dyn FnMut(&mut BenchmarkGroup<WallTime>)| {
             let mut group = criterion.benchmark_group(format!("{name}/{kernel}"));
             group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
@@ -70,6 +71,28 @@ fn kernels(criterion: &mut Criterion) {
                     native::velocity_product(&model, theta, dtheta, &mut w, black_box(&mut x));
                 });
             }
+        });
+        group("inverse_dynamics_derivatives", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, ddtheta, _]| {
+                    let by = black_box(matrices.each_mut().map(|matrix| &mut matrix[..]));
+                    native::inverse_dynamics_derivatives(&model, theta, dtheta, ddtheta, &environment, &mut w, by);
+                });
+            }
+        });
+        group("forward_dynamics_derivatives", &mut |group| {
+            for (path, mut w) in both() {
+                bench(group, path, &states, |[theta, dtheta, _, tau]| {
+                    let (x, by) = black_box((&mut x[..], matrices.each_mut().map(|matrix| &mut matrix[..])));
+                    native::forward_dynamics_derivatives(&model, theta, dtheta, tau, &environment, &mut w, x, by);
+                });
+            }
+        });
+        group("gravity_forces_derivative", &mut |group| {
+            let mut w = Workspace::new(&model);
+            bench(group, "portable", &states, |[theta, ..]| {
+                gravity_forces_derivative(&model, theta, environment.gravity, &mut w, black_box(&mut M));
+            });
         });
         group("body_jacobian", &mut |group| {
             bench(group, "portable", &states, |[theta, ..]| body_jacobian(&model, theta, frame, black_box(&mut J)));

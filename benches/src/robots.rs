@@ -1,4 +1,4 @@
-//! The robots: two arms, a body with a head and four limbs, and two that walk.
+//! The robots: two arms, a body with a head and four limbs, a long chain, and two that walk.
 
 use crate::random::Random;
 use mozzi::model::description::{Joint, JointKind};
@@ -57,10 +57,23 @@ pub fn ur5() -> Model {
 /// # Panics
 /// When it is broken.
 pub fn tree() -> Model {
-    let mut random = Random(32);
-    let mut robot = Description::new("tree").link("pelvis", body(&mut random));
     let limbs = [("pelvis", "trunk", 2), ("trunk2", "head", 2), ("trunk2", "left_arm", 7), ("trunk2", "right_arm", 7)];
-    for (carrier, limb, joints) in limbs.into_iter().chain([("pelvis", "left_leg", 7), ("pelvis", "right_leg", 7)]) {
+    of_limbs("tree", &[&limbs[..], &[("pelvis", "left_leg", 7), ("pelvis", "right_leg", 7)]].concat())
+}
+
+/// A chain of 100 revolute joints, its numbers random as the tree's.
+///
+/// # Panics
+/// When it is broken.
+pub fn chain() -> Model {
+    of_limbs("chain", &[("pelvis", "link", 100)])
+}
+
+/// Limbs, each with the link that carries it and the number of its joints.
+fn of_limbs(name: &str, limbs: &[(&str, &str, usize)]) -> Model {
+    let mut random = Random(32);
+    let mut robot = Description::new(name).link("pelvis", body(&mut random));
+    for &(carrier, limb, joints) in limbs {
         let mut parent = carrier.to_string();
         for i in 1..=joints {
             let child = format!("{limb}{i}");
@@ -82,8 +95,50 @@ pub fn tree() -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// A body of 1 to 3 kg.
+/// A body of 1 to 3 kg: a ball with a point mass beside its centre.
 fn body(random: &mut Random) -> SpatialInertia {
-    let moments = Sym3::diagonal(0.02, 0.02, 0.02) + Sym3::outer(Vec3(random.vector()), 0.01);
+    let axis = Vec3(random.vector());
+    let moment = 0.02 + 0.01 * axis.dot(axis);
+    let moments = Sym3::diagonal(moment, moment, moment) - Sym3::outer(axis, 0.01);
     SpatialInertia::new(2.0 + random.number(), Vec3(random.vector()) * 0.1, moments)
+}
+
+/// The same robot as every library gets it: fixed links merged into what carries them, joint k between a link of the base's or
+/// of another joint's number and link `k`, no friction, no armature, no limits, and the standard's gravity, which dynibo has built in.
+///
+/// # Panics
+/// On joints beside their links' origins, which most libraries have no words for.
+pub fn merged(model: &Model) -> Description {
+    let original = model.description();
+    let moving: Vec<&Joint> = model.moving_joints().collect();
+    let mut inertias = vec![SpatialInertia::zero(); moving.len() + 1];
+    for link in &original.links {
+        let (k, T) = place(original, &moving, &link.name);
+        inertias[k] += link.inertia.seen_from(T);
+    }
+    let mut robot = Description::new(&original.name).with_gravity([0.0, 0.0, -9.80665]);
+    robot.base = original.base;
+    for (k, inertia) in inertias.into_iter().enumerate() {
+        robot = robot.link(k.to_string(), inertia);
+    }
+    for (k, joint) in moving.iter().enumerate() {
+        let (parent, carrier) = place(original, &moving, &joint.parent);
+        let beside = matches!(joint.kind, JointKind::Screw(A) if !A.is_prismatic() && A.twist().v != Vec3::zero());
+        assert!(!beside && joint.mimic.is_none(), "`{}` is beside its origin, or follows", joint.name);
+        let (name, child) = (format!("joint{}", k + 1), (k + 1).to_string());
+        robot = robot.joint(Joint::new(name, parent.to_string(), child, carrier * joint.origin, joint.kind));
+    }
+    robot
+}
+
+/// The number of the moving joint that carries a link (0: none, the base) and the link's frame seen from it.
+fn place(description: &Description, moving: &[&Joint], link: &str) -> (usize, SE3) {
+    let (mut T, mut link) = (SE3::identity(), link);
+    while let Some(joint) = description.joints.iter().find(|joint| joint.child == link) {
+        if let Some(k) = moving.iter().position(|moving| moving.name == joint.name) {
+            return (k + 1, T);
+        }
+        (T, link) = (joint.origin * T, &joint.parent);
+    }
+    (0, T)
 }

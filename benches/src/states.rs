@@ -15,14 +15,19 @@ pub struct States {
 }
 
 impl States {
-    /// How many.
+    /// How many, of a robot that is not very long.
     pub const COUNT: usize = 256;
 
     /// States all around the circle, at speeds and torques that an arm has.
     pub fn new(model: &Model) -> Self {
+        Self::with_count(model, Self::COUNT)
+    }
+
+    /// So many of them.
+    pub fn with_count(model: &Model, count: usize) -> Self {
         let (mut random, nq, n) = (Random(1763), model.nq(), model.n());
         let mut numbers = Vec::new();
-        for _ in 0..Self::COUNT {
+        for _ in 0..count {
             let start = numbers.len();
             for (size, length) in [(std::f64::consts::PI, nq), (2.0, n), (5.0, n), (20.0, n)] {
                 numbers.extend((0..length).map(|_| size * random.number()));
@@ -33,6 +38,11 @@ impl States {
             }
         }
         States { nq, n, numbers }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.numbers.len() / (self.nq + 3 * self.n)
     }
 
     /// Each of them.

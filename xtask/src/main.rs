@@ -34,8 +34,12 @@ usage: cargo xtask COMMAND
           a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   docs    write the pages of docs/ anew; `test` holds them current
-  bench   one state on one core beside Pinocchio, into benches/RESULTS.md;
-          bench --criterion: each kernel alone";
+  bench   beside Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
+          --robots ur5,panda,anymal,talos,tree,chain  these alone, into target/bench/RESULTS.md
+          --peers pinocchio,mujoco,kdl,dynibo,casadi  these alone, likewise
+          --seconds 15                                for each robot
+          --install                                   let apt install clang and KDL first
+          --criterion                                 each kernel alone, without peers";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -44,8 +48,14 @@ fn main() -> ExitCode {
         ["test"] => test(&workspace),
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
-        ["bench"] => run_benches(&workspace, bench::run),
-        ["bench", "--criterion"] => run_benches(&workspace, bench::criterion),
+        ["bench", "--criterion"] => run_benches(|| bench::criterion(&workspace)),
+        ["bench", ref options @ ..] => match bench::Options::parse(options) {
+            Ok(options) => run_benches(|| bench::run(&workspace, &options)),
+            Err(why) => {
+                eprintln!("bench: {why}\n{USAGE}");
+                ExitCode::from(2)
+            }
+        },
         ["--help" | "-h" | "help"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS
@@ -100,8 +110,8 @@ fn check(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
-fn run_benches(workspace: &Workspace, benches: fn(&Workspace) -> report::Outcome) -> ExitCode {
+fn run_benches(benches: impl FnOnce() -> report::Outcome) -> ExitCode {
     let mut report = Report::default();
-    report.step("benchmarks", || benches(workspace));
+    report.step("benchmarks", benches);
     report.finish()
 }

@@ -1,47 +1,34 @@
-//! mozzi beside Pinocchio: the same robots, the same states, one process, one clock, one core, in turn.
+//! mozzi beside its peers: the same robots, the same states, one process, one clock, one core, in turn.
 //!
-//! `compare [--peer LIBRARY] [--robots FOLDER] [--seconds S] [--write FILE]`; `cargo xtask bench` builds the peer and calls it.
+//! `cargo xtask bench` builds the peers and calls this.
 
-mod kernel;
+mod arguments;
+mod batch;
+mod chart;
+mod contestant;
+mod convention;
+mod count;
 mod machine;
+mod mozzi_ways;
+mod peak;
 mod peer;
+mod quantity;
+mod race;
 mod report;
 
-use kernel::{KERNELS, Kernel};
+use arguments::Arguments;
 use mozzi::Model;
-use mozzi::native::Workspace;
-use mozzi_benches::{States, robots};
+use mozzi_benches::robots;
 use peer::Peer;
-use std::ffi::OsString;
-use std::hint::black_box;
+use std::path::Path;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
-
-/// Further apart than this, over the largest entry, two libraries do not compute the same.
-const LARGEST_DIFFERENCE: f64 = 1e-9;
-
-/// Something to time.
-struct Contender<'a> {
-    kernel: &'static Kernel,
-    /// How mozzi or Pinocchio computes it.
-    path: &'static str,
-    is_peer: bool,
-    /// Over all states.
-    run: Box<dyn FnMut() + 'a>,
-    /// Nanoseconds for one evaluation, one entry a round.
-    times: Vec<f64>,
-}
-
-#[derive(Default)]
-struct Arguments {
-    peer: Option<OsString>,
-    robots: Option<OsString>,
-    write: Option<OsString>,
-    seconds: Option<f64>,
-}
+use std::time::Duration;
 
 fn main() -> ExitCode {
-    let result = arguments().and_then(|arguments| compare(&arguments));
+    let result = Arguments::parse(std::env::args().skip(1)).and_then(|arguments| match &arguments.describe {
+        Some(folder) => describe(&arguments, Path::new(folder)),
+        None => compare(&arguments),
+    });
     result.map_or_else(
         |why| {
             eprintln!("{why}");
@@ -51,106 +38,66 @@ fn main() -> ExitCode {
     )
 }
 
-fn arguments() -> Result<Arguments, String> {
-    let (mut arguments, mut words) = (Arguments::default(), std::env::args_os().skip(1));
-    while let Some(word) = words.next() {
-        let value =
-            words.next().ok_or("usage: compare [--peer LIBRARY] [--robots FOLDER] [--seconds S] [--write FILE]")?;
-        match word.to_str() {
-            Some("--peer") => arguments.peer = Some(value),
-            Some("--robots") => arguments.robots = Some(value),
-            Some("--write") => arguments.write = Some(value),
-            Some("--seconds") => arguments.seconds = value.to_str().and_then(|text| text.parse().ok()),
-            _ => return Err(format!("{}: unknown", word.display())),
-        }
+/// A robot: title, short name, and the model that every library gets.
+type Robot = (&'static str, &'static str, Model);
+
+/// The robots that are asked for.
+fn chosen(arguments: &Arguments) -> Result<Vec<Robot>, String> {
+    let mut list = vec![
+        ("UR5", "ur5", robots::ur5()),
+        ("Panda", "panda", robots::panda()),
+        ("tree of 32", "tree", robots::tree()),
+        ("chain of 100", "chain", robots::chain()),
+    ];
+    if let Some(folder) = &arguments.models {
+        let [(anymal, a), (talos, t)] = robots::legged(folder.as_ref())?;
+        list.splice(2..2, [(anymal, "anymal", a), (talos, "talos", t)]);
     }
-    Ok(arguments)
+    if let Some(names) = &arguments.robots {
+        let known: Vec<_> = list.iter().map(|&(_, slug, _)| slug).collect();
+        if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+            return Err(format!("robot `{name}`, expected of {}", known.join(", ")));
+        }
+        list.retain(|(_, slug, _)| names.iter().any(|name| name == slug));
+    }
+    let merged = list.into_iter().map(|(title, slug, model)| {
+        let model = robots::merged(&model).build().map_err(|error| format!("{title}: {error}"))?;
+        Ok((title, slug, model))
+    });
+    merged.collect()
 }
 
 fn compare(arguments: &Arguments) -> Result<(), String> {
     machine::stay_on_one_processor();
-    let peer = match &arguments.peer {
-        Some(path) => Some(Peer::load(path).map_err(|error| error.to_string())?),
-        None => None,
-    };
-    let time = Duration::from_secs_f64(arguments.seconds.unwrap_or(20.0));
+    let peers = arguments.peers.iter().map(|(name, path)| Peer::load(name, path)).collect::<Result<Vec<_>, _>>()?;
+    let time = Duration::from_secs_f64(arguments.seconds.unwrap_or(15.0));
+    let peaks = peak::Width::ALL.map(|width| (width, peak::measure(width)));
     let mut tables = Vec::new();
-    let legged = match &arguments.robots {
-        Some(folder) => Some(robots::legged(folder.as_ref())?),
-        None => None,
-    };
-    for (name, model) in robots::all().into_iter().chain(legged.into_iter().flatten()) {
-        tables.push(robot(name, &model, peer.as_ref(), time)?);
+    for (title, slug, model) in chosen(arguments)? {
+        tables.push(race::race(title, slug, &model, &peers, time)?);
+        println!("{title}: {} rounds", tables.last().map_or(0, |table| table.rounds));
     }
-    let text = report::text(&tables, peer.as_ref());
+    let text = report::text(&tables, &peers, &arguments.missing, &peaks)?;
     println!("{text}");
-    match &arguments.write {
-        Some(path) => std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display())),
-        None => Ok(()),
+    let Some(folder) = &arguments.write else { return Ok(()) };
+    for (name, text) in [("RESULTS.md", text), ("results.svg", chart::svg(&tables))] {
+        let path = Path::new(folder).join(name);
+        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
     }
+    Ok(())
 }
 
-/// All kernels on one robot: first that the values agree, then the times.
-fn robot(name: &str, model: &Model, peer: Option<&Peer>, time: Duration) -> Result<report::Table, String> {
-    let states = States::new(model);
-    let theirs = peer.map(|peer| peer.robot(model, &states));
-    let mut differences = Vec::new();
-    for kernel in &KERNELS {
-        let difference = theirs.as_ref().map_or(0.0, |theirs| largest_difference(kernel, model, &states, theirs));
-        if !(difference <= LARGEST_DIFFERENCE) {
-            return Err(format!("{name}: {} differs from Pinocchio's by {difference:.1e}", kernel.name));
+/// Each robot's numbers, for what generates code: gravity, whether the base is free, then the bodies, one a line.
+fn describe(arguments: &Arguments, folder: &Path) -> Result<(), String> {
+    for (_, slug, model) in chosen(arguments)? {
+        let words = |numbers: &[f64]| numbers.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(" ");
+        let description = model.description();
+        let mut text = format!("{} {}\n", words(&description.gravity), u8::from(model.is_floating()));
+        for body in peer::bodies(description) {
+            text += &(words(&body) + "\n");
         }
-        differences.push(difference);
+        let path = folder.join(slug).with_extension("txt");
+        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
     }
-
-    let mut contenders = contenders(model, &states, theirs.as_ref());
-    let start = Instant::now();
-    while start.elapsed() < time || contenders[0].times.len() < 20 {
-        for contender in &mut contenders {
-            (contender.run)(); // what ran before leaves its own caches, branch history and, without AVX, half the unit asleep
-            let start = Instant::now();
-            (contender.run)();
-            contender.times.push(start.elapsed().as_secs_f64() * 1e9 / States::COUNT as f64);
-        }
-    }
-    Ok(report::Table::new(name, &contenders, &differences))
-}
-
-/// The largest difference of a kernel from any of Pinocchio's algorithms at any state.
-fn largest_difference(kernel: &Kernel, model: &Model, states: &States, theirs: &peer::Robot) -> f64 {
-    let (mut workspace, mut out) = (Workspace::new(model), vec![0.0; kernel.length(model)]);
-    let mut worst = 0.0_f64;
-    for (k, state) in states.iter().enumerate() {
-        (kernel.run)(model, state, &model.environment(), &mut workspace, &mut out);
-        for &algorithm in kernel.peer {
-            let difference = kernel.difference(model, &out, &theirs.result(algorithm, k, out.len()));
-            if difference.is_nan() {
-                return difference;
-            }
-            worst = worst.max(difference);
-        }
-    }
-    worst
-}
-
-/// Every way to compute every kernel.
-fn contenders<'a>(model: &'a Model, states: &'a States, theirs: Option<&'a peer::Robot>) -> Vec<Contender<'a>> {
-    let (environment, mut list) = (model.environment(), Vec::new());
-    for kernel in &KERNELS {
-        for mut workspace in [Workspace::new(model), Workspace::portable(model)] {
-            let (path, mut out) = (workspace.instruction_set(), vec![0.0; kernel.length(model)]);
-            let run = Box::new(move || {
-                for state in states.iter() {
-                    (kernel.run)(model, black_box(state), &environment, &mut workspace, &mut out);
-                    black_box(&mut out);
-                }
-            });
-            list.push(Contender { kernel, path, is_peer: false, run, times: Vec::new() });
-        }
-        for (&algorithm, theirs) in kernel.peer.iter().flat_map(|algorithm| theirs.map(|theirs| (algorithm, theirs))) {
-            let run = Box::new(theirs.runner(algorithm));
-            list.push(Contender { kernel, path: algorithm.name(), is_peer: true, run, times: Vec::new() });
-        }
-    }
-    list
+    Ok(())
 }

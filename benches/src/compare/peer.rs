@@ -1,19 +1,29 @@
-//! Pinocchio, compiled from `benches/pinocchio.cpp` into a library that is loaded at run time.
+//! A peer, compiled into a library with the interface of `benches/peers/peer.hpp`, which is loaded at run time.
 
+use crate::contestant::Contestant;
+use crate::convention::Convention;
+use crate::quantity::Quantity;
 use libloading::{Library, Symbol};
-use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::description::JointKind;
 use mozzi::{Description, Model, SE3};
 use mozzi_benches::States;
-use std::ffi::{CStr, OsStr, c_char, c_int};
-use std::rc::Rc;
+use std::ffi::{CStr, CString, c_char, c_int};
 
 /// The library.
-pub struct Peer(Rc<Library>);
+pub struct Peer {
+    pub name: String,
+    library: Library,
+}
 
 /// A robot with its states, made in the library.
-pub struct Robot {
-    library: Rc<Library>,
+pub struct Robot<'a> {
+    library: &'a Library,
     this: *mut Opaque,
+    run: Run,
+    model: &'a Model,
+    states: &'a States,
+    convention: Convention,
+    algorithms: Vec<(Quantity, String)>,
 }
 
 #[repr(C)]
@@ -21,166 +31,160 @@ pub struct Opaque {
     _private: [u8; 0],
 }
 
-/// The order of `Algorithm` in pinocchio.cpp.
-#[derive(Clone, Copy, Debug)]
-pub enum Algorithm {
-    Rnea,
-    AbaWorld,
-    AbaLocal,
-    CrbaWorld,
-    CrbaLocal,
-    Coriolis,
-    NonLinearEffects,
-    RneaDerivatives,
-    AbaDerivatives,
-}
+/// `Body` of peer.hpp.
+pub type Body = [f64; 30];
 
-impl Algorithm {
-    pub fn name(self) -> &'static str {
-        match self {
-            Algorithm::Rnea => "rnea",
-            Algorithm::AbaWorld => "aba, WORLD",
-            Algorithm::AbaLocal => "aba, LOCAL",
-            Algorithm::CrbaWorld => "crba, WORLD",
-            Algorithm::CrbaLocal => "crba, LOCAL",
-            Algorithm::Coriolis => "computeCoriolisMatrix",
-            Algorithm::NonLinearEffects => "nonLinearEffects",
-            Algorithm::RneaDerivatives => "computeRNEADerivatives",
-            Algorithm::AbaDerivatives => "computeABADerivatives",
-        }
-    }
-}
-
-type Version = unsafe extern "C" fn() -> *const c_char;
-type NewRobot = unsafe extern "C" fn(*const f64, c_int) -> *mut Opaque;
-type FreeRobot = unsafe extern "C" fn(*mut Opaque);
-type AddJoint = unsafe extern "C" fn(*mut Opaque, c_int, *const f64, *const f64, c_int) -> c_int;
-type AddBody = unsafe extern "C" fn(*mut Opaque, c_int, *const f64, f64, *const f64, *const f64);
+type Text = unsafe extern "C" fn() -> *const c_char;
+type TextOf = unsafe extern "C" fn(*mut Opaque, c_int) -> *const c_char;
+type NewRobot =
+    unsafe extern "C" fn(*const c_char, *const c_char, *const f64, c_int, *const Body, c_int) -> *mut Opaque;
+type Free = unsafe extern "C" fn(*mut Opaque);
 type SetStates = unsafe extern "C" fn(*mut Opaque, *const f64, c_int);
 type Run = unsafe extern "C" fn(*mut Opaque, c_int);
-type GetResult = unsafe extern "C" fn(*mut Opaque, c_int, c_int, *mut f64, c_int);
+type GetResult = unsafe extern "C" fn(*mut Opaque, c_int, c_int, *mut f64);
 
 /// A function of the library.
 ///
 /// # Safety
 /// `F` is its type.
-unsafe fn function<'l, F>(library: &'l Library, name: &str) -> Symbol<'l, F> {
+unsafe fn function<'l, F>(library: &'l Library, name: &str) -> Result<Symbol<'l, F>, String> {
     // SAFETY: by the caller.
-    unsafe { library.get(name) }.unwrap_or_else(|error| panic!("{name}: {error}"))
+    unsafe { library.get(name) }.map_err(|error| format!("{name}: {error}"))
+}
+
+/// # Safety
+/// Null, or text that ends and stays.
+unsafe fn text(pointer: *const c_char) -> Option<String> {
+    // SAFETY: by the caller.
+    (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
+}
+
+/// What the library has for a robot of its own.
+///
+/// # Safety
+/// `robot` is the library's, and alive.
+unsafe fn algorithms(library: &Library, robot: *mut Opaque) -> Result<Vec<(Quantity, String)>, String> {
+    let mut list = Vec::new();
+    // SAFETY: the types are those of peer.hpp; the second function is asked only for what the first one knows.
+    unsafe {
+        let quantity_of = function::<TextOf>(library, "peer_quantity")?;
+        let name_of = function::<TextOf>(library, "peer_algorithm")?;
+        while let Some(name) = text(quantity_of(robot, list.len() as c_int)) {
+            let quantity = Quantity::from_name(&name).ok_or_else(|| format!("{name}: no such quantity"))?;
+            list.push((quantity, text(name_of(robot, list.len() as c_int)).unwrap_or_default()));
+        }
+    }
+    Ok(list)
 }
 
 impl Peer {
-    pub fn load(path: &OsStr) -> Result<Self, libloading::Error> {
-        // SAFETY: what the library runs when it is loaded is Pinocchio's own.
-        unsafe { Library::new(path) }.map(|library| Peer(Rc::new(library)))
+    pub fn load(name: &str, path: &str) -> Result<Self, String> {
+        // SAFETY: what the library runs when it is loaded is its own.
+        let library = unsafe { Library::new(path) }.map_err(|error| format!("{path}: {error}"))?;
+        Ok(Peer { name: name.into(), library })
     }
 
-    /// What it was compiled from and by.
-    pub fn version(&self) -> String {
-        self.text("peer_version")
+    /// What it was compiled from, and how.
+    pub fn version(&self) -> Result<String, String> {
+        Ok(format!("{}, `{}`", self.text("peer_version")?, self.text("peer_flags")?))
     }
 
-    /// How it was compiled.
-    pub fn flags(&self) -> String {
-        self.text("peer_flags")
+    fn text(&self, name: &str) -> Result<String, String> {
+        // SAFETY: all three are `const char* f()`, and answer with text that stays.
+        unsafe { text(function::<Text>(&self.library, name)?()) }.ok_or_else(|| format!("{name}: no text"))
     }
 
-    fn text(&self, name: &str) -> String {
-        // SAFETY: both are `const char* f()` and answer with a literal.
-        unsafe { CStr::from_ptr(function::<Version>(&self.0, name)()) }.to_string_lossy().into_owned()
-    }
-
-    /// The same robot, of revolute and prismatic joints, at the same states.
-    pub fn robot(&self, model: &Model, states: &States) -> Robot {
-        let library = &self.0;
-        let description = model.description();
-        let moving: Vec<&Joint> = model.moving_joints().collect();
-        // SAFETY: the types are those of pinocchio.cpp; every pointer is to as many numbers as it reads there.
+    /// The robot, which [`merged`](mozzi_benches::robots::merged) made, at the same states; none if the library cannot hold it.
+    pub fn robot<'a>(&'a self, name: &str, model: &'a Model, states: &'a States) -> Result<Option<Robot<'a>>, String> {
+        let (description, library) = (model.description(), &self.library);
+        let convention = Convention::named(&self.text("peer_convention")?, model)?;
+        let mut numbers = Vec::new();
+        for state in states.iter() {
+            numbers.extend(convention.state(state).map_err(|error| error.to_string())?.concat());
+        }
+        let c_text = |text: &str| CString::new(text).map_err(|error| format!("{name}: {error}"));
+        let (c_name, urdf) = (c_text(name)?, c_text(&urdf(description)?)?);
+        let rows = bodies(description);
+        // SAFETY: the types are those of peer.hpp; every pointer is to as many numbers as it reads there, and texts end.
         unsafe {
-            let this =
-                function::<NewRobot>(library, "peer_robot")(description.gravity.as_ptr(), model.is_floating().into());
-            let first = c_int::from(model.is_floating()); // the free base is Pinocchio's joint 1
-            let (add_joint, add_body) =
-                (function::<AddJoint>(library, "peer_joint"), function::<AddBody>(library, "peer_body"));
-            for (k, joint) in moving.iter().enumerate() {
-                let (parent, carrier) = place(description, &moving, &joint.parent);
-                let JointKind::Screw(screw) = joint.kind else { panic!("`{}` does not move", joint.name) };
-                let twist = screw.twist();
-                let axis = if screw.is_prismatic() { twist.v } else { twist.w };
-                let revolute = !screw.is_prismatic();
-                assert!(!revolute || twist.v == mozzi::Vec3::zero(), "`{}` turns beside its origin", joint.name);
-                let T = numbers(carrier * joint.origin);
-                let number = add_joint(this, first + parent as c_int, T.as_ptr(), axis.0.as_ptr(), revolute.into());
-                assert_eq!(number, first + k as c_int + 1);
+            let (make, set) =
+                (function::<NewRobot>(library, "peer_robot")?, function::<SetStates>(library, "peer_states")?);
+            let (gravity, count) = (description.gravity.as_ptr(), rows.len() as c_int);
+            let is_floating = model.is_floating().into();
+            let this = make(c_name.as_ptr(), urdf.as_ptr(), gravity, is_floating, rows.as_ptr(), count);
+            if this.is_null() {
+                return Ok(None);
             }
-            for link in &description.links {
-                let ((joint, T), G) = (place(description, &moving, &link.name), link.inertia);
-                let (c, I) = (G.center_of_mass().0, G.about_center_of_mass().to_mat3().rows());
-                add_body(this, first + joint as c_int, numbers(T).as_ptr(), G.mass, c.as_ptr(), I.as_ptr().cast());
-            }
-            let count = States::COUNT as c_int;
-            function::<SetStates>(library, "peer_states")(this, theirs(model, states).as_ptr(), count);
-            Robot { library: Rc::clone(library), this }
+            set(this, numbers.as_ptr(), states.count() as c_int);
+            let run = *function::<Run>(library, "peer_run")?;
+            Ok(Some(Robot { library, this, run, model, states, convention, algorithms: algorithms(library, this)? }))
         }
     }
 }
 
-impl Robot {
-    /// What runs an algorithm over all states.
-    pub fn runner(&self, algorithm: Algorithm) -> impl FnMut() + '_ {
-        // SAFETY: the type is that of pinocchio.cpp.
-        let run = unsafe { function::<Run>(&self.library, "peer_run") };
-        // SAFETY: the robot lives as long as this borrow of it.
-        move || unsafe { run(self.this, algorithm as c_int) }
+impl Contestant for Robot<'_> {
+    fn algorithms(&self) -> Vec<(Quantity, String)> {
+        self.algorithms.clone()
     }
 
-    /// The result at one state: a vector, or matrices by columns. No longer than `length`.
-    pub fn result(&self, algorithm: Algorithm, state: usize, length: usize) -> Vec<f64> {
-        let mut out = vec![0.0; length];
-        // SAFETY: the type is that of pinocchio.cpp; `out` is as long as said.
+    fn run(&mut self, algorithm: usize) {
+        // SAFETY: the library is loaded as long as it is borrowed, and the robot is alive.
+        unsafe { (self.run)(self.this, algorithm as c_int) }
+    }
+
+    fn result(&mut self, algorithm: usize, state: usize) -> Result<Vec<f64>, String> {
+        let quantity = self.algorithms[algorithm].0;
+        let mut out = vec![0.0; quantity.length(self.model)];
+        // SAFETY: the type is that of peer.hpp; `out` is as long as the quantity.
         unsafe {
-            let get = function::<GetResult>(&self.library, "peer_result");
-            get(self.this, algorithm as c_int, state as c_int, out.as_mut_ptr(), length as c_int);
+            let get = function::<GetResult>(self.library, "peer_result")?;
+            get(self.this, algorithm as c_int, state as c_int, out.as_mut_ptr());
         }
-        out
+        let state = self.states.iter().nth(state).ok_or("no such state")?;
+        self.convention.result(self.model, quantity, state, &out).map_err(|error| error.to_string())
     }
 }
 
-impl Drop for Robot {
+impl Drop for Robot<'_> {
     fn drop(&mut self) {
         // SAFETY: made by `peer_robot`, freed once.
-        unsafe { function::<FreeRobot>(&self.library, "peer_robot_free")(self.this) }
-    }
-}
-
-/// The number of the moving joint that carries a link (0: none, the base) and the link's frame seen from it.
-fn place(description: &Description, moving: &[&Joint], link: &str) -> (usize, SE3) {
-    let (mut T, mut link) = (SE3::identity(), link);
-    while let Some(joint) = description.joints.iter().find(|joint| joint.child == link) {
-        if let Some(k) = moving.iter().position(|moving| moving.name == joint.name) {
-            return (k + 1, T);
-        }
-        (T, link) = (joint.origin * T, &joint.parent);
-    }
-    (0, T)
-}
-
-/// The states in Pinocchio's order: of a free base the linear three first, and the quaternion's real part last.
-fn theirs(model: &Model, states: &States) -> Vec<f64> {
-    let mut numbers = Vec::new();
-    for state in states.iter() {
-        for (mut values, positions) in state.into_iter().zip([true, false, false, false]) {
-            if model.is_floating() && positions {
-                numbers.extend([4, 5, 6, 1, 2, 3, 0].map(|i| values[i]));
-                values = &values[7..];
-            } else if model.is_floating() {
-                numbers.extend([3, 4, 5, 0, 1, 2].map(|i| values[i]));
-                values = &values[6..];
+        unsafe {
+            if let Ok(free) = function::<Free>(self.library, "peer_free") {
+                free(self.this);
             }
-            numbers.extend(values);
         }
     }
-    numbers
+}
+
+/// The URDF of the robot, its base bolted, for a library that reads nothing else. It has no words for gravity.
+pub fn urdf(description: &Description) -> Result<String, String> {
+    let standard = Description { gravity: [0.0, 0.0, -9.81], base: mozzi::Base::Fixed, ..description.clone() };
+    mozzi_urdf::write(&standard).map_err(|error| error.to_string())
+}
+
+/// A row for the base and for each joint with its link.
+pub fn bodies(description: &Description) -> Vec<Body> {
+    let mut rows = Vec::new();
+    for (k, link) in description.links.iter().enumerate() {
+        let mut row = Vec::with_capacity(30);
+        match k.checked_sub(1).map(|joint| &description.joints[joint]) {
+            None => row.extend([[-1.0, 0.0].as_slice(), &numbers(SE3::identity()), &[0.0; 3]].concat()),
+            Some(joint) => {
+                let JointKind::Screw(screw) = joint.kind else { panic!("`{}` does not move", joint.name) };
+                let (twist, is_revolute) = (screw.twist(), !screw.is_prismatic());
+                let axis = if is_revolute { twist.w } else { twist.v };
+                let parent = description.links.iter().position(|link| link.name == joint.parent).expect("a link");
+                row.extend([parent as f64, f64::from(u8::from(is_revolute))]);
+                row.extend([numbers(joint.origin).as_slice(), &axis.0].concat());
+            }
+        }
+        let G = link.inertia;
+        row.push(G.mass);
+        row.extend(if G.mass > 0.0 { G.center_of_mass().0 } else { [0.0; 3] });
+        row.extend(if G.mass > 0.0 { G.about_center_of_mass().to_mat3() } else { G.I.to_mat3() }.rows().concat());
+        rows.push(std::array::from_fn(|i| row[i]));
+    }
+    rows
 }
 
 /// The rotation by rows, then the translation.

@@ -1,82 +1,191 @@
 //! The tables, as Markdown.
 
-use crate::Contender;
-use crate::kernel::KERNELS;
 use crate::machine;
+use crate::peak::Width;
 use crate::peer::Peer;
-use mozzi_benches::States;
+use crate::race::{Row, Table, Time};
 use std::fmt::Write;
 
-/// One robot's.
-pub struct Table {
-    robot: String,
-    rounds: usize,
-    rows: Vec<String>,
-}
-
-/// The least and the middle of some times.
-fn least_and_median(times: &[f64]) -> (f64, f64) {
-    let mut sorted = times.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    (sorted[0], sorted[sorted.len() / 2])
-}
-
-impl Table {
-    /// From the times of all contenders, and the largest difference of each kernel.
-    pub fn new(robot: &str, contenders: &[Contender], differences: &[f64]) -> Self {
-        let mut rows = Vec::new();
-        for (kernel, difference) in KERNELS.iter().zip(differences) {
-            let of_kernel = || contenders.iter().filter(|contender| contender.kernel.name == kernel.name);
-            let mut row = format!("| {} |", kernel.name);
-            let mut ours = Vec::new();
-            for contender in of_kernel().filter(|contender| !contender.is_peer) {
-                let (least, median) = least_and_median(&contender.times);
-                ours.push((least, median));
-                let _ = write!(row, " {least:.0} / {median:.0} |");
-            }
-            let theirs = of_kernel().filter(|contender| contender.is_peer);
-            let theirs = theirs.map(|contender| (contender.path, least_and_median(&contender.times)));
-            match theirs.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) {
-                None => row += " – | – | – |",
-                Some((path, (least, median))) => {
-                    let (a, b) = (least / ours[0].0, median / ours[0].1);
-                    let _ =
-                        write!(row, " {least:.0} / {median:.0} ({path}) | **{a:.2}** / {b:.2} | {difference:.0e} |");
-                }
-            }
-            rows.push(row);
-        }
-        Table { robot: robot.into(), rounds: contenders[0].times.len(), rows }
-    }
-}
-
 /// Everything, with where and how it was measured.
-pub fn text(tables: &[Table], peer: Option<&Peer>) -> String {
-    let (processor, date, rustc) = (machine::processor(), machine::date(), machine::rustc());
-    let (version, flags) = peer.map_or(("no peer".into(), String::new()), |peer| (peer.version(), peer.flags()));
-    let mut text = format!(
-        "\
-# One state on one core, beside Pinocchio
+pub fn text(
+    tables: &[Table],
+    peers: &[Peer],
+    missing: &[(String, String)],
+    peaks: &[(Width, Option<f64>)],
+) -> Result<String, String> {
+    let mut text = format!("# One core, beside the peers\n\n{}", how());
+    for peer in peers {
+        line(&mut text, &format!("- {}.", peer.version()?));
+    }
+    for (name, why) in missing {
+        line(&mut text, &format!("- {name}: missing, {why}."));
+    }
+    let peak = |&(width, peak): &(Width, Option<f64>)| match peak {
+        Some(peak) => format!("{}: {peak:.1}", width.name()),
+        None => format!("{}: none", width.name()),
+    };
+    let peaks_text = peaks.iter().map(peak).collect::<Vec<_>>().join("; ");
+    line(&mut text, &format!("- Peak, measured, in flops a nanosecond, a fused multiply-add being two: {peaks_text}."));
+    text += "\n![Times of the peers over mozzi's](results.svg)\n";
+    text += "\n## The fastest library's time over mozzi's\n";
+    fastest_peers(&mut text, tables, false);
+    text += "\n## The time of C generated for the one robot, over mozzi's\n";
+    fastest_peers(&mut text, tables, true);
+    for table in tables {
+        robot(&mut text, table, peaks);
+    }
+    operations(&mut text, tables);
+    functions(&mut text, tables);
+    Ok(text)
+}
 
+fn line(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+fn how() -> String {
+    let (processor, date, rustc) = (machine::processor(), machine::date(), machine::rustc());
+    format!(
+        "\
 `cargo xtask bench`, {date}, {processor}.
 
-- mozzi: {rustc}, release profile, no flags: `mozzi::native` finds AVX2 and FMA when it runs; portable is the same source
-  without them.
-- {version}, `{flags}`; of `Convention::WORLD` and `LOCAL` the faster. Its mass matrix is the upper triangle alone.
-- Both get the robot by numbers, armature and friction zero, and the same {} random states. One process on one
-  processor; in each round everything runs over all states, in turn, once untimed and once timed.
-- Nanoseconds for one evaluation: least of all rounds / median. Ratio: Pinocchio's time over mozzi's with FMA, of the
-  least / of the medians. Difference: the largest between the two results at any state, over the result's largest
-  entry, checked before anything is timed.
-",
-        States::COUNT
-    );
-    for Table { robot, rounds, rows } in tables {
-        let _ = write!(
-            text,
-            "\n## {robot}, {rounds} rounds\n\n| ns | mozzi | portable | Pinocchio | ratio | difference |\n|---|---|---|---|---|---|\n{}\n",
-            rows.join("\n")
-        );
+- Every library gets the robot by numbers, fixed links merged, no friction, no armature, gravity 9.80665 m/s², and the same random states.
+  Every result at every state was compared with mozzi's before anything was timed.
+- One process on one processor; in each round everything runs over all states, in turn, once untimed and once timed.
+  Where a library has several algorithms for a quantity, the fastest is quoted.
+- Nanoseconds for one state: least of all rounds / median. In bold the time over mozzi's, least over least; behind it median over median.
+- mozzi: {rustc}, release profile, no flags: `mozzi::native` finds FMA when it runs; portable is the same source
+  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows.
+"
+    )
+}
+
+/// What is written for one robot, and no library that takes any.
+const GENERATED: &str = "CasADi";
+
+/// Of each robot and quantity the fastest of the peers over mozzi, libraries or generated code.
+fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool) {
+    let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
+    line(text, &format!("\n| | {} |", head.join(" | ")));
+    line(text, &format!("|---|{}", "---|".repeat(tables.len())));
+    let Some(first) = tables.first() else { return };
+    for (k, Row { quantity, .. }) in first.rows.iter().enumerate() {
+        let cells = tables.iter().map(|table| {
+            let row = &table.rows[k];
+            let columns = table.columns.iter().zip(&row.times);
+            let peers = columns.filter(|(c, _)| c.width.is_none() && (c.name == GENERATED) == is_generated);
+            let timed = peers.filter_map(|(column, time)| Some((&column.name, time.as_ref()?)));
+            match (timed.min_by(|a, b| a.1.least.total_cmp(&b.1.least)), &row.times[0]) {
+                (Some((_, time)), Some(unit)) if is_generated => ratio(time, unit),
+                (Some((name, time)), Some(unit)) => format!("{} {name}", ratio(time, unit)),
+                _ => "–".into(),
+            }
+        });
+        line(text, &format!("| {} | {} |", quantity.name(), cells.collect::<Vec<_>>().join(" | ")));
     }
-    text
+}
+
+/// How many times as long: of the least / of the medians.
+fn ratio(time: &Time, unit: &Time) -> String {
+    format!("**{:.2}** / {:.2}", time.least / unit.least, time.median / unit.median)
+}
+
+fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
+    let (n, states, rounds) = (table.n, table.states, table.rounds);
+    line(text, &format!("\n## {}, n = {n}\n\n{rounds} rounds of {states} states.", table.robot));
+    let others = table.columns[1..].iter().map(|column| format!("{} {:.0e}", column.name, column.difference));
+    line(
+        text,
+        &format!("Largest difference from mozzi, over the largest entry: {}.\n", others.collect::<Vec<_>>().join(", ")),
+    );
+    let names = table.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>();
+    line(text, &format!("| ns | {} | flops | of the peak |", names.join(" | ")));
+    line(text, &format!("|---|{}---|---|", "---|".repeat(names.len())));
+    for row in &table.rows {
+        let mut cells = String::new();
+        for (k, time) in row.times.iter().enumerate() {
+            let _ = match (time, &row.times[0]) {
+                (None, _) => write!(cells, " – |"),
+                (Some(time), Some(unit)) if k > 0 => {
+                    write!(
+                        cells,
+                        " {} / {}, {} |",
+                        nanoseconds(time.least),
+                        nanoseconds(time.median),
+                        ratio(time, unit)
+                    )
+                }
+                (Some(time), _) => write!(cells, " {} / {} |", nanoseconds(time.least), nanoseconds(time.median)),
+            };
+        }
+        let flops = row.count.flops();
+        line(text, &format!("| {} |{cells} {flops} | {} |", row.quantity.name(), shares(table, row, peaks)));
+    }
+}
+
+/// Three digits at least.
+fn nanoseconds(x: f64) -> String {
+    if x < 100.0 { format!("{x:.1}") } else { format!("{x:.0}") }
+}
+
+/// What part of the peak of its instructions each of mozzi's ways reaches, in the columns' order.
+fn shares(table: &Table, row: &Row, peaks: &[(Width, Option<f64>)]) -> String {
+    let ours = table.columns.iter().zip(&row.times).filter_map(|(column, time)| {
+        let peak = peaks.iter().find(|(width, _)| Some(*width) == column.width)?.1?;
+        Some(format!("{:.0} %", 100.0 * row.count.flops() as f64 / time.as_ref()?.least / peak))
+    });
+    ours.collect::<Vec<_>>().join(", ")
+}
+
+fn operations(text: &mut String, tables: &[Table]) {
+    *text += "
+## Operations
+
+What the kernels' source asks for at one state, counted by running it on a number that counts: sums + products + fused multiply-adds +
+divisions and roots, (sines and cosines). Flops are all of them, a fused one twice, sines and cosines not at all. A compiler fuses no
+more and leaves out what multiplies by a constant 0 or 1. Of the peak: flops over time over the peak of the
+instructions that a way runs on, for each of mozzi's columns.
+
+";
+    let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
+    line(text, &format!("| | {} |\n|---|{}", head.join(" | "), "---|".repeat(tables.len())));
+    let Some(first) = tables.first() else { return };
+    for (k, Row { quantity, .. }) in first.rows.iter().enumerate() {
+        let cells = tables.iter().map(|table| {
+            let c = table.rows[k].count;
+            format!("{} + {} + {} + {}, ({})", c.sums, c.products, c.fused, c.divisions, c.sin_cos)
+        });
+        line(text, &format!("| {} | {} |", quantity.name(), cells.collect::<Vec<_>>().join(" | ")));
+    }
+}
+
+/// What each peer's fastest function was.
+fn functions(text: &mut String, tables: &[Table]) {
+    *text += "\n## What was called\n\n";
+    let mut peers: Vec<&str> = Vec::new();
+    for column in tables.iter().flat_map(|table| &table.columns).filter(|column| column.width.is_none()) {
+        if !peers.contains(&column.name.as_str()) {
+            peers.push(&column.name);
+        }
+    }
+    if peers.is_empty() {
+        return line(text, "No peer.");
+    }
+    line(text, &format!("| | {} |\n|---|{}", peers.join(" | "), "---|".repeat(peers.len())));
+    for (k, Row { quantity, .. }) in tables[0].rows.iter().enumerate() {
+        let cells = peers.iter().map(|peer| {
+            let mut names: Vec<&str> = Vec::new();
+            for table in tables {
+                let columns = table.columns.iter().zip(&table.rows[k].times);
+                for (_, time) in columns.filter(|(column, _)| column.name == *peer) {
+                    names.extend(time.iter().map(|time| time.algorithm.as_str()));
+                }
+            }
+            names.sort_unstable();
+            names.dedup();
+            if names.is_empty() { "–".into() } else { names.join("; ") }
+        });
+        line(text, &format!("| {} | {} |", quantity.name(), cells.collect::<Vec<_>>().join(" | ")));
+    }
 }

@@ -5,9 +5,10 @@ use crate::columns::Layout;
 use crate::instruction_set::{Entry, InstructionSet, Number, OnLanes, choose};
 use crate::lanes::Lane;
 use crate::quantity::{self as q, Quantity};
+use crate::threads::Threads;
 use crate::{Error, Surroundings};
-use mozzi::{FrameId, Model, Wrench};
-use rayon::prelude::*;
+use mozzi::simulation::Method;
+use mozzi::{Environment, FrameId, Model, Wrench};
 use std::sync::Arc;
 
 /// A chunk's tables fill about half of a core's second cache.
@@ -24,14 +25,6 @@ pub struct Batch<T: Number = f64> {
     set: InstructionSet,
     layout: Layout,
     threads: Threads,
-}
-
-#[derive(Clone, Debug)]
-enum Threads {
-    /// rayon's own, one a core.
-    All,
-    One,
-    Pool(Arc<rayon::ThreadPool>),
 }
 
 impl<T: Number> Batch<T> {
@@ -59,16 +52,7 @@ impl<T: Number> Batch<T> {
     /// # Errors
     /// [`Error::Threads`] for none, or where the system gives no more.
     pub fn with_threads(self, threads: usize) -> Result<Self, Error> {
-        let failed = |reason| Error::Threads { threads, reason };
-        let threads = match threads {
-            0 => return Err(failed("expected at least one".into())),
-            1 => Threads::One,
-            _ => {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                Threads::Pool(Arc::new(pool.map_err(|error| failed(error.to_string()))?))
-            }
-        };
-        Ok(Batch { threads, ..self })
+        Ok(Batch { threads: Threads::new(threads)?, ..self })
     }
 
     /// With tables in this layout.
@@ -101,6 +85,15 @@ impl<T: Number> Batch<T> {
             }
         }
         choose::<T, _, _>(self.set, Width)
+    }
+
+    pub(crate) fn threads(&self) -> &Threads {
+        &self.threads
+    }
+
+    /// The same on other threads.
+    pub(crate) fn on(&self, threads: Threads) -> Self {
+        Batch { threads, ..self.clone() }
     }
 
     /// The table of rows in the layout of this batch's [`Layout::Blocks`], the last block filled up with its last state.
@@ -146,13 +139,13 @@ impl<T: Number> Batch<T> {
         (0..width).map(|column| to_f64(table[place(column)])).collect()
     }
 
-    pub(crate) fn run<Q: Quantity>(
+    /// The number of states; an error for tables that do not go with it, frames of other models, and quaternions that are none.
+    pub(crate) fn check(
         &self,
-        quantity: &Q,
         inputs: &[(&'static str, Table<T>)],
-        outputs: Vec<(&'static str, TableMut<T>)>,
-        surroundings: Surroundings<T>,
-    ) -> Result<(), Error> {
+        outputs: &[(&'static str, usize, usize)],
+        surroundings: &Surroundings<T>,
+    ) -> Result<usize, Error> {
         let (model, lanes) = (&*self.model, self.block());
         let states = self.states(inputs[0].1.0)?;
         let wrong = |what, found, width| {
@@ -166,8 +159,8 @@ impl<T: Number> Batch<T> {
         for &(what, (table, width)) in inputs {
             wrong(what, table.len(), width)?;
         }
-        for (what, (table, width)) in &outputs {
-            wrong(what, table.len(), *width)?;
+        for &(what, length, width) in outputs {
+            wrong(what, length, width)?;
         }
         for &(frame, table) in surroundings.wrenches {
             model.check_frame(frame)?;
@@ -177,7 +170,18 @@ impl<T: Number> Batch<T> {
         if model.is_floating() {
             self.check_quaternions(inputs[0].1, states)?;
         }
+        Ok(states)
+    }
 
+    pub(crate) fn run<Q: Quantity>(
+        &self,
+        quantity: &Q,
+        inputs: &[(&'static str, Table<T>)],
+        outputs: Vec<(&'static str, TableMut<T>)>,
+        surroundings: Surroundings<T>,
+    ) -> Result<(), Error> {
+        let sizes: Vec<_> = outputs.iter().map(|(what, (table, width))| (*what, table.len(), *width)).collect();
+        let states = self.check(inputs, &sizes, &surroundings)?;
         let frames: Vec<FrameId> = surroundings.wrenches.iter().map(|&(frame, _)| frame).collect();
         let tables: Vec<Table<T>> = inputs
             .iter()
@@ -257,14 +261,14 @@ impl<T: Number> Batch<T> {
             let F = self.at((table, 6), index);
             applied.push((frame, Wrench::from_array(core::array::from_fn(|k| F[k]))));
         }
-        let environment = mozzi::Environment { applied: &applied, ..surroundings.environment };
+        let environment = Environment { applied: &applied, ..surroundings.environment };
         let state: Vec<Vec<f64>> = inputs.iter().map(|&(_, table)| self.at(table, index)).collect();
         let result = self.model.forward_dynamics(&state[0], &state[1], &state[2], &environment);
         result.map(drop).map_err(|source| Error::State { index, source })
     }
 }
 
-fn to_f64<T: Number>(x: T) -> f64 {
+pub(crate) fn to_f64<T: Number>(x: T) -> f64 {
     // the numbers are f64 or f32, whose text is exact
     let any: &dyn core::any::Any = &x;
     any.downcast_ref::<f64>().copied().or(any.downcast_ref::<f32>().map(|&x| x.into())).unwrap_or(f64::NAN)
@@ -281,42 +285,38 @@ impl<T: Number, Q: Quantity> OnLanes<T, Q> for Run<'_, '_, T, Q> {
     type Output = Vec<usize>;
     fn on<L: Lane<Number = T>>(self, entry: Entry<Q, L>) -> Vec<usize> {
         let model = &*self.batch.constants;
-        let one_thread = |chunks: Vec<Chunk<T>>| {
-            let mut worker = Worker::<L>::new(model);
-            for chunk in chunks {
-                entry(self.quantity, model, &mut worker, chunk);
-            }
-            worker.suspects
-        };
-        let many = |chunks: Vec<Chunk<T>>| {
-            let of_chunk = |worker: &mut Worker<L>, chunk| {
+        let suspects = self.batch.threads.map(
+            self.chunks,
+            || Worker::<L>::new(model),
+            |worker, chunk| {
                 entry(self.quantity, model, worker, chunk);
                 core::mem::take(&mut worker.suspects)
-            };
-            chunks.into_par_iter().map_init(|| Worker::<L>::new(model), of_chunk).flatten_iter().collect()
-        };
-        match &self.batch.threads {
-            _ if self.chunks.len() == 1 => one_thread(self.chunks),
-            Threads::One => one_thread(self.chunks),
-            Threads::All => many(self.chunks),
-            Threads::Pool(pool) => pool.install(|| many(self.chunks)),
-        }
+            },
+        );
+        suspects.concat()
     }
+}
+
+/// The wrenches alone.
+fn of_wrenches<T>(all: Surroundings<T>) -> Surroundings<T> {
+    let environment =
+        Environment { applied: all.environment.applied, ..Environment::with_gravity(mozzi::Vec3::zero()) };
+    Surroundings { environment, ..all }
 }
 
 /// Methods: their tables, numbers a state, and the kernel.
 macro_rules! methods {
     ($(
         $(#[$doc:meta])*
-        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
+        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident $(|$given:ident| $part:expr)?)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
     )*) => {
-        methods!(@of f64; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings)?) -> $($output: |$n| $out_width),* => $Q;)*);
-        methods!(@of f32; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings)?) -> $($output: |$n| $out_width),* => $Q;)*);
+        methods!(@of f64; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings $(|$given| $part)?)?) -> $($output: |$n| $out_width),* => $Q;)*);
+        methods!(@of f32; $($(#[$doc])* $name($([$frame])? $($input: $in_width),*; $($surroundings $(|$given| $part)?)?) -> $($output: |$n| $out_width),* => $Q;)*);
     };
     // of each number, not of any: so they are compiled once, here
     (@of $T:ty; $(
         $(#[$doc:meta])*
-        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
+        $name:ident($([$frame:ident])? $($input:ident: $in_width:ident),*; $($surroundings:ident $(|$given:ident| $part:expr)?)?) -> $($output:ident: |$n:ident| $out_width:expr),* => $Q:expr;
     )*) => { impl Batch<$T> { $(
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)] // the kernel's
@@ -327,11 +327,31 @@ macro_rules! methods {
             let inputs = [$((stringify!($input), ($input, self.model.$in_width()))),*];
             let outputs = vec![$((stringify!($output), ($output, { let $n = self.model.n(); $out_width }))),*];
             #[allow(unused_mut, unused_assignments)] // of a quantity that nothing surrounds
-            let mut all = Surroundings::from(mozzi::Environment::with_gravity(mozzi::Vec3::zero()));
-            $(all = *$surroundings;)?
+            let mut all = Surroundings::from(Environment::with_gravity(mozzi::Vec3::zero()));
+            $(all = *$surroundings; $(let $given = all; all = $part;)?)?
             self.run(&$Q, &inputs, outputs, all)
         }
-    )* } };
+    )*
+        /// (θ, θ̇) (N, nq) and (N, n) of every robot after `steps` steps of a method over `duration` seconds, in place, under torques τ (N, n)
+        /// and surroundings that stay as they are: a controller's interval. See [`mozzi::simulation`].
+        ///
+        /// # Errors
+        /// Tables of a wrong length; a state's error with its number: of a singular mass matrix, or of one that left the numbers, after its
+        /// neighbours were computed.
+        #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
+        pub fn simulate(
+            &self,
+            theta: &mut [$T],
+            dtheta: &mut [$T],
+            tau: &[$T],
+            surroundings: &Surroundings<$T>,
+            method: Method,
+            duration: f64,
+            steps: usize,
+        ) -> Result<(), Error> {
+            self.simulate_all([theta, dtheta], tau, surroundings, (method, duration, steps))
+        }
+    } };
 }
 
 methods! {
@@ -354,32 +374,32 @@ methods! {
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    mass_matrix_rate(theta: nq, dtheta: n; ) -> dM: |n| n * n => q::MassMatrixRate;
+    mass_matrix_rate(theta: nq, dtheta: n; ) -> dM: |n| n * n => q::CoriolisMatrix { rate: true };
     /// C (N, n, n) of θ and θ̇: see [`mozzi::coriolis_matrix`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    coriolis_matrix(theta: nq, dtheta: n; ) -> C: |n| n * n => q::CoriolisMatrix;
+    coriolis_matrix(theta: nq, dtheta: n; ) -> C: |n| n * n => q::CoriolisMatrix { rate: false };
     /// c (N, n) of θ and θ̇: see [`mozzi::velocity_product`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    velocity_product(theta: nq, dtheta: n; ) -> c: |n| n => q::VelocityProduct;
+    velocity_product(theta: nq, dtheta: n; ) -> c: |n| n => q::BiasForces { at_rest: false };
     /// g (N, n) of θ, in the environment's gravity: see [`mozzi::gravity_forces`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    gravity_forces(theta: nq; surroundings) -> g: |n| n => q::GravityForces;
+    gravity_forces(theta: nq; surroundings |given| Environment::with_gravity(given.environment.gravity).into()) -> g: |n| n => q::BiasForces { at_rest: true };
     /// h = c + g and what the surroundings add (N, n), of θ and θ̇: see [`mozzi::bias_forces`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    bias_forces(theta: nq, dtheta: n; surroundings) -> h: |n| n => q::BiasForces;
+    bias_forces(theta: nq, dtheta: n; surroundings) -> h: |n| n => q::BiasForces { at_rest: false };
     /// JᵀF (N, n) of the surroundings' wrenches: see [`mozzi::tip_forces`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
-    tip_forces(theta: nq; surroundings) -> tau: |n| n => q::TipForces;
+    tip_forces(theta: nq; surroundings |given| of_wrenches(given)) -> tau: |n| n => q::BiasForces { at_rest: true };
     /// ½θ̇ᵀMθ̇ (N): see [`mozzi::kinetic_energy`]; the surroundings' base twist counts.
     ///
     /// # Errors

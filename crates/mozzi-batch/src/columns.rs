@@ -120,6 +120,8 @@ mod tests {
     use super::*;
     use crate::lanes::Portable;
 
+    type Four = Portable<f64, 4>;
+
     #[test]
     fn rows_come_back_whatever_the_width_and_the_remainder() {
         for width in 1..=11 {
@@ -128,7 +130,7 @@ mod tests {
                 let mut back = vec![0.0; table.len()];
                 for first in (0..states).step_by(4) {
                     let rows = (states - first).min(4);
-                    let mut columns = vec![Portable([f64::NAN; 4]); width];
+                    let mut columns = vec![Portable([f64::NAN; 4]) as Four; width];
                     read_rows(&table, first, rows, &mut columns);
                     for (c, column) in columns.iter().enumerate() {
                         for lane in 0..4 {

@@ -59,6 +59,16 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// The same error of states that are counted from `first` on.
+    pub(crate) fn after(self, first: usize) -> Self {
+        match self {
+            Error::State { index, source } => Error::State { index: first + index, source },
+            other => other,
+        }
+    }
+}
+
 fn padded(lanes: usize) -> String {
     if lanes == 1 { String::new() } else { format!(", in whole blocks of {lanes} states") }
 }

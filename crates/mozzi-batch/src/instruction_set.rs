@@ -9,7 +9,7 @@ use mozzi::scalar::{Bits, Float};
 /// The registers that states are computed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// Plain arithmetic, four numbers at a time, on any processor: bit for bit the results of `mozzi`'s kernels at one state.
+    /// Plain arithmetic, one state at a time, on any processor: bit for bit the results of `mozzi`'s kernels at one state.
     Portable,
     /// 256 bits, with fused multiply-add: 4 `f64` or 8 `f32`.
     Avx2,
@@ -58,7 +58,7 @@ impl InstructionSet {
 
 /// `f64` or `f32`: a number that batches are of, with its registers.
 pub trait Number: Float + Bits<Number = Self> + Send + Sync {
-    /// Four numbers on any processor.
+    /// One number on any processor: wider arrays are no faster, and take their width in time to compile.
     type Portable: Lane<Number = Self>;
     /// AVX2.
     #[cfg(target_arch = "x86_64")]
@@ -69,7 +69,7 @@ pub trait Number: Float + Bits<Number = Self> + Send + Sync {
 }
 
 impl Number for f64 {
-    type Portable = Portable<f64>;
+    type Portable = Portable<f64, 1>;
     #[cfg(target_arch = "x86_64")]
     type Avx2 = crate::lanes::F64x4;
     #[cfg(target_arch = "x86_64")]
@@ -77,7 +77,7 @@ impl Number for f64 {
 }
 
 impl Number for f32 {
-    type Portable = Portable<f32>;
+    type Portable = Portable<f32, 1>;
     #[cfg(target_arch = "x86_64")]
     type Avx2 = crate::lanes::F32x8;
     #[cfg(target_arch = "x86_64")]

@@ -29,7 +29,9 @@ mod error;
 mod instruction_set;
 mod lanes;
 mod quantity;
+mod simulate;
 mod surroundings;
+mod threads;
 
 pub use batch::Batch;
 pub use blocks::BlockKernel;

@@ -25,13 +25,20 @@ pub(crate) struct Memory<L: Lane> {
     pub workspace: Workspace<L>,
     /// Columns of a Jacobian.
     pub columns: Vec<Twist<L>>,
+    /// n of them.
+    pub zeros: Vec<L>,
     /// A block's numbers, for what is computed elsewhere.
     pub numbers: Vec<L::Number>,
 }
 
 impl<L: Lane> Memory<L> {
     pub fn new(model: &Model<L::Number>) -> Self {
-        Memory { workspace: Workspace::new(model), columns: vec![Twist::zero(); model.n()], numbers: Vec::new() }
+        Memory {
+            workspace: Workspace::new(model),
+            columns: vec![Twist::zero(); model.n()],
+            zeros: vec![L::zero(); model.n()],
+            numbers: Vec::new(),
+        }
     }
 }
 
@@ -75,35 +82,38 @@ quantity!(MassMatrix, _, [model, _, Memory { workspace, .. }, output]; theta: mo
     kernel::mass_matrix(model, theta, workspace, output);
 });
 
-pub(crate) struct MassMatrixRate;
-quantity!(MassMatrixRate, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
-    kernel::mass_matrix_rate(model, theta, dtheta, workspace, output);
-});
-
-pub(crate) struct CoriolisMatrix;
-quantity!(CoriolisMatrix, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
+/// C, or Ṁ = C + Cᵀ.
+pub(crate) struct CoriolisMatrix {
+    pub rate: bool,
+}
+quantity!(CoriolisMatrix, &CoriolisMatrix { rate }, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
     kernel::coriolis_matrix(model, theta, dtheta, workspace, output);
+    if rate {
+        mozzi::linalg::add_transpose(model.n(), output);
+    }
 });
 
-pub(crate) struct VelocityProduct;
-quantity!(VelocityProduct, _, [model, _, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
-    kernel::velocity_product(model, theta, dtheta, workspace, output);
-});
-
-pub(crate) struct GravityForces;
-quantity!(GravityForces, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(); {
-    kernel::gravity_forces(model, theta, environment.gravity, workspace, output);
-});
-
-pub(crate) struct BiasForces;
-quantity!(BiasForces, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {
-    kernel::bias_forces(model, theta, dtheta, environment, workspace, output);
-});
-
-pub(crate) struct TipForces;
-quantity!(TipForces, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(); {
-    kernel::tip_forces(model, theta, environment.applied, workspace, output);
-});
+/// h, and with less around the robot, or at rest, its parts: c without gravity, g and JᵀF at θ̇ = 0. Newton and Euler's recursion is
+/// compiled once for the four.
+pub(crate) struct BiasForces {
+    pub at_rest: bool,
+}
+impl Quantity for BiasForces {
+    #[inline(always)]
+    fn evaluate<L: Lane>(
+        &self,
+        model: &Model<L::Number>,
+        input: &[L],
+        environment: &Environment<L>,
+        memory: &mut Memory<L>,
+        output: &mut [L],
+    ) {
+        let Memory { workspace, zeros, .. } = memory;
+        let (theta, dtheta) = input.split_at(model.nq());
+        let dtheta = if self.at_rest { zeros } else { dtheta };
+        kernel::bias_forces(model, theta, dtheta, environment, workspace, output);
+    }
+}
 
 pub(crate) struct KineticEnergy;
 quantity!(KineticEnergy, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(); {

@@ -1,5 +1,6 @@
 //! Every quantity, on every kind of registers that the machine has, beside mozzi's methods at one state.
 
+use mozzi::simulation::{Method, Options};
 use mozzi::testing::{Random, floating_tree, state, tree, wrench};
 use mozzi::{Environment, FrameId, Model, Wrench};
 use mozzi_batch::{Batch, InstructionSet, Layout, Number, Surroundings};
@@ -311,6 +312,43 @@ fn many_turns_are_reduced_exactly() {
             let expected = model.gravity_forces(theta).unwrap();
             for (a, b) in g.iter().zip(expected.iter()) {
                 assert!((a - b).abs() <= 1e-12 * expected.amax(), "{a} {b} on {}", set.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn many_robots_move_as_each_alone() {
+    for model in [tree(5, 3, 0), floating_tree(3, 3, 0)] {
+        let (count, nq, n) = (601, model.nq(), model.n()); // more than a piece
+        let mut states = States::new(&model, count);
+        states.dtheta.iter_mut().for_each(|x| *x *= 0.1);
+        let surroundings = Surroundings::from(model.environment());
+        let (duration, steps) = (0.02, 4);
+        for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
+            for set in InstructionSet::available() {
+                let batch = Batch::<f64>::new(&model).with_instruction_set(set).unwrap();
+                let (mut q, mut v) = (states.theta.clone(), states.dtheta.clone());
+                batch.simulate(&mut q, &mut v, &states.x, &surroundings, method, duration, steps).unwrap();
+                for k in [0, 17, 600] {
+                    let tau = states.x[k * n..][..n].to_vec();
+                    let input = mozzi::simulation::torque(|_t, _q, _v, out| out.copy_from_slice(&tau));
+                    let options = Options { method, ..Options::new(duration, steps) };
+                    let (q0, v0) = (&states.theta[k * nq..][..nq], &states.dtheta[k * n..][..n]);
+                    let alone = model.simulate(q0, v0, input, &options).unwrap();
+                    let end = alone.last();
+                    for (a, b) in
+                        q[k * nq..][..nq].iter().chain(&v[k * n..][..n]).zip(end.theta.iter().chain(end.dtheta.iter()))
+                    {
+                        assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{a} {b} on {}", set.name());
+                    }
+                }
+                // in blocks, and on other threads, to the bit
+                let blocks = batch.clone().with_layout(Layout::Blocks).with_threads(2).unwrap();
+                let (mut q2, mut v2) = (blocks.to_blocks(&states.theta, nq), blocks.to_blocks(&states.dtheta, n));
+                let tau = blocks.to_blocks(&states.x, n);
+                blocks.simulate(&mut q2, &mut v2, &tau, &surroundings, method, duration, steps).unwrap();
+                assert!(q == blocks.to_rows(&q2, nq, count) && v == blocks.to_rows(&v2, n, count));
             }
         }
     }

@@ -23,11 +23,14 @@ fn lengths() {
         "ddtheta has 14 numbers, expected 21 (3 states of 7)"
     );
     assert_eq!(text(batch.mass_matrix(&x, &mut tau)), "M has 21 numbers, expected 147 (3 states of 49)");
-    let blocks = batch.clone().with_layout(Layout::Blocks).with_instruction_set(InstructionSet::Portable).unwrap();
-    assert_eq!(
-        text(blocks.mass_matrix(&x, &mut tau)),
-        "theta has 21 numbers, expected a multiple of 7: 7 positions a state, in whole blocks of 4 states"
-    );
+    let blocks = batch.clone().with_layout(Layout::Blocks);
+    if blocks.lanes() > 1 {
+        let expected = format!(
+            "theta has 21 numbers, expected a multiple of 7: 7 positions a state, in whole blocks of {} states",
+            blocks.lanes()
+        );
+        assert_eq!(text(blocks.mass_matrix(&x, &mut tau)), expected);
+    }
     // no state is no error
     batch.inverse_dynamics(&[], &[], &[], &s, &mut []).unwrap();
 }

@@ -42,9 +42,13 @@ fn at_one_state<'r>(
             let (first, others) = out3.split_at_mut(n * n);
             let three = [first, &mut others[..n * n], &mut out[..]];
             match quantity {
-                Quantity::InverseDynamics => native::inverse_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n]),
+                Quantity::InverseDynamics => {
+                    native::inverse_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n])
+                }
                 Quantity::MassMatrix => native::mass_matrix(model, q, &mut w, &mut out),
-                Quantity::ForwardDynamics => native::forward_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n]),
+                Quantity::ForwardDynamics => {
+                    native::forward_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n])
+                }
                 _ => native::inverse_dynamics_derivatives(model, q, v, a, &environment, &mut w, three),
             }
             black_box(&mut out);
@@ -117,7 +121,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if names.is_empty() {
         names = ["panda", "ur5", "anymal"].map(String::from).to_vec();
     }
-    println!("robot, quantity: native | machine code 1 | batch, rows | machine code, rows | machine code, block (ns a state); record + compile");
+    println!(
+        "robot, quantity: native | machine code 1 | batch, rows | machine code, rows | machine code, block (ns a state); record + compile"
+    );
     for name in names {
         let model = robot(&name)?;
         let (n, nq) = (model.n(), model.nq());
@@ -146,7 +152,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let kernel = Kernel::new(&program, lanes);
             let l = lanes.lanes();
             let inputs: Vec<_> = program.inputs().iter().map(|input| numbers(input.length * l, 2.0, 4)).collect();
-            let mut outputs: Vec<_> = program.outputs().iter().map(|output| vec![0.0; output.values.len() * l]).collect();
+            let mut outputs: Vec<_> =
+                program.outputs().iter().map(|output| vec![0.0; output.values.len() * l]).collect();
             let [a, b] = at_one_state(&model, &robot, quantity, states);
             let [c, d] = at_many_states(&batch, &robot, quantity, states);
             let mut runs = vec![a, b, c, d];

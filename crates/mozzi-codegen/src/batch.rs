@@ -68,8 +68,11 @@ impl Compiled {
         let states = inputs[0].1.len() / nq.max(1);
         let has_pivots = machine.lengths.len() > outputs.len();
         let (mut pivots, mut squares) = (vec![0.0; if has_pivots { n * states } else { 0 }], vec![0.0; states]);
-        let mut tables: Vec<(&'static str, &mut [f64], usize)> =
-            outputs.iter_mut().zip(&machine.lengths).map(|((name, table), &width)| (*name, &mut **table, width)).collect();
+        let mut tables: Vec<(&'static str, &mut [f64], usize)> = outputs
+            .iter_mut()
+            .zip(&machine.lengths)
+            .map(|((name, table), &width)| (*name, &mut **table, width))
+            .collect();
         tables.extend(has_pivots.then_some(("pivots", &mut pivots[..], n)));
         tables.push(("squares", &mut squares, 1));
         let given: Vec<_> = inputs.iter().zip(&widths).map(|(&(name, table), &width)| (name, table, width)).collect();

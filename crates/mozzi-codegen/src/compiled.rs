@@ -3,10 +3,11 @@
 use crate::jit::{Kernel, Refusal, Shape};
 use crate::quantity::{LeftOpen, Quantity};
 use mozzi::nalgebra::{DMatrix, DVector};
-use mozzi_batch::{Batch, InstructionSet};
 use mozzi::{
-    Error, ForwardDynamicsDerivatives, FrameId, InverseDynamicsDerivatives, Jacobian, Mat3, Model, SE3, SO3, Twist, Vec3,
+    Error, ForwardDynamicsDerivatives, FrameId, InverseDynamicsDerivatives, Jacobian, Mat3, Model, SE3, SO3, Twist,
+    Vec3,
 };
+use mozzi_batch::{Batch, InstructionSet};
 use std::fmt;
 
 /// A robot with the quantities that were asked for as machine code, in its own gravity, its base at rest, touching nothing. Its methods

@@ -153,7 +153,16 @@ impl Quantity {
             ForwardDynamics => {
                 if by_mass_matrix {
                     let M = &mut X;
-                    kernel::forward_dynamics_by_mass_matrix(model, theta, dtheta, third, environment, &mut w, M, &mut x);
+                    kernel::forward_dynamics_by_mass_matrix(
+                        model,
+                        theta,
+                        dtheta,
+                        third,
+                        environment,
+                        &mut w,
+                        M,
+                        &mut x,
+                    );
                 } else {
                     kernel::forward_dynamics(model, theta, dtheta, third, environment, &mut w, &mut x);
                 }

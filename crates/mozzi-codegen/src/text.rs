@@ -116,7 +116,9 @@ impl Program {
     fn value(&self, word: &str) -> Result<Value, String> {
         let value = word.strip_prefix('%').and_then(|digits| digits.parse().ok());
         let known = value.filter(|&value: &Value| (value as usize) < self.steps.len());
-        known.ok_or_else(|| format!("`{word}`, expected `%` and the number of a step before, up to {}", self.steps.len()))
+        known.ok_or_else(|| {
+            format!("`{word}`, expected `%` and the number of a step before, up to {}", self.steps.len())
+        })
     }
 }
 
@@ -149,7 +151,10 @@ mod tests {
             text.parse::<Program>().expect_err(&text).to_string()
         };
         assert_eq!(refused("x 1", "x 2"), "line 3 of the program: entry 2 of `x`, which has 2");
-        assert_eq!(refused("= 0.1", "= O.1"), "line 4 of the program: `O.1`, expected a number, an input or a function");
+        assert_eq!(
+            refused("= 0.1", "= O.1"),
+            "line 4 of the program: `O.1`, expected a number, an input or a function"
+        );
         assert!(refused("sin %0", "sin %2").contains("line 5 of the program: `%2`, expected `%` and the number"));
         assert!(refused("sin %0", "sin").contains("line 5 of the program: `sin` takes 1 operands"));
         assert!(refused("%3 =", "%4 =").contains("line 6 of the program: `%4`, expected `%3 = …`"));

@@ -19,7 +19,8 @@ fn rows_and_blocks_of_any_number_of_states() {
             let robot = compile(&model, quantities).expect("no frames").with_threads(2).expect("two threads");
             for states in [0, 1, 8, 13] {
                 let rows: Vec<[Vec<f64>; 3]> = (0..states).map(|seed| state(&model, seed as u64)).collect();
-                let [theta, dtheta, x] = [0, 1, 2].map(|k| rows.iter().flat_map(|row| row[k].clone()).collect::<Vec<_>>());
+                let [theta, dtheta, x] =
+                    [0, 1, 2].map(|k| rows.iter().flat_map(|row| row[k].clone()).collect::<Vec<_>>());
                 let near = |what: &str, found: &[f64], of: &dyn Fn(&[Vec<f64>; 3]) -> Vec<f64>| {
                     for (k, row) in rows.iter().enumerate() {
                         let expected = of(row);
@@ -28,17 +29,28 @@ fn rows_and_blocks_of_any_number_of_states() {
                     }
                 };
                 let environment = model.environment();
-                let (mut tau, mut M, mut ddtheta) = (vec![0.0; states * n], vec![0.0; states * n * n], vec![0.0; states * n]);
+                let (mut tau, mut M, mut ddtheta) =
+                    (vec![0.0; states * n], vec![0.0; states * n * n], vec![0.0; states * n]);
                 robot.inverse_dynamics_batch(&theta, &dtheta, &x, &mut tau).expect("lengths");
-                near("τ", &tau, &|[a, b, c]| model.inverse_dynamics(a, b, c, &environment).expect("sound").as_slice().to_vec());
+                near("τ", &tau, &|[a, b, c]| {
+                    model.inverse_dynamics(a, b, c, &environment).expect("sound").as_slice().to_vec()
+                });
                 robot.mass_matrix_batch(&theta, &mut M).expect("lengths");
                 near("M", &M, &|[a, ..]| model.mass_matrix(a).expect("sound").as_slice().to_vec());
                 robot.forward_dynamics_batch(&theta, &dtheta, &x, &mut ddtheta).expect("regular");
-                near("θ̈", &ddtheta, &|[a, b, c]| model.forward_dynamics(a, b, c, &environment).expect("sound").as_slice().to_vec());
+                near("θ̈", &ddtheta, &|[a, b, c]| {
+                    model.forward_dynamics(a, b, c, &environment).expect("sound").as_slice().to_vec()
+                });
                 let [mut by_theta, mut by_dtheta, mut by_tau] = [(); 3].map(|()| vec![0.0; states * n * n]);
                 robot
                     .forward_dynamics_derivatives_batch(
-                        &theta, &dtheta, &x, &mut ddtheta, &mut by_theta, &mut by_dtheta, &mut by_tau,
+                        &theta,
+                        &dtheta,
+                        &x,
+                        &mut ddtheta,
+                        &mut by_theta,
+                        &mut by_dtheta,
+                        &mut by_tau,
                     )
                     .expect("regular");
                 near("∂θ̈/∂θ", &by_theta, &|[a, b, c]| {

@@ -41,8 +41,18 @@ fn methods_are_the_models() {
             let (found, expected) = (found.expect("sound").to_matrix(), expected.expect("sound").to_matrix());
             near("forward_kinematics", found.as_flattened(), expected.as_flattened(), 2e-14);
             let (body, space) = (robot.body_jacobian(theta, frame), robot.space_jacobian(theta, frame));
-            matrix("J_b", &body.expect("sound").matrix(), &model.body_jacobian(theta, frame).expect("sound").matrix(), 2e-14);
-            matrix("J_s", &space.expect("sound").matrix(), &model.space_jacobian(theta, frame).expect("sound").matrix(), 2e-14);
+            matrix(
+                "J_b",
+                &body.expect("sound").matrix(),
+                &model.body_jacobian(theta, frame).expect("sound").matrix(),
+                2e-14,
+            );
+            matrix(
+                "J_s",
+                &space.expect("sound").matrix(),
+                &model.space_jacobian(theta, frame).expect("sound").matrix(),
+                2e-14,
+            );
             let found = robot.inverse_dynamics_derivatives(theta, dtheta, x).expect("sound");
             let expected = model.inverse_dynamics_derivatives(theta, dtheta, x, &environment).expect("sound");
             matrix("∂τ/∂θ", &found.by_theta, &expected.by_theta, 2e-14);
@@ -80,7 +90,10 @@ fn turns_of_thousands_of_kilometres_and_nan_go_to_the_kernels() {
     let (model, robot) = panda();
     let [mut theta, dtheta, x] = state(&model, 3);
     theta[2] = 1e12;
-    let (found, expected) = (robot.inverse_dynamics(&theta, &dtheta, &x), model.inverse_dynamics(&theta, &dtheta, &x, &model.environment()));
+    let (found, expected) = (
+        robot.inverse_dynamics(&theta, &dtheta, &x),
+        model.inverse_dynamics(&theta, &dtheta, &x, &model.environment()),
+    );
     assert_eq!(found.expect("lengths"), expected.expect("lengths"));
     theta[2] = f64::NAN;
     assert!(robot.inverse_dynamics(&theta, &dtheta, &x).expect("lengths").iter().any(|x| x.is_nan()));
@@ -90,12 +103,16 @@ fn turns_of_thousands_of_kilometres_and_nan_go_to_the_kernels() {
 fn errors_are_the_models() {
     let (model, robot) = panda();
     let [theta, dtheta, x] = state(&model, 3);
-    let (found, expected) =
-        (robot.inverse_dynamics(&theta[1..], &dtheta, &x), model.inverse_dynamics(&theta[1..], &dtheta, &x, &model.environment()));
+    let (found, expected) = (
+        robot.inverse_dynamics(&theta[1..], &dtheta, &x),
+        model.inverse_dynamics(&theta[1..], &dtheta, &x, &model.environment()),
+    );
     assert_eq!(found.expect_err("short").to_string(), expected.expect_err("short").to_string());
     let other = common::tree(1, 3, 0).build().expect("sound");
     let frame = model.frames().last().expect("a frame").0;
-    assert!(compile(&other, &[Quantity::BodyJacobian(frame)]).expect_err("another's").to_string().contains("another model"));
+    assert!(
+        compile(&other, &[Quantity::BodyJacobian(frame)]).expect_err("another's").to_string().contains("another model")
+    );
     // a massless tip that turns freely
     let mut robot = common::tree(2, 3, 0);
     let joint = robot.joints.last_mut().expect("one");

@@ -59,7 +59,8 @@ fn check(program: &Program, random: &mut Random) {
     for shape in Shape::ALL.into_iter().filter(|shape| shape.is_supported() && shape.is_f64()) {
         let Ok(kernel) = Kernel::new(program, shape) else { continue };
         let lanes = shape.lanes();
-        let blocks: Vec<Vec<f64>> = program.inputs().iter().map(|input| random.vector(input.length * lanes, 1.0)).collect();
+        let blocks: Vec<Vec<f64>> =
+            program.inputs().iter().map(|input| random.vector(input.length * lanes, 1.0)).collect();
         let mut outputs: Vec<Vec<f64>> =
             program.outputs().iter().map(|output| vec![f64::NAN; output.values.len() * lanes]).collect();
         let mut squares = vec![f64::NAN; lanes];

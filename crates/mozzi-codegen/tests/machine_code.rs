@@ -93,7 +93,13 @@ fn sines_and_cosines_are_those_of_the_library() {
             let largest = if shape.is_f64() { 1e6 } else { 8192.0 };
             let size = [1.6, 100.0, largest][k % 3];
             let angles: Vec<f64> = (0..16)
-                .map(|_| if k % 4 == 0 { std::f64::consts::FRAC_PI_2 * (size * random.number()).trunc() / 2.0 } else { size * random.number() })
+                .map(|_| {
+                    if k % 4 == 0 {
+                        std::f64::consts::FRAC_PI_2 * (size * random.number()).trunc() / 2.0
+                    } else {
+                        size * random.number()
+                    }
+                })
                 .map(|x| if shape.is_f64() { x } else { f64::from(x as f32) })
                 .collect();
             let mut check = |lane: usize, [sin, cos]: [f64; 2]| {
@@ -118,7 +124,8 @@ fn sines_and_cosines_are_those_of_the_library() {
         println!("{shape:?}: {worst:.2} ulp");
         assert!(worst <= if shape.is_f64() { 1.0 } else { 1.5 }, "{shape:?}: {worst} ulp");
         // signs of everything, and what is no angle
-        let numbers = [0.0, -0.0, 5e-324, -5e-324, 1e-45, 1e300, -1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 2.5, -7.0];
+        let numbers =
+            [0.0, -0.0, 5e-324, -5e-324, 1e-45, 1e300, -1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 2.5, -7.0];
         for x in numbers {
             let small = if shape.is_f64() { 0.3 } else { 0.3_f32.into() };
             let (sgn, squares) = if shape.is_f64() {

@@ -8,14 +8,23 @@ use mozzi::{Dual, Environment, Model, Scalar, Vec3, Wrench};
 use mozzi_codegen::{LeftOpen, Program, Quantity};
 
 /// The kernels' outputs, by the methods of the model.
-fn reference(model: &Model, quantity: Quantity, [theta, dtheta, x]: &[Vec<f64>; 3], environment: &Environment) -> Vec<Vec<f64>> {
+fn reference(
+    model: &Model,
+    quantity: Quantity,
+    [theta, dtheta, x]: &[Vec<f64>; 3],
+    environment: &Environment,
+) -> Vec<Vec<f64>> {
     let rows = |M: mozzi::nalgebra::DMatrix<f64>| M.transpose().as_slice().to_vec();
     let columns = |J: mozzi::Jacobian| J.0.iter().flat_map(|column| column.to_array()).collect();
     let list = |x: mozzi::nalgebra::DVector<f64>| x.as_slice().to_vec();
     match quantity {
-        Quantity::InverseDynamics => vec![list(model.inverse_dynamics(theta, dtheta, x, environment).expect("lengths"))],
+        Quantity::InverseDynamics => {
+            vec![list(model.inverse_dynamics(theta, dtheta, x, environment).expect("lengths"))]
+        }
         Quantity::MassMatrix => vec![rows(model.mass_matrix(theta).expect("lengths"))],
-        Quantity::ForwardDynamics => vec![list(model.forward_dynamics(theta, dtheta, x, environment).expect("regular"))],
+        Quantity::ForwardDynamics => {
+            vec![list(model.forward_dynamics(theta, dtheta, x, environment).expect("regular"))]
+        }
         Quantity::BiasForces => vec![list(model.bias_forces(theta, dtheta, environment).expect("lengths"))],
         Quantity::VelocityProduct => vec![list(model.velocity_product(theta, dtheta).expect("lengths"))],
         Quantity::GravityForces => vec![list(model.gravity_forces(theta).expect("lengths"))],

@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{BOUND, Worst, column, largest_square, matrix, repository, vector};
+use common::{BOUND, Worst, column, derivatives, largest_square, matrix, repository, vector};
 use mozzi::conventions::{MuJoCo, Pinocchio};
 use mozzi::{Base, Model, SE3, Wrench};
 use nalgebra::{DMatrix, DVector};
@@ -55,7 +55,7 @@ fn balanced(M: &DMatrix<f64>, reference: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// In Pinocchio's convention.
-fn compare_pinocchio(model: &Model, theirs: &Pinocchio, state: &Value, worst: &mut Worst) {
+fn compare_pinocchio(model: &Model, theirs: &Pinocchio, oracle: &Value, state: &Value, worst: &mut Worst) {
     let list = |key: &str| vector(&state[key]);
     let theta = theirs.from_configuration(&list("q")).unwrap();
     let [dtheta, ddtheta] = ["v", "a"].map(|key| theirs.from_velocity(&list(key)).unwrap());
@@ -108,6 +108,8 @@ fn compare_pinocchio(model: &Model, theirs: &Pinocchio, state: &Value, worst: &m
     let potential = model.potential_energy(theta).unwrap();
     worst.add_list("P", &[potential], &state["potential_energy"], potential_size(model, J.amax()));
     compare_centroidal(model, theirs, [theta, dtheta, ddtheta], state, worst);
+    let velocities: Vec<usize> = [3, 4, 5, 0, 1, 2].into_iter().chain(theirs.joints().iter().map(|&j| 6 + j)).collect();
+    derivatives::compare(model, &velocities, [theta, dtheta, ddtheta, tau], oracle, state, worst);
 }
 
 /// Pinocchio's are linear first, in world axes.
@@ -203,7 +205,7 @@ fn compare(oracle: &Value, models: &[Model; 2]) -> Worst {
         // four wheels of Centauro are `revolute` with limits that hold no bound: continuous here, one position there
         let unlike = if oracle["robot"] == "centauro" { 4 } else { 0 };
         assert_eq!(guessed.nq(), theirs.nq() + unlike, "{}", oracle["robot"]);
-        each(&mut |model, state| compare_pinocchio(model, &theirs, state, &mut worst));
+        each(&mut |model, state| compare_pinocchio(model, &theirs, oracle, state, &mut worst));
     }
     worst
 }

@@ -1,8 +1,11 @@
-//! The kernels on `f64`, with the instruction set of the machine that runs them: fused multiply-add and AVX2 where the
-//! processor has them, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation.
+//! The kernels on `f64`, with the instruction set of the machine that runs them: fused multiply-add where the processor has
+//! it, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation.
 //!
-//! Results agree with the plain kernels to rounding, not bit for bit. AVX-512 is deliberately left out: for one state it
-//! makes code slower.
+//! Results agree with the plain kernels to rounding, not bit for bit. AVX2 and AVX-512 are deliberately left out: for one state
+//! they make code slower.
+//!
+//! Derivatives of g, JᵀF and Mx alone are not here: ∂τ/∂θ of [`inverse_dynamics_derivatives`] at θ̇ = 0 is their sum, and each entry is
+//! compiled once more for each instruction set.
 //!
 //! ```
 //! # use mozzi::{Description, native};
@@ -28,7 +31,7 @@ pub struct Workspace(Inner);
 #[allow(clippy::large_enum_variant)] // one per thread, not in lists
 enum Inner {
     Plain(crate::Workspace<f64>),
-    /// Made only where the processor has AVX2 and FMA: the proof that the fused entries may be called.
+    /// Made only where the processor has FMA: the proof that the fused entries may be called.
     Fused(crate::Workspace<Fused>, Vec<(FrameId, Wrench<Fused>)>),
 }
 
@@ -36,7 +39,7 @@ impl Workspace {
     /// Memory for this model.
     pub fn new(model: &Model) -> Self {
         #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
+        if std::is_x86_feature_detected!("fma") {
             return Workspace(Inner::Fused(crate::Workspace::new(model), Vec::with_capacity(model.frames().len())));
         }
         Self::portable(model)
@@ -47,11 +50,11 @@ impl Workspace {
         Workspace(Inner::Plain(crate::Workspace::new(model)))
     }
 
-    /// "avx2 + fma" or "portable".
+    /// "fma" or "portable".
     pub fn instruction_set(&self) -> &'static str {
         match self.0 {
             Inner::Plain(_) => "portable",
-            Inner::Fused(..) => "avx2 + fma",
+            Inner::Fused(..) => "fma",
         }
     }
 }
@@ -77,12 +80,12 @@ fn fused_environment<'a>(e: &Environment, applied: &'a mut Vec<(FrameId, Wrench<
     }
 }
 
-/// One entry: the same kernel on plain or on fused numbers, the latter compiled for AVX2 and FMA.
+/// One entry: the same kernel on plain or on fused numbers, the latter compiled for FMA (and AVX, which it implies).
 macro_rules! entry {
     ($(#[$doc:meta])* $name:ident($($in:ident),*; $([$environment:ident])? $out:ident)) => {
         $(#[$doc])*
         pub fn $name(model: &Model, $($in: &[f64],)* $($environment: &Environment,)? workspace: &mut Workspace, $out: &mut [f64]) {
-            #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2,fma"))]
+            #[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
             fn entry(
                 model: &Model, $($in: &[Fused],)* $($environment: &Environment<Fused>,)?
                 workspace: &mut crate::Workspace<Fused>, $out: &mut [Fused],
@@ -94,7 +97,7 @@ macro_rules! entry {
                 Inner::Fused(workspace, _applied) => {
                     $(let $environment = &fused_environment($environment, _applied);)?
                     #[allow(unused_unsafe)] // no target feature elsewhere
-                    // SAFETY: the variant exists only where the processor has AVX2 and FMA.
+                    // SAFETY: the variant exists only where the processor has FMA.
                     unsafe { entry(model, $(fused($in),)* $($environment,)? workspace, fused_mut($out)) }
                 }
             }
@@ -158,7 +161,7 @@ pub fn inverse_dynamics_derivatives(
     workspace: &mut Workspace,
     derivatives: [&mut [f64]; 3],
 ) {
-    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2,fma"))]
+    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
     fn entry(
         model: &Model,
         [theta, dtheta, ddtheta]: [&[Fused]; 3],
@@ -176,7 +179,7 @@ pub fn inverse_dynamics_derivatives(
             let environment = &fused_environment(environment, applied);
             let (state, derivatives) = ([theta, dtheta, ddtheta].map(fused), derivatives.map(fused_mut));
             #[allow(unused_unsafe)] // no target feature elsewhere
-            // SAFETY: the variant exists only where the processor has AVX2 and FMA.
+            // SAFETY: the variant exists only where the processor has FMA.
             unsafe {
                 entry(model, state, environment, workspace, derivatives)
             }
@@ -199,7 +202,7 @@ pub fn forward_dynamics_derivatives(
     ddtheta: &mut [f64],
     derivatives: [&mut [f64]; 3],
 ) {
-    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2,fma"))]
+    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
     fn entry(
         model: &Model,
         [theta, dtheta, tau]: [&[Fused]; 3],
@@ -218,7 +221,7 @@ pub fn forward_dynamics_derivatives(
             let environment = &fused_environment(environment, applied);
             let (state, derivatives) = ([theta, dtheta, tau].map(fused), derivatives.map(fused_mut));
             #[allow(unused_unsafe)] // no target feature elsewhere
-            // SAFETY: the variant exists only where the processor has AVX2 and FMA.
+            // SAFETY: the variant exists only where the processor has FMA.
             unsafe {
                 entry(model, state, environment, workspace, fused_mut(ddtheta), derivatives)
             }

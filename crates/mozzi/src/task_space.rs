@@ -1,7 +1,8 @@
 //! Dynamics in the task space (Modern Robotics, section 8.6; for redundant robots Khatib 1987).
 
-use crate::kinematics::Jacobian;
-use crate::model::{Environment, Error, FrameId, Model};
+use crate::dynamics::{self as kernel, TaskMemory};
+use crate::model::{Environment, Error, FrameId, Model, Workspace};
+use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
@@ -70,6 +71,7 @@ impl Model<f64> {
     ) -> Result<TaskSpaceDynamics, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
         self.check_frame(task.frame)?;
+        self.check_environment(environment)?;
         let distinct = (1..task.rows.len()).all(|k| !task.rows[..k].contains(&task.rows[k]));
         if task.rows.is_empty() || task.rows.iter().any(|&row| row > 5) || !distinct {
             let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
@@ -79,43 +81,30 @@ impl Model<f64> {
                 expected,
             });
         }
-        let (J, dJ) = match task.coordinates {
-            TaskFrame::Body => {
-                (self.body_jacobian(theta, task.frame)?, self.body_jacobian_rate(theta, dtheta, task.frame)?)
-            }
-            TaskFrame::Space => {
-                (self.space_jacobian(theta, task.frame)?, self.space_jacobian_rate(theta, dtheta, task.frame)?)
-            }
-        };
-        let rows = |J: Jacobian| J.matrix().select_rows(task.rows);
-        let (J, dJ) = (rows(J), rows(dJ));
-        let dtheta_vector = DVector::from_column_slice(dtheta);
-        let dJ_dtheta = dJ * &dtheta_vector;
-
+        let (n, k) = (self.n(), task.rows.len());
+        let (mut workspace, mut memory) = (Workspace::new(self), TaskMemory::new(self, k));
+        let (mut Lambda, mut eta) = (vec![0.0; k * k], vec![0.0; k]);
+        kernel::task_space_dynamics(
+            self,
+            theta,
+            dtheta,
+            task,
+            environment,
+            &mut workspace,
+            &mut memory,
+            &mut Lambda,
+            &mut eta,
+        );
+        self.check_pivots(theta, &mut workspace)?;
+        let J = DMatrix::from_row_slice(k, n, &memory.J);
         let mut singular_values: Vec<f64> = J.singular_values().iter().copied().collect();
-        singular_values.resize(task.rows.len(), 0.0); // more rows than joints
+        singular_values.resize(k, 0.0); // more rows than joints
         let tolerance = 1e-12 * singular_values[0];
-        if singular_values.iter().any(|&s| s <= tolerance) {
+        if singular_values.iter().any(|&s| s <= tolerance) || memory.pivots.iter().any(|&pivot| pivot <= 0.0) {
             return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
         }
-        // M⁻¹ column by column, by the kernels: M⁻¹Jᵀ and M⁻¹h
-        let h = self.bias_forces(theta, dtheta, environment)?;
-        let M = self.mass_matrix(theta)?;
-        let Some(factors) = M.cholesky() else {
-            // names the joint
-            self.forward_dynamics_by_mass_matrix(theta, dtheta, dtheta, environment)?;
-            return Err(Error::BadArgument {
-                what: "the mass matrix",
-                found: "not positive definite".into(),
-                expected: "a positive definite one",
-            });
-        };
-        let inverse_mobility = &J * factors.solve(&J.transpose()); // Λ⁻¹
-        let Some(mobility) = inverse_mobility.cholesky() else {
-            return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
-        };
-        let Lambda = mobility.inverse();
-        let eta = mobility.solve(&(&J * factors.solve(&h) - &dJ_dtheta));
+        let (Lambda, eta) = (DMatrix::from_vec(k, k, Lambda), DVector::from_vec(eta)); // symmetric
+        let dJ_dtheta = DVector::from_vec(memory.dJ_dtheta);
         Ok(TaskSpaceDynamics { Lambda, eta, J, dJ_dtheta })
     }
 }

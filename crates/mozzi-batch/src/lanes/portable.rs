@@ -1,25 +1,23 @@
-//! Four numbers in an array, for any processor: bit for bit the plain numbers' results.
+//! Numbers in an array, for any processor: bit for bit the plain numbers' results.
 
 use super::Lane;
 use mozzi::Scalar;
 use mozzi::scalar::{Bits, Float};
 
-/// Four numbers.
+/// W numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
-pub struct Portable<T>(pub [T; 4]);
+pub struct Portable<T, const W: usize>(pub [T; W]);
 
-impl<T: Float + Bits<Number = T>> Portable<T> {
+impl<T: Float + Bits<Number = T>, const W: usize> Portable<T, W> {
     #[inline(always)]
     fn each(self, f: impl Fn(T) -> T) -> Self {
-        let [a, b, c, d] = self.0;
-        Portable([f(a), f(b), f(c), f(d)])
+        Portable(self.0.map(f))
     }
 
     #[inline(always)]
     fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
-        let ([a, b, c, d], [e, g, h, i]) = (self.0, other.0);
-        Portable([f(a, e), f(b, g), f(c, h), f(d, i)])
+        Portable(core::array::from_fn(|k| f(self.0[k], other.0[k])))
     }
 
     #[inline(always)]
@@ -55,16 +53,16 @@ impl<T: Float + Bits<Number = T>> Portable<T> {
         self.mul(a).add(b)
     }
 }
-super::lane!([T: Float + Bits<Number = T>] Portable<T>);
+super::lane!([T: Float + Bits<Number = T>, const W: usize] Portable<T, W>);
 
-impl<T: Float + Bits<Number = T>> From<T> for Portable<T> {
+impl<T: Float + Bits<Number = T>, const W: usize> From<T> for Portable<T, W> {
     #[inline(always)]
     fn from(x: T) -> Self {
-        Portable([x; 4])
+        Portable([x; W])
     }
 }
 
-impl<T: Float + Bits<Number = T>> Bits for Portable<T> {
+impl<T: Float + Bits<Number = T>, const W: usize> Bits for Portable<T, W> {
     type Number = T;
     #[inline(always)]
     fn constant(x: T) -> Self {
@@ -88,21 +86,21 @@ impl<T: Float + Bits<Number = T>> Bits for Portable<T> {
     }
 }
 
-impl<T: Float + Bits<Number = T>> Lane for Portable<T> {
-    const WIDTH: usize = 4;
+impl<T: Float + Bits<Number = T>, const W: usize> Lane for Portable<T, W> {
+    const WIDTH: usize = W;
 
     #[inline(always)]
     fn load(from: &[T]) -> Self {
-        Portable([from[0], from[1], from[2], from[3]])
+        Portable(core::array::from_fn(|k| from[k]))
     }
     #[inline(always)]
     fn store(self, to: &mut [T]) {
-        to[..4].copy_from_slice(&self.0);
+        to[..W].copy_from_slice(&self.0);
     }
     #[inline(always)]
     fn zip(self, other: Self) -> (Self, Self) {
-        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
-        (Portable([a, e, b, f]), Portable([c, g, d, h]))
+        let of = |k: usize| if k.is_multiple_of(2) { self.0[k / 2] } else { other.0[k / 2] };
+        (Portable(core::array::from_fn(of)), Portable(core::array::from_fn(|k| of(k + W))))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {

@@ -256,7 +256,14 @@ impl<'p> Line<'p> {
         target
     }
 
-    fn binary(&mut self, here: usize, operation: Operation, a: Value, b: Value, pinned: &mut Vec<Register>) -> Register {
+    fn binary(
+        &mut self,
+        here: usize,
+        operation: Operation,
+        a: Value,
+        b: Value,
+        pinned: &mut Vec<Register>,
+    ) -> Register {
         let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
         let exchange = operation.commutes() && !is_in_register(self, a) && is_in_register(self, b);
         let (a, b) = if exchange { (b, a) } else { (a, b) };
@@ -272,7 +279,15 @@ impl<'p> Line<'p> {
     }
 
     /// ± a b ± c overwrites one of its operands: one that is needed no more, or a copy.
-    fn fused(&mut self, here: usize, operation: Operation, a: Value, b: Value, c: Value, pinned: &mut Vec<Register>) -> Register {
+    fn fused(
+        &mut self,
+        here: usize,
+        operation: Operation,
+        a: Value,
+        b: Value,
+        c: Value,
+        pinned: &mut Vec<Register>,
+    ) -> Register {
         let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
         if let Some(target) = self.dying(c) {
             let (a, b) = if is_in_register(self, a) { (a, b) } else { (b, a) };
@@ -281,7 +296,11 @@ impl<'p> Line<'p> {
             return target;
         }
         // a factor that dies, or that has to be loaded anyway
-        let (a, b) = if self.dying(a).is_some() || self.dying(b).is_none() && !is_in_register(self, a) { (a, b) } else { (b, a) };
+        let (a, b) = if self.dying(a).is_some() || self.dying(b).is_none() && !is_in_register(self, a) {
+            (a, b)
+        } else {
+            (b, a)
+        };
         if self.dying(a).is_some() || !is_in_register(self, a) && is_in_register(self, c) {
             let target = match self.dying(a) {
                 Some(register) => register,

@@ -43,8 +43,8 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Description {
         let parent = if random.number() < 0.4 { i - 1 } else { random.below(i) };
         let mut V = Twist::from_array(random.array());
         match i % 4 {
-            0 => V.w = Vec3([0.0; 3]),                      // a slide
-            1 => {}                                          // a helix
+            0 => V.w = Vec3([0.0; 3]),                                      // a slide
+            1 => {}                                                         // a helix
             2 => V = Twist { w: Vec3([0.0, 0.0, 1.0]), v: Vec3([0.0; 3]) }, // about the link's own z
             _ => V.v = Vec3(random.array()).cross(V.w),
         }
@@ -116,6 +116,7 @@ pub fn state(model: &Model, seed: u64) -> [Vec<f64>; 3] {
 pub fn error(found: &[f64], reference: &[f64]) -> f64 {
     assert_eq!(found.len(), reference.len());
     let size = reference.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let worst = found.iter().zip(reference).fold(0.0_f64, |m, (x, y)| if (x - y).abs() <= m { m } else { (x - y).abs() });
+    let worst =
+        found.iter().zip(reference).fold(0.0_f64, |m, (x, y)| if (x - y).abs() <= m { m } else { (x - y).abs() });
     if worst == 0.0 { 0.0 } else { worst / size }
 }

@@ -3,6 +3,8 @@
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
 #![allow(dead_code)] // not every test needs all of it
 
+pub mod derivatives;
+
 use mozzi::accuracy::normalized_error;
 use nalgebra::DMatrix;
 use serde_json::Value;

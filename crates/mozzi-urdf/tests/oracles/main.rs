@@ -8,7 +8,7 @@
 mod common;
 mod models;
 
-use common::{BOUND, Worst, column, largest_square, matrix, repository, vector};
+use common::{BOUND, Worst, column, derivatives, largest_square, matrix, repository, vector};
 use mozzi::accuracy::TermSizes;
 use mozzi::{Environment, FrameId, Model, Wrench};
 use nalgebra::{DMatrix, DVector};
@@ -54,7 +54,7 @@ fn model(oracle: &Value) -> Result<Model, String> {
 }
 
 /// Compares every quantity that the state carries; vectors and matrices in the order of the oracle's velocities.
-fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
+fn compare(model: &Model, order: &[usize], oracle: &Value, state: &Value, worst: &mut Worst) {
     let n = model.n();
     let mine = |key: &str| {
         let theirs = vector(&state[key]);
@@ -125,6 +125,7 @@ fn compare(model: &Model, order: &[usize], state: &Value, worst: &mut Worst) {
         let found = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &pushing).unwrap();
         worst.add("τ, F", &theirs(found), &list("inverse_dynamics_with_tip"), total + size);
     }
+    derivatives::compare(model, order, [&theta, &dtheta, &ddtheta, &tau], oracle, state, worst);
     let number = |key: &str| column(&[state[key].as_f64().unwrap()]);
     let kinetic = model.kinetic_energy(&theta, &dtheta).unwrap();
     worst.add("K", &column(&[kinetic]), &number("kinetic_energy"), 0.0);
@@ -149,7 +150,7 @@ fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
         assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
     }
     let mut worst = Worst::default();
-    oracle["states"].as_array().unwrap().iter().for_each(|state| compare(model, &order, state, &mut worst));
+    oracle["states"].as_array().unwrap().iter().for_each(|state| compare(model, &order, oracle, state, &mut worst));
     worst
 }
 

@@ -1,6 +1,7 @@
 //! What the recursion of inverse dynamics finds on its way: twists, accelerations, wrenches, reactions.
 
 use crate::dynamics as kernel;
+use crate::kinematics::link_twists;
 use crate::lie::SE3;
 use crate::model::{Base, Environment, Error, Model, Workspace};
 use crate::spatial::{Twist, Wrench};
@@ -51,7 +52,12 @@ impl Model<f64> {
         self.check_environment(environment)?;
         let (mut workspace, mut tau) = (Workspace::new(self), vec![0.0; self.n()]);
         kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
-        let Workspace { V, dV, F, .. } = workspace;
+        // the recursion's observers move along with the links (see the kernel): back to {s}
+        link_twists(self, theta, dtheta, environment.base_twist, &mut workspace);
+        let Workspace { V, mut dV, F, .. } = workspace;
+        for (dV, V) in dV.iter_mut().zip(&V) {
+            dV.v -= V.w.cross(V.v);
+        }
         let frames: Vec<SE3> = (1..=self.moving_links())
             .map(|slot| match frame {
                 BodyFrame::Link => self.link_frame(slot),

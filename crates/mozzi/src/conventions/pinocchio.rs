@@ -23,8 +23,8 @@ use nalgebra::{DMatrix, DVector};
 /// Joints stand as Pinocchio's reader of URDF orders them: depth first, siblings by the alphabet. One that turns without limits
 /// (URDF: continuous) has two positions, (cos θ, sin θ). Followers have none, as with `mimic=True`.
 ///
-/// X is a permutation, so all but those two positions is exact, there and back. h, c, g and JᵀF are [`force`](Self::force)s; C
-/// and Ṁ convert as M.
+/// X is a permutation, so all but those two positions is exact, there and back. h, c, g and JᵀF are [`force`](Self::force)s; C,
+/// Ṁ, M⁻¹, ∂τ and ∂θ̈ convert as M.
 ///
 /// ```
 /// # use mozzi::{Base, Description, Solid};
@@ -200,6 +200,24 @@ impl Pinocchio {
         check_length("J", J.0.len(), self.order.n())?;
         Ok(DMatrix::from_fn(6, self.order.n(), |i, k| J.0[self.order.velocity(k)].to_linear_first()[i]))
     }
+
+    /// A body's `toDynamicParameters()`, (m, mc, I_xx, I_xy, I_yy, I_xz, I_yz, I_zz), from its ten of
+    /// [`Model::parameters`], (m, mc, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz); or a body's ten columns of a row of
+    /// `computeJointTorqueRegressor` from those of [`Model::regressor`].
+    pub fn body_parameters(mine: [f64; 10]) -> [f64; 10] {
+        swap_yy_and_xz(mine)
+    }
+
+    /// The inverse of [`body_parameters`](Self::body_parameters).
+    pub fn from_body_parameters(theirs: [f64; 10]) -> [f64; 10] {
+        swap_yy_and_xz(theirs)
+    }
+}
+
+/// Which stand side by side in both orders.
+fn swap_yy_and_xz(mut parameters: [f64; 10]) -> [f64; 10] {
+    parameters.swap(6, 7);
+    parameters
 }
 
 /// Without position limits, and nothing but a turn.

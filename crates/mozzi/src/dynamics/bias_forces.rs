@@ -24,6 +24,7 @@ pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
     h: &mut [S],
 ) {
     let zero = take_zeros(workspace);
+    h.fill(S::zero());
     newton_euler(model, theta, dtheta, &zero, environment, workspace, h);
     workspace.vector = zero;
 }
@@ -91,6 +92,7 @@ fn rest<S: Scalar + From<C>, C: Scalar>(
     tau: &mut [S],
 ) {
     let zero = take_zeros(workspace);
+    tau.fill(S::zero());
     newton_euler(model, theta, &zero, &zero, environment, workspace, tau);
     workspace.vector = zero;
 }

@@ -1,6 +1,7 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
 use crate::kinematics::{base_twist, joint_transforms};
+use crate::linalg::add_transpose;
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
@@ -35,14 +36,14 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     let G_0 = model.base_inertia.map(S::from);
     (G_c[0], dG_c[0], P[0]) = (G_0, G_0.rate(V[0]), G_0 * V[0]);
     for (i, link) in model.outward::<S>() {
-        V[i]    = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
-        dV[i]   = V[i].ad() * (link.A * link.ratio);                         // rate of A, per unit of θ̇_j
-        G_c[i]  = link.G;
-        dG_c[i] = link.G.rate(V[i]);
-        P[i]    = link.G * V[i];                                             // momentum
+        V[i]    = T[i].Ad() * V[link.parent] + link.A() * link.rate(dtheta);
+        dV[i]   = (V[i].ad() * (link.A() * link.ratio())).twist();                         // rate of A, per unit of θ̇_j
+        G_c[i]  = link.G();
+        dG_c[i] = link.G().rate(V[i]);
+        P[i]    = link.G() * V[i];                                             // momentum
     }
     for (i, link) in model.inward::<S>() {
-        let (j, A) = (link.j, link.A.twist() * link.ratio);
+        let (j, A) = (link.j, link.A().twist() * link.ratio());
         let (dGA, HA): (Wrench<S>, Wrench<S>) = (dG_c[i] * A, -(A.ad().transpose() * P[i]));
         let mut F1 = G_c[i] * dV[i] + (dGA + HA) * half;                     // column j of C, as a wrench
         let mut F2 = G_c[i] * A;                                             // row j: times the rate of A …
@@ -53,9 +54,9 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
             let Ad = T[k].Ad().transpose();
             (F1, F2, F3) = (Ad * F1, Ad * F2, Ad * F3);
             k = model.links[k - 1].parent;
-            let below = model.links[k - 1].lift::<S>();
-            C[below.j * n + j] += below.ratio * (below.A * F1);
-            C[j * n + below.j] += dV[k].dot(F2) + below.ratio * (below.A * F3);
+            let below = model.link::<S>(k);
+            C[below.j * n + j] += below.ratio() * (below.A() * F1);
+            C[j * n + below.j] += dV[k].dot(F2) + below.ratio() * (below.A() * F3);
         }
         if model.is_floating() {
             let Ad = T[k].Ad().transpose();
@@ -99,11 +100,5 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
     dM: &mut [S],
 ) {
     coriolis_matrix(model, theta, dtheta, workspace, dM);
-    let n = model.n();
-    for i in 0..n {
-        for j in 0..=i {
-            let sum = dM[i * n + j] + dM[j * n + i];
-            (dM[i * n + j], dM[j * n + i]) = (sum, sum);
-        }
-    }
+    add_transpose(model.n(), dM);
 }

@@ -1,6 +1,6 @@
 //! Kinetic and potential energy.
 
-use crate::kinematics::{base_pose, base_twist, joint_transforms};
+use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
@@ -20,15 +20,14 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
 ) -> S {
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
-    let Workspace { T, V, .. } = workspace;
-    V[0] = base_twist(model, theta, dtheta, V_s);
+    link_twists(model, theta, dtheta, V_s, workspace);
+    let V = &workspace.V;
     let mut twice = S::zero();
     if model.is_floating() {
         twice = V[0].dot(model.base_inertia.map(S::from) * V[0]);
     }
     for (i, link) in model.outward::<S>() {
-        V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
-        twice += V[i].dot(link.G * V[i]);
+        twice += V[i].dot(link.G() * V[i]);
     }
     for (&armature, &rate) in model.armature.iter().zip(dtheta) {
         twice += S::from(armature) * rate * rate;
@@ -57,7 +56,7 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
     }
     for (i, link) in model.outward::<S>() {
         T[i] = T[link.parent] * link.transform(theta).inverse();                 // T_{s,i}
-        first_moment += T[i].R * link.G.mc + T[i].p * link.G.mass;
+        first_moment += T[i].R * link.G().mc + T[i].p * link.G().mass;
     }
     -gravity.dot(first_moment)
 }

@@ -2,7 +2,7 @@
 
 use super::joint_friction::joint_friction;
 use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
-use crate::kinematics::{base_motion, joint_transforms};
+use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
@@ -46,23 +46,30 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
-    joint_transforms(model, theta, workspace);
-    let Workspace { T, V, dV, F, G_hat, U, u, pivots, vector, .. } = workspace;
+    joint_sines(model, theta, workspace);
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, dV, F, G_hat, U, u, sin_cos, pivots, vector, .. } = workspace;
+    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
+    let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
     vector.fill(S::zero());
-    (V[0], dV[0]) = base_motion(model, theta, dtheta, vector, environment);
+    let (V_0, dV_0) = base_motion(model, theta, dtheta, vector, environment);
+    let (V_0, dV_0) = V_0.beside_origin(dV_0);
+    (V[0], dV[0]) = (V_0.twist(), dV_0);
     if model.is_floating() {
         let G = model.base_inertia.map(S::from);
-        F[0] = -(V[0].ad().transpose() * (G * V[0]));
+        F[0] = -(V_0.ad_transpose() * (G * V_0));
         G_hat[0] = G.into();
     }
 
-    // base to tips: twists, and what each link's motion needs at no acceleration
+    // base to tips: twists, and what each link's motion needs where no joint accelerates
     for (i, link) in model.outward::<S>() {
-        let (A, G, dq) = (link.A, link.G, link.rate(dtheta));
-        V[i]  = T[i].Ad() * V[link.parent] + A * dq;
-        dV[i] = V[i].ad() * (A * dq);                                        // velocity-product acceleration
-        F[i]  = -(V[i].ad().transpose() * (G * V[i]));
-        G_hat[i] = G.into();
+        let (A, dq) = (link.A(), link.rate(dtheta));
+        let T_i = link.transform_with(sin_cos[i], theta);
+        let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;
+        let (V_i, dV_i) = V_i.beside_origin((V_i.ad() * (A * dq)).twist());  // velocity-product acceleration
+        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
+        F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
+        G_hat[i] = link.G().into();
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
@@ -71,7 +78,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
 
     // tips to base: free each joint and hand what is left to the parent
     for (i, link) in model.inward::<S>() {
-        let (A, j) = (link.A, link.j);
+        let (A, j) = (link.A(), link.j);
         let GA = G_hat[i] * A;
         let d  = A * GA + S::from(model.armature[j]);
         let one_over_d = S::one() / d;
@@ -80,11 +87,10 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         pivots[j] = d;
         if link.parent > 0 || model.is_floating() {
             let G_a = G_hat[i].minus_outer(GA, one_over_d);
-            let F_a = F[i] + G_a * dV[i] + GA * u[i];
-            let Ad  = T[i].Ad();
-            let (G_i, F_i) = (G_a.congruence(Ad), Ad.transpose() * F_a);
-            G_hat[link.parent] += G_i;
-            F[link.parent]     += F_i;
+            let F_a = G_a.mul_add(dV[i], F[i] + GA * u[i]);
+            let (Ad, p) = (T[i].Ad(), link.parent);
+            G_hat[p] = G_a.congruence_add(Ad, G_hat[p]);
+            F[p]     = Ad.transpose().mul_add(F_a, F[p]);
         }
     }
 
@@ -101,6 +107,6 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         let dV_i = T[i].Ad() * dV[link.parent] + dV[i];
         ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
-        dV[i] = dV_i + link.A * ddtheta[link.j];
+        dV[i] = dV_i + link.A() * ddtheta[link.j];
     }
 }

@@ -1,7 +1,9 @@
 //! ∂θ̈ of forward dynamics, by those of inverse dynamics and the factors of M (Carpentier and Mansard 2018).
 
-use super::forward_dynamics::forward_dynamics;
-use super::inverse_dynamics_derivatives::derivatives;
+use super::bias_forces::take_zeros;
+use super::inverse_dynamics_derivatives::{accelerate, carry, fill, forces};
+use super::joint_friction::joint_friction;
+use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
@@ -9,7 +11,7 @@ use crate::scalar::Scalar;
 /// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n × n, row-major: row i is
 /// θ̈_i's, and columns are as of [`inverse_dynamics_derivatives`](super::inverse_dynamics_derivatives()).
 ///
-/// Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
+/// θ̈ is by M, which the derivatives need as well. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
 ///
 /// > ∂θ̈/∂θ = −M⁻¹ ∂τ/∂θ, ∂θ̈/∂θ̇ = −M⁻¹ ∂τ/∂θ̇, ∂θ̈/∂τ = M⁻¹, all at this θ̈
 ///
@@ -28,13 +30,26 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S], [by_theta, by_dtheta, by_tau]: [&mut [S]; 3],
 ) {
     let (n, pattern) = (model.n(), &model.structure.pattern);
-    forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);         // leaves T_{i,i−1}(θ)
-    derivatives(model, theta, dtheta, ddtheta, environment, workspace, by_theta, Some([by_dtheta, by_tau]));
-    ldlt::factor(pattern, n, by_tau);
-    ldlt::solve_rows(pattern, n, by_tau, by_theta);
-    ldlt::solve_rows(pattern, n, by_tau, by_dtheta);
+    model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
+    joint_transforms(model, theta, workspace);
+    let zero = take_zeros(workspace);
+    carry(model, theta, dtheta, &zero, environment, workspace);
+    workspace.vector = zero;
+
+    // M θ̈ = τ − h − f
+    fill(model, theta, environment, workspace, true, [None, None, Some(by_tau)]);
+    forces(model, workspace, ddtheta);
+    for j in 0..n {
+        ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
+    }
+    ldlt::factor(pattern, by_tau);
+    ldlt::solve(pattern, by_tau, ddtheta);
     for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
         *pivot = by_tau[j * n + j];
     }
-    ldlt::invert(pattern, n, by_tau, &mut workspace.vector);
+
+    accelerate(model, ddtheta, workspace);
+    fill(model, theta, environment, workspace, false, [Some(by_theta), Some(by_dtheta), None]);
+    ldlt::solve_rows(pattern, by_tau, [by_theta, by_dtheta]);
+    ldlt::invert(pattern, by_tau, &mut workspace.vector);
 }

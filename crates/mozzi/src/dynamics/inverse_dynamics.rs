@@ -1,7 +1,7 @@
 //! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
 
 use super::joint_friction::joint_friction;
-use crate::kinematics::{base_motion, joint_transforms};
+use crate::kinematics::{base_motion, joint_sines};
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
@@ -28,14 +28,21 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     tau: &mut [S],
 ) {
-    newton_euler(model, theta, dtheta, ddtheta, environment, workspace, tau);
-    for j in 0..tau.len() {
-        tau[j] += S::from(model.armature[j]) * ddtheta[j] + joint_friction(model, j, dtheta[j]);
+    model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
+    for j in 0..model.n() {
+        tau[j] = S::from(model.armature[j]).mul_add(ddtheta[j], joint_friction(model, j, dtheta[j]));
     }
+    newton_euler(model, theta, dtheta, ddtheta, environment, workspace, tau);
 }
 
-/// The links' part of τ, without armature and friction. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link;
-/// 𝓕_0 is the wrench that a bolted base applies to the chain, or that a free one, itself included, needs.
+/// The links' part of τ, without armature and friction, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
+/// 𝓕 of every link, the motion as seen from beside it; 𝓕_0 is the wrench that a bolted base applies to the chain, or that a free
+/// one, itself included, needs.
+///
+/// **Seen from beside the link.** The equations of a body are the same for all observers in uniform motion. One of them moves, at
+/// this moment, along with the origin of link i: for him 𝒱_i = (ω, 0), and 𝒱̇_i = (ω̇, a) with the acceleration a = v̇ + ω × v of the
+/// origin. So link i's motion is computed from its parent's as the parent's observer sees it, by the book's equations, and handed on
+/// as its own does. The wrench 𝓕_i is the same for both; the linear part of 𝒱 costs nothing.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
@@ -43,29 +50,31 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
-    joint_transforms(model, theta, workspace);                                            // T_{i,i−1}(θ) (8.50)
-    let Workspace { T, V, dV, F, .. } = workspace;
+    joint_sines(model, theta, workspace);
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, dV, F, sin_cos, .. } = workspace;
+    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
 
     // base: its twist, accelerating against gravity; nothing hangs from it yet
-    (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
+    let (V_0, dV_0) = base_motion(model, theta, dtheta, ddtheta, environment);
+    let (V_0, dV_0) = V_0.beside_origin(dV_0);
+    (V[0], dV[0]) = (V_0.twist(), dV_0);
     F[0] = Wrench::zero();
     if model.is_floating() {
         let G = model.base_inertia.map(S::from);
-        F[0] = G * dV[0] - V[0].ad().transpose() * (G * V[0]);                            // (8.53)
+        F[0] = G * dV_0 - V_0.ad_transpose() * (G * V_0);                                 // (8.53)
     }
 
-    // base to tips: twist and acceleration of each link
+    // base to tips: twist and acceleration of each link, and what its own motion needs
     for (i, link) in model.outward::<S>() {
-        let (A, parent) = (link.A, link.parent);
+        let (A, p) = (link.A(), link.parent);
         let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
-        let Ad = T[i].Ad();
-        V[i]  = Ad * V[parent] + A * dq;                                                  // (8.51)
-        dV[i] = Ad * dV[parent] + V[i].ad() * (A * dq) + A * ddq;                         // (8.52)
-    }
-    // what each link's motion needs: no link waits for another
-    for (i, link) in model.outward::<S>() {
-        let G = link.G;
-        F[i]  = G * dV[i] - V[i].ad().transpose() * (G * V[i]);                           // (8.53), its own part
+        let T_i  = link.transform_with(sin_cos[i], theta);                                // T_{i,i−1}(θ) (8.50)
+        let V_i  = T_i.Ad() * V[p].spin() + A * dq;                                       // (8.51)
+        let dV_i = T_i.Ad() * dV[p] + V_i.ad() * (A * dq) + A * ddq;                      // (8.52)
+        let (V_i, dV_i) = V_i.beside_origin(dV_i);
+        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
+        F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
@@ -73,13 +82,12 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     }
 
     // tips to base: what each joint must carry (a follower adds to its master)
-    tau.fill(S::zero());
     for (i, link) in model.inward::<S>() {
-        tau[link.j] += link.ratio * (link.A * F[i]);                                      // (8.54)
-        let F_i = T[i].Ad().transpose() * F[i];
-        F[link.parent] += F_i;                                                            // (8.53), the child's part
+        let p = link.parent;
+        tau[link.j] += link.ratio() * (link.A() * F[i]);                                  // (8.54)
+        F[p] = T[i].Ad().transpose().mul_add(F[i], F[p]);                                 // (8.53), the child's part
     }
     if model.is_floating() {
-        tau[..6].copy_from_slice(&F[0].to_array());                                       // (8.54) with A = I
+        for (tau, F) in tau.iter_mut().zip(F[0].to_array()) { *tau += F; }                // (8.54) with A = I
     }
 }

@@ -60,29 +60,36 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
-#[inline(always)]
-#[rustfmt::skip] // one equation a line
+#[cfg_attr(not(test), inline(always))]
 #[allow(clippy::too_many_arguments)]
-pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>,
-    workspace: &mut Workspace<S>, by_theta: &mut [S], mut by_rates: Option<[&mut [S]; 2]>,
+fn derivatives<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    ddtheta: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    by_theta: &mut [S],
+    by_rates: Option<[&mut [S]; 2]>,
 ) {
-    let n = model.n();
-    model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
-    clear(model, by_theta);
-    if let Some([by_dtheta, M]) = &mut by_rates {
-        clear(model, by_dtheta);
-        clear(model, M);
-        for j in 0..n {
-            by_dtheta[j * n + j] = S::from(model.damping[j]);
-            M[j * n + j] = S::from(model.armature[j]);
-        }
-    }
-    let Workspace { T, V, dV, F, axes, G_c, B, .. } = workspace;
+    carry(model, theta, dtheta, ddtheta, environment, workspace);
+    let (by_dtheta, M) = by_rates.map_or((None, None), |[by_dtheta, M]| (Some(by_dtheta), Some(M)));
+    fill(model, theta, environment, workspace, true, [Some(by_theta), by_dtheta, M]);
+}
 
-    // base: {s}, which carries the axes of a free base, seen from it; then its own motion
-    let Ad = base_pose(model, theta).inverse().Ad();
-    let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
+/// Axes with their rates, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip] // one equation a line
+pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>,
+) {
+    model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, dV, F, axes, G_c, B, .. } = workspace;
+    let (T, V, dV, F) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
+    let (axes, G_c, B) = (&mut axes[..slots], &mut G_c[..slots], &mut B[..slots]);
+
+    // base: its own motion
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
     let G = model.base_inertia.map(S::from);
     let P = G * V[0];
@@ -90,52 +97,111 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     (G_c[0], B[0]) = (G, BodyCoriolis::new(G, V[0], P));
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
 
-    // base to tips: axes with their rates, twists, accelerations
+    // base to tips: axes with their rates, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
     for (i, link) in model.outward::<S>() {
         let (p, j) = (link.parent, link.j);
         T[i]  = T[i] * T[p];                                                 // T_i0
-        let A   = link.A.seen_through(T[i]) * link.ratio;
+        let A   = link.A().seen_through(T[i]) * link.ratio();
         let dA  = V[p].ad() * A;
-        let ddA = dV[p].ad() * A + V[p].ad() * dA;
-        V[i]  = V[p] + A * dtheta[j];
-        dV[i] = dV[p] + dA * dtheta[j] + A * ddtheta[j];
-        axes[i] = [A, dA, ddA];
-    }
-    // 𝒢, 𝓑 and 𝓕 of each link
-    for (i, link) in model.outward::<S>() {
-        let G = link.G.congruence(T[i].Ad());
-        let P = G * V[i];
-        (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V[i], P));
-        F[i]  = G * dV[i] - V[i].ad().transpose() * P;
+        let ddA = dV[p].ad().mul_add(A, V[p].ad() * dA);
+        let V_i  = A.mul_add(dtheta[j], V[p]);
+        let dV_i = A.mul_add(ddtheta[j], dA.mul_add(dtheta[j], dV[p]));
+        (V[i], dV[i], axes[i]) = (V_i, dV_i, [A, dA, ddA]);
+        let G = link.G().congruence(T[i].Ad());
+        let P = G * V_i;
+        (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V_i, P));
+        F[i]  = G * dV_i - V_i.ad().transpose() * P;
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
         F[frame.slot] += (frame.T.inverse() * T[frame.slot]).Ad().transpose() * F_b;
     }
+}
 
-    // tips to base: link i with all that hangs from it
+/// Adds θ̈ to what was carried and filled without: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by `[ad_𝒱̇'_p]` A,
+/// and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn accelerate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
+    let Workspace { dV, F, U, axes, G_c, .. } = workspace;
+    dV[0] = match ddtheta.first_chunk() {
+        Some(&dV) if model.is_floating() => Twist::from_array(dV),
+        _ => Twist::zero(),
+    };
+    for (i, link) in model.outward::<S>() {
+        let ([A, _, ddA], p, ddq) = (&mut axes[i], link.parent, ddtheta[link.j]);
+        *ddA += dV[p].ad() * *A;
+        dV[i] = dV[p] + *A * ddq;
+        U[i]  = U[i] * ddq;
+    }
+    U[0] = Wrench::zero();
     for (i, link) in model.inward::<S>() {
-        let (p, j, [A, dA, ddA]) = (link.parent, link.j, axes[i]);
-        let (G_i, B_i) = (G_c[i], B[i]);
+        let (p, U_i) = (link.parent, U[i]);
+        F[i] += G_c[i] * dV[p] + U_i;
+        U[p] += U_i;
+    }
+    F[0] += G_c[0] * dV[0] + U[0];
+}
+
+/// ∂τ/∂θ, ∂τ/∂θ̇ and M, what is asked for. Tips to base, 𝒢, 𝓑 and 𝓕 of a link become those of the link with all that hangs from it; `carried`
+/// says that they are so far those of links.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>, carried: bool,
+    [mut by_theta, mut by_dtheta, mut M]: [Option<&mut [S]>; 3],
+) {
+    let n = model.n();
+    let Workspace { V, F, U, axes, G_c, B, .. } = workspace;
+    if let Some(by_theta) = &mut by_theta {
+        clear(model, by_theta);
+    }
+    if let Some(by_dtheta) = &mut by_dtheta {
+        clear(model, by_dtheta);
+        for j in 0..n {
+            by_dtheta[j * n + j] = S::from(model.damping[j]);
+        }
+    }
+    if let Some(M) = &mut M {
+        clear(model, M);
+        for j in 0..n {
+            M[j * n + j] = S::from(model.armature[j]);
+        }
+    }
+    // {s}, which carries the axes of a free base, seen from it
+    let Ad = base_pose(model, theta).inverse().Ad();
+    let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
+
+    for (i, link) in model.inward::<S>() {
+        let (j, [A, dA, ddA], G_i, B_i) = (link.j, axes[i], G_c[i], B[i]);
         let (GA, GdA) = (G_i * A, G_i * dA);
         let column  = G_i * ddA + B_i * dA - A.ad().transpose() * F[i];      // ∂𝓕 by θ_j, felt below joint i
         let dcolumn = GdA + GdA + B_i * A;                                   // by θ̇_j
         let BtA     = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
-        by_theta[j * n + j] += A.dot(column);
-        if let Some([by_dtheta, M]) = &mut by_rates {
-            by_dtheta[j * n + j] += A.dot(dcolumn);
-            M[j * n + j]         += A.dot(GA);
+        if let Some(by_theta) = &mut by_theta {
+            by_theta[j * n + j] += A.dot(column);
         }
-        let mut k = p;
+        if let Some(by_dtheta) = &mut by_dtheta {
+            by_dtheta[j * n + j] += A.dot(dcolumn);
+        }
+        if let Some(M) = &mut M {
+            M[j * n + j] += A.dot(GA);
+        }
+        let mut k = link.parent;
         while k > 0 {
             let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
             let (ij, ji) = (below.j * n + j, j * n + below.j);
-            by_theta[ij] += A.dot(column);
-            by_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
-            if let Some([by_dtheta, M]) = &mut by_rates {
-                let (dAGA, entry) = (dA.dot(GA), A.dot(GA));
+            if let Some(by_theta) = &mut by_theta {
+                by_theta[ij] += A.dot(column);
+                by_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
+            }
+            if let Some(by_dtheta) = &mut by_dtheta {
+                let dAGA = dA.dot(GA);
                 by_dtheta[ij] += A.dot(dcolumn);
                 by_dtheta[ji] += dAGA + dAGA + A.w.dot(BtA);
+            }
+            if let Some(M) = &mut M {
+                let entry = A.dot(GA);
                 M[ij] += entry;
                 M[ji] += entry;
             }
@@ -146,29 +212,53 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
             let (s_t, ds_t) = (V_s.ad().transpose(), dV_s.ad().transpose());
             let row  = ds_t * GA + s_t * (s_t * GA + BtA);                   // (𝒢A)ᵀÄ_e + (𝓑ᵀA)ᵀȦ_e for each e
             let drow = (V_s + V[0]).ad().transpose() * GA + BtA;
-            add_cross(by_theta, n, j, column, row);
-            if let Some([by_dtheta, M]) = &mut by_rates {
+            if let Some(by_theta) = &mut by_theta {
+                add_cross(by_theta, n, j, column, row);
+            }
+            if let Some(by_dtheta) = &mut by_dtheta {
                 add_cross(by_dtheta, n, j, dcolumn, drow);
+            }
+            if let Some(M) = &mut M {
                 add_cross(M, n, j, GA, GA);
             }
         }
-        let F_i = F[i];
-        G_c[p] += G_i;
-        B[p]   += B_i;
-        F[p]   += F_i;
+        if carried {
+            let (p, F_i) = (link.parent, F[i]);
+            U[i]    = GA;
+            G_c[p] += G_i;
+            B[p]   += B_i;
+            F[p]   += F_i;
+        }
     }
 
-    // a free base: the axes e, which {s} carries
+    // a free base: the axes e
     if model.is_floating() {
         let (G, B) = (G_c[0], B[0]);
         for (r, e) in Twist::axes().into_iter().enumerate() {
             let de = V_s.ad() * e;
-            set_column(by_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
-            if let Some([by_dtheta, M]) = &mut by_rates {
+            if let Some(by_theta) = &mut by_theta {
+                set_column(by_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
+            }
+            if let Some(by_dtheta) = &mut by_dtheta {
                 set_column(by_dtheta, n, r, G * (de + V[0].ad() * e) + B * e);
+            }
+            if let Some(M) = &mut M {
                 set_column(M, n, r, G * e);
             }
         }
+    }
+}
+
+/// What joints and a free base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
+    let Workspace { F, axes, .. } = workspace;
+    tau.fill(S::zero());
+    if model.is_floating() {
+        tau[..6].copy_from_slice(&F[0].to_array());
+    }
+    for (i, link) in model.outward::<S>() {
+        tau[link.j] += axes[i][0].dot(F[i]);
     }
 }
 

@@ -10,5 +10,5 @@ use crate::scalar::Scalar;
 /// When there is no joint j.
 #[cfg_attr(not(test), inline(always))]
 pub fn joint_friction<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, j: usize, dtheta: S) -> S {
-    S::from(model.damping[j]) * dtheta + S::from(model.friction[j]) * dtheta.sgn()
+    S::from(model.damping[j]).mul_add(dtheta, S::from(model.friction[j]) * dtheta.sgn())
 }

@@ -21,7 +21,8 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     model.assert_lengths(theta.len(), []);
     assert!(M.len() == n * n, "M has {} entries, expected n² = {}", M.len(), n * n);
     joint_transforms(model, theta, workspace);
-    let Workspace { T, G_c, .. } = workspace;
+    let slots = model.links.len() + 1;
+    let (T, G_c) = (&workspace.T[..slots], &mut workspace.G_c[..slots]);
 
     M.fill(S::zero());
     for (j, &armature) in model.armature.iter().enumerate() {
@@ -29,18 +30,18 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     }
     G_c[0] = model.base_inertia.map(S::from);
     for (i, link) in model.outward::<S>() {
-        G_c[i] = link.G;
+        G_c[i] = link.G();
     }
     for (i, link) in model.inward::<S>() {
         let j = link.j;
-        let mut F = G_c[i] * link.A * link.ratio;                            // 𝒢ᶜ A
-        M[j * n + j] += link.ratio * (link.A * F);
+        let (p, G) = (link.parent, G_c[i]);
+        let mut F = G * link.A() * link.ratio();                            // 𝒢ᶜ A
+        M[j * n + j] += link.ratio() * (link.A() * F);
         let mut k = i;
-        while model.links[k - 1].parent > 0 {
+        for (below_k, below) in model.to_base::<S>(p) {
             F = T[k].Ad().transpose() * F;                                   // seen from the link below
-            k = model.links[k - 1].parent;
-            let below = model.links[k - 1].lift::<S>();
-            let entry = below.ratio * (below.A * F);
+            k = below_k;
+            let entry = below.ratio() * (below.A() * F);
             M[j * n + below.j] += entry;
             M[below.j * n + j] += entry;
         }
@@ -51,9 +52,8 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
                 M[r * n + j] += entry;
             }
         }
-        if link.parent > 0 || model.is_floating() {
-            let G = G_c[i].congruence(T[i].Ad());
-            G_c[link.parent] += G;
+        if p > 0 || model.is_floating() {
+            G_c[p] = G.congruence_add(T[i].Ad(), G_c[p]);
         }
     }
     if model.is_floating() {

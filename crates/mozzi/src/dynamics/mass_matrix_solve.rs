@@ -33,8 +33,8 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
     }
     mass_matrix(model, theta, workspace, M);
-    ldlt::factor(pattern, n, M);
-    ldlt::solve(pattern, n, M, ddtheta);
+    ldlt::factor(pattern, M);
+    ldlt::solve(pattern, M, ddtheta);
     for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
         *pivot = M[j * n + j];
     }

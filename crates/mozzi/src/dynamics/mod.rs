@@ -14,6 +14,7 @@ mod mass_matrix;
 mod mass_matrix_solve;
 mod momentum;
 mod regressor;
+mod task_space_dynamics;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -34,3 +35,4 @@ pub use mass_matrix::mass_matrix;
 pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;
 pub use momentum::{momentum, momentum_matrix, momentum_rate, total_inertia};
 pub use regressor::{energy_regressors, regressor};
+pub use task_space_dynamics::{TaskMemory, task_space_dynamics};

@@ -1,7 +1,7 @@
 //! Momentum of all that moves: its matrix by composite rigid bodies, its rate by Newton-Euler (Orin, Goswami and Lee 2013).
 
 use super::inverse_dynamics::newton_euler;
-use crate::kinematics::{base_pose, base_twist, joint_transforms};
+use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
@@ -39,12 +39,11 @@ pub fn momentum<S: Scalar + From<C>, C: Scalar>(
 ) -> Wrench<S> {
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
+    link_twists(model, theta, dtheta, Twist::zero(), workspace);
     let Workspace { T, V, F: P, .. } = workspace;
-    V[0] = base_twist(model, theta, dtheta, Twist::zero());
     P[0] = base_inertia(model) * V[0];
     for (i, link) in model.outward::<S>() {
-        V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
-        P[i] = link.G * V[i];
+        P[i] = link.G() * V[i];
     }
     for (i, link) in model.inward::<S>() {
         let P_i = T[i].Ad().transpose() * P[i];
@@ -79,7 +78,7 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
     T[0] = T_bs;
     for (i, link) in model.outward::<S>() {
         T[i] = T[i] * T[link.parent];                                                     // T_is
-        A[link.j] += T[i].Ad().transpose() * (G_c[i] * link.A * link.ratio);
+        A[link.j] += T[i].Ad().transpose() * (G_c[i] * link.A() * link.ratio());
     }
 }
 
@@ -95,7 +94,7 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
 pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
 ) -> Wrench<S> {
-    let mut tau = core::mem::take(&mut workspace.vector);
+    let mut tau = core::mem::take(&mut workspace.vector); // its values do not matter
     newton_euler(model, theta, dtheta, ddtheta, &Environment::with_gravity(Vec3::zero()), workspace, &mut tau);
     workspace.vector = tau;
     seen_from_space(model, theta, workspace.F[0])
@@ -109,7 +108,7 @@ fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &
     let Workspace { T, G_c, .. } = workspace;
     G_c[0] = base_inertia(model);
     for (i, link) in model.outward::<S>() {
-        G_c[i] = link.G;
+        G_c[i] = link.G();
     }
     for (i, link) in model.inward::<S>() {
         let G = G_c[i].congruence(T[i].Ad());

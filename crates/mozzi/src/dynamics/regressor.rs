@@ -1,7 +1,7 @@
 //! Forces and energies, linear in the model's parameters: the regressor (Khosla and Kanade 1985; Atkeson, An and Hollerbach 1986).
 
 use super::inverse_dynamics::newton_euler;
-use crate::kinematics::{base_pose, base_twist, joint_transforms};
+use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
@@ -49,7 +49,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
             let F_b = G * dV_b - V_b.ad().transpose() * (G * V_b);               // (8.53) of a unit
             let mut F = Ad.transpose() * F_b;
             for (i, link) in model.to_base::<S>(slot) {
-                Y[link.j * p + column] += link.ratio * (link.A * F);             // (8.54)
+                Y[link.j * p + column] += link.ratio() * (link.A() * F);             // (8.54)
                 F = T[i].Ad().transpose() * F;
             }
             if model.is_floating() {
@@ -85,13 +85,13 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
     assert!(kinetic.len() == p && potential.len() == p, "expected {p} entries, one for each parameter");
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
+    link_twists(model, theta, dtheta, V_s, workspace);
     let (Workspace { T, V, .. }, half) = (workspace, S::from_f64(0.5));
 
     kinetic.fill(S::zero());
     potential.fill(S::zero());
-    (T[0], V[0]) = (base_pose(model, theta), base_twist(model, theta, dtheta, V_s));
+    T[0] = base_pose(model, theta);
     for (i, link) in model.outward::<S>() {
-        V[i] = T[i].Ad() * V[link.parent] + link.A * link.rate(dtheta);
         T[i] = T[link.parent] * T[i].inverse();                                  // T_si
     }
     for (body, slot) in model.bodies().enumerate() {

@@ -92,7 +92,7 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
     let frame = model.frame_at::<S>(frame);
     let mut T = frame.T.inverse();                                        // T_{b,i}
     for (_, link) in model.to_base::<S>(frame.slot) {
-        J[link.j] += T.Ad() * link.A.twist() * link.ratio;                // J_i = Ad_{T_{b,i}} A_i
+        J[link.j] += T.Ad() * link.A().twist() * link.ratio();                // J_i = Ad_{T_{b,i}} A_i
         T = T * link.transform(theta);                                    // T_{b,i−1} = T_{b,i} T_{i,i−1}
     }
     if model.is_floating() {

@@ -70,7 +70,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
     let J = &mut workspace.V;
     let mut T = frame.T.inverse(); // T_{b,i}
     for (i, inner) in model.to_base::<S>(frame.slot) {
-        J[i] = T.Ad() * inner.A.twist() * inner.ratio;
+        J[i] = T.Ad() * inner.A().twist() * inner.ratio();
         for (k, outer) in model.to_base::<S>(frame.slot).take_while(|&(k, _)| k != i) {
             add(outer.j, inner.j, J[i].ad() * J[k], H, n);
         }

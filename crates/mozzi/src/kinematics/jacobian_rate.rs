@@ -21,8 +21,8 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     let mut T = frame.T.inverse();                                        // T_{b,i}
     let mut V = Twist::zero();                                            // of the frame seen from link i
     for (_, link) in model.to_base::<S>(frame.slot) {
-        let J_i = T.Ad() * link.A.twist();
-        dJ[link.j] += J_i.ad() * V * link.ratio;
+        let J_i = T.Ad() * link.A().twist();
+        dJ[link.j] += J_i.ad() * V * link.ratio();
         V += J_i * link.rate(dtheta);
         T = T * link.transform(theta);
     }

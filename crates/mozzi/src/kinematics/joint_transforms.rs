@@ -3,13 +3,21 @@
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 
-/// `workspace.T[i]` = T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1} of every link. All sines come first: they do not wait for one
-/// another, as the recursions that follow do.
+/// `workspace.T[i]` = T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1} of every link.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
-    model.assert_lengths(theta.len(), []);
+    joint_sines(model, theta, workspace);
     let Workspace { T, sin_cos, .. } = workspace;
-    for (i, link) in model.outward::<S>() { sin_cos[i] = link.sin_cos(theta); }
     for (i, link) in model.outward::<S>() { T[i] = link.transform_with(sin_cos[i], theta); }
+}
+
+/// `workspace.sin_cos[i]` of every joint's angle: all come first, for they do not wait for one another, as the recursions that
+/// follow do.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(crate) fn joint_sines<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
+    model.assert_lengths(theta.len(), []);
+    let sin_cos = &mut workspace.sin_cos;
+    for (i, link) in model.outward::<S>() { sin_cos[i] = link.sin_cos(theta); }
 }

@@ -7,13 +7,16 @@ mod jacobian;
 mod jacobian_derivative;
 mod jacobian_rate;
 mod joint_transforms;
+mod link_twists;
 
 #[cfg(test)]
 mod tests;
 
 pub(crate) use base::{base_motion, base_pose, base_twist};
 pub(crate) use configuration::{advance, rate_of_logarithm};
-pub(crate) use joint_transforms::joint_transforms;
+pub(crate) use jacobian::twist_of;
+pub(crate) use joint_transforms::{joint_sines, joint_transforms};
+pub(crate) use link_twists::link_twists;
 
 pub use configuration::{difference, integrate, moving_along};
 pub use forward::{forward_kinematics, frame_poses};

@@ -34,6 +34,16 @@ impl<S: Scalar> Adjoint<S> {
     }
 }
 
+impl<S: Scalar> AdjointTranspose<S> {
+    /// `[Ad_T]`ᵀ F + `to`.
+    #[inline(always)]
+    pub(crate) fn mul_add(self, F: Wrench<S>, to: Wrench<S>) -> Wrench<S> {
+        let SE3 { R, p } = self.0;
+        let R = R.matrix();
+        Wrench { m: R.transpose_mul_add(F.f.cross_add(p, F.m), to.m), f: R.transpose_mul_add(F.f, to.f) }
+    }
+}
+
 impl<S: Scalar> LieBracket<S> {
     /// `[ad_V]`ᵀ.
     #[inline(always)]
@@ -44,6 +54,15 @@ impl<S: Scalar> LieBracket<S> {
     /// The 6 × 6 matrix, as rows: `[[[ω], 0], [[v], [ω]]]`.
     pub fn to_matrix(self) -> [[S; 6]; 6] {
         columns(|e| self * e)
+    }
+}
+
+impl<S: Scalar> LieBracket<S> {
+    /// `[ad_V]` W + `to`.
+    #[inline(always)]
+    pub(crate) fn mul_add(self, W: Twist<S>, to: Twist<S>) -> Twist<S> {
+        let Twist { w, v } = self.0;
+        Twist { w: w.cross_add(W.w, to.w), v: v.cross_add(W.w, w.cross_add(W.v, to.v)) }
     }
 }
 

@@ -70,6 +70,27 @@ impl<S: Scalar> Mat3<S> {
         self.x.mul_add(vx, self.y.mul_add(vy, self.z * vz))
     }
 
+    /// Bᵀv + c.
+    #[inline(always)]
+    pub(crate) fn transpose_mul_add(self, v: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
+        let [vx, vy, vz] = v.0;
+        self.x.mul_add(vx, self.y.mul_add(vy, self.z.mul_add(vz, c)))
+    }
+
+    /// AB + C, with A = `self`.
+    #[inline(always)]
+    pub(crate) fn mul_add(self, B: Self, C: Self) -> Self {
+        let row = |a, c| B.transpose_mul_add(a, c);
+        Mat3 { x: row(self.x, C.x), y: row(self.y, C.y), z: row(self.z, C.z) }
+    }
+
+    /// A`[w]` + C, with A = `self`: row by row, rᵀ`[w]` = (r × w)ᵀ.
+    #[inline(always)]
+    pub(crate) fn mul_add_skew(self, w: Skew<S>, C: Self) -> Self {
+        let row = |r: Vec3<S>, c| r.cross_add(w.0, c);
+        Mat3 { x: row(self.x, C.x), y: row(self.y, C.y), z: row(self.z, C.z) }
+    }
+
     /// Each entry by f.
     #[inline(always)]
     pub fn map<U>(self, f: impl Fn(S) -> U) -> Mat3<U> {

@@ -2,6 +2,7 @@
 
 pub(crate) mod ldlt;
 mod mat3;
+mod pattern;
 mod skew;
 mod sym3;
 mod vec3;
@@ -10,6 +11,19 @@ pub use mat3::Mat3;
 pub(crate) use skew::Skew;
 pub use sym3::Sym3;
 pub use vec3::Vec3;
+
+use crate::scalar::Scalar;
+
+/// A ← A + Aᵀ, n × n.
+#[cfg_attr(not(test), inline(always))]
+pub fn add_transpose<S: Scalar>(n: usize, A: &mut [S]) {
+    for i in 0..n {
+        for j in 0..=i {
+            let sum = A[i * n + j] + A[j * n + i];
+            (A[i * n + j], A[j * n + i]) = (sum, sum);
+        }
+    }
+}
 
 /// Implements +, −, negation, · number and the assigning forms for a type that is a list of components, each with +, −, ….
 macro_rules! linear_space {

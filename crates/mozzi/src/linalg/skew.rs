@@ -25,6 +25,19 @@ impl<S: Scalar> Mul<Mat3<S>> for Skew<S> {
     }
 }
 
+impl<S: Scalar> Skew<S> {
+    /// `[w]` B + C.
+    #[inline(always)]
+    pub fn mul_add(self, B: Mat3<S>, C: Mat3<S>) -> Mat3<S> {
+        let [x, y, z] = self.0.0;
+        Mat3 {
+            x: B.z.mul_add(y, B.y.mul_add(-z, C.x)),
+            y: B.x.mul_add(z, B.z.mul_add(-x, C.y)),
+            z: B.y.mul_add(x, B.x.mul_add(-y, C.z)),
+        }
+    }
+}
+
 /// Row by row, rᵀ`[w]` = (r × w)ᵀ.
 impl<S: Scalar> Mul<Skew<S>> for Mat3<S> {
     type Output = Mat3<S>;

@@ -35,9 +35,22 @@ impl<S: Scalar> Sym3<S> {
     /// k aaᵀ.
     #[inline(always)]
     pub fn outer(a: Vec3<S>, k: S) -> Self {
+        Sym3::zero().plus_outer(a, k)
+    }
+
+    /// S + k aaᵀ.
+    #[inline(always)]
+    pub(crate) fn plus_outer(self, a: Vec3<S>, k: S) -> Self {
         let [x, y, z] = a.0;
         let [kx, ky, kz] = (a * k).0;
-        Sym3 { xx: kx * x, xy: kx * y, xz: kx * z, yy: ky * y, yz: ky * z, zz: kz * z }
+        Sym3 {
+            xx: kx.mul_add(x, self.xx),
+            xy: kx.mul_add(y, self.xy),
+            xz: kx.mul_add(z, self.xz),
+            yy: ky.mul_add(y, self.yy),
+            yz: ky.mul_add(z, self.yz),
+            zz: kz.mul_add(z, self.zz),
+        }
     }
 
     /// (B + Bᵀ)/2.
@@ -76,14 +89,20 @@ impl<S: Scalar> Sym3<S> {
     /// R S Rᵀ; for the upper triangle alone.
     #[inline(always)]
     pub fn congruence(self, R: Mat3<S>) -> Self {
+        self.congruence_add(R, Sym3::zero())
+    }
+
+    /// R S Rᵀ + C.
+    #[inline(always)]
+    pub(crate) fn congruence_add(self, R: Mat3<S>, C: Self) -> Self {
         let RS = R * self.to_mat3();
         Sym3 {
-            xx: RS.x.dot(R.x),
-            xy: RS.x.dot(R.y),
-            xz: RS.x.dot(R.z),
-            yy: RS.y.dot(R.y),
-            yz: RS.y.dot(R.z),
-            zz: RS.z.dot(R.z),
+            xx: RS.x.dot_add(R.x, C.xx),
+            xy: RS.x.dot_add(R.y, C.xy),
+            xz: RS.x.dot_add(R.z, C.xz),
+            yy: RS.y.dot_add(R.y, C.yy),
+            yz: RS.y.dot_add(R.z, C.yz),
+            zz: RS.z.dot_add(R.z, C.zz),
         }
     }
 }

@@ -29,6 +29,13 @@ impl<S: Scalar> Vec3<S> {
         ax.mul_add(bx, ay.mul_add(by, az * bz))
     }
 
+    /// a·b + c.
+    #[inline(always)]
+    pub(crate) fn dot_add(self, b: Self, c: S) -> S {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, b.0);
+        ax.mul_add(bx, ay.mul_add(by, az.mul_add(bz, c)))
+    }
+
     /// a × b.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {

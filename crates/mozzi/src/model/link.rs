@@ -3,6 +3,8 @@
 use crate::lie::SE3;
 use crate::scalar::Scalar;
 use crate::spatial::{JointAxis, SpatialInertia};
+use core::marker::PhantomData;
+use core::ops::Deref;
 
 /// One moving link, with all that is fixed to it, in the frame whose z-axis is its joint's screw axis.
 #[derive(Clone, Copy, Debug)]
@@ -37,48 +39,77 @@ impl<C: Scalar> Link<C> {
             offset: f(self.offset),
         }
     }
+}
 
+/// A link, its constants as `S`, each where it is asked for: a kernel that holds all of them at once has no registers left.
+#[derive(Clone, Copy)]
+pub(crate) struct Lifted<'m, C, S> {
+    link: &'m Link<C>,
+    number: PhantomData<S>,
+}
+
+impl<'m, C, S> Lifted<'m, C, S> {
     #[inline(always)]
-    pub fn lift<S: Scalar + From<C>>(&self) -> Link<S> {
-        Link {
-            parent: self.parent,
-            q: self.q,
-            j: self.j,
-            A: JointAxis { a: S::from(self.A.a), b: S::from(self.A.b) },
-            M: self.M.map(S::from),
-            G: self.G.map(S::from),
-            ratio: S::from(self.ratio),
-            offset: S::from(self.offset),
-        }
+    pub fn new(link: &'m Link<C>) -> Self {
+        Lifted { link, number: PhantomData }
+    }
+}
+
+/// What of a link is no number.
+impl<C, S> Deref for Lifted<'_, C, S> {
+    type Target = Link<C>;
+    #[inline(always)]
+    fn deref(&self) -> &Link<C> {
+        self.link
+    }
+}
+
+impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
+    /// A.
+    #[inline(always)]
+    pub fn A(&self) -> JointAxis<S> {
+        JointAxis { a: S::from(self.link.A.a), b: S::from(self.link.A.b) }
+    }
+
+    /// 𝒢.
+    #[inline(always)]
+    pub fn G(&self) -> SpatialInertia<S> {
+        self.link.G.map(S::from)
+    }
+
+    /// The joint's rate by its master's.
+    #[inline(always)]
+    pub fn ratio(&self) -> S {
+        S::from(self.link.ratio)
     }
 
     /// The joint's own variable, q = ratio · θ + offset.
     #[inline(always)]
-    fn own(&self, theta: &[C]) -> C {
-        self.ratio.mul_add(theta[self.q], self.offset)
+    fn own(&self, theta: &[S]) -> S {
+        self.ratio().mul_add(theta[self.link.q], S::from(self.link.offset))
     }
 
     /// T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1}.
     #[inline(always)]
-    pub fn transform(&self, theta: &[C]) -> SE3<C> {
+    pub fn transform(&self, theta: &[S]) -> SE3<S> {
         self.transform_with(self.sin_cos(theta), theta)
     }
 
     /// T_{i,i−1}(θ), given the sine and cosine of the joint's angle.
     #[inline(always)]
-    pub fn transform_with(&self, sin_cos: (C, C), theta: &[C]) -> SE3<C> {
-        self.A.transform(sin_cos, self.own(theta), self.M)
+    pub fn transform_with(&self, sin_cos: (S, S), theta: &[S]) -> SE3<S> {
+        self.A().transform(sin_cos, self.own(theta), self.link.M.map(S::from))
     }
 
     /// The sine and cosine of the joint's angle.
     #[inline(always)]
-    pub fn sin_cos(&self, theta: &[C]) -> (C, C) {
-        self.A.sin_cos(self.own(theta))
+    pub fn sin_cos(&self, theta: &[S]) -> (S, S) {
+        self.A().sin_cos(self.own(theta))
     }
 
     /// The joint's own rate, ratio · θ̇; likewise its acceleration.
     #[inline(always)]
-    pub fn rate(&self, dtheta: &[C]) -> C {
-        self.ratio * dtheta[self.j]
+    pub fn rate(&self, dtheta: &[S]) -> S {
+        self.ratio() * dtheta[self.link.j]
     }
 }

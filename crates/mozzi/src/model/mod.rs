@@ -30,7 +30,7 @@ pub use description::Description;
 pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
-pub(crate) use link::Link;
+pub(crate) use link::{Lifted, Link};
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub use variation::Variation;

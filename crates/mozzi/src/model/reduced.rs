@@ -21,7 +21,8 @@ impl Model<f64> {
     pub fn reduced(&self) -> Self {
         let mut model = self.clone();
         let own = |G: &SpatialInertia| (largest(G.mc), G.I.trace().abs());
-        let mut sizes: Vec<_> = core::iter::once(&self.base_inertia).chain(self.links.iter().map(|link| &link.G)).map(own).collect();
+        let mut sizes: Vec<_> =
+            core::iter::once(&self.base_inertia).chain(self.links.iter().map(|link| &link.G)).map(own).collect();
         for i in (1..=model.links.len()).rev() {
             let link = &mut model.links[i - 1];
             let (parent, R) = (link.parent, link.M.R.matrix());
@@ -31,11 +32,7 @@ impl Model<f64> {
             if link.A.b == 0.0 {
                 let G = link.G;
                 let ([.., z], J) = (G.mc.0, G.I.yy);
-                let axial = SpatialInertia {
-                    mass: G.mass,
-                    mc: Vec3([0.0, 0.0, z]),
-                    I: Sym3::diagonal(J, J, 0.0),
-                };
+                let axial = SpatialInertia { mass: G.mass, mc: Vec3([0.0, 0.0, z]), I: Sym3::diagonal(J, J, 0.0) };
                 link.G = G - axial;
                 let given = axial.congruence(link.M.Ad());
                 let (size, (mc, I)) = (&mut sizes[parent], own(&given));
@@ -78,9 +75,18 @@ mod tests {
             let of = |model: &Model| {
                 let environment = Environment { applied: &applied, ..model.environment() };
                 [
-                    model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths").as_slice().to_vec(),
+                    model
+                        .inverse_dynamics(&theta, &dtheta, &ddtheta, &environment)
+                        .expect("lengths")
+                        .as_slice()
+                        .to_vec(),
                     model.mass_matrix(&theta).expect("lengths").as_slice().to_vec(),
-                    model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths").by_theta.as_slice().to_vec(),
+                    model
+                        .inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment)
+                        .expect("lengths")
+                        .by_theta
+                        .as_slice()
+                        .to_vec(),
                 ]
             };
             for (found, reference) in of(&reduced).iter().zip(&of(&model)) {

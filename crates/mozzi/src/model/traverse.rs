@@ -3,7 +3,7 @@
 //! Iterators of our own, and not closures, so that a kernel's whole body is compiled for the instruction set of the entry
 //! that it is inlined into.
 
-use super::{Link, Model};
+use super::{Lifted, Link, Model};
 use crate::scalar::Scalar;
 use core::marker::PhantomData;
 
@@ -20,6 +20,12 @@ pub(crate) struct Inward;
 pub(crate) struct ToBase;
 
 impl<C: Scalar> Model<C> {
+    /// The link of a slot, which is not the base's.
+    #[inline(always)]
+    pub(crate) fn link<S>(&self, slot: usize) -> Lifted<'_, C, S> {
+        Lifted::new(&self.links[slot - 1])
+    }
+
     /// Base to tips.
     #[inline(always)]
     pub(crate) fn outward<S>(&self) -> Traverse<'_, C, S, Outward> {
@@ -39,34 +45,34 @@ impl<C: Scalar> Model<C> {
     }
 }
 
-impl<C: Scalar, S: Scalar + From<C>> Iterator for Traverse<'_, C, S, Outward> {
-    type Item = (usize, Link<S>);
+impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, Outward> {
+    type Item = (usize, Lifted<'m, C, S>);
     #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
         let link = self.links.get(self.slot - 1)?;
         self.slot += 1;
-        Some((self.slot - 1, link.lift()))
+        Some((self.slot - 1, Lifted::new(link)))
     }
 }
 
-impl<C: Scalar, S: Scalar + From<C>> Iterator for Traverse<'_, C, S, Inward> {
-    type Item = (usize, Link<S>);
+impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, Inward> {
+    type Item = (usize, Lifted<'m, C, S>);
     #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
         let slot = self.slot;
         let link = self.links.get(slot.wrapping_sub(1))?;
         self.slot -= 1;
-        Some((slot, link.lift()))
+        Some((slot, Lifted::new(link)))
     }
 }
 
-impl<C: Scalar, S: Scalar + From<C>> Iterator for Traverse<'_, C, S, ToBase> {
-    type Item = (usize, Link<S>);
+impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, ToBase> {
+    type Item = (usize, Lifted<'m, C, S>);
     #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
         let slot = self.slot;
         let link = self.links.get(slot.wrapping_sub(1))?;
         self.slot = link.parent;
-        Some((slot, link.lift()))
+        Some((slot, Lifted::new(link)))
     }
 }

@@ -8,7 +8,7 @@
 use super::{Fused, Scalar};
 
 /// `f64` or `f32`, with the numbers of its [`sin_cos`].
-pub trait Float: Scalar + PartialOrd + Send + Sync + 'static {
+pub trait Float: super::Real + Send + Sync + 'static {
     /// [`sin_cos`] is exact to rounding up to this |x|.
     const LARGEST: Self;
     /// 1.5 · 2⁵² or 1.5 · 2²³: adding and subtracting it rounds to the nearest integer.
@@ -45,22 +45,21 @@ pub trait Bits: Scalar {
 pub fn sin_cos<S: Bits>(x: S) -> (S, S) {
     let constant = S::constant;
     let [p0, p1, p2] = S::Number::HALF_PI.map(constant);
-    let (half, one, minus_zero) = (S::from_f64(0.5), S::one(), S::from_f64(-0.0));
-    let quadrant = x * constant(S::Number::TWO_OVER_PI) + constant(S::Number::ROUND); // k in the lowest bits
+    let (minus_half, one, minus_zero) = (S::from_f64(-0.5), S::one(), S::from_f64(-0.0));
+    let quadrant = x.mul_add(constant(S::Number::TWO_OVER_PI), constant(S::Number::ROUND)); // k in the lowest bits
     let k = quadrant - constant(S::Number::ROUND); // x = k π/2 + r
-    let (t, w) = (x - k * p0, k * p1); // both exact
+    let (t, w) = ((-k).mul_add(p0, x), k * p1); // both exact
     let hi = t - w;
-    let lo = k * p2 - ((t - hi) - w);
+    let lo = k.mul_add(p2, w - (t - hi));
     let r = hi - lo;
     let tail = (hi - r) - lo; // what the rounding of r lost
     let z = r * r;
     let s = polynomial(S::Number::SIN, z);
     let c = polynomial(S::Number::COS, z);
     // sin(r + tail) = r + (tail + r³ s(z)); cos(r + tail) = 1 − z/2 + (z² c(z) − r tail), 1 − z/2 compensated
-    let half_z = half * z;
-    let sin = r + (r * z).mul_add(s, tail * (one - half_z));
-    let near_one = one - half_z;
-    let cos = near_one + (((one - near_one) - half_z) + (z * z).mul_add(c, -(r * tail)));
+    let near_one = minus_half.mul_add(z, one);
+    let sin = r + (r * z).mul_add(s, tail * near_one);
+    let cos = near_one + (minus_half.mul_add(z, one - near_one) + (z * z).mul_add(c, -(r * tail)));
     // exchange in odd quadrants; sin is negative in quadrants 2 and 3, cos in 1 and 2
     let odd = quadrant.lowest_everywhere();
     let (exchange, negative) = (sin.xor(cos).and(odd), quadrant.second_lowest_as_sign());

@@ -4,6 +4,7 @@ use super::options::check;
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
 use crate::dynamics::{forward_dynamics, kinetic_energy, potential_energy};
+use crate::kinematics::link_twists;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, FrameId, Model, Workspace};
 use crate::scalar::Scalar;
@@ -58,7 +59,7 @@ impl<'m, I: Input> Equation<'m, I> {
         let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
         let workspace = &mut self.workspace;
         forward_dynamics(self.model, theta, dtheta, &self.force, &environment, workspace, ddtheta);
-        let applied_power = self.applied_power(); // of the twists in the workspace, before others use it
+        let applied_power = self.applied_power(theta, dtheta); // of the configurations in the workspace, before others use it
         self.model.check_pivots(theta, &mut self.workspace)?;
         self.bounded("ddtheta", t, ddtheta)?;
         let motor_power = self.tau.iter().zip(dtheta).map(|(tau, rate)| tau * rate).sum();
@@ -119,8 +120,9 @@ impl<'m, I: Input> Equation<'m, I> {
         power
     }
 
-    /// Σ 𝒱_bᵀF_b, with the links' twists that forward dynamics left behind.
-    fn applied_power(&self) -> f64 {
+    /// Σ 𝒱_bᵀF_b, with the configurations T_{i,i−1} that forward dynamics left behind.
+    fn applied_power(&mut self, theta: &[f64], dtheta: &[f64]) -> f64 {
+        link_twists(self.model, theta, dtheta, Twist::zero(), &mut self.workspace);
         let power = |&(frame, F): &(FrameId, Wrench)| {
             let frame = self.model.frame_at::<f64>(frame);
             (frame.T.inverse().Ad() * self.workspace.V[frame.slot]).dot(F)

@@ -38,10 +38,12 @@ impl Method {
     }
 }
 
-/// A state with its rates, and with integrals of K further rates (such as work, of powers).
+/// A state with its rates, and with integrals of K further rates (such as work, of powers). Or the states of many robots of one
+/// model, side by side.
 #[derive(Clone, Debug)]
 pub struct Motion<S = f64, const K: usize = 0> {
     base: Base,
+    robots: usize,
     /// Time in seconds.
     pub t: f64,
     /// θ, nq positions.
@@ -63,9 +65,24 @@ struct Stage<S> {
     theta: Vec<S>,
     dtheta: Vec<S>,
     ddtheta: Vec<S>,
+    /// The velocities that led to this stage.
+    u: Vec<S>,
     /// Weighted sums over the stages.
     mean_dtheta: Vec<S>,
     mean_ddtheta: Vec<S>,
+}
+
+/// θ ← θ ⊕ θ̇h of each robot.
+fn advance_each<S: Real>(base: Base, robots: usize, theta: &mut [S], dtheta: &[S], h: S) {
+    let (nq, n) = (theta.len() / robots.max(1), dtheta.len() / robots.max(1));
+    match base {
+        Base::Fixed => advance(base, theta, dtheta, h), // number by number
+        Base::Floating => {
+            for (theta, dtheta) in theta.chunks_exact_mut(nq).zip(dtheta.chunks_exact(n)) {
+                advance(base, theta, dtheta, h);
+            }
+        }
+    }
 }
 
 /// x ← x + kh.
@@ -85,6 +102,22 @@ impl<S: Real, const K: usize> Motion<S, K> {
         t: f64,
         theta: &[S],
         dtheta: &[S],
+        F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
+    ) -> Result<Self, E> {
+        Self::start_many(base, 1, t, theta, dtheta, F)
+    }
+
+    /// As [`start`](Self::start), of this many robots: θ has the positions of one after the other, θ̇ their velocities, and F is asked of
+    /// all of them at once.
+    ///
+    /// # Errors
+    /// Those of F.
+    pub fn start_many<E>(
+        base: Base,
+        robots: usize,
+        t: f64,
+        theta: &[S],
+        dtheta: &[S],
         mut F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
     ) -> Result<Self, E> {
         let zeros = vec![S::zero(); dtheta.len()];
@@ -92,6 +125,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
         let rates = F(t, theta, dtheta, &mut ddtheta)?;
         Ok(Motion {
             base,
+            robots,
             t,
             theta: theta.to_vec(),
             dtheta: dtheta.to_vec(),
@@ -102,6 +136,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
                 theta: theta.to_vec(),
                 dtheta: zeros.clone(),
                 ddtheta: zeros.clone(),
+                u: zeros.clone(),
                 mean_dtheta: zeros.clone(),
                 mean_ddtheta: zeros,
             },
@@ -123,13 +158,13 @@ impl<S: Real, const K: usize> Motion<S, K> {
         let dt = S::from_f64(h);
         match method {
             Method::Euler => {
-                advance(self.base, &mut self.theta, &self.dtheta, dt);
+                advance_each(self.base, self.robots, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.dtheta, &self.ddtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
             Method::SemiImplicitEuler => {
                 add(&mut self.dtheta, &self.ddtheta, dt);
-                advance(self.base, &mut self.theta, &self.dtheta, dt);
+                advance_each(self.base, self.robots, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
             Method::RungeKutta4 => self.runge_kutta_4(h, t_next, &mut F)?,
@@ -147,7 +182,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
         t_next: f64,
         F: &mut impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
     ) -> Result<(), E> {
-        let Stage { theta, dtheta, ddtheta, mean_dtheta, mean_ddtheta } = &mut self.stage;
+        let Stage { theta, dtheta, ddtheta, u, mean_dtheta, mean_ddtheta } = &mut self.stage;
         let sixth = S::from_f64(1.0 / 6.0);
         dtheta.copy_from_slice(&self.dtheta);
         ddtheta.copy_from_slice(&self.ddtheta);
@@ -163,20 +198,25 @@ impl<S: Real, const K: usize> Motion<S, K> {
         for (along, t, weight) in stages {
             let along = S::from_f64(along);
             theta.copy_from_slice(&self.theta);
-            advance(self.base, theta, dtheta, along); // with the velocity of the stage before, which is then replaced
-            let u = dtheta.first_chunk().map(|&V| Twist::from_array(V) * along);
+            advance_each(self.base, self.robots, theta, dtheta, along); // with the velocity of the stage before
+            u.copy_from_slice(dtheta);
             dtheta.copy_from_slice(&self.dtheta);
             add(dtheta, ddtheta, along);
             let rates = F(t, theta, dtheta, ddtheta)?;
-            if let (Some(u), Some(V), Base::Floating) = (u, dtheta.first_chunk_mut(), self.base) {
-                *V = rate_of_logarithm(u, Twist::from_array(*V)).to_array();
+            if self.base == Base::Floating {
+                let n = dtheta.len() / self.robots;
+                for (V, u) in dtheta.chunks_exact_mut(n).zip(u.chunks_exact(n)) {
+                    if let (Some(V), Some(&u)) = (V.first_chunk_mut(), u.first_chunk()) {
+                        *V = rate_of_logarithm(Twist::from_array(u) * along, Twist::from_array(*V)).to_array();
+                    }
+                }
             }
             add(mean_dtheta, dtheta, weight);
             add(mean_ddtheta, ddtheta, weight);
             add(&mut mean_rates, &rates, weight);
         }
         let dt = S::from_f64(h);
-        advance(self.base, &mut self.theta, mean_dtheta, dt);
+        advance_each(self.base, self.robots, &mut self.theta, mean_dtheta, dt);
         add(&mut self.dtheta, mean_ddtheta, dt);
         add(&mut self.integrals, &mean_rates, dt);
         Ok(())

@@ -2,7 +2,7 @@
 
 use super::{JointAxis, SpatialInertia, Twist, Wrench};
 use crate::lie::Adjoint;
-use crate::linalg::{Mat3, Skew, Sym3, linear_space};
+use crate::linalg::{Mat3, Skew, Sym3, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::ops::Mul;
 
@@ -31,11 +31,33 @@ impl<S: Scalar> ArticulatedInertia<S> {
     /// `[Ad_T]`ᵀ Ĝ `[Ad_T]`.
     #[inline(always)]
     pub fn congruence(self, Ad: Adjoint<S>) -> Self {
+        self.congruence_add(Ad, SpatialInertia::zero().into())
+    }
+
+    /// `[Ad_T]`ᵀ Ĝ `[Ad_T]` + `to`.
+    #[inline(always)]
+    pub(crate) fn congruence_add(self, Ad: Adjoint<S>, to: Self) -> Self {
         let (P, Rt) = (Skew(Ad.0.p), Ad.0.R.matrix().transpose());
         // [Ad] = [[1, 0], [P, 1]] diag(R, R): fold P, of which Pᵀ = −P, then turn
-        let H = self.H - P * self.M.to_mat3();
-        let I = self.I + Sym3::upper(H * P + (self.H * P).transpose());
-        ArticulatedInertia { I: I.congruence(Rt), H: Rt * H * Rt.transpose(), M: self.M.congruence(Rt) }
+        let H = Skew(-P.0).mul_add(self.M.to_mat3(), self.H);
+        let I = Sym3::upper(H.mul_add_skew(P, self.H.mul_add_skew(P, self.I.to_mat3()).transpose()));
+        ArticulatedInertia {
+            I: I.congruence_add(Rt, to.I),
+            H: (Rt * H).mul_add(Rt.transpose(), to.H),
+            M: self.M.congruence_add(Rt, to.M),
+        }
+    }
+
+    /// Ĝ V + `to`.
+    #[inline(always)]
+    pub(crate) fn mul_add(self, V: Twist<S>, to: Wrench<S>) -> Wrench<S> {
+        let (I, H, M) = (self.I.to_mat3(), self.H, self.M.to_mat3());
+        let row = |I: Vec3<S>, H: Vec3<S>, to| I.dot_add(V.w, H.dot_add(V.v, to));
+        let ([mx, my, mz], [fx, fy, fz], Ht) = (to.m.0, to.f.0, H.transpose());
+        Wrench {
+            m: Vec3([row(I.x, H.x, mx), row(I.y, H.y, my), row(I.z, H.z, mz)]),
+            f: Vec3([row(Ht.x, M.x, fx), row(Ht.y, M.y, fy), row(Ht.z, M.z, fz)]),
+        }
     }
 
     /// Ĝ − U Uᵀ/d, with 1/d given.
@@ -44,9 +66,9 @@ impl<S: Scalar> ArticulatedInertia<S> {
         let k = -one_over_d;
         let [x, y, z] = (U.m * k).0;
         ArticulatedInertia {
-            I: self.I + Sym3::outer(U.m, k),
+            I: self.I.plus_outer(U.m, k),
             H: Mat3 { x: U.f.mul_add(x, self.H.x), y: U.f.mul_add(y, self.H.y), z: U.f.mul_add(z, self.H.z) },
-            M: self.M + Sym3::outer(U.f, k),
+            M: self.M.plus_outer(U.f, k),
         }
     }
 
@@ -63,7 +85,7 @@ impl<S: Scalar> Mul<Twist<S>> for ArticulatedInertia<S> {
     type Output = Wrench<S>;
     #[inline(always)]
     fn mul(self, V: Twist<S>) -> Wrench<S> {
-        Wrench { m: self.I * V.w + self.H * V.v, f: self.H.transpose_mul(V.w) + self.M * V.v }
+        self.mul_add(V, Wrench::zero())
     }
 }
 

@@ -45,14 +45,20 @@ impl<S: Scalar> SpatialInertia<S> {
     /// (Modern Robotics 8.42).
     #[inline(always)]
     pub fn congruence(self, Ad: Adjoint<S>) -> Self {
+        self.congruence_add(Ad, SpatialInertia::zero())
+    }
+
+    /// `[Ad_T]`ᵀ 𝒢 `[Ad_T]` + `to`.
+    #[inline(always)]
+    pub(crate) fn congruence_add(self, Ad: Adjoint<S>, to: Self) -> Self {
         let (SE3 { R, p }, Rt) = (Ad.0, Ad.0.R.matrix().transpose());
         let shifted = p.mul_add(-self.mass, self.mc);
         // I about p: I + [mc − mp][p] + [p][mc], whose upper triangle is taken
         let steiner = Skew(shifted) * Skew(p) + Skew(p) * Skew(self.mc);
         SpatialInertia {
-            mass: self.mass,
-            mc: R.inverse_mul(shifted),
-            I: (self.I + Sym3::upper(steiner)).congruence(Rt),
+            mass: self.mass + to.mass,
+            mc: R.matrix().transpose_mul_add(shifted, to.mc),
+            I: (self.I + Sym3::upper(steiner)).congruence_add(Rt, to.I),
         }
     }
 

@@ -78,14 +78,39 @@ impl<S: Scalar> Add<JointTwist<S>> for Twist<S> {
     }
 }
 
+/// `[ad_V]` A θ̇, whose z-components are 0: not computed, nor added.
+#[derive(Clone, Copy)]
+pub(crate) struct JointBracket<S> {
+    V: Twist<S>,
+    A: JointTwist<S>,
+}
+
+impl<S: Scalar> JointBracket<S> {
+    #[inline(always)]
+    pub fn twist(self) -> Twist<S> {
+        let ([wx, wy, _], [vx, vy, _], o) = (self.V.w.0, self.V.v.0, S::zero());
+        let JointTwist { w, v } = self.A;
+        Twist { w: Vec3([wy * w, -(wx * w), o]), v: Vec3([vy.mul_add(w, wy * v), -(vx.mul_add(w, wx * v)), o]) }
+    }
+}
+
 impl<S: Scalar> Mul<JointTwist<S>> for LieBracket<S> {
+    type Output = JointBracket<S>;
+    #[inline(always)]
+    fn mul(self, A: JointTwist<S>) -> JointBracket<S> {
+        JointBracket { V: self.0, A }
+    }
+}
+
+impl<S: Scalar> Add<JointBracket<S>> for Twist<S> {
     type Output = Twist<S>;
     #[inline(always)]
-    fn mul(self, A: JointTwist<S>) -> Twist<S> {
-        let ([wx, wy, _], [vx, vy, _], o) = (self.0.w.0, self.0.v.0, S::zero());
+    fn add(self, o: JointBracket<S>) -> Twist<S> {
+        let ([wx, wy, _], [vx, vy, _], JointTwist { w, v }) = (o.V.w.0, o.V.v.0, o.A);
+        let ([x, y, z], [a, b, c]) = (self.w.0, self.v.0);
         Twist {
-            w: Vec3([wy * A.w, -(wx * A.w), o]),
-            v: Vec3([vy.mul_add(A.w, wy * A.v), -(vx.mul_add(A.w, wx * A.v)), o]),
+            w: Vec3([wy.mul_add(w, x), (-wx).mul_add(w, y), z]),
+            v: Vec3([vy.mul_add(w, wy.mul_add(v, a)), (-vx).mul_add(w, (-wx).mul_add(v, b)), c]),
         }
     }
 }
@@ -101,7 +126,7 @@ mod tests {
         for (a, b) in [(1.0, 0.0), (0.0, 1.0), (1.0, 0.3)] {
             let A = JointAxis { a, b };
             assert!(distance(A.transform(A.sin_cos(q), q, M), SE3::exp(A.twist() * -q) * M) < 1e-15);
-            assert!((V.ad() * (A * q) - V.ad() * (A.twist() * q)).norm() < 1e-15);
+            assert!(((V.ad() * (A * q)).twist() - V.ad() * (A.twist() * q)).norm() < 1e-15);
             assert!((V + A * q - (V + A.twist() * q)).norm() == 0.0);
             assert!((A.seen_through(M) - M.inverse().Ad() * A.twist()).norm() < 1e-15);
         }

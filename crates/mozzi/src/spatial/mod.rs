@@ -8,6 +8,7 @@ mod joint_axis;
 mod nearest_physical;
 mod screw_axis;
 pub mod solids;
+mod spin;
 mod twist;
 mod wrench;
 

@@ -63,7 +63,13 @@ impl<S: Scalar> Twist<S> {
     /// The power ωᵀm + vᵀf, in watts.
     #[inline(always)]
     pub fn dot(self, F: Wrench<S>) -> S {
-        self.w.dot(F.m) + self.v.dot(F.f)
+        self.w.dot_add(F.m, self.v.dot(F.f))
+    }
+
+    /// k V + W.
+    #[inline(always)]
+    pub(crate) fn mul_add(self, k: S, W: Self) -> Self {
+        Twist { w: self.w.mul_add(k, W.w), v: self.v.mul_add(k, W.v) }
     }
 
     /// `[V]`, the 4 × 4 matrix `[[[ω], v], [0, 0]]`, as rows.

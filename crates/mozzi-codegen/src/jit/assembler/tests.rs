@@ -1,8 +1,8 @@
 //! Each form against a disassembler.
 
 use super::*;
-use iced_x86::{Code, Decoder, DecoderOptions, Instruction, Mnemonic, OpKind};
 use iced_x86::Register as Named;
+use iced_x86::{Code, Decoder, DecoderOptions, Instruction, Mnemonic, OpKind};
 
 const BYTES: usize = 1 << 16;
 /// Low, high, and with the fifth bit.
@@ -127,7 +127,8 @@ fn operations_on_one_number() {
     for shape in Shape::ALL {
         for (target, from) in registers(shape).zip(registers(shape).cycle().skip(3)) {
             let (to, register) = (named(shape, target), Operand::Register(from));
-            let root = check(shape, &format!("vsqrt{}", suffix(shape)), |a| a.apply(Operation::Sqrt, target, from, register));
+            let root =
+                check(shape, &format!("vsqrt{}", suffix(shape)), |a| a.apply(Operation::Sqrt, target, from, register));
             assert_eq!(root.op_register(0), to);
             (1..root.op_count()).for_each(|k| assert_eq!(root.op_register(k), named(shape, from)));
             let shift = if shape.is_f64() { "vpsllq" } else { "vpslld" };
@@ -167,7 +168,8 @@ fn fused_products() {
 #[test]
 fn loads_and_stores() {
     for shape in Shape::ALL {
-        let moves = if shape.is_scalar() { format!("vmov{}", suffix(shape)) } else { format!("vmovu{}", suffix(shape)) };
+        let moves =
+            if shape.is_scalar() { format!("vmov{}", suffix(shape)) } else { format!("vmovu{}", suffix(shape)) };
         let copies = if shape.is_f64() { "vmovapd" } else { "vmovaps" };
         for (target, place) in registers(shape).cycle().zip(places(shape)) {
             let (memory, byte) = place;
@@ -215,10 +217,13 @@ fn a_function_keeps_what_is_its_callers() {
                 }
             }
             assert_eq!(pushed[1..], expected);
-            let loads: Vec<_> = found.iter().filter(|x| x.mnemonic() == Mnemonic::Mov && x.memory_base() == Named::RDI).collect();
+            let loads: Vec<_> =
+                found.iter().filter(|x| x.mnemonic() == Mnemonic::Mov && x.memory_base() == Named::RDI).collect();
             assert_eq!(loads.len(), arrays);
             for memory in 0..arrays {
-                let at = |x: &&&Instruction| x.memory_displacement64() == 8 * memory as u64 && x.op0_register() == base(memory);
+                let at = |x: &&&Instruction| {
+                    x.memory_displacement64() == 8 * memory as u64 && x.op0_register() == base(memory)
+                };
                 assert_eq!(loads.iter().filter(at).count(), 1, "array {memory}");
             }
             assert!(loads[..arrays - 1].iter().all(|x| x.op0_register() != Named::RDI), "rdi last");
@@ -230,7 +235,10 @@ fn a_function_keeps_what_is_its_callers() {
                 .sum();
             assert!(given >= frame as u64 + 63, "{given} bytes for {frame}");
             let lea: Vec<_> = found.iter().filter(|x| x.mnemonic() == Mnemonic::Lea).collect();
-            assert_eq!((lea[0].op0_register(), lea[0].memory_base(), lea[0].memory_displacement64()), (base(own), Named::RSP, 63));
+            assert_eq!(
+                (lea[0].op0_register(), lea[0].memory_base(), lea[0].memory_displacement64()),
+                (base(own), Named::RSP, 63)
+            );
             let and = found.iter().find(|x| x.mnemonic() == Mnemonic::And).expect("an alignment");
             assert_eq!((and.op0_register(), and.immediate8to64()), (base(own), -64));
             let back = lea[1];

@@ -1,0 +1,137 @@
+//! One robot: first that all values agree, then everything in turn, again and again.
+
+use crate::contestant::{self, Entry};
+use crate::count::{Count, count};
+use crate::peak::Width;
+use crate::peer::Peer;
+use crate::quantity::Quantity;
+use mozzi::Model;
+use mozzi_benches::States;
+use std::time::{Duration, Instant};
+
+/// Further apart than this, over the largest entry, two libraries do not compute the same. The longest chain needs it: its M
+/// is so badly conditioned that accelerations keep ten digits.
+const LARGEST_DIFFERENCE: f64 = 1e-8;
+
+/// The times of one algorithm, in nanoseconds for one evaluation.
+#[derive(Clone, Debug)]
+pub struct Time {
+    /// What the library calls it.
+    pub algorithm: String,
+    pub least: f64,
+    pub median: f64,
+}
+
+/// One quantity of one robot.
+pub struct Row {
+    pub quantity: Quantity,
+    pub count: Count,
+    /// The fastest algorithm of each column, where it has any.
+    pub times: Vec<Option<Time>>,
+}
+
+/// One library, or one of mozzi's ways.
+pub struct Column {
+    pub name: String,
+    pub width: Option<Width>,
+    /// The largest difference from the first column.
+    pub difference: f64,
+}
+
+/// One robot.
+pub struct Table {
+    pub robot: String,
+    pub n: usize,
+    pub states: usize,
+    pub rounds: usize,
+    pub columns: Vec<Column>,
+    pub rows: Vec<Row>,
+}
+
+/// One algorithm of one entry.
+struct Runner {
+    entry: usize,
+    algorithm: usize,
+    quantity: Quantity,
+    name: String,
+    times: Vec<f64>,
+}
+
+/// Everything on one robot.
+pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Table, String> {
+    let states = States::with_count(model, if model.n() > 50 { States::COUNT / 8 } else { States::COUNT });
+    let mut entries = contestant::all(slug, model, &states, peers)?;
+    let columns = checked(title, model, &states, &mut entries)?;
+    let mut runners = Vec::new();
+    for (entry, Entry { contestant, .. }) in entries.iter().enumerate() {
+        for (algorithm, (quantity, name)) in contestant.algorithms().into_iter().enumerate() {
+            runners.push(Runner { entry, algorithm, quantity, name, times: Vec::new() });
+        }
+    }
+    runners.sort_by_key(|runner| Quantity::ALL.iter().position(|&quantity| quantity == runner.quantity));
+    let (start, mut rounds) = (Instant::now(), 0);
+    while start.elapsed() < time || rounds < 20 {
+        rounds += 1;
+        for Runner { entry, algorithm, times, .. } in &mut runners {
+            let contestant = &mut entries[*entry].contestant;
+            contestant.run(*algorithm); // what ran before leaves its own caches, branch history and, without AVX, half the unit asleep
+            let start = Instant::now();
+            contestant.run(*algorithm);
+            times.push(start.elapsed().as_secs_f64() * 1e9 / states.count() as f64);
+        }
+    }
+    let state = states.iter().next().ok_or("no states")?;
+    let rows = Quantity::ALL.map(|quantity| Row {
+        quantity,
+        count: count(quantity, model, state),
+        times: (0..entries.len()).map(|entry| fastest(&runners, entry, quantity)).collect(),
+    });
+    let rows = Vec::from(rows);
+    Ok(Table { robot: title.into(), n: model.n(), states: states.count(), rounds, columns, rows })
+}
+
+/// The columns, once every algorithm gave the first one's numbers at every state.
+fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -> Result<Vec<Column>, String> {
+    let mut differences = vec![0.0_f64; entries.len()];
+    for quantity in Quantity::ALL {
+        for state in 0..states.count() {
+            let reference = entries[0].contestant.result(of(&entries[0], quantity)[0], state)?;
+            for (entry, worst) in entries.iter_mut().zip(&mut differences) {
+                for algorithm in of(entry, quantity) {
+                    let difference = quantity.difference(&entry.contestant.result(algorithm, state)?, &reference);
+                    if !(difference <= LARGEST_DIFFERENCE) {
+                        let (name, what) = (&entry.name, quantity.name());
+                        return Err(format!(
+                            "{title} of {} velocities: {what} by {name} ({}) differs from mozzi's by {difference:.1e} at state {state}",
+                            model.n(),
+                            entry.contestant.algorithms()[algorithm].1
+                        ));
+                    }
+                    *worst = worst.max(difference);
+                }
+            }
+        }
+    }
+    let columns = entries.iter().zip(differences).map(|(entry, difference)| Column {
+        name: entry.name.clone(),
+        width: entry.width,
+        difference,
+    });
+    Ok(columns.collect())
+}
+
+/// The algorithms that an entry has for a quantity.
+fn of(entry: &Entry, quantity: Quantity) -> Vec<usize> {
+    let algorithms = entry.contestant.algorithms();
+    (0..algorithms.len()).filter(|&k| algorithms[k].0 == quantity).collect()
+}
+
+fn fastest(runners: &[Runner], entry: usize, quantity: Quantity) -> Option<Time> {
+    let mine = runners.iter().filter(|runner| runner.entry == entry && runner.quantity == quantity);
+    let times = mine.map(|runner| {
+        let mut sorted = runner.times.clone();
+        sorted.sort_by(f64::total_cmp);
+        Time { algorithm: runner.name.clone(), least: sorted[0], median: sorted[sorted.len() / 2] }
+    });
+    times.min_by(|a, b| a.least.total_cmp(&b.least))
+}

@@ -1,0 +1,19 @@
+//! The body twist of every link (Modern Robotics 8.51).
+
+use super::base_twist;
+use crate::model::{Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::Twist;
+
+/// `workspace.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; the workspace holds T_{i,i−1}(θ).
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
+) {
+    let Workspace { T, V, .. } = workspace;
+    V[0] = base_twist(model, theta, dtheta, V_s);
+    for (i, link) in model.outward::<S>() {
+        V[i] = T[i].Ad() * V[link.parent] + link.A() * link.rate(dtheta);
+    }
+}

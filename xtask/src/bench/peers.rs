@@ -1,0 +1,136 @@
+//! How each peer is built: a library with the interface of `benches/peers/peer.hpp`.
+
+use super::workshop::Workshop;
+use crate::command;
+use crate::venv;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+pub struct Peer {
+    pub name: &'static str,
+    /// The library, or why there is none.
+    pub build: fn(&Workshop) -> Result<PathBuf, String>,
+}
+
+pub const PEERS: [Peer; 6] = [
+    Peer { name: "Pinocchio", build: pinocchio },
+    Peer { name: "MuJoCo", build: mujoco },
+    Peer { name: "KDL", build: kdl },
+    Peer { name: "dynibo", build: dynibo },
+    Peer { name: "CasADi", build: casadi },
+    Peer { name: "Drake", build: drake },
+];
+
+const HEADER: &str = "benches/peers/peer.hpp";
+/// What makes a difference to the speed, and is quoted.
+const FAST: &str = "-std=c++17 -O3 -march=native -DNDEBUG";
+
+/// From the headers of PyPI's `pin`: the library of the wheel is slower, and so is gcc's code.
+fn pinocchio(workshop: &Workshop) -> Result<PathBuf, String> {
+    const SOURCE: &str = "benches/peers/pinocchio.cpp";
+    const REQUIREMENTS: &str = "benches/requirements.txt"; // Eigen's headers, which Pinocchio's wheel has not
+    /// The headers name more joints than Boost's lists take.
+    const BOOST: &str = "-DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_LIMIT_VECTOR_SIZE=30 \
+        -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS -DBOOST_FUSION_INVOKE_MAX_ARITY=12";
+    let words = format!("{FAST} {BOOST}");
+    workshop.library("pinocchio", &words, &[SOURCE, HEADER, REQUIREMENTS, "oracles/requirements.txt"], |library| {
+        workshop.pip(REQUIREMENTS)?;
+        let prefix = workshop.package("cmeel.prefix")?;
+        println!("Pinocchio is being compiled: three minutes by clang, more by g++.");
+        let mut compile = workshop.compile(FAST);
+        compile.args(BOOST.split(' '));
+        for folder in ["include", "include/eigen3"] {
+            compile.arg("-isystem").arg(prefix.join(folder));
+        }
+        let lib = prefix.join("lib").display().to_string();
+        compile.arg(SOURCE).arg("-o").arg(library);
+        command::run(compile.args([&format!("-L{lib}"), "-lboost_serialization", &format!("-Wl,-rpath,{lib}")]))
+    })
+}
+
+/// The library of PyPI's `mujoco`.
+fn mujoco(workshop: &Workshop) -> Result<PathBuf, String> {
+    const SOURCE: &str = "benches/peers/mujoco.cpp";
+    let package = workshop.package("mujoco")?;
+    let wheels = file(&package, "libmujoco.so").ok_or("its wheel brought no libmujoco.so")?;
+    workshop.library("mujoco", &format!("{FAST} {}", wheels.display()), &[SOURCE, HEADER], |library| {
+        let mut compile = workshop.compile(FAST);
+        compile.arg("-isystem").arg(package.join("include")).arg(SOURCE).arg("-o").arg(library);
+        command::run(compile.arg(&wheels).arg(format!("-Wl,-rpath,{}", package.display())))
+    })
+}
+
+/// Debian's. Without `-march=native`: Eigen would align its memory otherwise than in Debian's library, which frees it.
+fn kdl(workshop: &Workshop) -> Result<PathBuf, String> {
+    const SOURCE: &str = "benches/peers/kdl.cpp";
+    const WORDS: &str = "-std=c++17 -O3 -DNDEBUG";
+    const EIGEN: &str = "/usr/include/eigen3";
+    if !Path::new("/usr/include/kdl").is_dir() {
+        return Err("apt install liborocos-kdl-dev, or cargo xtask bench --install".into());
+    }
+    workshop.library("kdl", WORDS, &[SOURCE, HEADER], |library| {
+        let mut compile = workshop.compile(WORDS);
+        command::run(compile.args(["-isystem", EIGEN, SOURCE, "-o"]).arg(library).arg("-lorocos-kdl"))
+    })
+}
+
+/// From the crate registry, a package outside of the workspace, compiled for this machine.
+fn dynibo(workshop: &Workshop) -> Result<PathBuf, String> {
+    const FOLDER: &str = "benches/peers/dynibo";
+    const WORDS: &str = "-C target-cpu=native";
+    let manifest = format!("{FOLDER}/Cargo.toml");
+    let mut cargo =
+        workshop.workspace.cargo(&["build", "--release", "--quiet", "--locked", "--manifest-path", &manifest]);
+    let target = workshop.built("dynibo");
+    cargo.arg("--target-dir").arg(&target).env("RUSTFLAGS", WORDS).env("PEER_FLAGS", WORDS);
+    command::run(cargo)?;
+    let name = format!("{}dynibo_peer{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    Ok(target.join("release").join(name))
+}
+
+/// C that PyPI's `casadi` generates for each robot.
+fn casadi(workshop: &Workshop) -> Result<PathBuf, String> {
+    const SCRIPT: &str = "benches/peers/casadi_kernels.py";
+    const SOURCE: &str = "benches/peers/casadi.cpp";
+    const REQUIREMENTS: &str = "benches/requirements-casadi.txt";
+    const WORDS: &str = "-O3 -march=native -ffast-math";
+    let robots = workshop.built("robots");
+    let read = |path: &PathBuf| std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()));
+    let numbers = files(&robots, "txt").iter().map(read).collect::<Result<String, _>>()?;
+    workshop.library("casadi", &format!("{WORDS}\n{numbers}"), &[SCRIPT, SOURCE, HEADER, REQUIREMENTS], |library| {
+        workshop.pip(REQUIREMENTS)?;
+        let folder = workshop.workspace.fresh_folder("target/bench/casadi")?;
+        let mut python = Command::new(venv::python(workshop.workspace));
+        command::run(python.current_dir(&workshop.workspace.root).arg(SCRIPT).arg(&robots).arg(&folder))?;
+        for source in files(&folder, "c") {
+            let mut compile = Command::new(workshop.c_compiler());
+            compile.args(WORDS.split(' ')).args(["-fPIC", "-c"]);
+            command::run(compile.arg(&source).arg("-o").arg(source.with_extension("o")))?;
+        }
+        // not linked with -ffast-math, which would let the whole process round small numbers to zero
+        let mut link = Command::new(workshop.compiler);
+        link.current_dir(&workshop.workspace.root).args(["-std=c++17", "-O3", "-fPIC", "-shared"]);
+        link.arg(format!("-DPEER_FLAGS={WORDS}")).arg("-I").arg(&folder).arg(SOURCE).args(files(&folder, "o"));
+        command::run(link.arg("-o").arg(library))
+    })
+}
+
+fn drake(_: &Workshop) -> Result<PathBuf, String> {
+    Err("the wheel of `drake` brings a library without headers, and a call through Python takes longer than the dynamics".into())
+}
+
+/// The first file of a folder that starts so.
+fn file(folder: &Path, start: &str) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok);
+    entries
+        .map(|entry| entry.path())
+        .find(|path| path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(start)))
+}
+
+/// The files of a folder with such an ending, in order.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path());
+    let mut files: Vec<_> = entries.filter(|path| path.extension().is_some_and(|e| e == ending)).collect();
+    files.sort();
+    files
+}
