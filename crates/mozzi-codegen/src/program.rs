@@ -51,7 +51,7 @@ pub struct Output {
 /// ```
 /// use mozzi::Scalar;
 /// let program = mozzi_codegen::record("norm", &[("x", 2)], |x| {
-///     let zero = Scalar::zero();
+///     let zero = mozzi_codegen::Traced::zero();
 ///     vec![("length", vec![(x[0][0] * x[0][0] + x[0][1] * x[0][1] + zero * x[0][0]).sqrt()])]
 /// });
 /// assert_eq!(program.evaluate(&[&[3.0, 4.0]]), [[5.0]]);

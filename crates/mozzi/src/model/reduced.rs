@@ -10,7 +10,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Model<f64> {
     /// A model with the same τ, M, θ̈, energies, kinematics and derivatives, to rounding, for which they are less work where zeros are left
-    /// out; [`base_reaction`](Self::base_reaction) and the links' own parameters are another robot's.
+    /// out; [`base_reaction`](crate::NewtonEuler::base_reaction) and the links' own parameters are another robot's.
     ///
     /// - What of a link does not notice that its joint turns is given to its parent (or the base): the mass, on the joint's axis, the first
     ///   moment along it, and the same moment of inertia about all axes across it, I_yy. Left are (m c_x, m c_y), I_xx − I_yy, I_xy, I_xz,
