@@ -121,6 +121,7 @@ macro_rules! methods {
         ///
         /// # Errors
         /// As there.
+        #[allow(clippy::too_many_arguments)] // the kernel's
         pub fn $name(&self, $($input: &[f64],)* $($output: &mut [f64]),*) -> Result<(), Error> {
             $(let $environment = self.model.environment();)?
             let again = |state: [&[f64]; [$(stringify!($input)),*].len()]| {
