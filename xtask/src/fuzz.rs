@@ -5,6 +5,7 @@ use crate::report::Outcome;
 use crate::workspace::Workspace;
 
 pub fn run(workspace: &Workspace) -> Outcome {
-    let arguments = ["test", "--package", "mozzi-urdf", "--test", "fuzz", "--", "--ignored", "--nocapture"];
+    let packages = ["--package", "mozzi-urdf", "--package", "mozzi-codegen"];
+    let arguments = [&["test"], &packages[..], &["--test", "fuzz", "--", "--ignored", "--nocapture"]].concat();
     command::outcome(workspace.cargo(&arguments))
 }

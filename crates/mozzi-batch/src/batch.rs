@@ -67,6 +67,11 @@ impl<T: Number> Batch<T> {
         Batch { layout, ..self }
     }
 
+    /// The tables' layout.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
     /// The model.
     pub fn model(&self) -> &Model {
         &self.model
@@ -80,11 +85,6 @@ impl<T: Number> Batch<T> {
     /// How many states a register holds, and a block of [`Layout::Blocks`].
     pub fn lanes(&self) -> usize {
         self.set.lanes::<T>()
-    }
-
-    /// The tables' layout.
-    pub fn layout(&self) -> Layout {
-        self.layout
     }
 
     /// How many threads work at once, at most.

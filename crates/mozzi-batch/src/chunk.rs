@@ -24,7 +24,7 @@ pub(crate) struct Chunk<'a, T> {
 }
 
 /// One thread's memory.
-pub(crate) struct Worker<L> {
+pub(crate) struct Worker<L: Lane> {
     memory: Memory<L>,
     input: Vec<L>,
     output: Vec<L>,

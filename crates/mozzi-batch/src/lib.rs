@@ -22,6 +22,7 @@
 //! A NaN or an infinity in a state gives NaN in that state's results and in no other's.
 
 mod batch;
+mod blocks;
 mod chunk;
 mod columns;
 mod error;
@@ -33,6 +34,7 @@ mod surroundings;
 mod threads;
 
 pub use batch::Batch;
+pub use blocks::BlockKernel;
 pub use columns::Layout;
 pub use error::Error;
 pub use instruction_set::{InstructionSet, Number};

@@ -21,12 +21,14 @@ pub(crate) trait Quantity: Sync {
 }
 
 /// Memory without meaning between calls.
-pub(crate) struct Memory<L> {
+pub(crate) struct Memory<L: Lane> {
     pub workspace: Workspace<L>,
     /// Columns of a Jacobian.
     pub columns: Vec<Twist<L>>,
     /// n of them.
     pub zeros: Vec<L>,
+    /// A block's numbers, for what is computed elsewhere.
+    pub numbers: Vec<L::Number>,
 }
 
 impl<L: Lane> Memory<L> {
@@ -35,6 +37,7 @@ impl<L: Lane> Memory<L> {
             workspace: Workspace::new(model),
             columns: vec![Twist::zero(); model.n()],
             zeros: vec![L::zero(); model.n()],
+            numbers: Vec::new(),
         }
     }
 }

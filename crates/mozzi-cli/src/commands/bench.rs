@@ -231,7 +231,7 @@ fn many<'a, T: Precision>(
     threads: usize,
     data: &'a Data<T>,
 ) -> Result<Box<dyn Run + 'a>> {
-    let batch = Batch::new(model).with_instruction_set(set).and_then(|batch| batch.with_threads(threads));
+    let batch = Batch::<T>::of(model).with_instruction_set(set).and_then(|batch| batch.with_threads(threads));
     let states = data.wrenches.len() / 6;
     let outputs = quantity.outputs().iter().map(|&output| Output::new(model, output, states)).collect();
     Ok(Box::new(Many { batch: batch.map_err(wrong)?, quantity, data, tip, outputs }))

@@ -18,8 +18,11 @@ use crate::scalar::Scalar;
 use alloc::format;
 
 impl Model<f64> {
-    /// Every argument as long as it must be.
-    pub(crate) fn check_lengths<const K: usize>(
+    /// Every argument as long as it must be: θ nq, the others, with their names, n; and a free base's quaternion of length 1, to 10⁻³.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for the quaternion.
+    pub fn check_lengths<const K: usize>(
         &self,
         theta: &[f64],
         velocities: [(&'static str, &[f64]); K],

@@ -12,6 +12,7 @@ mod frame;
 mod link;
 mod parameters;
 mod provenance;
+mod reduced;
 mod screws;
 mod traverse;
 mod variation;

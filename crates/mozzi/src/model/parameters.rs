@@ -3,6 +3,7 @@
 use super::Model;
 use crate::lie::SE3;
 use crate::scalar::Scalar;
+use crate::spatial::SpatialInertia;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -44,6 +45,29 @@ impl<C: Scalar> Model<C> {
         bodies.chain(self.joint_names().flat_map(|joint| named(joint, &OF_JOINT))).collect()
     }
 
+    /// The same robot with other parameters, of another type where it has to be: see [`parameters`](Self::parameters). Geometry, frames and
+    /// couplings stay.
+    ///
+    /// # Panics
+    /// When there are not [`parameter_count`](Self::parameter_count) of them.
+    pub fn with_parameters<U: Scalar + From<C>>(&self, parameters: &[U]) -> Model<U> {
+        let (found, expected) = (parameters.len(), self.parameter_count());
+        assert!(found == expected, "there are {found} parameters, expected {expected}");
+        let mut model = self.map(U::from);
+        let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().len());
+        for (slot, parameters) in self.bodies().zip(of_bodies.as_chunks().0) {
+            let G = SpatialInertia::from_parameters(*parameters).seen_from(model.link_frame(slot));
+            match slot.checked_sub(1) {
+                None => model.base_inertia = G,
+                Some(i) => model.links[i].G = G,
+            }
+        }
+        for (j, &[armature, damping, friction]) in (self.base.velocities()..).zip(of_joints.as_chunks().0) {
+            (model.armature[j], model.damping[j], model.friction[j]) = (armature, damping, friction);
+        }
+        model
+    }
+
     /// The slots of all that moves: of a free base, and of the moving links.
     pub(crate) fn bodies(&self) -> core::ops::Range<usize> {
         usize::from(!self.is_floating())..self.links.len() + 1
@@ -66,6 +90,16 @@ mod tests {
     use crate::testing::{floating_tree, tree};
     use crate::{Description, SE3};
     use nalgebra::DVector;
+
+    #[test]
+    fn a_robot_with_its_own_parameters_is_the_same_robot() {
+        for model in [tree(3, 6, 1), floating_tree(4, 5, 0)] {
+            let (pi, scale) = (model.parameters(), model.mass());
+            let again = model.with_parameters(&vec![0.0; pi.len()]).with_parameters(&pi);
+            let errors = again.parameters().iter().zip(&pi).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>();
+            assert!(errors.iter().all(|error| *error < 1e-12 * scale), "{errors:?}");
+        }
+    }
 
     #[test]
     fn they_are_told_in_the_files_frames() {

@@ -1,0 +1,153 @@
+//! The compiled robot at many states: its machine code in the place of a batch's kernels.
+
+use crate::compiled::{Compiled, are_regular};
+use crate::jit::Kernel;
+use crate::quantity::Quantity;
+use mozzi::scalar::Float;
+use mozzi_batch::{Batch, BlockKernel, Error, Layout};
+
+/// A kernel of as many lanes as the batch's registers have.
+struct Block<'k> {
+    kernel: &'k Kernel,
+    inputs: &'k [usize],
+    outputs: &'k [usize],
+}
+
+/// The most inputs or outputs of a quantity.
+const MOST: usize = 6;
+
+impl BlockKernel for Block<'_> {
+    fn evaluate<T: Float>(&self, inputs: &[T], outputs: &mut [T]) {
+        let lanes = self.kernel.shape().lanes();
+        let (mut given, mut found): ([&[T]; MOST], [&mut [T]; MOST]) = Default::default();
+        let mut rest = inputs;
+        for (slice, length) in given.iter_mut().zip(self.inputs) {
+            (*slice, rest) = rest.split_at(length * lanes);
+        }
+        let mut rest = outputs;
+        for (slice, length) in found.iter_mut().zip(self.outputs) {
+            (*slice, rest) = rest.split_at_mut(length * lanes);
+        }
+        self.kernel.call(&given[..self.inputs.len()], &mut found[..self.outputs.len()], rest);
+    }
+}
+
+impl Compiled {
+    /// On this many threads; by default on all cores.
+    ///
+    /// # Errors
+    /// [`Error::Threads`] for none, or where the system gives no more.
+    pub fn with_threads(self, threads: usize) -> Result<Self, Error> {
+        Ok(Compiled { batch: self.batch.with_threads(threads)?, ..self })
+    }
+
+    /// With the tables of many states in this layout; by default in rows.
+    pub fn with_layout(self, layout: Layout) -> Self {
+        Compiled { batch: self.batch.with_layout(layout), ..self }
+    }
+
+    /// What transposes and distributes the states.
+    pub fn batch(&self) -> &Batch {
+        &self.batch
+    }
+
+    /// Fills the outputs by machine code; where there is none, false. Then those states anew at one state whose angles are beyond the
+    /// reduction, or whose pivots come near to rounding: `again` answers with their outputs.
+    fn fill<const K: usize>(
+        &self,
+        quantity: Quantity,
+        inputs: [(&'static str, &[f64]); K],
+        outputs: &mut [(&'static str, &mut [f64])],
+        again: impl Fn([&[f64]; K]) -> Result<Vec<Vec<f64>>, mozzi::Error>,
+    ) -> Result<bool, Error> {
+        let Some(machine) = self.machine(quantity) else { return Ok(false) };
+        let (Ok(kernel), n, nq) = (&machine.lanes, self.model.n(), self.model.nq()) else { return Ok(false) };
+        let width = |name: &str| if name == "theta" { nq } else { n };
+        let widths: Vec<usize> = inputs.iter().map(|(name, _)| width(name)).collect();
+        // all of them a state and lane: the batch says which table is of a wrong length
+        let states = inputs[0].1.len() / nq.max(1);
+        let has_pivots = machine.lengths.len() > outputs.len();
+        let (mut pivots, mut squares) = (vec![0.0; if has_pivots { n * states } else { 0 }], vec![0.0; states]);
+        let mut tables: Vec<(&'static str, &mut [f64], usize)> = outputs
+            .iter_mut()
+            .zip(&machine.lengths)
+            .map(|((name, table), &width)| (*name, &mut **table, width))
+            .collect();
+        tables.extend(has_pivots.then_some(("pivots", &mut pivots[..], n)));
+        tables.push(("squares", &mut squares, 1));
+        let given: Vec<_> = inputs.iter().zip(&widths).map(|(&(name, table), &width)| (name, table, width)).collect();
+        let block = Block { kernel, inputs: &widths, outputs: &machine.lengths };
+        self.batch.run_kernel(&block, &given, tables)?;
+
+        let place = self.places();
+        let of = |table: &[f64], width: usize, state: usize| -> Vec<f64> {
+            (0..width).map(|column| table[place(width, state, column)]).collect()
+        };
+        for index in 0..states {
+            let is_regular = !has_pivots || are_regular(&of(&pivots, n, index));
+            if kernel.is_exact(squares[index]) && is_regular {
+                continue;
+            }
+            let mut k = 0;
+            let state: [Vec<f64>; K] = inputs.map(|(_, table)| {
+                k += 1;
+                of(table, widths[k - 1], index)
+            });
+            let found = again(state.each_ref().map(Vec::as_slice)).map_err(|source| Error::State { index, source })?;
+            for ((_, table), values) in outputs.iter_mut().zip(found) {
+                let width = values.len();
+                values.iter().enumerate().for_each(|(column, &x)| table[place(width, index, column)] = x);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Where a state's number of a column is in a table of some width.
+    fn places(&self) -> impl Fn(usize, usize, usize) -> usize + use<> {
+        let lanes = match self.batch.layout() {
+            Layout::Rows => 1,
+            Layout::Blocks => self.batch.lanes(),
+        };
+        move |width, state, column| (state / lanes * width + column) * lanes + state % lanes
+    }
+}
+
+/// Methods: tables as of [`Batch`]'s, the machine code or the batch's kernels, and one state's method for states that need a second look.
+macro_rules! methods {
+    ($(
+        $name:ident = $method:ident($($input:ident),*; $($environment:ident)?) -> $($output:ident),* => $quantity:ident, |$found:ident| $columns:expr;
+    )*) => { impl Compiled { $(
+        #[doc = concat!("See [`Batch::", stringify!($method), "`], in the model's own surroundings.")]
+        ///
+        /// # Errors
+        /// As there.
+        #[allow(clippy::too_many_arguments)] // the kernel's
+        pub fn $name(&self, $($input: &[f64],)* $($output: &mut [f64]),*) -> Result<(), Error> {
+            $(let $environment = self.model.environment();)?
+            let again = |state: [&[f64]; [$(stringify!($input)),*].len()]| {
+                let [$($input),*] = state;
+                let $found = self.model.$method($($input,)* $(&$environment)?)?;
+                Ok($columns)
+            };
+            let outputs = &mut [$((stringify!($output), &mut *$output)),*];
+            if self.fill(Quantity::$quantity, [$((stringify!($input), $input)),*], outputs, again)? {
+                return Ok(());
+            }
+            self.batch.$method($($input,)* $(&$environment.into(),)? $($output),*)
+        }
+    )* } };
+}
+
+methods! {
+    inverse_dynamics_batch = inverse_dynamics(theta, dtheta, ddtheta; environment) -> tau => InverseDynamics, |tau| vec![tau.as_slice().to_vec()];
+    forward_dynamics_batch = forward_dynamics(theta, dtheta, tau; environment) -> ddtheta => ForwardDynamics, |x| vec![x.as_slice().to_vec()];
+    bias_forces_batch = bias_forces(theta, dtheta; environment) -> h => BiasForces, |h| vec![h.as_slice().to_vec()];
+    velocity_product_batch = velocity_product(theta, dtheta; ) -> c => VelocityProduct, |c| vec![c.as_slice().to_vec()];
+    mass_matrix_batch = mass_matrix(theta; ) -> M => MassMatrix, |M| vec![M.as_slice().to_vec()];
+    inverse_dynamics_derivatives_batch = inverse_dynamics_derivatives(theta, dtheta, ddtheta; environment)
+        -> by_theta, by_dtheta, by_ddtheta => InverseDynamicsDerivatives,
+        |d| [d.by_theta, d.by_dtheta, d.by_ddtheta].map(|M| M.transpose().as_slice().to_vec()).to_vec();
+    forward_dynamics_derivatives_batch = forward_dynamics_derivatives(theta, dtheta, tau; environment)
+        -> ddtheta, by_theta, by_dtheta, by_tau => ForwardDynamicsDerivatives,
+        |d| [vec![d.ddtheta.as_slice().to_vec()], [d.by_theta, d.by_dtheta, d.by_tau].map(|M| M.transpose().as_slice().to_vec()).to_vec()].concat();
+}

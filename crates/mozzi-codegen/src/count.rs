@@ -1,0 +1,47 @@
+//! How much work a program is.
+
+use std::fmt;
+
+/// Operations by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Count {
+    /// Sums and differences.
+    pub add: usize,
+    /// Products.
+    pub mul: usize,
+    /// Products with a sum, as one.
+    pub fma: usize,
+    /// Quotients.
+    pub div: usize,
+    /// Roots.
+    pub sqrt: usize,
+    /// Sines with their cosines.
+    pub sin_cos: usize,
+    /// Changes of sign, sgn, tanh.
+    pub other: usize,
+}
+
+impl Count {
+    /// Operations in floating point without sines and cosines; a product with a sum is two.
+    pub fn flops(&self) -> usize {
+        self.instructions() + self.fma
+    }
+
+    /// The same, a product with a sum being one.
+    pub fn instructions(&self) -> usize {
+        self.add + self.mul + self.fma + self.div + self.sqrt + self.other
+    }
+}
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Count { add, mul, fma, div, sqrt, sin_cos, other } = self;
+        write!(f, "{} flops: {add} add, {mul} mul, {fma} fma, {div} div", self.flops())?;
+        for (count, what) in [(sqrt, "sqrt"), (other, "of other kinds"), (sin_cos, "sin and cos beside")] {
+            if *count > 0 {
+                write!(f, ", {count} {what}")?;
+            }
+        }
+        Ok(())
+    }
+}

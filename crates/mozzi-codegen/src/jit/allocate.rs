@@ -1,0 +1,332 @@
+//! Registers for a straight line: what is needed last gives way first (Belady 1966), which for equal costs is the best that can be done.
+
+use super::assembler::{Assembler, Operand, Register};
+use super::instruction::{Node, Operation, Value};
+use super::lower::Lowered;
+use super::shape::{Encoding, Shape};
+
+const NEVER: u32 = u32::MAX;
+
+/// Machine code with the numbers that it reads, before it stands in memory.
+#[derive(Clone, Debug)]
+pub(crate) struct Code {
+    pub bytes: Vec<u8>,
+    /// The constants.
+    pub pool: Vec<u8>,
+    pub instructions: usize,
+    pub frame: usize,
+}
+
+/// The code of a lowered program; arrays are inputs, outputs, constants, in this order. None where it needs more arrays or more memory of
+/// its own than there is.
+pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Option<Code> {
+    let mut pool = Vec::new();
+    let repeat = if shape.encoding() == Encoding::Vex { shape.lanes() } else { 1 };
+    let constants: Vec<usize> = lowered
+        .nodes
+        .iter()
+        .map(|node| {
+            let byte = pool.len();
+            if let Node::Constant(bits) = node {
+                (0..repeat).for_each(|_| pool.extend(&bits.to_le_bytes()[..shape.number()]));
+            }
+            byte
+        })
+        .collect();
+    let lengths = inputs.iter().copied().chain(lowered.outputs.iter().map(Vec::len));
+    let mut sizes: Vec<usize> = lengths.map(|length| length * shape.width()).collect();
+    sizes.push(pool.len());
+    if sizes.len() >= super::assembler::MOST_ARRAYS {
+        return None;
+    }
+    let mut line = Line::new(shape, lowered, inputs.len(), constants, Assembler::new(shape, &sizes));
+    for place in 0..lowered.nodes.len() {
+        line.step(place);
+    }
+    let (instructions, frame) = (line.assembler.instructions(), line.assembler.frame_bytes());
+    let is_small = frame <= super::assembler::LARGEST_FRAME;
+    is_small.then(|| Code { bytes: line.assembler.finish(), pool, instructions, frame })
+}
+
+struct Line<'p> {
+    shape: Shape,
+    nodes: &'p [Node],
+    constants: Vec<usize>,
+    pool: usize,
+    assembler: Assembler,
+    /// Of each value the places that need it, in `needs[first[v]..first[v + 1]]`; those before `next[v]` are past.
+    needs: Vec<u32>,
+    first: Vec<u32>,
+    next: Vec<u32>,
+    /// Of each value the entries of outputs that it is.
+    outputs: Vec<Vec<(usize, usize)>>,
+    register: Vec<Option<Register>>,
+    held: Vec<Option<Value>>,
+    slot: Vec<Option<usize>>,
+    free_slots: Vec<usize>,
+    slots: usize,
+}
+
+impl<'p> Line<'p> {
+    fn new(shape: Shape, lowered: &'p Lowered, inputs: usize, constants: Vec<usize>, assembler: Assembler) -> Self {
+        let nodes = &lowered.nodes[..];
+        let mut outputs = vec![Vec::new(); nodes.len()];
+        let mut is_needed = vec![false; nodes.len()];
+        for (array, values) in lowered.outputs.iter().enumerate() {
+            for (index, &value) in values.iter().enumerate() {
+                outputs[value as usize].push((inputs + array, index));
+                is_needed[value as usize] = true;
+            }
+        }
+        // what nothing needs is never computed
+        for place in (0..nodes.len()).rev() {
+            if is_needed[place] {
+                nodes[place].operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
+            }
+        }
+        let mut first = vec![0; nodes.len() + 1];
+        let needed = || nodes.iter().enumerate().filter(|(place, _)| is_needed[*place]);
+        for (_, node) in needed() {
+            node.operands().iter().for_each(|&operand| first[operand as usize + 1] += 1);
+        }
+        for place in 0..nodes.len() {
+            first[place + 1] += first[place];
+        }
+        let (mut needs, mut fill) = (vec![0; first[nodes.len()] as usize], first.clone());
+        for (place, node) in needed() {
+            for &operand in node.operands() {
+                needs[fill[operand as usize] as usize] = place as u32;
+                fill[operand as usize] += 1;
+            }
+        }
+        Line {
+            shape,
+            nodes,
+            constants,
+            pool: inputs + lowered.outputs.len(),
+            assembler,
+            needs,
+            next: first[..nodes.len()].to_vec(),
+            first,
+            outputs,
+            register: vec![None; nodes.len()],
+            held: vec![None; shape.registers()],
+            slot: vec![None; nodes.len()],
+            free_slots: Vec::new(),
+            slots: 0,
+        }
+    }
+
+    /// The place that needs a value next.
+    fn next_need(&self, value: Value) -> u32 {
+        let (next, end) = (self.next[value as usize], self.first[value as usize + 1]);
+        if next < end { self.needs[next as usize] } else { NEVER }
+    }
+
+    /// Where a value that is in no register stands in memory.
+    fn in_memory(&self, value: Value) -> Operand {
+        let width = self.shape.width();
+        match (self.nodes[value as usize], self.slot[value as usize]) {
+            (Node::Constant(_), _) => {
+                let byte = self.constants[value as usize];
+                let is_repeated = self.shape.encoding() == Encoding::Evex;
+                if is_repeated { Operand::Repeated(self.pool, byte) } else { Operand::Lanes(self.pool, byte) }
+            }
+            (Node::Input(array, index), _) => Operand::Lanes(array as usize, index as usize * width),
+            (_, Some(slot)) => Operand::Lanes(self.assembler.frame(), slot * width),
+            (_, None) => unreachable!("value {value} was lost"),
+        }
+    }
+
+    /// The value's register, or its memory.
+    fn operand(&self, value: Value) -> Operand {
+        self.register[value as usize].map_or_else(|| self.in_memory(value), Operand::Register)
+    }
+
+    /// A register for something new: a free one, or that of the value that is needed last, values that need not be stored first.
+    fn take(&mut self, here: usize, pinned: &mut Vec<Register>) -> Register {
+        let is_pinned = |register: &usize| pinned.contains(&(*register as Register));
+        let mut best = (0, None);
+        for register in (0..self.held.len()).filter(|register| !is_pinned(register)) {
+            let Some(value) = self.held[register] else {
+                best = (NEVER, Some(register));
+                break;
+            };
+            let need = self.next_need(value);
+            let is_kept = self.slot[value as usize].is_some() || !matches!(self.nodes[value as usize], Node::Apply(..));
+            let bonus = if is_kept { need.saturating_sub(here as u32) / 2 } else { 0 };
+            let score = need.saturating_add(bonus);
+            if best.1.is_none() || score > best.0 {
+                best = (score, Some(register));
+            }
+        }
+        let register = best.1.expect("at most four registers are pinned");
+        if let Some(value) = self.held[register].take() {
+            let v = value as usize;
+            self.register[v] = None;
+            if matches!(self.nodes[v], Node::Apply(..)) && self.slot[v].is_none() {
+                let slot = self.free_slots.pop().unwrap_or_else(|| {
+                    self.slots += 1;
+                    self.slots - 1
+                });
+                self.slot[v] = Some(slot);
+                self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register as Register);
+            }
+        }
+        pinned.push(register as Register);
+        register as Register
+    }
+
+    /// The value in a register; loaded, it stays there where it is needed again.
+    fn in_register(&mut self, here: usize, value: Value, pinned: &mut Vec<Register>) -> Register {
+        if let Some(register) = self.register[value as usize] {
+            return register;
+        }
+        let (from, register) = (self.in_memory(value), self.take(here, pinned));
+        self.assembler.load(register, from);
+        if self.next_need(value) != NEVER {
+            self.hold(register, value);
+        }
+        register
+    }
+
+    fn hold(&mut self, register: Register, value: Value) {
+        self.held[register as usize] = Some(value);
+        self.register[value as usize] = Some(register);
+    }
+
+    /// The register of a value that is not needed any more.
+    fn dying(&self, value: Value) -> Option<Register> {
+        self.register[value as usize].filter(|_| self.next_need(value) == NEVER)
+    }
+
+    fn step(&mut self, here: usize) {
+        let value = here as Value;
+        let Node::Apply(operation, operands) = self.nodes[here] else {
+            self.pass_on(here, value);
+            return;
+        };
+        if self.next_need(value) == NEVER && self.outputs[here].is_empty() {
+            return;
+        }
+        let operands = &operands[..operation.arity()];
+        let mut pinned: Vec<Register> = operands.iter().filter_map(|&v| self.register[v as usize]).collect();
+        for &v in operands {
+            while self.next_need(v) <= value {
+                self.next[v as usize] += 1;
+            }
+        }
+        let target = match *operands {
+            [a] => self.unary(here, operation, a, &mut pinned),
+            [a, b] => self.binary(here, operation, a, b, &mut pinned),
+            [a, b, c] => self.fused(here, operation, a, b, c, &mut pinned),
+            _ => unreachable!("one to three operands"),
+        };
+        for &v in operands {
+            if self.next_need(v) == NEVER {
+                if let Some(register) = self.register[v as usize].take() {
+                    self.held[register as usize] = None;
+                }
+                self.free_slots.extend(self.slot[v as usize].take());
+            }
+        }
+        for k in 0..self.outputs[here].len() {
+            let (array, index) = self.outputs[here][k];
+            self.assembler.store(array, index * self.shape.width(), target);
+        }
+        if self.next_need(value) != NEVER {
+            self.hold(target, value);
+        }
+    }
+
+    /// An input or a constant that is an output.
+    fn pass_on(&mut self, here: usize, value: Value) {
+        for k in 0..self.outputs[here].len() {
+            let register = self.take(here, &mut Vec::new());
+            self.assembler.load(register, self.in_memory(value));
+            let (array, index) = self.outputs[here][k];
+            self.assembler.store(array, index * self.shape.width(), register);
+        }
+    }
+
+    fn unary(&mut self, here: usize, operation: Operation, a: Value, pinned: &mut Vec<Register>) -> Register {
+        let from = self.in_register(here, a, pinned);
+        let target = self.dying(a).unwrap_or_else(|| self.take(here, pinned));
+        self.assembler.apply(operation, target, from, Operand::Register(from));
+        target
+    }
+
+    fn binary(
+        &mut self,
+        here: usize,
+        operation: Operation,
+        a: Value,
+        b: Value,
+        pinned: &mut Vec<Register>,
+    ) -> Register {
+        let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
+        let exchange = operation.commutes() && !is_in_register(self, a) && is_in_register(self, b);
+        let (a, b) = if exchange { (b, a) } else { (a, b) };
+        let first = self.in_register(here, a, pinned);
+        let second = match self.assembler.takes_memory(operation) {
+            true => self.operand(b),
+            false => Operand::Register(self.in_register(here, b, pinned)),
+        };
+        let was_loaded = self.register[a as usize].is_none().then_some(first);
+        let target = self.dying(a).or(self.dying(b)).or(was_loaded).unwrap_or_else(|| self.take(here, pinned));
+        self.assembler.apply(operation, target, first, second);
+        target
+    }
+
+    /// ± a b ± c overwrites one of its operands: one that is needed no more, or a copy.
+    fn fused(
+        &mut self,
+        here: usize,
+        operation: Operation,
+        a: Value,
+        b: Value,
+        c: Value,
+        pinned: &mut Vec<Register>,
+    ) -> Register {
+        let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
+        if let Some(target) = self.dying(c) {
+            let (a, b) = if is_in_register(self, a) { (a, b) } else { (b, a) };
+            let first = self.in_register(here, a, pinned);
+            self.assembler.fused_231(operation, target, first, self.operand(b));
+            return target;
+        }
+        // a factor that dies, or that has to be loaded anyway
+        let (a, b) = if self.dying(a).is_some() || self.dying(b).is_none() && !is_in_register(self, a) {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        if self.dying(a).is_some() || !is_in_register(self, a) && is_in_register(self, c) {
+            let target = match self.dying(a) {
+                Some(register) => register,
+                None => {
+                    let (from, register) = (self.in_memory(a), self.take(here, pinned));
+                    self.assembler.load(register, from);
+                    register
+                }
+            };
+            if a == b {
+                self.assembler.fused_213(operation, target, target, self.operand(c));
+            } else if is_in_register(self, c) && !is_in_register(self, b) {
+                let third = self.operand(c);
+                let Operand::Register(third) = third else { unreachable!("in a register") };
+                self.assembler.fused_132(operation, target, third, self.operand(b));
+            } else {
+                let second = self.in_register(here, b, pinned);
+                self.assembler.fused_213(operation, target, second, self.operand(c));
+            }
+            return target;
+        }
+        let (a, b) = if is_in_register(self, a) { (a, b) } else { (b, a) };
+        let first = self.in_register(here, a, pinned);
+        let (from, target) = (self.operand(c), self.take(here, pinned));
+        self.assembler.load(target, from);
+        self.assembler.fused_231(operation, target, first, self.operand(b));
+        target
+    }
+}

@@ -1,0 +1,313 @@
+//! Instructions as bytes: the forms that programs need, of x86-64 with VEX (AVX2, FMA) and with EVEX (AVX-512) prefixes.
+//!
+//! The assembler is where machine code becomes safe to run: it knows the bytes of every array, and no instruction that it writes reads or
+//! writes beyond them, whatever it is asked for.
+
+use super::instruction::Operation;
+use super::shape::{Encoding, Shape};
+
+/// A vector register.
+pub(crate) type Register = u8;
+
+/// An array in memory, by its number in the order of [`Assembler::new`].
+pub(crate) type Memory = usize;
+
+/// Where an instruction's last operand is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Operand {
+    Register(Register),
+    /// A register's lanes, from this byte on.
+    Lanes(Memory, usize),
+    /// One number for all lanes, from this byte on: with EVEX anywhere, else in loads of several lanes.
+    Repeated(Memory, usize),
+}
+
+/// General registers that hold the arrays' addresses; rdi, which brings them, last of those that need not be saved. Of `rsp` and `r12` as
+/// bases the encoding is another.
+const BASES: [u8; 13] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
+/// The first of them that belongs to the caller.
+const SAVED: usize = 9;
+
+/// The most arrays, those of constants and of spilled registers included.
+pub(crate) const MOST_ARRAYS: usize = BASES.len();
+
+/// The largest frame in bytes, far below what any thread's stack has.
+pub(crate) const LARGEST_FRAME: usize = 1 << 16;
+
+/// Opcode map, mandatory prefix (0 none, 1 66, 2 F3, 3 F2), the bit W, opcode.
+#[derive(Clone, Copy)]
+struct Form {
+    map: u8,
+    prefix: u8,
+    wide: bool,
+    opcode: u8,
+}
+
+impl Form {
+    fn is_broadcast(self) -> bool {
+        self.map == 2 && matches!(self.opcode, 0x18 | 0x19)
+    }
+}
+
+pub(crate) struct Assembler {
+    shape: Shape,
+    /// The bytes of each array.
+    sizes: Vec<usize>,
+    /// Which array is the frame: it grows.
+    frame: Memory,
+    body: Vec<u8>,
+    instructions: usize,
+}
+
+impl Assembler {
+    /// Code that finds at rdi the addresses of all arrays of these sizes in bytes, and after them has a frame of its own, as the last array.
+    pub fn new(shape: Shape, sizes: &[usize]) -> Self {
+        assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
+        let sizes = [sizes, &[0]].concat();
+        Assembler { shape, frame: sizes.len() - 1, sizes, body: Vec::new(), instructions: 0 }
+    }
+
+    /// The array of what registers could not hold.
+    pub fn frame(&self) -> Memory {
+        self.frame
+    }
+
+    pub fn instructions(&self) -> usize {
+        self.instructions
+    }
+
+    pub fn frame_bytes(&self) -> usize {
+        self.sizes[self.frame]
+    }
+
+    fn arithmetic(&self, opcode: u8) -> Form {
+        let prefix = match (self.shape.is_scalar(), self.shape.is_f64()) {
+            (true, true) => 3,
+            (true, false) => 2,
+            (false, true) => 1,
+            (false, false) => 0,
+        };
+        Form { map: 1, prefix, wide: self.is_evex() && self.shape.is_f64(), opcode }
+    }
+
+    fn bits(&self, of_f64: u8, of_f32: u8) -> Form {
+        let opcode = if self.shape.is_f64() { of_f64 } else { of_f32 };
+        Form { map: 1, prefix: 1, wide: self.is_evex() && self.shape.is_f64(), opcode }
+    }
+
+    fn fused(&self, opcode: u8) -> Form {
+        Form { map: 2, prefix: 1, wide: self.shape.is_f64(), opcode: opcode + u8::from(self.shape.is_scalar()) }
+    }
+
+    fn is_evex(&self) -> bool {
+        self.shape.encoding() == Encoding::Evex
+    }
+
+    /// Can the last operand of this operation be in memory, as lanes or as one number for all?
+    pub fn takes_memory(&self, operation: Operation) -> bool {
+        match operation {
+            Operation::Sqrt | Operation::ShiftLeft(_) => false,
+            // the scalar forms of bits read sixteen bytes
+            _ if operation.is_of_bits() => !self.shape.is_scalar(),
+            _ => true,
+        }
+    }
+
+    /// target ← operation(a, b), of one operand: operation(b).
+    pub fn apply(&mut self, operation: Operation, target: Register, a: Register, b: Operand) {
+        let form = match operation {
+            Operation::Add => self.arithmetic(0x58),
+            Operation::Mul => self.arithmetic(0x59),
+            Operation::Sub => self.arithmetic(0x5c),
+            Operation::Min => self.arithmetic(0x5d),
+            Operation::Div => self.arithmetic(0x5e),
+            Operation::Max => self.arithmetic(0x5f),
+            Operation::Sqrt => self.arithmetic(0x51),
+            Operation::And => self.bits(0xdb, 0xdb),
+            Operation::Xor => self.bits(0xef, 0xef),
+            Operation::SubBits => self.bits(0xfb, 0xfa),
+            Operation::ShiftLeft(by) => {
+                // the target stands where others have their first operand, and 6 where others have their target
+                let form = self.bits(0x73, 0x72);
+                self.instruction(form, 6, target, b);
+                self.body.push(by);
+                return;
+            }
+            Operation::MulAdd | Operation::MulSub | Operation::NegMulAdd | Operation::NegMulSub => {
+                unreachable!("three operands")
+            }
+        };
+        // packed roots have one operand, and the other field must be 0
+        let a = if operation == Operation::Sqrt && !self.shape.is_scalar() { 0 } else { a };
+        self.instruction(form, target, a, b);
+    }
+
+    /// target ← ± (a · c) ± target, where c may be in memory.
+    pub fn fused_231(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
+        let form = self.fused(0xb8 + fused_offset(operation));
+        self.instruction(form, target, a, c);
+    }
+
+    /// target ← ± (a · target) ± c, where c may be in memory.
+    pub fn fused_213(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
+        let form = self.fused(0xa8 + fused_offset(operation));
+        self.instruction(form, target, a, c);
+    }
+
+    /// target ← ± (target · c) ± a, where c may be in memory.
+    pub fn fused_132(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
+        let form = self.fused(0x98 + fused_offset(operation));
+        self.instruction(form, target, a, c);
+    }
+
+    /// target ← what stands there.
+    pub fn load(&mut self, target: Register, from: Operand) {
+        let form = match from {
+            Operand::Register(_) => Form { prefix: u8::from(self.shape.is_f64()), ..self.arithmetic(0x28) },
+            Operand::Lanes(..) => self.arithmetic(0x10),
+            Operand::Repeated(..) => {
+                let opcode = if self.shape.is_f64() { 0x19 } else { 0x18 };
+                Form { map: 2, prefix: 1, wide: self.is_evex() && self.shape.is_f64(), opcode }
+            }
+        };
+        self.instruction(form, target, 0, from);
+    }
+
+    /// Memory ← a register's lanes.
+    pub fn store(&mut self, to: Memory, byte: usize, from: Register) {
+        let form = self.arithmetic(0x11);
+        self.instruction(form, from, 0, Operand::Lanes(to, byte));
+    }
+
+    fn instruction(&mut self, form: Form, target: Register, a: Register, b: Operand) {
+        assert!(usize::from(target.max(a)) < self.shape.registers(), "no such register");
+        self.instructions += 1;
+        let (base, repeated) = match b {
+            Operand::Register(register) => {
+                assert!(usize::from(register) < self.shape.registers(), "no such register");
+                (register, false)
+            }
+            Operand::Lanes(memory, _) => (BASES[memory], false),
+            // a broadcast is an instruction of its own, without the bit for it
+            Operand::Repeated(memory, _) => (BASES[memory], !form.is_broadcast()),
+        };
+        assert!(self.is_evex() || form.is_broadcast() || !repeated, "AVX2 repeats no operands");
+        let is_register = matches!(b, Operand::Register(_));
+        if self.is_evex() {
+            self.evex(form, target, a, base, is_register, repeated);
+        } else {
+            self.vex(form, target, a, base);
+        }
+        self.body.push(form.opcode);
+        match b {
+            Operand::Register(register) => self.body.push(0xc0 | (target & 7) << 3 | register & 7),
+            Operand::Lanes(memory, byte) => self.address(target, memory, byte, self.shape.width()),
+            Operand::Repeated(memory, byte) => self.address(target, memory, byte, self.shape.number()),
+        }
+    }
+
+    fn vex(&mut self, form: Form, target: Register, a: Register, base: u8) {
+        let length = u8::from(!self.shape.is_scalar());
+        let Form { map, prefix, wide, .. } = form;
+        let last = (!a & 15) << 3 | length << 2 | prefix;
+        if map == 1 && !wide && base < 8 {
+            self.body.extend([0xc5, inverted(target, 3) << 7 | last]);
+        } else {
+            let registers = inverted(target, 3) << 7 | 1 << 6 | inverted(base, 3) << 5;
+            self.body.extend([0xc4, registers | map, u8::from(wide) << 7 | last]);
+        }
+    }
+
+    fn evex(&mut self, form: Form, target: Register, a: Register, base: u8, is_register: bool, repeated: bool) {
+        let Form { map, prefix, wide, .. } = form;
+        // the fifth bit of a register operand stands where an address has its index
+        let x = if is_register { inverted(base, 4) } else { 1 };
+        let registers = inverted(target, 3) << 7 | x << 6 | inverted(base, 3) << 5 | inverted(target, 4) << 4;
+        let second = u8::from(wide) << 7 | (!a & 15) << 3 | 4 | prefix;
+        let third = 2 << 5 | u8::from(repeated) << 4 | inverted(a, 4) << 3;
+        self.body.extend([0x62, registers | map, second, third]);
+    }
+
+    /// An address with its displacement, of `access` bytes; EVEX counts short displacements in them.
+    fn address(&mut self, field: u8, memory: Memory, byte: usize, access: usize) {
+        let end = byte + access;
+        if memory == self.frame {
+            self.sizes[memory] = self.sizes[memory].max(end);
+        }
+        assert!(end <= self.sizes[memory] && end <= i32::MAX as usize, "byte {byte} of array {memory}");
+        let unit = if self.is_evex() { access } else { 1 };
+        let (field, base) = ((field & 7) << 3, BASES[memory] & 7);
+        if byte.is_multiple_of(unit) && byte / unit < 128 {
+            self.body.extend([0x40 | field | base, (byte / unit) as u8]);
+        } else {
+            self.body.push(0x80 | field | base);
+            self.body.extend((byte as u32).to_le_bytes());
+        }
+    }
+
+    /// The whole function: rdi → an array of addresses (System V).
+    pub fn finish(self) -> Vec<u8> {
+        let (arrays, frame) = (self.sizes.len(), self.sizes[self.frame]);
+        let mut code = vec![0x55, 0x48, 0x89, 0xe5]; // push rbp; mov rbp, rsp
+        let saved = BASES[SAVED.min(arrays)..arrays].iter().copied();
+        for register in saved.clone() {
+            push_or_pop(&mut code, 0x50, register);
+        }
+        let rest = (frame + 64).next_multiple_of(64);
+        // page by page, so that the guard page below the stack is met and not jumped over
+        for _ in 0..rest / 4096 {
+            code.extend([0x48, 0x81, 0xec, 0x00, 0x10, 0x00, 0x00]); // sub rsp, 4096
+            code.extend([0x48, 0x85, 0x24, 0x24]); // test [rsp], rsp
+        }
+        code.extend([0x48, 0x81, 0xec]); // sub rsp, rest
+        code.extend(((rest % 4096) as u32).to_le_bytes());
+        // the frame's base: lea base, [rsp + 63]; and base, −64
+        let is_rdi = |memory: usize| BASES[memory] == 7;
+        let base = BASES[self.frame];
+        let frame_base = |code: &mut Vec<u8>| {
+            let (high, low) = (base >> 3, base & 7);
+            code.extend([0x48 | high << 2, 0x8d, 0x44 | low << 3, 0x24, 63]);
+            code.extend([0x48 | high, 0x83, 0xe0 | low, 0xc0]);
+        };
+        let address = |code: &mut Vec<u8>, memory: usize| {
+            // mov base, [rdi + 8 memory]
+            let base = BASES[memory];
+            code.extend([0x48 | base >> 3 << 2, 0x8b, 0x47 | (base & 7) << 3, 8 * memory as u8]);
+        };
+        (0..self.frame).filter(|&memory| !is_rdi(memory)).for_each(|memory| address(&mut code, memory));
+        (0..self.frame).filter(|&memory| is_rdi(memory)).for_each(|memory| address(&mut code, memory));
+        frame_base(&mut code);
+        code.extend(&self.body);
+        // lea rsp, [rbp − 8 saved]; pop …; pop rbp; vzeroupper; ret
+        code.extend([0x48, 0x8d, 0x65, (-8 * saved.len() as i32) as u8]);
+        for register in saved.rev() {
+            push_or_pop(&mut code, 0x58, register);
+        }
+        code.extend([0x5d, 0xc5, 0xf8, 0x77, 0xc3]);
+        code
+    }
+}
+
+fn push_or_pop(code: &mut Vec<u8>, opcode: u8, register: u8) {
+    if register >= 8 {
+        code.push(0x41);
+    }
+    code.push(opcode | register & 7);
+}
+
+fn inverted(register: u8, bit: u8) -> u8 {
+    !(register >> bit) & 1
+}
+
+fn fused_offset(operation: Operation) -> u8 {
+    match operation {
+        Operation::MulAdd => 0,
+        Operation::MulSub => 2,
+        Operation::NegMulAdd => 4,
+        Operation::NegMulSub => 6,
+        _ => unreachable!("not a fused product"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

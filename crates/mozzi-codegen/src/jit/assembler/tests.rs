@@ -1,0 +1,263 @@
+//! Each form against a disassembler.
+
+use super::*;
+use iced_x86::Register as Named;
+use iced_x86::{Code, Decoder, DecoderOptions, Instruction, Mnemonic, OpKind};
+
+const BYTES: usize = 1 << 16;
+/// Low, high, and with the fifth bit.
+const REGISTERS: [Register; 8] = [0, 3, 7, 8, 15, 16, 23, 31];
+
+fn decoded(bytes: &[u8]) -> Vec<Instruction> {
+    Decoder::new(64, bytes, DecoderOptions::NONE).into_iter().collect()
+}
+
+fn base(memory: Memory) -> Named {
+    use Named::*;
+    [RAX, RCX, RDX, RSI, R8, R9, R10, R11, RDI, RBX, R13, R14, R15][memory]
+}
+
+fn registers(shape: Shape) -> impl Iterator<Item = Register> + Clone {
+    REGISTERS.into_iter().filter(move |&register| usize::from(register) < shape.registers())
+}
+
+fn named(shape: Shape, register: Register) -> Named {
+    let first = match shape.width() {
+        64 => Named::ZMM0,
+        32 => Named::YMM0,
+        _ => Named::XMM0,
+    };
+    first + u32::from(register)
+}
+
+/// Places in memory near and far, those that short displacements reach and those that they do not, in arrays with every base.
+fn places(shape: Shape) -> impl Iterator<Item = (Memory, usize)> {
+    let width = shape.width();
+    (0..MOST_ARRAYS - 1).map(move |memory| {
+        (memory, [0, width, 127 * width, 128 * width, 127, 128, 129, 8, 4, 3 * width, 1000, 4096, 60_000][memory % 13])
+    })
+}
+
+fn assembler(shape: Shape) -> Assembler {
+    Assembler::new(shape, &[BYTES; MOST_ARRAYS - 1])
+}
+
+/// One instruction, decoded, with the mnemonic that is expected.
+fn check(shape: Shape, mnemonic: &str, write: impl FnOnce(&mut Assembler)) -> Instruction {
+    let mut assembler = assembler(shape);
+    write(&mut assembler);
+    let found = decoded(&assembler.body);
+    let [instruction] = found[..] else { panic!("{mnemonic} {shape:?}: {} instructions", found.len()) };
+    let name = format!("{:?}", instruction.mnemonic()).to_lowercase();
+    assert_eq!(name, mnemonic, "{shape:?}, bytes {:02x?}", assembler.body);
+    assert_ne!(instruction.code(), Code::INVALID);
+    instruction
+}
+
+fn check_memory(shape: Shape, found: &Instruction, operand: u32, (memory, byte): (Memory, usize), repeated: bool) {
+    assert_eq!(found.op_kind(operand), OpKind::Memory, "{found:?}");
+    assert_eq!((found.memory_base(), found.memory_index()), (base(memory), Named::None), "{found:?}");
+    assert_eq!(found.memory_displacement64(), byte as u64, "{shape:?} {found:?}");
+    assert_eq!(found.is_broadcast(), repeated, "{found:?}");
+    let size = if repeated { shape.number() } else { shape.width() };
+    assert_eq!(found.memory_size().size(), size, "{found:?}");
+}
+
+/// Where the last operand can be.
+fn last_operands(shape: Shape, takes_memory: bool) -> Vec<Operand> {
+    let mut operands: Vec<_> = registers(shape).map(Operand::Register).collect();
+    if takes_memory {
+        operands.extend(places(shape).map(|(memory, byte)| Operand::Lanes(memory, byte)));
+    }
+    if takes_memory && shape.encoding() == Encoding::Evex {
+        operands.extend(places(shape).map(|(memory, byte)| Operand::Repeated(memory, byte)));
+    }
+    operands
+}
+
+fn check_last(shape: Shape, found: &Instruction, operand: u32, last: Operand) {
+    match last {
+        Operand::Register(register) => assert_eq!(found.op_register(operand), named(shape, register)),
+        Operand::Lanes(memory, byte) => check_memory(shape, found, operand, (memory, byte), false),
+        Operand::Repeated(memory, byte) => check_memory(shape, found, operand, (memory, byte), true),
+    }
+}
+
+fn suffix(shape: Shape) -> &'static str {
+    match (shape.is_scalar(), shape.is_f64()) {
+        (true, true) => "sd",
+        (true, false) => "ss",
+        (false, true) => "pd",
+        (false, false) => "ps",
+    }
+}
+
+#[test]
+fn operations_on_two_numbers() {
+    for shape in Shape::ALL {
+        let (letter, evex) = (if shape.is_f64() { "q" } else { "d" }, shape.encoding() == Encoding::Evex);
+        let numbers = |name: &str| format!("v{name}{}", suffix(shape));
+        let table = [
+            (Operation::Add, numbers("add")),
+            (Operation::Sub, numbers("sub")),
+            (Operation::Mul, numbers("mul")),
+            (Operation::Div, numbers("div")),
+            (Operation::Min, numbers("min")),
+            (Operation::Max, numbers("max")),
+            (Operation::And, if evex { format!("vpand{letter}") } else { "vpand".to_string() }),
+            (Operation::Xor, if evex { format!("vpxor{letter}") } else { "vpxor".to_string() }),
+            (Operation::SubBits, format!("vpsub{letter}")),
+        ];
+        for (operation, mnemonic) in table {
+            let takes_memory = assembler(shape).takes_memory(operation);
+            for last in last_operands(shape, takes_memory) {
+                for (target, a) in registers(shape).zip(registers(shape).cycle().skip(3)) {
+                    let found = check(shape, &mnemonic, |assembler| assembler.apply(operation, target, a, last));
+                    assert_eq!(found.op_register(0), named(shape, target));
+                    assert_eq!(found.op_register(1), named(shape, a));
+                    check_last(shape, &found, 2, last);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn operations_on_one_number() {
+    for shape in Shape::ALL {
+        for (target, from) in registers(shape).zip(registers(shape).cycle().skip(3)) {
+            let (to, register) = (named(shape, target), Operand::Register(from));
+            let root =
+                check(shape, &format!("vsqrt{}", suffix(shape)), |a| a.apply(Operation::Sqrt, target, from, register));
+            assert_eq!(root.op_register(0), to);
+            (1..root.op_count()).for_each(|k| assert_eq!(root.op_register(k), named(shape, from)));
+            let shift = if shape.is_f64() { "vpsllq" } else { "vpslld" };
+            let shift = check(shape, shift, |a| a.apply(Operation::ShiftLeft(29), target, from, register));
+            assert_eq!((shift.op_register(0), shift.op_register(1)), (to, named(shape, from)));
+            assert_eq!((shift.op_count(), shift.immediate8()), (3, 29));
+        }
+    }
+}
+
+#[test]
+fn fused_products() {
+    let operations = [
+        (Operation::MulAdd, "vfmadd"),
+        (Operation::MulSub, "vfmsub"),
+        (Operation::NegMulAdd, "vfnmadd"),
+        (Operation::NegMulSub, "vfnmsub"),
+    ];
+    type Write = fn(&mut Assembler, Operation, Register, Register, Operand);
+    let orders: [(&str, Write); 3] =
+        [("231", Assembler::fused_231), ("213", Assembler::fused_213), ("132", Assembler::fused_132)];
+    for shape in Shape::ALL {
+        for ((operation, name), (order, write)) in operations.into_iter().flat_map(|o| orders.map(|w| (o, w))) {
+            for last in last_operands(shape, true) {
+                for (target, a) in registers(shape).zip(registers(shape).cycle().skip(3)) {
+                    let mnemonic = format!("{name}{order}{}", suffix(shape));
+                    let found = check(shape, &mnemonic, |assembler| write(assembler, operation, target, a, last));
+                    assert_eq!(found.op_register(0), named(shape, target));
+                    assert_eq!(found.op_register(1), named(shape, a));
+                    check_last(shape, &found, 2, last);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn loads_and_stores() {
+    for shape in Shape::ALL {
+        let moves =
+            if shape.is_scalar() { format!("vmov{}", suffix(shape)) } else { format!("vmovu{}", suffix(shape)) };
+        let copies = if shape.is_f64() { "vmovapd" } else { "vmovaps" };
+        for (target, place) in registers(shape).cycle().zip(places(shape)) {
+            let (memory, byte) = place;
+            let load = check(shape, &moves, |a| a.load(target, Operand::Lanes(memory, byte)));
+            assert_eq!(load.op_register(0), named(shape, target));
+            check_memory(shape, &load, 1, place, false);
+            let store = check(shape, &moves, |a| a.store(memory, byte, target));
+            assert_eq!(store.op_register(1), named(shape, target));
+            check_memory(shape, &store, 0, place, false);
+            if !shape.is_scalar() {
+                let mnemonic = if shape.is_f64() { "vbroadcastsd" } else { "vbroadcastss" };
+                let load = check(shape, mnemonic, |a| a.load(target, Operand::Repeated(memory, byte)));
+                assert_eq!(load.op_register(0), named(shape, target));
+                assert_eq!((load.memory_base(), load.memory_displacement64()), (base(memory), byte as u64));
+                assert_eq!(load.memory_size().size(), shape.number());
+            }
+            let from = (target + 5) % shape.registers() as u8;
+            let copy = check(shape, copies, |a| a.load(target, Operand::Register(from)));
+            assert_eq!((copy.op_register(0), copy.op_register(1)), (named(shape, target), named(shape, from)));
+        }
+    }
+}
+
+#[test]
+fn a_function_keeps_what_is_its_callers() {
+    for arrays in 1..MOST_ARRAYS {
+        for frame in [0, 64, 5000, 40_000] {
+            let mut assembler = Assembler::new(Shape::EightF64, &vec![64; arrays]);
+            let (own, mut expected) = (assembler.frame(), Vec::new());
+            if frame > 0 {
+                assembler.store(own, frame - 64, 1);
+            }
+            (0..arrays).for_each(|memory| assembler.load(2, Operand::Lanes(memory, 0)));
+            let code = assembler.finish();
+            let found = decoded(&code);
+            // what was pushed is popped, in the other order, and each array's address is loaded from its place
+            let of = |mnemonic| found.iter().filter(move |x| x.mnemonic() == mnemonic).map(|x| x.op0_register());
+            let (pushed, mut popped): (Vec<_>, Vec<_>) = (of(Mnemonic::Push).collect(), of(Mnemonic::Pop).collect());
+            popped.reverse();
+            assert_eq!(pushed, popped);
+            assert_eq!(pushed[0], Named::RBP);
+            for memory in 0..=own {
+                if (9..).contains(&memory) {
+                    expected.push(base(memory));
+                }
+            }
+            assert_eq!(pushed[1..], expected);
+            let loads: Vec<_> =
+                found.iter().filter(|x| x.mnemonic() == Mnemonic::Mov && x.memory_base() == Named::RDI).collect();
+            assert_eq!(loads.len(), arrays);
+            for memory in 0..arrays {
+                let at = |x: &&&Instruction| {
+                    x.memory_displacement64() == 8 * memory as u64 && x.op0_register() == base(memory)
+                };
+                assert_eq!(loads.iter().filter(at).count(), 1, "array {memory}");
+            }
+            assert!(loads[..arrays - 1].iter().all(|x| x.op0_register() != Named::RDI), "rdi last");
+            // the frame lies within what the stack gave, whatever its alignment was
+            let given: u64 = found
+                .iter()
+                .filter(|x| x.mnemonic() == Mnemonic::Sub && x.op0_register() == Named::RSP)
+                .map(|x| u64::from(x.immediate32()))
+                .sum();
+            assert!(given >= frame as u64 + 63, "{given} bytes for {frame}");
+            let lea: Vec<_> = found.iter().filter(|x| x.mnemonic() == Mnemonic::Lea).collect();
+            assert_eq!(
+                (lea[0].op0_register(), lea[0].memory_base(), lea[0].memory_displacement64()),
+                (base(own), Named::RSP, 63)
+            );
+            let and = found.iter().find(|x| x.mnemonic() == Mnemonic::And).expect("an alignment");
+            assert_eq!((and.op0_register(), and.immediate8to64()), (base(own), -64));
+            let back = lea[1];
+            assert_eq!((back.op0_register(), back.memory_base()), (Named::RSP, Named::RBP));
+            assert_eq!(back.memory_displacement64() as i64, -8 * expected.len() as i64);
+            let end: Vec<_> = found.iter().rev().take(3).map(|x| x.mnemonic()).collect();
+            assert_eq!(end, [Mnemonic::Ret, Mnemonic::Vzeroupper, Mnemonic::Pop]);
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "byte 8 of array 0")]
+fn nothing_beyond_an_array_is_written() {
+    Assembler::new(Shape::OneF64, &[8]).store(0, 8, 0);
+}
+
+#[test]
+#[should_panic(expected = "no such register")]
+fn avx2_has_sixteen_registers() {
+    Assembler::new(Shape::OneF64, &[8]).load(16, Operand::Lanes(0, 0));
+}

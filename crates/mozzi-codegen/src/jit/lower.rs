@@ -1,0 +1,115 @@
+//! From a program to what the processor can do.
+
+use super::instruction::{Node, Operation, Value};
+use super::sin_cos::SinCos;
+use crate::function::Function;
+use crate::program::{Program, Step};
+use std::collections::HashMap;
+
+/// A lowered program. Its outputs are the program's, and one more: the sum of the squares of all angles.
+pub(crate) struct Lowered {
+    pub nodes: Vec<Node>,
+    pub outputs: Vec<Vec<Value>>,
+}
+
+/// Nodes in the making, of `f64` or of `f32`.
+pub(crate) struct Builder {
+    pub is_f64: bool,
+    nodes: Vec<Node>,
+    constants: HashMap<u64, Value>,
+}
+
+impl Builder {
+    pub fn push(&mut self, node: Node) -> Value {
+        self.nodes.push(node);
+        (self.nodes.len() - 1) as Value
+    }
+
+    pub fn bits(&mut self, bits: u64) -> Value {
+        if let Some(&value) = self.constants.get(&bits) {
+            return value;
+        }
+        let value = self.push(Node::Constant(bits));
+        self.constants.insert(bits, value);
+        value
+    }
+
+    /// The number nearest to x.
+    pub fn constant(&mut self, x: f64) -> Value {
+        self.bits(if self.is_f64 { x.to_bits() } else { u64::from((x as f32).to_bits()) })
+    }
+
+    pub fn apply<const K: usize>(&mut self, operation: Operation, operands: [Value; K]) -> Value {
+        debug_assert_eq!(K, operation.arity());
+        let mut three = [0; 3];
+        three[..K].copy_from_slice(&operands);
+        self.push(Node::Apply(operation, three))
+    }
+
+    /// The bit of a number's sign.
+    pub fn sign_bit(&mut self) -> Value {
+        self.bits(if self.is_f64 { 1 << 63 } else { 1 << 31 })
+    }
+
+    /// −1, 0 or 1: a number that is not 0 is far beyond ±1 after two products by a power of two. NaN stays NaN, where it is second.
+    fn sgn(&mut self, x: Value) -> Value {
+        let huge = self.constant(2.0_f64.powi(if self.is_f64 { 600 } else { 100 }));
+        let (one, minus_one) = (self.constant(1.0), self.constant(-1.0));
+        let x = self.apply(Operation::Mul, [x, huge]);
+        let x = self.apply(Operation::Mul, [x, huge]);
+        let x = self.apply(Operation::Max, [minus_one, x]);
+        self.apply(Operation::Min, [one, x])
+    }
+}
+
+/// None where the program has a function that there is no machine code for: tanh.
+pub(crate) fn lower(program: &Program, is_f64: bool) -> Option<Lowered> {
+    let mut builder = Builder { is_f64, nodes: Vec::with_capacity(2 * program.steps.len()), constants: HashMap::new() };
+    let mut place: Vec<Value> = Vec::with_capacity(program.steps.len());
+    let mut angles: HashMap<u32, (Value, Value)> = HashMap::new();
+    let mut squares = builder.constant(0.0);
+    let sin_cos = if is_f64 { SinCos::of::<f64>() } else { SinCos::of::<f32>() };
+    for step in &program.steps {
+        place.push(match *step {
+            Step::Constant(x) => builder.constant(x),
+            Step::Input(array, index) => builder.push(Node::Input(array, index)),
+            Step::Apply(function, operands) => {
+                let [a, b, c] = operands.map(|operand| place.get(operand as usize).copied().unwrap_or_default());
+                match function {
+                    Function::Add => builder.apply(Operation::Add, [a, b]),
+                    Function::Sub => builder.apply(Operation::Sub, [a, b]),
+                    Function::Mul => builder.apply(Operation::Mul, [a, b]),
+                    Function::Div => builder.apply(Operation::Div, [a, b]),
+                    Function::MulAdd => builder.apply(Operation::MulAdd, [a, b, c]),
+                    Function::MulSub => builder.apply(Operation::MulSub, [a, b, c]),
+                    Function::NegMulAdd => builder.apply(Operation::NegMulAdd, [a, b, c]),
+                    Function::NegMulSub => builder.apply(Operation::NegMulSub, [a, b, c]),
+                    Function::Sqrt => builder.apply(Operation::Sqrt, [a]),
+                    Function::Neg => {
+                        let sign = builder.sign_bit();
+                        builder.apply(Operation::Xor, [a, sign])
+                    }
+                    Function::Sgn => builder.sgn(a),
+                    Function::Sin | Function::Cos => {
+                        let angle = operands[0];
+                        let (sin, cos) = match angles.get(&angle) {
+                            Some(&known) => known,
+                            None => {
+                                squares = builder.apply(Operation::MulAdd, [a, a, squares]);
+                                let both = sin_cos.at(&mut builder, a);
+                                angles.insert(angle, both);
+                                both
+                            }
+                        };
+                        if function == Function::Sin { sin } else { cos }
+                    }
+                    Function::Tanh => return None,
+                }
+            }
+        });
+    }
+    let of = |values: &Vec<u32>| values.iter().map(|&value| place[value as usize]).collect();
+    let mut outputs: Vec<Vec<Value>> = program.outputs.iter().map(|output| of(&output.values)).collect();
+    outputs.push(vec![squares]);
+    Some(Lowered { nodes: builder.nodes, outputs })
+}

@@ -1,0 +1,117 @@
+//! Programs as machine code.
+
+mod allocate;
+mod assembler;
+mod executable;
+mod instruction;
+mod lower;
+mod shape;
+mod sin_cos;
+
+pub use shape::Shape;
+
+use crate::program::{Array, Program};
+use executable::Executable;
+use mozzi::scalar::Float;
+
+/// Why there is no machine code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// Nobody asked for it.
+    NotAsked,
+    /// The processor has not the instructions, or is no x86-64.
+    Processor,
+    /// The program has a function that there is no machine code for (tanh), or more arrays than there are registers for their addresses.
+    Program,
+    /// The code is longer than [`LONGEST_CODE`]: loops are faster.
+    Long,
+    /// The system grants no memory that becomes executable.
+    Memory,
+}
+
+impl std::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Refusal::NotAsked => "nobody asked for machine code",
+            Refusal::Processor => "the processor has not the instructions",
+            Refusal::Program => "the program has a function without machine code, or too many arrays",
+            Refusal::Long => "the code would be longer than the instruction cache is wide",
+            Refusal::Memory => "the system grants no executable memory",
+        })
+    }
+}
+impl std::error::Error for Refusal {}
+
+/// The most bytes of code: beyond, the straight line is fetched from the second-level cache at every call, and loops are faster.
+pub const LONGEST_CODE: usize = 64 << 10;
+
+/// A program as machine code for one or several states at once. It belongs to no thread, and a call allocates nothing.
+#[derive(Debug)]
+pub struct Kernel {
+    executable: Executable,
+    shape: Shape,
+    angle_limit: f64,
+    code_bytes: usize,
+    instructions: usize,
+    frame_bytes: usize,
+}
+
+impl Kernel {
+    /// The machine code of a program.
+    ///
+    /// # Errors
+    /// [`Refusal`] with the reason why there is none.
+    pub fn new(program: &Program, shape: Shape) -> Result<Self, Refusal> {
+        if !shape.is_supported() {
+            return Err(Refusal::Processor);
+        }
+        let lowered = lower::lower(program, shape.is_f64()).ok_or(Refusal::Program)?;
+        let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
+        let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
+        let code = allocate::allocate(shape, &lowered, &inputs).ok_or(Refusal::Program)?;
+        if code.bytes.len() > LONGEST_CODE {
+            return Err(Refusal::Long);
+        }
+        let largest = if shape.is_f64() { f64::LARGEST } else { f32::LARGEST.into() };
+        let executable = Executable::new(shape, &code, &inputs, &outputs).ok_or(Refusal::Memory)?;
+        let (code_bytes, instructions, frame_bytes) = (code.bytes.len(), code.instructions, code.frame);
+        Ok(Kernel { executable, shape, angle_limit: largest * largest, code_bytes, instructions, frame_bytes })
+    }
+
+    /// The registers and numbers that it works on.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// The length of the code in bytes.
+    pub fn code_bytes(&self) -> usize {
+        self.code_bytes
+    }
+
+    /// How many instructions, loads and stores among them.
+    pub fn instructions(&self) -> usize {
+        self.instructions
+    }
+
+    /// The memory for what registers could not hold, in bytes.
+    pub fn frame_bytes(&self) -> usize {
+        self.frame_bytes
+    }
+
+    /// Fills the outputs of as many states as the shape has lanes. Entry k of an array has its lanes one after the other, from
+    /// `k · lanes` on. `squares` takes, of each lane, the sum of the squares of all angles, whose sine is computed; see
+    /// [`is_exact`](Self::is_exact).
+    ///
+    /// # Panics
+    /// When numbers are not of the shape's type, an array is missing, or one is too short.
+    #[inline(always)]
+    pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
+        self.executable.call(inputs, outputs, squares);
+    }
+
+    /// Are the angles of a lane so small that their sines were reduced exactly? Else, and for NaN, its outputs mean nothing.
+    #[inline(always)]
+    pub fn is_exact<S: Float>(&self, squares: S) -> bool {
+        squares <= S::from_f64(self.angle_limit)
+    }
+}

@@ -1,0 +1,98 @@
+//! Which registers and which numbers machine code works on.
+
+/// How instructions are encoded, and so what the processor must have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    /// AVX2 and FMA: 16 registers of 256 bits.
+    Vex,
+    /// AVX-512 F: 32 registers of 512 bits, constants repeated by the instruction that reads them.
+    Evex,
+}
+
+/// The kinds of machine code that are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// One state in `f64`; AVX2 and FMA, as the next three.
+    OneF64,
+    /// Four states in `f64`.
+    FourF64,
+    /// One state in `f32`.
+    OneF32,
+    /// Eight states in `f32`.
+    EightF32,
+    /// Eight states in `f64`; AVX-512 F, as the next.
+    EightF64,
+    /// Sixteen states in `f32`.
+    SixteenF32,
+}
+
+impl Shape {
+    /// All of them.
+    pub const ALL: [Shape; 6] =
+        [Shape::OneF64, Shape::FourF64, Shape::OneF32, Shape::EightF32, Shape::EightF64, Shape::SixteenF32];
+
+    /// The states that one call computes.
+    pub fn lanes(self) -> usize {
+        match self {
+            Shape::OneF64 | Shape::OneF32 => 1,
+            Shape::FourF64 => 4,
+            Shape::EightF32 | Shape::EightF64 => 8,
+            Shape::SixteenF32 => 16,
+        }
+    }
+
+    /// The bytes of a number.
+    pub fn number(self) -> usize {
+        if self.is_f64() { 8 } else { 4 }
+    }
+
+    /// Numbers are `f64`, not `f32`.
+    pub fn is_f64(self) -> bool {
+        matches!(self, Shape::OneF64 | Shape::FourF64 | Shape::EightF64)
+    }
+
+    /// What the processor must have, in words.
+    pub fn instruction_set(self) -> &'static str {
+        match self.encoding() {
+            Encoding::Vex => "avx2 + fma",
+            Encoding::Evex => "avx512f",
+        }
+    }
+
+    /// This processor can run it.
+    pub fn is_supported(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::is_x86_feature_detected as has;
+            match self.encoding() {
+                Encoding::Vex => has!("avx2") && has!("fma"),
+                Encoding::Evex => has!("avx512f"),
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        false
+    }
+
+    pub(crate) fn encoding(self) -> Encoding {
+        match self {
+            Shape::EightF64 | Shape::SixteenF32 => Encoding::Evex,
+            _ => Encoding::Vex,
+        }
+    }
+
+    pub(crate) fn is_scalar(self) -> bool {
+        self.lanes() == 1
+    }
+
+    /// The bytes of a register's numbers.
+    pub(crate) fn width(self) -> usize {
+        self.number() * self.lanes()
+    }
+
+    pub(crate) fn registers(self) -> usize {
+        match self.encoding() {
+            Encoding::Vex => 16,
+            Encoding::Evex => 32,
+        }
+    }
+}

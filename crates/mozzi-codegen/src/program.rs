@@ -1,0 +1,145 @@
+//! Straight-line programs.
+
+use crate::count::Count;
+use crate::function::Function;
+use mozzi::Scalar;
+
+/// A number of a program: the place of the step that computes it.
+pub type Value = u32;
+
+/// One step of a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// A number of the robot.
+    Constant(f64),
+    /// A number of the caller: which array, which entry.
+    Input(u32, u32),
+    /// An operation on what steps before this one computed; operands beyond its arity are 0.
+    Apply(Function, [Value; 3]),
+}
+
+impl Step {
+    /// The values that it needs.
+    pub fn operands(&self) -> &[Value] {
+        match self {
+            Step::Apply(function, operands) => &operands[..function.arity()],
+            _ => &[],
+        }
+    }
+}
+
+/// An array of the caller's numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Array {
+    /// What it holds: `theta`.
+    pub name: String,
+    /// How many numbers.
+    pub length: usize,
+}
+
+/// An array that the program fills.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// What it holds: `tau`.
+    pub name: String,
+    /// Where each entry comes from.
+    pub values: Vec<Value>,
+}
+
+/// What a recording leaves of a computation on one robot: steps one after the other, without loops, branches or memory.
+///
+/// ```
+/// use mozzi::Scalar;
+/// let program = mozzi_codegen::record("norm", &[("x", 2)], |x| {
+///     let zero = mozzi_codegen::Traced::zero();
+///     vec![("length", vec![(x[0][0] * x[0][0] + x[0][1] * x[0][1] + zero * x[0][0]).sqrt()])]
+/// });
+/// assert_eq!(program.evaluate(&[&[3.0, 4.0]]), [[5.0]]);
+/// assert_eq!(program.to_string(), "\
+/// program norm
+/// input x 2
+/// %0 = x 0
+/// %1 = x 1
+/// %2 = mul %0 %0
+/// %3 = fma %1 %1 %2
+/// %4 = sqrt %3
+/// output length %4
+/// ");
+/// ```
+///
+/// Its text ([`Display`](std::fmt::Display)) is read again by [`FromStr`](std::str::FromStr).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    pub(crate) name: String,
+    pub(crate) inputs: Vec<Array>,
+    pub(crate) steps: Vec<Step>,
+    pub(crate) outputs: Vec<Output>,
+    pub(crate) asked: Option<Count>,
+}
+
+impl Program {
+    /// What it computes.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The arrays that it reads.
+    pub fn inputs(&self) -> &[Array] {
+        &self.inputs
+    }
+
+    /// The steps, each after those whose values it needs.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// The arrays that it fills.
+    pub fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    /// The operations that it makes.
+    pub fn count(&self) -> Count {
+        let mut count = Count::default();
+        for step in &self.steps {
+            let Step::Apply(function, _) = step else { continue };
+            *match function {
+                Function::Add | Function::Sub => &mut count.add,
+                Function::Mul => &mut count.mul,
+                Function::Div => &mut count.div,
+                Function::MulAdd | Function::MulSub | Function::NegMulAdd | Function::NegMulSub => &mut count.fma,
+                Function::Sqrt => &mut count.sqrt,
+                Function::Sin => &mut count.sin_cos,
+                Function::Cos => continue, // with its sine
+                Function::Neg | Function::Tanh | Function::Sgn => &mut count.other,
+            } += 1;
+        }
+        count
+    }
+
+    /// The operations that the kernel asked for while it was recorded, before anything was folded; none where the program was
+    /// read from a text.
+    pub fn count_before_folding(&self) -> Option<Count> {
+        self.asked
+    }
+
+    /// The outputs at these inputs, by interpretation, in any scalar: what every other way to run the program is compared with.
+    ///
+    /// # Panics
+    /// When there are not as many inputs as [`inputs`](Self::inputs) says, or one is shorter than it says.
+    pub fn evaluate<S: Scalar>(&self, inputs: &[&[S]]) -> Vec<Vec<S>> {
+        assert!(inputs.len() == self.inputs.len(), "{} arrays, expected {}", inputs.len(), self.inputs.len());
+        for (given, Array { name, length }) in inputs.iter().zip(&self.inputs) {
+            assert!(given.len() >= *length, "{name} has {} entries, expected {length}", given.len());
+        }
+        let mut values: Vec<S> = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
+            values.push(match *step {
+                Step::Constant(x) => S::from_f64(x),
+                Step::Input(array, index) => inputs[array as usize][index as usize],
+                Step::Apply(function, operands) => function.apply(operands.map(|value| values[value as usize])),
+            });
+        }
+        self.outputs.iter().map(|output| output.values.iter().map(|&value| values[value as usize]).collect()).collect()
+    }
+}

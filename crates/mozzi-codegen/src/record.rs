@@ -1,0 +1,148 @@
+//! From a tape to a program.
+
+use crate::function::Function;
+use crate::program::{Array, Output, Program, Step, Value};
+use crate::tape::{self, Node, Tape};
+use crate::traced::Traced;
+
+/// The program of what `body` computes on these arrays (name and length), as arrays with their names. The kernels of `mozzi` run in it
+/// unchanged: see [`Program`](crate::Program).
+pub fn record<'n>(
+    name: &str,
+    inputs: &[(&str, usize)],
+    body: impl FnOnce(&[Vec<Traced>]) -> Vec<(&'n str, Vec<Traced>)>,
+) -> Program {
+    let outer = tape::replace(Tape::default());
+    let arrays: Vec<Vec<Traced>> = (0..)
+        .zip(inputs)
+        .map(|(array, &(_, length))| tape::with(|tape| (0..length as u32).map(|k| tape.input(array, k)).collect()))
+        .collect();
+    let outputs = body(&arrays);
+    let tape = tape::replace(outer);
+    let inputs = inputs.iter().map(|&(name, length)| Array { name: name.to_string(), length }).collect();
+    let asked = Some(tape.asked);
+    let (steps, outputs) = finish(tape, &outputs);
+    Program { name: name.to_string(), inputs, steps, outputs, asked }
+}
+
+/// What the outputs need, in the order of the tape, products fused with sums, and signs computed where an output is the negative
+/// of a node.
+fn finish(tape: Tape, outputs: &[(&str, Vec<Traced>)]) -> (Vec<Step>, Vec<Output>) {
+    let mut steps: Vec<Step> = tape
+        .nodes
+        .into_iter()
+        .map(|node| match node {
+            Node::Constant(bits) => Step::Constant(f64::from_bits(bits)),
+            Node::Input(array, index) => Step::Input(array, index),
+            Node::Apply(function, operands) => Step::Apply(function, operands),
+        })
+        .collect();
+    let roots = || outputs.iter().flat_map(|(_, values)| values.iter());
+    let uses = uses(&steps, roots().map(|x| x.node()));
+    fuse(&mut steps, &uses);
+    // a node that only goes out, as its negative, is computed so; else its negative is a step of its own
+    let mut negated: Vec<Option<Value>> = vec![None; steps.len()];
+    for x in roots().filter(|x| x.is_negative()) {
+        let node = x.node() as usize;
+        if negated[node].is_none() {
+            let goes_out = roots().filter(|y| *y == x).count() as u32;
+            negated[node] = Some(match negative(steps[node]) {
+                Some(step) if uses[node] == goes_out => {
+                    steps[node] = step;
+                    x.node()
+                }
+                _ => {
+                    steps.push(Step::Apply(Function::Neg, [x.node(), 0, 0]));
+                    (steps.len() - 1) as u32
+                }
+            });
+        }
+    }
+    let place = |x: &Traced| if x.is_negative() { negated[x.node() as usize].unwrap_or_default() } else { x.node() };
+    let outputs = outputs
+        .iter()
+        .map(|(name, values)| Output { name: name.to_string(), values: values.iter().map(place).collect() })
+        .collect();
+    sweep(steps, outputs)
+}
+
+/// How often each step is needed, by steps that are needed themselves and by the roots.
+fn uses(steps: &[Step], roots: impl Iterator<Item = Value>) -> Vec<u32> {
+    let mut uses = vec![0; steps.len()];
+    roots.for_each(|root| uses[root as usize] += 1);
+    for place in (0..steps.len()).rev() {
+        if uses[place] > 0 {
+            steps[place].operands().iter().for_each(|&operand| uses[operand as usize] += 1);
+        }
+    }
+    uses
+}
+
+/// A sum takes in a product that nothing else needs, of two the one that was recorded last; then products that only sums need, each
+/// of which can take it in.
+fn fuse(steps: &mut [Step], uses: &[u32]) {
+    for place in 0..steps.len() {
+        let single = |x: Value| uses[x as usize] == 1;
+        if let Some((_, fused)) = fused(steps, place, single) {
+            steps[place] = fused;
+        }
+    }
+    let mut by_sums = vec![0; steps.len()];
+    for place in (0..steps.len()).filter(|&place| uses[place] > 0) {
+        if let Some((product, _)) = fused(steps, place, |_| true) {
+            by_sums[product as usize] += 1;
+        }
+    }
+    let only_by_sums: Vec<bool> = by_sums.iter().zip(uses).map(|(sums, uses)| sums == uses).collect();
+    for place in (0..steps.len()).filter(|&place| uses[place] > 0) {
+        match fused(steps, place, |_| true) {
+            Some((product, fused)) if only_by_sums[product as usize] => steps[place] = fused,
+            _ => {}
+        }
+    }
+}
+
+/// The last recorded product that this sum could take in, of those that may be, and what it is then.
+fn fused(steps: &[Step], place: usize, may_be: impl Fn(Value) -> bool) -> Option<(Value, Step)> {
+    let Step::Apply(function @ (Function::Add | Function::Sub), [a, b, _]) = steps[place] else { return None };
+    let (of_a, of_b) = match function {
+        Function::Add => (Function::MulAdd, Function::MulAdd),
+        _ => (Function::MulSub, Function::NegMulAdd),
+    };
+    let last_first = if a > b { [(of_a, a, b), (of_b, b, a)] } else { [(of_b, b, a), (of_a, a, b)] };
+    last_first.into_iter().filter(|&(_, x, rest)| x != rest && may_be(x)).find_map(|(function, x, rest)| {
+        match steps[x as usize] {
+            Step::Apply(Function::Mul, [p, q, _]) => Some((x, Step::Apply(function, [p, q, rest]))),
+            _ => None,
+        }
+    })
+}
+
+/// The step that computes the negative, at no further cost.
+fn negative(step: Step) -> Option<Step> {
+    let Step::Apply(function, [a, b, c]) = step else { return None };
+    let (function, operands) = match function {
+        Function::Sub => (Function::Sub, [b, a, c]),
+        Function::MulAdd => (Function::NegMulSub, [a, b, c]),
+        Function::MulSub => (Function::NegMulAdd, [a, b, c]),
+        Function::NegMulAdd => (Function::MulSub, [a, b, c]),
+        Function::NegMulSub => (Function::MulAdd, [a, b, c]),
+        _ => return None,
+    };
+    Some(Step::Apply(function, operands))
+}
+
+/// The steps that the outputs need, numbered anew.
+fn sweep(steps: Vec<Step>, mut outputs: Vec<Output>) -> (Vec<Step>, Vec<Output>) {
+    let uses = uses(&steps, outputs.iter().flat_map(|output| output.values.iter().copied()));
+    let (mut kept, mut place) = (Vec::new(), vec![0; steps.len()]);
+    for (k, mut step) in steps.into_iter().enumerate().filter(|(k, _)| uses[*k] > 0) {
+        if let Step::Apply(function, operands) = &mut step {
+            operands[..function.arity()].iter_mut().for_each(|operand| *operand = place[*operand as usize]);
+        }
+        place[k] = kept.len() as u32;
+        kept.push(step);
+    }
+    outputs.iter_mut().flat_map(|output| &mut output.values).for_each(|value| *value = place[*value as usize]);
+    (kept, outputs)
+}

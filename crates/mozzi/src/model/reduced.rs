@@ -1,0 +1,114 @@
+//! The same robot with fewer numbers that are not zero, for recordings of its dynamics.
+
+use super::Model;
+use crate::linalg::{Sym3, Vec3};
+use crate::spatial::SpatialInertia;
+use alloc::vec::Vec;
+
+/// Of this size a number is rounding of 0 beside 1: what a few products by cos(π/2) = 6 · 10⁻¹⁷ leave.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+impl Model<f64> {
+    /// A model with the same τ, M, θ̈, energies, kinematics and derivatives, to rounding, for which they are less work where zeros are left
+    /// out; [`base_reaction`](crate::NewtonEuler::base_reaction) and the links' own parameters are another robot's.
+    ///
+    /// - What of a link does not notice that its joint turns is given to its parent (or the base): the mass, on the joint's axis, the first
+    ///   moment along it, and the same moment of inertia about all axes across it, I_yy. Left are (m c_x, m c_y), I_xx − I_yy, I_xy, I_xz,
+    ///   I_yz, I_zz (Khalil and Dombre 2002, section 9.4).
+    /// - Numbers that are rounding of 0, or in a rotation of ±1, are that: 8ε of the size of what they were computed from.
+    ///
+    /// Cost O(N).
+    pub fn reduced(&self) -> Self {
+        let mut model = self.clone();
+        let own = |G: &SpatialInertia| (largest(G.mc), G.I.trace().abs());
+        let mut sizes: Vec<_> =
+            core::iter::once(&self.base_inertia).chain(self.links.iter().map(|link| &link.G)).map(own).collect();
+        for i in (1..=model.links.len()).rev() {
+            let link = &mut model.links[i - 1];
+            let (parent, R) = (link.parent, link.M.R.matrix());
+            link.M.R.0 = R.map(|x| if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) });
+            let p = link.M.p;
+            link.M.p = p.map(|x| clean(x, largest(p)));
+            if link.A.b == 0.0 {
+                let G = link.G;
+                let ([.., z], J) = (G.mc.0, G.I.yy);
+                let axial = SpatialInertia { mass: G.mass, mc: Vec3([0.0, 0.0, z]), I: Sym3::diagonal(J, J, 0.0) };
+                link.G = G - axial;
+                let given = axial.congruence(link.M.Ad());
+                let (size, (mc, I)) = (&mut sizes[parent], own(&given));
+                *size = (size.0 + mc, size.1 + I);
+                match parent.checked_sub(1) {
+                    None => model.base_inertia += given,
+                    Some(parent) => model.links[parent].G += given,
+                }
+            }
+        }
+        let inertias = core::iter::once(&mut model.base_inertia).chain(model.links.iter_mut().map(|link| &mut link.G));
+        for (G, (mc, I)) in inertias.zip(sizes) {
+            (G.mc, G.I) = (G.mc.map(|x| clean(x, mc)), G.I.map(|x| clean(x, I)));
+        }
+        model
+    }
+}
+
+fn largest(v: Vec3) -> f64 {
+    v.0.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
+
+/// 0 where x is rounding beside numbers of this size.
+fn clean(x: f64, size: f64) -> f64 {
+    if x.abs() <= ROUNDING * size { 0.0 } else { x }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::accuracy::normalized_error;
+    use crate::testing::{floating_tree, state, tree, wrench};
+    use crate::{Environment, Model};
+
+    #[test]
+    fn the_dynamics_are_the_same() {
+        for model in [tree(3, 9, 0), tree(5, 9, 3), floating_tree(2, 8, 1)] {
+            let reduced = model.reduced();
+            let [theta, dtheta, ddtheta] = state(&model, 6);
+            let applied = [(model.end_effector().expect("named"), wrench(2))];
+            let of = |model: &Model| {
+                let environment = Environment { applied: &applied, ..model.environment() };
+                [
+                    model
+                        .inverse_dynamics(&theta, &dtheta, &ddtheta, &environment)
+                        .expect("lengths")
+                        .as_slice()
+                        .to_vec(),
+                    model.mass_matrix(&theta).expect("lengths").as_slice().to_vec(),
+                    model
+                        .inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment)
+                        .expect("lengths")
+                        .by_theta
+                        .as_slice()
+                        .to_vec(),
+                ]
+            };
+            for (found, reference) in of(&reduced).iter().zip(&of(&model)) {
+                let error = normalized_error(found, reference, 0.0);
+                assert!(error < 100.0, "{error}");
+            }
+            let tau = &of(&model)[0];
+            let environment = Environment { applied: &applied, ..model.environment() };
+            let again = reduced.forward_dynamics(&theta, &dtheta, tau, &environment).expect("regular");
+            assert!(normalized_error(again.as_slice(), &ddtheta, 0.0) < 1e6, "{again} {ddtheta:?}");
+            let energy = |model: &Model| model.kinetic_energy(&theta, &dtheta).expect("lengths");
+            assert!((energy(&reduced) / energy(&model) - 1.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_link_that_turns_keeps_seven_numbers() {
+        let model = tree(3, 9, 0);
+        for (link, reduced) in model.links.iter().zip(&model.reduced().links) {
+            let G = reduced.G;
+            let is_zero = [G.mass, G.mc.0[2], G.I.yy].map(|x| x == 0.0);
+            assert_eq!(is_zero, [link.A.b == 0.0; 3], "children give theirs, but not to one that has given all");
+        }
+    }
+}
