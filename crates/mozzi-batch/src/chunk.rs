@@ -3,6 +3,7 @@
 use crate::columns::{Layout, read_block, read_rows, write_block, write_rows};
 use crate::lanes::{Lane, MOST};
 use crate::quantity::{Memory, Quantity};
+use mozzi::scalar::Float;
 use mozzi::{Environment, FrameId, Model, Scalar, Wrench};
 
 /// A table of this thread's states, and its numbers a state.
@@ -75,6 +76,9 @@ impl<L: Lane> Worker<L> {
             q.evaluate(model, &input[..own], &environment, memory, output);
             if Q::PIVOTS {
                 look_at_pivots(memory.workspace.pivots(), chunk.first + first, rows, suspects);
+                if let Some(task) = &memory.task {
+                    look_at_pivots(&task.pivots, chunk.first + first, rows, suspects);
+                }
             }
             let mut rest = &output[..];
             for (table, width) in &mut chunk.outputs {
@@ -89,7 +93,7 @@ impl<L: Lane> Worker<L> {
     }
 }
 
-/// Notes the states whose smallest pivot is below 10⁻⁸ of the largest: they are computed again, by the method that names the
+/// Notes the states whose smallest pivot is below √ε of the largest: they are computed again, by the method that names the
 /// joint if it is one.
 #[inline(always)]
 fn look_at_pivots<L: Lane>(pivots: &[L], first: usize, rows: usize, suspects: &mut Vec<usize>) {
@@ -99,7 +103,7 @@ fn look_at_pivots<L: Lane>(pivots: &[L], first: usize, rows: usize, suspects: &m
         (least, most) = (least.min(pivot), most.max(pivot));
     }
     let mut margin = [L::Number::zero(); MOST];
-    (least - L::from_f64(1e-8) * most).store(&mut margin);
+    (least - L::constant(L::Number::EPSILON.sqrt()) * most).store(&mut margin);
     for (row, &margin) in margin[..rows].iter().enumerate() {
         if !(margin > L::Number::zero()) {
             suspects.push(first + row);

@@ -28,6 +28,7 @@ mod columns;
 mod error;
 mod instruction_set;
 mod lanes;
+mod methods;
 mod quantity;
 mod simulate;
 mod surroundings;

@@ -3,7 +3,7 @@
 
 use crate::lanes::Lane;
 use mozzi::dynamics as kernel;
-use mozzi::{Environment, FrameId, Model, Twist, Workspace};
+use mozzi::{Environment, FrameId, Model, Task, TaskMemory, Twist, Workspace};
 
 /// A kernel on registers.
 pub(crate) trait Quantity: Sync {
@@ -18,6 +18,11 @@ pub(crate) trait Quantity: Sync {
         memory: &mut Memory<L>,
         output: &mut [L],
     );
+
+    /// A state whose pivots spread far, at one state and in f64: its error, if it has one.
+    fn again(&self, _model: &Model, _state: &[Vec<f64>], _environment: &Environment) -> Result<(), mozzi::Error> {
+        Ok(())
+    }
 }
 
 /// Memory without meaning between calls.
@@ -27,6 +32,8 @@ pub(crate) struct Memory<L: Lane> {
     pub columns: Vec<Twist<L>>,
     /// n of them.
     pub zeros: Vec<L>,
+    /// Of task-space dynamics, from its first call on.
+    pub task: Option<TaskMemory<L>>,
     /// A block's numbers, for what is computed elsewhere.
     pub numbers: Vec<L::Number>,
 }
@@ -38,6 +45,7 @@ impl<L: Lane> Memory<L> {
             columns: vec![Twist::zero(); model.n()],
             zeros: vec![L::zero(); model.n()],
             numbers: Vec::new(),
+            task: None,
         }
     }
 }
@@ -52,7 +60,7 @@ macro_rules! split {
 }
 
 macro_rules! quantity {
-    ($Q:ident, $this:pat, [$model:ident, $environment:pat, $memory:pat, $output:ident]; $($name:ident: $count:expr),*; $(PIVOTS = $pivots:expr;)? $body:block) => {
+    ($Q:ident, $this:pat, [$model:ident, $environment:pat, $memory:pat, $output:ident]; $($name:ident: $count:expr),*; $(PIVOTS = $pivots:expr, $again:ident;)? $body:block) => {
         impl Quantity for $Q {
             $(const PIVOTS: bool = $pivots;)?
             #[inline(always)]
@@ -63,6 +71,9 @@ macro_rules! quantity {
                 split!(input => $($name: $count),*);
                 $body
             }
+            $(fn again(&self, model: &Model, state: &[Vec<f64>], environment: &Environment) -> Result<(), mozzi::Error> {
+                $again(model, state, environment)
+            })?
         }
     };
 }
@@ -72,8 +83,12 @@ quantity!(InverseDynamics, _, [model, environment, Memory { workspace, .. }, out
     kernel::inverse_dynamics(model, theta, dtheta, ddtheta, environment, workspace, output);
 });
 
+fn forward_dynamics_again(model: &Model, state: &[Vec<f64>], environment: &Environment) -> Result<(), mozzi::Error> {
+    model.forward_dynamics(&state[0], &state[1], &state[2], environment).map(drop)
+}
+
 pub(crate) struct ForwardDynamics;
-quantity!(ForwardDynamics, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), tau: model.n(); PIVOTS = true; {
+quantity!(ForwardDynamics, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), tau: model.n(); PIVOTS = true, forward_dynamics_again; {
     kernel::forward_dynamics(model, theta, dtheta, tau, environment, workspace, output);
 });
 
@@ -131,7 +146,7 @@ quantity!(InverseDynamicsDerivatives, _, [model, environment, Memory { workspace
 });
 
 pub(crate) struct ForwardDynamicsDerivatives;
-quantity!(ForwardDynamicsDerivatives, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), tau: model.n(); PIVOTS = true; {
+quantity!(ForwardDynamicsDerivatives, _, [model, environment, Memory { workspace, .. }, output]; theta: model.nq(), dtheta: model.n(), tau: model.n(); PIVOTS = true, forward_dynamics_again; {
     let (ddtheta, derivatives) = output.split_at_mut(model.n());
     kernel::forward_dynamics_derivatives(model, theta, dtheta, tau, environment, workspace, ddtheta, thirds(derivatives));
 });
@@ -183,3 +198,28 @@ quantity!(BodyJacobianRate, &BodyJacobianRate(frame), [model, _, Memory { column
     mozzi::kinematics::body_jacobian_rate(model, theta, dtheta, frame, columns);
     by_rows(columns, output);
 });
+
+pub(crate) struct TaskSpaceDynamics<'a>(pub Task<'a>);
+impl Quantity for TaskSpaceDynamics<'_> {
+    const PIVOTS: bool = true;
+
+    #[inline(always)]
+    fn evaluate<L: Lane>(
+        &self,
+        model: &Model<L::Number>,
+        input: &[L],
+        environment: &Environment<L>,
+        memory: &mut Memory<L>,
+        output: &mut [L],
+    ) {
+        let (task, k) = (self.0, self.0.rows.len());
+        let (theta, dtheta) = input.split_at(model.nq());
+        let own = memory.task.get_or_insert_with(|| TaskMemory::new(model, k));
+        let (Lambda, eta) = output.split_at_mut(k * k);
+        kernel::task_space_dynamics(model, theta, dtheta, task, environment, &mut memory.workspace, own, Lambda, eta);
+    }
+
+    fn again(&self, model: &Model, state: &[Vec<f64>], environment: &Environment) -> Result<(), mozzi::Error> {
+        model.task_space_dynamics(&state[0], &state[1], self.0, environment).map(drop)
+    }
+}

@@ -36,6 +36,9 @@ macro_rules! quantities {
         fn rows(M: mozzi::nalgebra::DMatrix<f64>) -> Vec<f64> {
             M.transpose().as_slice().to_vec()
         }
+        fn task(frame: FrameId) -> mozzi::Task<'static> {
+            mozzi::Task { frame, coordinates: mozzi::TaskFrame::Space, rows: &[4] }
+        }
         let all: Vec<(&str, fn(usize) -> Vec<usize>, OfBatch<$T>, AtOne)> = vec![
             (
                 "inverse_dynamics",
@@ -134,6 +137,18 @@ macro_rules! quantities {
                 |m, f, [q, v, _], _| vec![rows(m.body_jacobian_rate(q, v, f).unwrap().matrix())],
             ),
             (
+                "task_space_dynamics",
+                |_| vec![1, 1],
+                |b, f, [q, v, _], s, o| {
+                    let [Lambda, eta] = o else { unreachable!() };
+                    b.task_space_dynamics(task(f), q, v, s, Lambda, eta)
+                },
+                |m, f, [q, v, _], e| {
+                    let found = m.task_space_dynamics(q, v, task(f), e).unwrap();
+                    vec![rows(found.Lambda), found.eta.as_slice().to_vec()]
+                },
+            ),
+            (
                 "inverse_dynamics_derivatives",
                 |n| vec![n * n; 3],
                 |b, _, [q, v, a], s, o| {
@@ -212,7 +227,7 @@ fn f64_agrees_to_rounding_and_portably_to_the_bit() {
                 assert!(f.to_bits() == e.to_bits() || f == e, "{name}: {f} {e}");
             } else {
                 // forward dynamics and its derivatives lose what M's condition loses
-                let bound = if name.starts_with("forward_dynamics") { 1e-8 } else { 1e-12 };
+                let bound = if name.starts_with("forward_dynamics") || name.starts_with("task") { 1e-8 } else { 1e-12 };
                 assert!((f - e).abs() <= bound * scale, "{name} on {}: {f} {e}", set.name());
             }
         }
@@ -222,7 +237,7 @@ fn f64_agrees_to_rounding_and_portably_to_the_bit() {
 #[test]
 fn f32_agrees_to_its_rounding() {
     against_one_state!(f32, 5, |set: InstructionSet, name: &str, found: &[f32], expected: &[f64]| {
-        if name.starts_with("forward_dynamics") {
+        if name.starts_with("forward_dynamics") || name.starts_with("task") {
             return; // these trees' masses differ by 10⁴: see the test on an arm
         }
         let scale = expected.iter().fold(1e-3_f64, |m, x| m.max(x.abs()));
@@ -351,5 +366,50 @@ fn many_robots_move_as_each_alone() {
                 assert!(q == blocks.to_rows(&q2, nq, count) && v == blocks.to_rows(&v2, n, count));
             }
         }
+    }
+}
+
+#[test]
+fn a_task_of_six_rows_and_one_that_cannot_be() {
+    let model = (0..1000).map(|seed| tree(seed, 9, 0)).find(|m| {
+        let [q, v, _] = state(m, 1);
+        let task = mozzi::Task::all(m.end_effector().unwrap(), mozzi::TaskFrame::Body);
+        m.task_space_dynamics(&q, &v, task, &m.environment()).is_ok()
+    });
+    let model = model.expect("one of a thousand trees reaches in all directions");
+    let (n, task) = (model.n(), mozzi::Task::all(model.end_effector().unwrap(), mozzi::TaskFrame::Body));
+    let (states, surroundings) = (States::new(&model, 13), Surroundings::from(model.environment()));
+    for set in InstructionSet::available() {
+        let batch = Batch::new(&model).with_instruction_set(set).unwrap();
+        let (mut Lambda, mut eta) = (vec![0.0; 13 * 36], vec![0.0; 13 * 6]);
+        batch.task_space_dynamics(task, &states.theta, &states.dtheta, &surroundings, &mut Lambda, &mut eta).unwrap();
+        for k in 0..13 {
+            let (q, v) = (&states.theta[k * n..][..n], &states.dtheta[k * n..][..n]);
+            let one = model.task_space_dynamics(q, v, task, &model.environment()).unwrap();
+            for (a, b) in Lambda[k * 36..][..36].iter().zip(one.Lambda.iter()) {
+                assert!((a - b).abs() <= 1e-6 * one.Lambda.amax(), "{a} {b} on {}", set.name());
+            }
+            for (a, b) in eta[k * 6..][..6].iter().zip(one.eta.iter()) {
+                assert!((a - b).abs() <= 1e-6 * (one.eta.amax() + one.Lambda.amax()), "{a} {b} on {}", set.name());
+            }
+        }
+        // three joints cannot move a frame in six directions
+        let short = tree(1, 3, 0);
+        let (states, task) =
+            (States::new(&short, 2), mozzi::Task::all(short.end_effector().unwrap(), mozzi::TaskFrame::Body));
+        let batch = Batch::new(&short).with_instruction_set(set).unwrap();
+        let (mut Lambda, mut eta) = (vec![0.0; 72], vec![0.0; 12]);
+        let error = batch
+            .task_space_dynamics(
+                task,
+                &states.theta,
+                &states.dtheta,
+                &short.environment().into(),
+                &mut Lambda,
+                &mut eta,
+            )
+            .expect_err("singular")
+            .to_string();
+        assert!(error.starts_with("state 0 (counted from 0): the task is singular at θ = "), "{error}");
     }
 }

@@ -31,6 +31,24 @@ impl Task<'_> {
     pub fn all(frame: FrameId, coordinates: TaskFrame) -> Self {
         Task { frame, coordinates, rows: &[0, 1, 2, 3, 4, 5] }
     }
+
+    /// Is the frame one of this model, and are the rows some of six, each once?
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`].
+    pub fn check(&self, model: &Model) -> Result<(), Error> {
+        model.check_frame(self.frame)?;
+        let distinct = (1..self.rows.len()).all(|k| !self.rows[..k].contains(&self.rows[k]));
+        if self.rows.is_empty() || self.rows.iter().any(|&row| row > 5) || !distinct {
+            let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
+            return Err(Error::BadArgument {
+                what: "the task's rows",
+                found: alloc::format!("{:?}", self.rows),
+                expected,
+            });
+        }
+        Ok(())
+    }
 }
 
 /// 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱) for the k rows of a task.
@@ -70,17 +88,8 @@ impl Model<f64> {
         environment: &Environment,
     ) -> Result<TaskSpaceDynamics, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
-        self.check_frame(task.frame)?;
         self.check_environment(environment)?;
-        let distinct = (1..task.rows.len()).all(|k| !task.rows[..k].contains(&task.rows[k]));
-        if task.rows.is_empty() || task.rows.iter().any(|&row| row > 5) || !distinct {
-            let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
-            return Err(Error::BadArgument {
-                what: "the task's rows",
-                found: alloc::format!("{:?}", task.rows),
-                expected,
-            });
-        }
+        task.check(self)?;
         let (n, k) = (self.n(), task.rows.len());
         let (mut workspace, mut memory) = (Workspace::new(self), TaskMemory::new(self, k));
         let (mut Lambda, mut eta) = (vec![0.0; k * k], vec![0.0; k]);

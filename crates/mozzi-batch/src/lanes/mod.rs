@@ -13,7 +13,7 @@ use mozzi::scalar::{Bits, Float, sin_cos};
 
 /// A register.
 pub trait Lane: Scalar + Bits + From<Self::Number> + Send + Sync + 'static {
-    /// How many numbers it holds, a power of two, at most [`MOST`].
+    /// How many numbers it holds, a power of two, at most 16.
     const WIDTH: usize;
 
     /// The first numbers of the slice.

@@ -1,4 +1,4 @@
-//! Small vectors and matrices over any [`Scalar`](crate::Scalar), and the sparse factorisation of the mass matrix.
+//! Small vectors and matrices over any [`Scalar`], and the sparse factorisation of the mass matrix.
 
 pub(crate) mod ldlt;
 mod mat3;

@@ -9,6 +9,8 @@ use super::{Fused, Scalar};
 
 /// `f64` or `f32`, with the numbers of its [`sin_cos`].
 pub trait Float: super::Real + Send + Sync + 'static {
+    /// From 1 to the next number.
+    const EPSILON: Self;
     /// [`sin_cos`] is exact to rounding up to this |x|.
     const LARGEST: Self;
     /// 1.5 · 2⁵² or 1.5 · 2²³: adding and subtracting it rounds to the nearest integer.
@@ -78,6 +80,7 @@ fn polynomial<S: Bits>(coefficients: &[S::Number], z: S) -> S {
 }
 
 impl Float for f64 {
+    const EPSILON: f64 = f64::EPSILON;
     const LARGEST: f64 = 1.0e6;
     const ROUND: f64 = 6755399441055744.0;
     const TWO_OVER_PI: f64 = core::f64::consts::FRAC_2_PI;
@@ -101,6 +104,7 @@ impl Float for f64 {
 }
 
 impl Float for f32 {
+    const EPSILON: f32 = f32::EPSILON;
     const LARGEST: f32 = 8192.0;
     const ROUND: f32 = 12582912.0;
     const TWO_OVER_PI: f32 = core::f32::consts::FRAC_2_PI;
