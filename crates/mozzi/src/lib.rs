@@ -49,7 +49,6 @@ pub mod scalar;
 pub mod simulation;
 pub mod spatial;
 mod task_space;
-#[cfg(any(test, feature = "testing"))]
 pub mod testing;
 
 pub use api::{BodyFrame, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, NewtonEuler};

@@ -57,7 +57,7 @@ struct Reference {
 impl Reference {
     fn sin_cos(&self, x: f64) -> (Two, Two) {
         // π/2 to 161 bits
-        const HALF_PI: [f64; 3] = [1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33];
+        const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591833e-33];
         let k = (x / HALF_PI[0]).round();
         let mut r = Two(x, 0.0);
         for part in HALF_PI {

@@ -23,14 +23,20 @@ pub fn compare(
         worst.add("∂τ/∂θ̇", &theirs(&mine.by_dtheta), &matrix(&state["dtau_dv"]), 0.0);
     }
     if state.get("ddq_dq").is_some() {
-        // backward: M times the difference, over the size of M's products with it
+        // backward: M times the difference, over the size of M's products with it; by θ also over what θ̈ is uncertain by, M⁻¹ times
+        // τ's rounding, times ∂M/∂θ, which is as large as M
         let M = theirs(&model.mass_matrix(theta).unwrap());
         let mine = model.forward_dynamics_derivatives(theta, dtheta, tau, &environment).unwrap();
-        let by =
-            [("∂θ̈/∂θ", mine.by_theta, "ddq_dq"), ("∂θ̈/∂θ̇", mine.by_dtheta, "ddq_dv"), ("M⁻¹", mine.by_tau, "Minv")];
-        for (what, mine, key) in by {
+        let largest = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let of_ddtheta = M.amax() * mine.by_tau.amax() * largest;
+        let by = [
+            ("∂θ̈/∂θ", mine.by_theta, "ddq_dq", of_ddtheta),
+            ("∂θ̈/∂θ̇", mine.by_dtheta, "ddq_dv", 0.0),
+            ("M⁻¹", mine.by_tau, "Minv", 0.0),
+        ];
+        for (what, mine, key, size) in by {
             let (mine, reference) = (theirs(&mine), matrix(&state[key]));
-            worst.add(what, &(&M * mine), &(&M * &reference), M.amax() * reference.amax());
+            worst.add(what, &(&M * mine), &(&M * &reference), M.amax() * reference.amax() + size);
         }
     }
     if state.get("regressor").is_some() {
