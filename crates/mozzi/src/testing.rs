@@ -88,7 +88,7 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Model {
             let joint_followed = format!("joint{}", 1 + (i * 7) % (links - followers));
             joint.mimic = Some(Mimic { joint: joint_followed, ratio: 1.5 * random.next(), offset: random.next() });
         }
-        let scale = 10.0_f64.powf(2.0 * random.next());
+        let scale = libm::pow(10.0, 2.0 * random.next());
         robot = robot.link(format!("link{i}"), inertia(seed + i as u64) * scale).joint(joint);
         if i % 5 == 2 {
             let origin = SE3::exp(Twist::from_array(random.array()));
