@@ -5,6 +5,7 @@
 //! - [`Quantity::record`] a program: `mozzi`'s own kernel, run once on the scalar [`Traced`], without all that the robot's zeros and ones make
 //!   superfluous, every operation once. [`LeftOpen`] tells which numbers of the robot stay inputs. A [`Program`] is printed, read, counted and
 //!   evaluated in any [`Scalar`](mozzi::Scalar).
+//! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C.
 //! - [`record`] any computation on scalars, and make a [`Kernel`] of it.
 //!
 //! ```
@@ -26,6 +27,7 @@
 mod batch;
 mod compiled;
 mod count;
+mod emit;
 mod function;
 mod jit;
 mod program;
@@ -37,6 +39,7 @@ mod traced;
 
 pub use compiled::{Compiled, Engine, compile};
 pub use count::Count;
+pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_programs};
 pub use function::Function;
 pub use jit::{Kernel, LONGEST_CODE, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};
