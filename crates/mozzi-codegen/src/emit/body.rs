@@ -36,7 +36,8 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
     for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
         if let Step::Apply(function, operands) = step {
             let name = format!("v{place}");
-            let [a, b, c] = operands.map(|value| if (value as usize) < steps.len() { operand(value) } else { String::new() });
+            let [a, b, c] =
+                operands.map(|value| if (value as usize) < steps.len() { operand(value) } else { String::new() });
             let fused = |a: &str, b: &str, c: &str| format!("{}({a}, {b}, {c})", dialect.helper("mul_add"));
             let expression = match function {
                 Function::Sin | Function::Cos => {

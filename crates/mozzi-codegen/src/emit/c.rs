@@ -100,7 +100,8 @@ pub(super) fn files(source: &Source) -> Vec<SourceFile> {
 
 /// A comment over lines; none without.
 fn comment(lines: &[String]) -> Vec<String> {
-    let spaced = |(k, line): (usize, &String)| format!("{} {line}", if k == 0 { "/*" } else { " *" }).trim_end().to_string();
+    let spaced =
+        |(k, line): (usize, &String)| format!("{} {line}", if k == 0 { "/*" } else { " *" }).trim_end().to_string();
     let mut text: Vec<String> = lines.iter().enumerate().map(spaced).collect();
     if let Some(last) = text.last_mut() {
         last.push_str(" */");

@@ -110,12 +110,16 @@ fn written(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     let mut lines = vec![String::new()];
     lines.extend(function.lines().iter().map(|line| format!("// {line}")));
     lines.push("// Of one state: entry k of an array is at k * stride.".to_string());
-    lines.push(format!("static __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"));
+    lines.push(format!(
+        "static __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
+    ));
     lines.extend(function.unused().map(|input| format!("    (void) {};", input.name)));
     lines.extend(body::lines(function, cuda).iter().map(|line| format!("    {line}")));
     lines.push("}".to_string());
-    let layouts =
-        [("rows", "entry k of state i at i * length + k", "1"), ("columns", "entry k of state i at k * count + i", "count")];
+    let layouts = [
+        ("rows", "entry k of state i at i * length + k", "1"),
+        ("columns", "entry k of state i at k * count + i", "count"),
+    ];
     for (layout, about, stride) in layouts {
         let of_state = |argument: &Argument| match layout {
             "rows" => format!("{} + i * {}", argument.name, argument.length),
@@ -126,7 +130,9 @@ fn written(function: &Emitted, cuda: &Cuda) -> Vec<String> {
         lines.push(format!(
             "extern \"C\" __global__ void {name}_{layout}({arguments}, const unsigned long long count)\n{{"
         ));
-        lines.push("    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string());
+        lines.push(
+            "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string(),
+        );
         lines.push(format!("    if (i < count) {name}({}, {stride});\n}}", arrays.join(", ")));
     }
     lines

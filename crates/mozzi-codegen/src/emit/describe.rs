@@ -18,7 +18,10 @@ pub(super) fn robot(model: &Model, open: LeftOpen, precision: Precision) -> Vec<
         "Numbers are {numbers} floats in SI units: m, rad, kg, s, N. Six numbers are angular first: twists (w, v), wrenches (m, f)."
     ));
     lines.push("Arrays must not overlap. A matrix is written by rows, where nothing else is said.".to_string());
-    lines.push("Frames: {s} is where the robot is bolted to, or what a free base is seen from; a link's frame is its file's.".to_string());
+    lines.push(
+        "Frames: {s} is where the robot is bolted to, or what a free base is seen from; a link's frame is its file's."
+            .to_string(),
+    );
     let gravity = match open.gravity {
         true => "an argument".to_string(),
         false => {
@@ -41,7 +44,9 @@ pub(super) fn robot(model: &Model, open: LeftOpen, precision: Precision) -> Vec<
     lines.push(String::new());
     let joints: Vec<_> = model.moving_joints().map(|joint| (joint.name.as_str(), joint.kind.name())).collect();
     if model.is_floating() {
-        lines.push("theta[0..6] is the base's pose in {s}: unit quaternion (w, x, y, z), origin (x, y, z) in m.".to_string());
+        lines.push(
+            "theta[0..6] is the base's pose in {s}: unit quaternion (w, x, y, z), origin (x, y, z) in m.".to_string(),
+        );
         lines.push(
             "Entries 0 to 5 of velocities are its twist (w, v) in its own coordinates, rad/s and m/s; of accelerations their rates;"
                 .to_string(),
@@ -70,19 +75,28 @@ pub(super) fn quantity(model: &Model, quantity: Quantity, open: LeftOpen, progra
     let frame = quantity.frame().map(|frame| frame_name(model, frame)).unwrap_or_default();
     let wrench = if open.wrench.is_some() { " + J^T F" } else { "" };
     let words = match quantity {
-        Quantity::InverseDynamics => format!("Forces: tau = M(theta) ddtheta + c(theta, dtheta) + g(theta){wrench} + friction."),
+        Quantity::InverseDynamics => {
+            format!("Forces: tau = M(theta) ddtheta + c(theta, dtheta) + g(theta){wrench} + friction.")
+        }
         Quantity::MassMatrix => "Mass matrix M(theta), symmetric.".to_string(),
-        Quantity::ForwardDynamics => "Accelerations ddtheta, from M(theta) ddtheta = tau - what inverse_dynamics has beside.".to_string(),
+        Quantity::ForwardDynamics => {
+            "Accelerations ddtheta, from M(theta) ddtheta = tau - what inverse_dynamics has beside.".to_string()
+        }
         Quantity::BiasForces => format!("h = c(theta, dtheta) + g(theta){wrench}, without friction."),
         Quantity::VelocityProduct => "Coriolis and centrifugal forces c(theta, dtheta).".to_string(),
         Quantity::GravityForces => "Forces g(theta) that hold the robot against gravity.".to_string(),
         Quantity::ForwardKinematics(_) => format!("Pose of the frame `{frame}` in {{s}}: p_s = R p_b + p."),
-        Quantity::BodyJacobian(_) => format!("Body Jacobian of the frame `{frame}`: its twist, in its own coordinates, is J dtheta."),
-        Quantity::SpaceJacobian(_) => format!("Space Jacobian of the frame `{frame}`: its spatial twist, in {{s}}, is J dtheta."),
+        Quantity::BodyJacobian(_) => {
+            format!("Body Jacobian of the frame `{frame}`: its twist, in its own coordinates, is J dtheta.")
+        }
+        Quantity::SpaceJacobian(_) => {
+            format!("Space Jacobian of the frame `{frame}`: its spatial twist, in {{s}}, is J dtheta.")
+        }
         Quantity::InverseDynamicsDerivatives => "Derivatives of inverse_dynamics.".to_string(),
         Quantity::ForwardDynamicsDerivatives => "Accelerations ddtheta and their derivatives.".to_string(),
     };
-    let before = program.count_before_folding().map(|count| format!("Of {} flops of the recursive algorithm:", count.flops()));
+    let before =
+        program.count_before_folding().map(|count| format!("Of {} flops of the recursive algorithm:", count.flops()));
     [words].into_iter().chain(before).collect()
 }
 

@@ -79,7 +79,7 @@ impl SourceFile {
 }
 
 /// Why there is no text.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub enum EmitError {
     /// No quantity was asked for.
     Nothing,

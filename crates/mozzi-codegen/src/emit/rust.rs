@@ -62,7 +62,8 @@ pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     vec![SourceFile { name: format!("{}.rs", source.name), text }]
 }
 
-const ALLOW: &str = "#[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]";
+const ALLOW: &str =
+    "#[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables, unused_parens)]";
 
 fn written(function: &Emitted, rust: &Rust) -> Vec<String> {
     let array = |prefix: &str, argument: &Argument| {
@@ -71,7 +72,8 @@ fn written(function: &Emitted, rust: &Rust) -> Vec<String> {
     let inputs = function.inputs.iter().map(|input| array("", input));
     let arguments: Vec<String> = inputs.chain(function.outputs.iter().map(|output| array("mut ", output))).collect();
     // a paragraph each: documentation runs lines together
-    let mut lines: Vec<String> = function.lines().iter().flat_map(|line| [format!("/// {line}"), "///".into()]).collect();
+    let mut lines: Vec<String> =
+        function.lines().iter().flat_map(|line| [format!("/// {line}"), "///".into()]).collect();
     lines.pop();
     lines.extend(["#[rustfmt::skip]".to_string(), ALLOW.to_string()]);
     lines.push(format!("pub fn {}({}) {{", function.name, arguments.join(", ")));
@@ -86,7 +88,8 @@ fn helpers(source: &Source, rust: &Rust) -> Vec<String> {
     if source.has(|function| function.arity() == 3) || source.has_sines() {
         lines.extend([
             String::new(),
-            "/// a b + c. Where there is `std` and the processor has it, `a.mul_add(b, c)` is one instruction.".to_string(),
+            "/// a b + c. Where there is `std` and the processor has it, `a.mul_add(b, c)` is one instruction."
+                .to_string(),
             "#[inline(always)]".to_string(),
             format!("fn mul_add(a: {number}, b: {number}, c: {number}) -> {number} {{"),
             "    a * b + c".to_string(),
@@ -110,7 +113,7 @@ fn helpers(source: &Source, rust: &Rust) -> Vec<String> {
             String::new(),
             format!("/// (sin x, cos x) of |x| <= {largest}; beyond, NaN."),
             "#[inline]".to_string(),
-            "#[allow(clippy::all, clippy::pedantic, clippy::nursery)]".to_string(),
+            "#[allow(clippy::all, clippy::pedantic, clippy::nursery, unused_parens)]".to_string(),
             format!("fn sin_cos(x: {number}) -> ({number}, {number}) {{"),
             format!("    let x = if x >= -{largest} && x <= {largest} {{ x }} else {{ {number}::NAN }};"),
         ]);

@@ -1,7 +1,7 @@
 //! Sine and cosine as text: the library's own, from the same recording as in machine code.
 
-use super::dialect::Dialect;
 use super::Precision;
+use super::dialect::Dialect;
 use crate::jit::{Node, Operation, SinCos};
 
 /// Lines that compute the sine and the cosine of the number `x`, and the two expressions.
@@ -25,8 +25,15 @@ pub(super) fn lines(precision: Precision, dialect: &dyn Dialect) -> (Vec<String>
         Node::Apply(..) if is_bits(node) => format!("r{node}"),
         _ => dialect.to_bits(&number(node)),
     };
+    // a product that sums took in stands there still
+    let mut is_needed: Vec<bool> = (0..).zip(&nodes).map(|(place, _)| place == sin || place == cos).collect();
+    for (place, node) in nodes.iter().enumerate().rev() {
+        if is_needed[place] {
+            node.operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
+        }
+    }
     let mut lines = Vec::new();
-    for (place, node) in (0..).zip(&nodes) {
+    for (place, node) in (0..).zip(&nodes).filter(|(place, _)| is_needed[*place as usize]) {
         let Node::Apply(operation, [a, b, c]) = *node else { continue };
         let fused = |sign_a: &str, sign_c: &str| {
             let [a, b, c] = [a, b, c].map(&number);
