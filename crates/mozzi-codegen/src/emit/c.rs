@@ -48,7 +48,7 @@ impl Dialect for C {
     fn to_bits(&self, x: &str) -> String {
         format!("to_bits({x})")
     }
-    fn from_bits(&self, x: &str) -> String {
+    fn number_of_bits(&self, x: &str) -> String {
         format!("from_bits({x})")
     }
     fn difference_of_bits(&self, a: &str, b: &str) -> String {

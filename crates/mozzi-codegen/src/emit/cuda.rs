@@ -63,7 +63,7 @@ impl Dialect for Cuda<'_> {
         let function = if self.is_f64() { "(unsigned long long) __double_as_longlong" } else { "__float_as_uint" };
         format!("{function}({x})")
     }
-    fn from_bits(&self, x: &str) -> String {
+    fn number_of_bits(&self, x: &str) -> String {
         match self.is_f64() {
             true => format!("__longlong_as_double((long long) ({x}))"),
             false => format!("__uint_as_float({x})"),
@@ -153,7 +153,8 @@ fn helpers(source: &Source, cuda: &Cuda) -> Vec<String> {
         lines.push(format!(
             "static __device__ __forceinline__ void {name}({number} x, {number} *sin_x, {number} *cos_x)\n{{"
         ));
-        lines.push(format!("    x = x >= -{largest} && x <= {largest} ? x : {};", cuda.from_bits(&cuda.bits(nan))));
+        lines
+            .push(format!("    x = x >= -{largest} && x <= {largest} ? x : {};", cuda.number_of_bits(&cuda.bits(nan))));
         let (body, [sin, cos]) = sin_cos::lines(source.precision, cuda);
         lines.extend(body.iter().map(|line| format!("    {line}")));
         lines.push(format!("    if (sin_x) *sin_x = {sin};\n    if (cos_x) *cos_x = {cos};\n}}"));

@@ -87,7 +87,7 @@ pub(super) trait Dialect {
     /// The bits of a number.
     fn to_bits(&self, x: &str) -> String;
     /// The number of bits.
-    fn from_bits(&self, x: &str) -> String;
+    fn number_of_bits(&self, x: &str) -> String;
     /// A difference of bits that wraps around.
     fn difference_of_bits(&self, a: &str, b: &str) -> String;
 }

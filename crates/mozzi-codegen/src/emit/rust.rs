@@ -37,7 +37,7 @@ impl Dialect for Rust {
     fn to_bits(&self, x: &str) -> String {
         format!("{x}.to_bits()")
     }
-    fn from_bits(&self, x: &str) -> String {
+    fn number_of_bits(&self, x: &str) -> String {
         format!("{}::from_bits({x})", self.number())
     }
     fn difference_of_bits(&self, a: &str, b: &str) -> String {

@@ -17,7 +17,7 @@ pub(super) fn lines(precision: Precision, dialect: &dyn Dialect) -> (Vec<String>
             if x.is_sign_negative() { format!("(-{})", dialect.literal(-x)) } else { dialect.literal(x) }
         }
         Node::Input(..) => "x".to_string(),
-        Node::Apply(..) if is_bits(node) => dialect.from_bits(&format!("r{node}")),
+        Node::Apply(..) if is_bits(node) => dialect.number_of_bits(&format!("r{node}")),
         Node::Apply(..) => format!("r{node}"),
     };
     let bits = |node: u32| match nodes[node as usize] {
