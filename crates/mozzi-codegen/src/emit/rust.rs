@@ -133,7 +133,7 @@ fn helpers(source: &Source, rust: &Rust) -> Vec<String> {
             format!("    if x == 0.0 || x == {number}::INFINITY {{ return x; }}"),
             format!("    let (z, unit) = if x < {number}::MIN_POSITIVE {{ (x * {up}, {down}) }} else {{ (x, 1.0) }};"),
             format!("    if !(z > 0.0) {{ return {number}::NAN; }}"),
-            format!("    let mut y = {number}::from_bits((z.to_bits() >> 1) + ({half_exponents}));"),
+            format!("    let mut y = {number}::from_bits((z.to_bits() >> 1).wrapping_add({half_exponents}));"),
             format!("    for _ in 0..{steps} {{ y = 0.5 * (y + z / y); }}"),
             "    y * unit".to_string(),
             "}".to_string(),
