@@ -14,7 +14,7 @@
 //! let model = mozzi_urdf::open("ur5")?.build()?;
 //! let program = Quantity::InverseDynamics.record(&model, LeftOpen::default());
 //! let before = program.count_before_folding().ok_or("recorded here")?;
-//! println!("{before}\n{}", program.count()); // 1932 flops, of which 400 are left
+//! println!("{before}\n{}", program.count()); // 1710 flops, of which 380 are left
 //! assert!(program.count().flops() < before.flops() / 4);
 //! let tau = program.evaluate(&[&[0.1; 6], &[0.2; 6], &[0.3; 6]]);
 //! let reference = model.inverse_dynamics(&[0.1; 6], &[0.2; 6], &[0.3; 6], &model.environment())?;
