@@ -204,7 +204,8 @@ fn explain(page: &mut Page, model: &Model, works: &[Work]) {
     let mut refusals = Vec::new();
     for work in works {
         let (after, before) = (work.after, work.before.map_or(0, |count| count.flops()));
-        let left = if before > 0 { format!("{} %", (100 * after.flops() + before / 2) / before) } else { "–".into() };
+        let percent = (100 * after.flops() + before / 2).checked_div(before);
+        let left = percent.map_or("–".to_string(), |percent| format!("{percent} %"));
         let mut row = vec![work.name.clone(), before.to_string(), after.flops().to_string(), left];
         row.extend([after.div, after.sqrt, after.sin_cos].map(|count| count.to_string()));
         for (shape, kernel) in &work.code {
