@@ -196,6 +196,28 @@ fn cuda_on_the_host() {
 }
 
 #[test]
+fn cuda_keeps_its_numbers_in_registers() {
+    if !exists("nvcc") {
+        return;
+    }
+    let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("nvcc");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for precision in [Precision::F64, Precision::F32] {
+        let quantities = [Quantity::InverseDynamics, Quantity::ForwardDynamics];
+        let files = emit(&embedded("panda"), &quantities, LeftOpen::default(), Language::Cuda, precision);
+        files.expect("text")[0].write(&folder).expect("a file");
+        let arguments = ["-arch=sm_90", "-Xptxas", "-v", "-cubin", "-o", "panda.cubin", "panda.cu"];
+        let output = Command::new("nvcc").args(arguments).current_dir(&folder).output().expect("a compiler");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && !said.contains("warning"), "{said}");
+        // two quantities on two layouts
+        assert_eq!(said.matches("0 bytes stack frame, 0 bytes spill stores, 0 bytes spill loads").count(), 4, "{said}");
+        let registers = said.lines().filter(|line| line.contains("Used "));
+        registers.for_each(|line| eprintln!("{precision:?}: {line}"));
+    }
+}
+
+#[test]
 fn the_interpreter_is_the_kernel() {
     let (model, quantity) = (embedded("panda"), Quantity::InverseDynamics);
     let [theta, dtheta, ddtheta] = state(&model, 1);
