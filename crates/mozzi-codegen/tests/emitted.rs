@@ -161,7 +161,7 @@ fn c() {
         ("gcc", Precision::F64, &["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]),
         ("gcc", Precision::F32, &["-O1"]),
         ("clang", Precision::F64, &["-O1"]),
-        ("clang", Precision::F32, &["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]),
+        ("clang", Precision::F32, &["-O1"]),
     ];
     for (compiler, precision, flags) in ways {
         if !exists(compiler) {
