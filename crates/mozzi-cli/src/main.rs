@@ -6,8 +6,11 @@ mod columns;
 mod commands;
 mod compare;
 mod failure;
+mod goals;
+mod interrupt;
 mod json;
 mod numbers;
+mod progress;
 mod quantities;
 mod random;
 mod robot;
@@ -54,6 +57,8 @@ enum Command {
     Batch(commands::batch::BatchArguments),
     /// How long each quantity takes on this machine, at one state and at many
     Bench(commands::bench::BenchArguments),
+    /// Positions at which the end effector is where it is to be: one pose, or a table of poses
+    Ik(commands::ik::IkArguments),
     /// The motion from a state, under torques and a tip wrench
     #[command(after_help = TABLES)]
     Simulate(simulate::SimulateArguments),
@@ -91,12 +96,13 @@ Examples:
   mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
   mozzi codegen panda --explain                         the work before and after folding
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
+  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions that put the tool there
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
 
 Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
 F_tip is what the robot applies to the environment, in the end effector's frame.
 Results go to standard output, all else to standard error.
-Exit codes: 0 done, 1 wrong input, 2 wrong usage.";
+Exit codes: 0 done, 1 wrong input or no answer, 2 wrong usage, 130 ended by Ctrl-C.";
 
 const TABLES: &str = "\
 CSV files have a header and one row for each state; columns in any order:
@@ -129,7 +135,11 @@ fn main() -> ExitCode {
         Ok(text) => (text, ExitCode::SUCCESS),
         Err(failure) => {
             failure.say();
-            (if let Failure::Answered(text) = failure { text } else { String::new() }, ExitCode::from(1))
+            match failure {
+                Failure::Answered(text) => (text, ExitCode::from(1)),
+                Failure::Stopped(text) => (text, ExitCode::from(interrupt::EXIT_CODE)),
+                _ => (String::new(), ExitCode::from(1)),
+            }
         }
     };
     let mut output = std::io::stdout().lock();
@@ -155,6 +165,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Derivatives(arguments)) => commands::derivatives::run(arguments),
         Some(Command::Batch(arguments)) => commands::batch::run(arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
+        Some(Command::Ik(arguments)) => commands::ik::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Codegen(arguments)) => commands::codegen::run(arguments),

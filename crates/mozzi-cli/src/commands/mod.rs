@@ -9,6 +9,7 @@ pub mod convert;
 pub mod derivatives;
 pub mod explain;
 pub mod forward_dynamics;
+pub mod ik;
 pub mod info;
 pub mod inverse_dynamics;
 pub mod python;
