@@ -28,6 +28,39 @@ pub enum Error {
         /// Of all starts.
         iterations: usize,
     },
+    /// The joints' path along a frame's cannot be joined.
+    #[error(
+        "the path of frame `{frame}` breaks at s = {s}: however close its solutions, the joints between them are {deviation:.1e} off it, more than \
+         {tolerance:.1e} (a singular position, or a joint at its limit)"
+    )]
+    PathBroken {
+        /// The frame.
+        frame: String,
+        /// Where on the path, 0 to 1.
+        s: f64,
+        /// ‖log(T⁻¹T_d)‖, rad and m.
+        deviation: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// A motor cannot carry the robot along its path.
+    #[error("the motor of `{joint}` is too weak at s = {s}: at rest it needs {needed} of its {limit} N m or N")]
+    TooWeak {
+        /// The joint.
+        joint: String,
+        /// Where on the path, 0 to 1.
+        s: f64,
+        /// |τ| at rest.
+        needed: f64,
+        /// Its limit.
+        limit: f64,
+    },
+    /// Nothing keeps the robot from being infinitely fast.
+    #[error("nothing limits the speed at s = {s} of the path: expected a limit of velocity, acceleration or torque")]
+    Unlimited {
+        /// Where on the path, 0 to 1.
+        s: f64,
+    },
 }
 
 fn at_limits(joints: &[String]) -> String {

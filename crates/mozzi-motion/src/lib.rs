@@ -1,4 +1,5 @@
-//! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]).
+//! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]), and what they are to do when
+//! ([`trajectories`]), and motors that do it ([`controllers`]).
 //!
 //! ```
 //! use mozzi_motion::{Goal, InverseKinematics};
@@ -12,8 +13,12 @@
 //! # Ok(()) }
 //! ```
 
+pub mod controllers;
 mod error;
 pub mod inverse_kinematics;
+mod policy;
+pub mod trajectories;
 
 pub use error::Error;
 pub use inverse_kinematics::{Goal, InverseKinematics};
+pub use policy::Policy;
