@@ -13,6 +13,7 @@ with limits left aside stands in brackets. The time of mozzi is that of its comm
 import argparse
 import csv
 import importlib.util
+import json
 import math
 import pathlib
 import subprocess
@@ -78,17 +79,16 @@ def by_mozzi(robot, goals, guess, method):
             for T in goals:
                 writer.writerow([repr(float(x)) for x in pin.SE3ToXYZQUAT(T)])
         program = ROOT / "target/release/mozzi"
-        information = subprocess.run([program, "info", robot.name, "--json"], capture_output=True, check=True, text=True)
-        import json
-
+        information = subprocess.run([program, "terms", robot.name, "--frame", robot.frame, "--json"], capture_output=True, check=True, text=True)
         joints = json.loads(information.stdout)["joints"]
-        joints = [joint if isinstance(joint, str) else joint["name"] for joint in joints]
         start = [guess[robot.names.index(name)] if name in robot.names else 0.0 for name in joints]
         arguments = ["ik", robot.name, "--frame", robot.frame, "--in", table, "--out", out, "--method", method]
         arguments += ["--guess=" + ",".join(repr(float(x)) for x in start), "--angle", "1e-6", "--distance", "1e-6"]
         begin = time.perf_counter()
-        subprocess.run([program, *map(str, arguments)], capture_output=True)
+        ended = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
         seconds = time.perf_counter() - begin
+        if not out.exists():
+            raise RuntimeError(ended.stderr.strip())
         with out.open() as file:
             rows = list(csv.DictReader(file))
         picked = [joints.index(name) + 1 for name in robot.names]

@@ -9,7 +9,7 @@ fn what_is_found_is_where_it_should_be() {
     let found = json(&["ik", "ur5", "--position", "0.4,0.2,0.5", "--rpy", "3,0.2,-0.1"]);
     let theta: Vec<String> = numbers(&found["theta"]).iter().map(|x| format!("{x:?}")).collect();
     let terms = json(&["terms", "ur5", &format!("--theta={}", theta.join(","))]);
-    let T: Vec<f64> = common::rows(&terms["T"]).concat();
+    let T: Vec<f64> = common::rows(&terms["forward_kinematics"]).concat();
     assert_close(&[T[3], T[7], T[11]], &[0.4, 0.2, 0.5], 1e-8);
     assert_close(&T, &common::rows(&found["T"]).concat(), 1e-15);
     let (roll, pitch) = (T[9].atan2(T[10]), (-T[8]).asin());

@@ -1,5 +1,6 @@
 //! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]), and what they are to do when
-//! ([`trajectories`]), and motors that do it ([`controllers`]).
+//! ([`trajectories`]), motors that do it
+//! ([`controllers`]), and what becomes of it ([`integrators`]).
 //!
 //! ```
 //! use mozzi_motion::{Goal, InverseKinematics};
@@ -15,6 +16,7 @@
 
 pub mod controllers;
 mod error;
+pub mod integrators;
 pub mod inverse_kinematics;
 mod policy;
 pub mod trajectories;

@@ -26,8 +26,19 @@ impl<'m, R: Reference> ComputedTorque<'m, R> {
     /// moves.
     pub fn new(model: &'m Model, reference: R, gains: Gains) -> Result<Self, Error> {
         gains.check(model)?;
-        check(!model.is_floating(), "the base of a robot under computed torque", "free", "a bolted base: no motor moves a free one")?;
-        Ok(ComputedTorque { model, reference, gains, workspace: native::Workspace::new(model), tau: vec![0.0; model.n()] })
+        check(
+            !model.is_floating(),
+            "the base of a robot under computed torque",
+            "free",
+            "a bolted base: no motor moves a free one",
+        )?;
+        Ok(ComputedTorque {
+            model,
+            reference,
+            gains,
+            workspace: native::Workspace::new(model),
+            tau: vec![0.0; model.n()],
+        })
     }
 }
 

@@ -64,8 +64,13 @@ impl<I: Input> Input for Saturated<I> {
             let limit = self.limits[j];
             if self.policy != Policy::Ignore && asked.abs() > limit {
                 let (largest, joint) = (asked.abs(), &self.names[j]);
-                let note = self.overloads[j]
-                    .get_or_insert_with(|| Overload { joint: joint.clone(), largest, limit, first: t, last: t });
+                let note = self.overloads[j].get_or_insert_with(|| Overload {
+                    joint: joint.clone(),
+                    largest,
+                    limit,
+                    first: t,
+                    last: t,
+                });
                 (note.largest, note.last) = (note.largest.max(largest), t);
                 if self.policy == Policy::Respect {
                     *asked = asked.clamp(-limit, limit);
@@ -76,7 +81,13 @@ impl<I: Input> Input for Saturated<I> {
         Ok(())
     }
 
-    fn applied(&mut self, t: f64, theta: &[f64], dtheta: &[f64], wrenches: &mut Vec<(FrameId, Wrench)>) -> Result<(), Error> {
+    fn applied(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        wrenches: &mut Vec<(FrameId, Wrench)>,
+    ) -> Result<(), Error> {
         self.input.applied(t, theta, dtheta, wrenches)
     }
 }

@@ -60,7 +60,8 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
     pub fn new(model: &'m Model, reference: R, frame: FrameId, law: Law, posture: Gains) -> Result<Self, Error> {
         model.check_frame(frame)?;
         posture.check(model)?;
-        let (Law::Acceleration { p: [p @ ..], d: [d @ ..] } | Law::Impedance { stiffness: [p @ ..], damping: [d @ ..] }) = law;
+        let (Law::Acceleration { p: [p @ ..], d: [d @ ..] }
+        | Law::Impedance { stiffness: [p @ ..], damping: [d @ ..] }) = law;
         for (what, list) in [("the task's K_p", p), ("the task's K_d", d)] {
             let fine = list.iter().all(|x| *x >= 0.0 && x.is_finite());
             check(fine, what, format!("{list:?}"), "finite numbers that are not negative")?;
@@ -69,9 +70,15 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
         Ok(TaskSpace { model, reference, frame, law, posture })
     }
 
-    fn frame_error(&self, desired: &crate::trajectories::Desired, theta: &[f64], dtheta: &[f64]) -> Result<FrameError, mozzi::Error> {
+    fn frame_error(
+        &self,
+        desired: &crate::trajectories::Desired,
+        theta: &[f64],
+        dtheta: &[f64],
+    ) -> Result<FrameError, mozzi::Error> {
         let model = self.model;
-        let T_bd = forward_kinematics(model, theta, self.frame).inverse() * model.forward_kinematics(&desired.theta, self.frame)?;
+        let T_bd = forward_kinematics(model, theta, self.frame).inverse()
+            * model.forward_kinematics(&desired.theta, self.frame)?;
         let V = &model.body_jacobian(theta, self.frame)? * dtheta;
         let J = model.body_jacobian(&desired.theta, self.frame)?;
         let dJ = model.body_jacobian_rate(&desired.theta, &desired.dtheta, self.frame)?;
@@ -94,17 +101,17 @@ impl<R: Reference> Input for TaskSpace<'_, R> {
         let FrameError { X, V, a } = self.frame_error(&desired, theta, dtheta)?;
         let (X, V, mut a) = (six(X), six(V), six(a));
         let mut F = Vector6::zeros();
-        let weighted = |p: [f64; 6], d: [f64; 6]| X.component_mul(&p.into()) + V.component_mul(&d.into());
+        let weighted = |p: [f64; 6], d: [f64; 6]| Vector6::from_fn(|r, _| p[r] * X[r] + d[r] * V[r]);
         match self.law {
             Law::Acceleration { p, d } => a += weighted(p, d),
             Law::Impedance { stiffness, damping } => F = weighted(stiffness, damping),
         }
         let environment = model.environment();
         let task = model.task_space_dynamics(theta, dtheta, Task::all(self.frame, TaskFrame::Body), &environment)?;
-        let z: Vec<f64> = (0..model.n())
-            .map(|j| desired.ddtheta[j] + self.posture.d[j] * de[j] + self.posture.p[j] * e[j])
-            .collect();
-        let short = DVector::from_column_slice(a.as_slice()) - &task.dJ_dtheta - &task.J * DVector::from_column_slice(&z);
+        let z: Vec<f64> =
+            (0..model.n()).map(|j| desired.ddtheta[j] + self.posture.d[j] * de[j] + self.posture.p[j] * e[j]).collect();
+        let short =
+            DVector::from_column_slice(a.as_slice()) - &task.dJ_dtheta - &task.J * DVector::from_column_slice(&z);
         let F = &task.Lambda * short + DVector::from_column_slice(F.as_slice());
         let sum = model.inverse_dynamics(theta, dtheta, &z, &environment)? + task.J.transpose() * F;
         tau.iter_mut().zip(sum.iter()).for_each(|(tau, x)| *tau += x);

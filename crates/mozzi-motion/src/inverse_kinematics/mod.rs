@@ -19,7 +19,7 @@ pub use step::Method;
 
 use crate::Error;
 use crate::error::check;
-use bounds::Bounds;
+pub(crate) use bounds::Bounds;
 use mozzi::nalgebra::Vector6;
 use mozzi::testing::Random;
 use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};
