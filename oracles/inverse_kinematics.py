@@ -164,7 +164,9 @@ def main():
         for peer, solve, count in peers:
             try:
                 answers, seconds = solve(robot, goals[:count], list(guess))
-            except Exception as error:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # a library that panics is no Exception
                 print(f"{name:16} {peer:27} {type(error).__name__}: {error}")
                 continue
             judged = [robot.reached(theta, goal) for theta, goal in zip(answers, goals)]

@@ -5,10 +5,12 @@ mod batch;
 mod columns;
 mod commands;
 mod compare;
+mod controller;
 mod failure;
 mod goals;
 mod interrupt;
 mod json;
+mod motors;
 mod numbers;
 mod progress;
 mod quantities;
@@ -59,8 +61,11 @@ enum Command {
     Bench(commands::bench::BenchArguments),
     /// Positions at which the end effector is where it is to be: one pose, or a table of poses
     Ik(commands::ik::IkArguments),
+    /// A motion to be followed: through joints or along lines and screws, within limits of velocity, acceleration and torque
+    #[command(after_help = TRAJECTORIES)]
+    Trajectory(commands::trajectory::TrajectoryArguments),
     /// The motion from a state, under torques and a tip wrench
-    #[command(after_help = TABLES)]
+    #[command(after_help = SIMULATIONS)]
     Simulate(simulate::SimulateArguments),
     /// Is the file a robot? All that is wrong or odd, with its place
     Check(check::CheckArguments),
@@ -116,6 +121,25 @@ Groups that are not needed may be left out; dtheta, ddtheta and the wrench are t
 and so are the six of a free base in tau.
 What one subcommand writes, the others read.";
 
+const TRAJECTORIES: &str = "\
+Examples:
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0                         joints, as fast as a quintic may
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0 --profile fastest --max-acceleration 15 --out way.csv
+  mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --along line --position 0.4,0.2,0.5 --time 2
+  mozzi trajectory ur5 --via points.csv --profile trapezoidal      a spline through points
+  mozzi simulate ur5 --follow way.csv --controller computed.json   see mozzi simulate --help";
+
+const SIMULATIONS: &str = "\
+CSV files are as of `mozzi inverse-dynamics --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
+
+A controller is a JSON object; gains are one number for all, or lists:
+  {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + p e + d ė; N m/rad, N m s/rad
+  {\"controller\": \"computed-torque\", \"p\": 100, \"d\": 20}          ë + d ė + p e = 0; 1/s², 1/s
+  {\"controller\": \"task-space\", \"frame\": \"tool0\", \"p\": 100, \"d\": 20, \"posture_p\": 25, \"posture_d\": 10}
+  {\"controller\": \"impedance\", \"frame\": \"tool0\", \"stiffness\": [20, 20, 20, 500, 500, 500], \"damping\": [1, 1, 1, 50, 50, 50],
+   \"posture_p\": 25, \"posture_d\": 10}
+\"model\": \"FILE or embedded robot\" beside them is what the controller believes the robot to be.";
+
 const BATCHES: &str = "\
 The states, N of them:
   .npy             one array (N, columns): theta | dtheta | ddtheta or tau, as far as the quantity needs
@@ -166,6 +190,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Batch(arguments)) => commands::batch::run(arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
         Some(Command::Ik(arguments)) => commands::ik::run(arguments),
+        Some(Command::Trajectory(arguments)) => commands::trajectory::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Codegen(arguments)) => commands::codegen::run(arguments),

@@ -2,14 +2,15 @@
 
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
-use crate::numbers::{array, number};
+use crate::goals::GoalArguments;
+use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units, space_frame};
 use crate::state::positions;
 use crate::text::{Page, about, column, table};
 use crate::{goals, interrupt, json};
 use clap::{Args, ValueEnum};
-use mozzi::{Model, SO3, Vec3};
+use mozzi::Model;
 use mozzi_motion::inverse_kinematics::{self, Options, Secondary, Solution};
 use mozzi_motion::{Goal, InverseKinematics};
 use serde_json::json;
@@ -18,19 +19,14 @@ use std::time::Instant;
 /// Of the table beside the positions: 1 or 0, what is left, and what it took.
 const COLUMNS: [&str; 5] = ["reached", "angle", "distance", "starts", "iterations"];
 
+const NO_GOAL: &str = "there is no goal, expected --position, --rpy or --quaternion, or --in FILE.csv";
+
 #[derive(Args, Debug)]
 pub struct IkArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// Where the frame's origin is to be, in {s}, m
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    position: Option<String>,
-    /// How it is to be turned: roll, pitch, yaw about the axes of {s}, as in URDF, rad
-    #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true)]
-    rpy: Option<String>,
-    /// How it is to be turned: the unit quaternion
-    #[arg(long, value_name = "W,X,Y,Z", allow_hyphen_values = true, conflicts_with = "rpy")]
-    quaternion: Option<String>,
+    #[command(flatten)]
+    goal: GoalArguments,
     /// Poses in a CSV file with columns x y z qw qx qy qz, one in each row ("-": standard input)
     #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["position", "rpy", "quaternion"])]
     input: Option<String>,
@@ -83,7 +79,11 @@ pub fn run(arguments: &IkArguments) -> Result<String> {
     match &arguments.input {
         Some(file) => arguments.table(&model, &mut solver, file, &guess, &secondary),
         None => {
-            let found = solver.solve_with(arguments.goal()?, &guess, &secondary)?;
+            let found = solver.solve_with(
+                arguments.goal.read()?.ok_or_else(|| Failure::wrong(NO_GOAL))?,
+                &guess,
+                &secondary,
+            )?;
             if arguments.robot.json { Ok(json::print(&object(&model, &found)?)) } else { page(&model, &found) }
         }
     }
@@ -98,30 +98,6 @@ impl IkArguments {
         let (angle, distance) = (number("--angle", &self.angle)?, number("--distance", &self.distance)?);
         let (iterations, starts, seed, limits) = (self.iterations, self.starts, self.seed, !self.ignore_limits);
         Ok(Options { method, angle, distance, iterations, starts, seed, limits, ..Options::default() })
-    }
-
-    fn goal(&self) -> Result<Goal> {
-        let position = self.position.as_deref().map(|text| array("--position", text, ["x", "y", "z"])).transpose()?;
-        let R = match (&self.rpy, &self.quaternion) {
-            (Some(text), _) => {
-                let [roll, pitch, yaw] = array("--rpy", text, ["roll", "pitch", "yaw"])?;
-                Some(SO3::from_rpy(roll, pitch, yaw))
-            }
-            (None, Some(text)) => {
-                let [w, x, y, z] = array("--quaternion", text, ["w", "x", "y", "z"])?;
-                Some(goals::from_pose("--quaternion", [w, x, y, z, 0.0, 0.0, 0.0])?.R)
-            }
-            (None, None) => None,
-        };
-        match (R, position.map(Vec3)) {
-            (Some(R), Some(p)) => Ok(Goal::Pose(mozzi::SE3::new(R, p))),
-            (None, Some(p)) => Ok(Goal::Position(p)),
-            (Some(R), None) => Ok(Goal::Orientation(R)),
-            (None, None) => {
-                let how = "--position, --rpy or --quaternion, or --in FILE.csv";
-                Err(Failure::wrong(format!("there is no goal, expected {how}")))
-            }
-        }
     }
 
     /// A row for each pose, also of those that were not reached: the best there is, with what is left.

@@ -9,7 +9,7 @@ use super::stops::{Stopped, Stops};
 use super::{Integrator, State};
 use crate::error::check;
 use crate::{Error, Policy};
-use mozzi::simulation::{Friction, Input, Method, Motion, Options, Sample};
+use mozzi::simulation::{Equation, Friction, Input, Method, Motion, Options, Sample};
 use mozzi::{Model, Trajectory, Vec3};
 use std::ops::ControlFlow;
 
@@ -19,7 +19,8 @@ pub struct Simulation<'a> {
     pub integrator: Integrator,
     /// t_f, s; the motion starts at 0.
     pub duration: f64,
-    /// Seconds between two rows of the answer, which are at equal times, the end beside them; a hundredth of the duration.
+    /// Seconds between two rows of the answer, which are at equal times, the end beside them; a hundredth of the duration. Of a fixed step
+    /// the nearest number of steps, where neither events nor stops are looked for within them.
     pub record: f64,
     /// Gravity in {s} coordinates, m/s², in place of the model's own.
     pub gravity: Option<Vec3>,
@@ -111,6 +112,11 @@ impl<'a> Simulation<'a> {
         mut progress: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Run, Error> {
         let mut stepper = self.check(model, theta, dtheta)?;
+        if let (Stepper::Fixed(method, step), true) =
+            (&stepper, self.events.is_empty() && self.stops != Policy::Respect)
+        {
+            return self.run_plainly(model, [theta, dtheta], input, *method, *step, progress);
+        }
         let options = Options { gravity: self.gravity, friction: self.friction, ..Options::new(self.duration, 1) };
         let mut driven = Driven::new(model, input, &options);
         let mut stops = Stops::new(model, self.stops, theta)?;
@@ -124,6 +130,7 @@ impl<'a> Simulation<'a> {
             works: [0.0; 3],
         };
         driven.complete(&mut state)?;
+        stops.report_at(0.0, theta);
         let mut run = Run { motion: Trajectory::new(model), events: Vec::new(), stops: Vec::new() };
         record(&mut run.motion, &state, &mut driven);
         let mut next = self.record;
@@ -161,7 +168,7 @@ impl<'a> Simulation<'a> {
             if end != dense.t + dense.h || impact.is_some() || release.is_some() {
                 stepper.restart();
             }
-            stops.report(&from, &state);
+            stops.report_at(state.t, &state.theta);
             let stopped = progress(state.t).is_break();
             run.motion.complete = state.t >= self.duration;
             over = run.motion.complete || stop || stopped;
@@ -172,8 +179,52 @@ impl<'a> Simulation<'a> {
             }
         }
         run.motion.complete |= self.duration == 0.0;
-        run.stops = stops.noted.into_iter().flatten().flatten().collect();
-        run.stops.sort_by(|a, b| a.first.total_cmp(&b.first));
+        run.stops = stops.noted();
+        Ok(run)
+    }
+
+    /// Nothing can happen within a step: steps of equal length, as [`Model::simulate`] takes them, and rows at their ends.
+    fn run_plainly(
+        &self,
+        model: &Model,
+        [theta, dtheta]: [&[f64]; 2],
+        input: impl Input,
+        method: Method,
+        step: f64,
+        mut progress: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Run, Error> {
+        let options =
+            Options { gravity: self.gravity, friction: self.friction, ..Options::with_step(self.duration, step)? };
+        let (steps, h) = (options.steps, options.step());
+        let every = if h > 0.0 { (self.record / h).round().clamp(1.0, 1e15) as usize } else { 1 };
+        let mut equation = Equation::new(model, input, &options);
+        let mut stops = Stops::new(model, self.stops, theta)?;
+        let mut motion: Motion<f64, 3> =
+            Motion::start(model.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
+        let mut run = Run { motion: Trajectory::new(model), events: Vec::new(), stops: Vec::new() };
+        let mut row = |motion: &Motion<f64, 3>, equation: &mut Equation<_>| {
+            let energy = equation.energy(&motion.theta, &motion.dtheta, motion.integrals);
+            let Motion { t, theta, dtheta, ddtheta, .. } = motion;
+            run.motion.record(Sample { t: *t, theta, dtheta, ddtheta, tau: equation.tau(), energy });
+        };
+        row(&motion, &mut equation);
+        stops.report_at(0.0, theta);
+        let mut done = 0;
+        while done < steps {
+            done += 1;
+            equation.at_step(done, h);
+            let t = if done == steps { self.duration } else { done as f64 * h };
+            motion.step(method, h, t, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
+            stops.report_at(t, &motion.theta);
+            let stop = progress(t).is_break();
+            if done % every == 0 || done == steps || stop {
+                row(&motion, &mut equation);
+            }
+            if stop {
+                break;
+            }
+        }
+        (run.motion.steps, run.motion.complete, run.stops) = (done, done == steps, stops.noted());
         Ok(run)
     }
 

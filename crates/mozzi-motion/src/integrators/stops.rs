@@ -31,7 +31,9 @@ pub(super) struct Stops {
     bounds: Bounds,
     names: Vec<String>,
     /// Lower and upper, joint by joint.
-    pub noted: Vec<[Option<Stopped>; 2]>,
+    noted: Vec<[Option<Stopped>; 2]>,
+    /// Is the joint beyond it now?
+    beyond: Vec<[bool; 2]>,
 }
 
 impl Stops {
@@ -47,7 +49,20 @@ impl Stops {
                 "joints within their limits, which are respected",
             )?;
         }
-        Ok(Stops { policy, noted: vec![[None, None]; names.len()], bounds, names })
+        Ok(Stops {
+            policy,
+            noted: vec![[None, None]; names.len()],
+            beyond: vec![[false; 2]; names.len()],
+            bounds,
+            names,
+        })
+    }
+
+    /// In the order of time.
+    pub fn noted(self) -> Vec<Stopped> {
+        let mut all: Vec<Stopped> = self.noted.into_iter().flatten().flatten().collect();
+        all.sort_by(|a, b| a.first.total_cmp(&b.first));
+        all
     }
 
     pub fn are_respected(&self) -> bool {
@@ -55,8 +70,8 @@ impl Stops {
     }
 
     /// How far joint k is beyond its lower (0) or upper (1) bound.
-    fn excess(&self, state: &State, k: usize, side: usize) -> f64 {
-        let ([low, high], q) = (self.bounds.joints[k], state.theta[self.bounds.positions + k]);
+    fn excess(&self, theta: &[f64], k: usize, side: usize) -> f64 {
+        let ([low, high], q) = (self.bounds.joints[k], theta[self.bounds.positions + k]);
         if side == 0 { low - q } else { q - high }
     }
 
@@ -65,23 +80,27 @@ impl Stops {
         (0..bounds.len()).flat_map(|k| [(k, 0), (k, 1)]).filter(move |&(k, side)| bounds[k][side].is_finite())
     }
 
-    fn note(&mut self, state: &State, k: usize, side: usize, again: bool) {
-        let beyond = self.excess(state, k, side).max(0.0);
+    fn note(&mut self, t: f64, k: usize, side: usize, beyond: f64, again: bool) {
         let (joint, limit) = (self.names[k].clone(), self.bounds.joints[k][side]);
-        let first = Stopped { joint, limit, first: state.t, beyond, times: 0 };
+        let first = Stopped { joint, limit, first: t, beyond, times: 0 };
         let note = self.noted[k][side].get_or_insert(first);
         note.beyond = note.beyond.max(beyond);
         note.times += usize::from(again);
     }
 
-    /// Notes joints beyond their limits at the end of a step from one state to another.
-    pub fn report(&mut self, from: &State, to: &State) {
+    /// Notes joints beyond their limits; states come in the order of time.
+    pub fn report_at(&mut self, t: f64, theta: &[f64]) {
         if self.policy != Policy::Report {
             return;
         }
-        for (k, side) in self.sides() {
-            if self.excess(to, k, side) > 0.0 {
-                self.note(to, k, side, self.excess(from, k, side) <= 0.0);
+        for k in 0..self.bounds.joints.len() {
+            for side in [0, 1] {
+                let excess = self.excess(theta, k, side);
+                if excess > 0.0 {
+                    let again = !self.beyond[k][side];
+                    self.note(t, k, side, excess, again);
+                }
+                self.beyond[k][side] = excess > 0.0;
             }
         }
     }
@@ -96,7 +115,7 @@ impl Stops {
     ) -> Option<(f64, usize, usize)> {
         let free = self.sides().filter(|&(k, _)| !held.iter().any(|&(j, _)| j == self.bounds.velocities + k));
         let impacts = free.filter_map(|(k, side)| {
-            let found = first_zero(model, dense, until, Direction::Rising, |state| self.excess(state, k, side));
+            let found = first_zero(model, dense, until, Direction::Rising, |state| self.excess(&state.theta, k, side));
             found.map(|t| (t, k, side))
         });
         impacts.min_by(|a, b| a.0.total_cmp(&b.0))
@@ -128,10 +147,7 @@ impl Stops {
         side: usize,
         driven: &mut Driven<I>,
     ) -> Result<(), Error> {
-        self.note(state, k, side, true);
-        if let Some(note) = &mut self.noted[k][side] {
-            note.beyond = 0.0;
-        }
+        self.note(state.t, k, side, 0.0, true);
         state.theta[self.bounds.positions + k] = self.bounds.joints[k][side];
         let before = driven.energy(state).kinetic;
         driven.held.push((self.bounds.velocities + k, if side == 0 { -1.0 } else { 1.0 }));

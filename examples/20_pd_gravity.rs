@@ -1,0 +1,21 @@
+//! PD control with gravity compensation (Modern Robotics, section 11.4.2), τ = g(θ) + K_p e + K_d ė.
+//!
+//! It holds any posture: with 𝒦 + ½ eᵀK_p e as Lyapunov's function the robot comes to rest where e = 0. It knows of no accelerations, and so
+//! lags behind a motion; a load that is not in its model it carries by its springs, which is an error that stays: K_p e = the load's torques.
+
+use mozzi_examples::tracking::{Arm, both_loads};
+use mozzi_motion::controllers::{Gains, PdGravity};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arms = Arm::both()?;
+    let gains = |n: usize| Gains {
+        p: (0..n).map(|j| if j < 4 { 1200.0 } else { 120.0 }).collect(),
+        d: (0..n).map(|j| if j < 4 { 120.0 } else { 6.0 }).collect(),
+    };
+    let errors =
+        both_loads(&arms, "pd gravity", |arm| Ok(PdGravity::new(&arm.model, arm.motion()?, gains(arm.model.n()))?))?;
+    for [free, loaded] in errors {
+        assert!(free > 1e-3 && free < 0.3 && loaded < 0.3, "it lags, and follows all the same");
+    }
+    Ok(())
+}
