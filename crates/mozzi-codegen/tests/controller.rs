@@ -75,7 +75,7 @@ fn the_controllers_in_rust_and_c_do_as_the_library_does() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("controller");
     build_script::write(&folder).expect("texts");
 
-    let arm = mozzi_urdf::open("panda").and_then(|robot| Ok(robot.build())).expect("embedded").expect("a robot");
+    let arm = mozzi_urdf::open("panda").expect("embedded").build().expect("a robot");
     let arm = arm.with_locked_joints(&[("panda_finger_joint1", 0.04)]).expect("a joint");
     let load = Solid::Sphere { radius: 0.04 }.inertia(0.5);
     let loaded = arm.with_payload(arm.frame("panda_hand_tcp").expect("a frame"), load).expect("a load");
