@@ -30,6 +30,7 @@ mod instruction_set;
 mod lanes;
 mod methods;
 mod quantity;
+mod shelf;
 mod simulate;
 mod surroundings;
 mod threads;

@@ -24,3 +24,8 @@ pub mod trajectories;
 pub use error::Error;
 pub use inverse_kinematics::{Goal, InverseKinematics};
 pub use policy::Policy;
+
+/// The README's examples, run with the documentation's tests: here, where all of their crates are known.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
