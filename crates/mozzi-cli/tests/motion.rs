@@ -38,7 +38,7 @@ fn a_motion_is_made_and_followed() {
     let wrong = follow(&format!(r#"{{"controller": "computed-torque", "p": 100, "d": 20, "model": "{name}"}}"#), &[]);
     assert!(worst(&wrong) > 1e-3, "{}", worst(&wrong));
     // too weak a motor is told of, and held
-    let strong = r#"{"controller": "pd-gravity", "p": 20000, "d": 200}"#;
+    let strong = r#"{"controller": "pd-gravity", "p": [3000, 3000, 3000, 50, 50, 50], "d": [200, 200, 200, 2, 2, 2]}"#;
     for (policy, held) in [("report", false), ("respect", true)] {
         let found =
             follow(strong, &["--effort-limits", policy, "--theta", "0.3,-1.2,1.5,0.3,1.1,0", "--step", "0.0005"]);

@@ -6,6 +6,7 @@ use mozzi::testing::Random;
 use mozzi::{Model, forward_kinematics};
 use mozzi_motion::inverse_kinematics::{Method, Options};
 use mozzi_motion::{Goal, InverseKinematics};
+use std::f64::consts::PI;
 use std::time::Instant;
 
 const ROBOTS: [(&str, &str); 6] = [
@@ -20,7 +21,7 @@ const ROBOTS: [(&str, &str); 6] = [
 /// Within the limits; of a joint without, half a turn either way.
 fn random(model: &Model, random: &mut Random) -> Vec<f64> {
     let anywhere = |joint: &mozzi::model::description::Joint| {
-        let [low, high] = joint.limits.position.unwrap_or([-3.14, 3.14]);
+        let [low, high] = joint.limits.position.unwrap_or([-PI, PI]);
         0.5 * (low + high) + 0.5 * (high - low) * random.next()
     };
     model.joints().map(anywhere).collect()

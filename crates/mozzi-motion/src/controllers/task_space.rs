@@ -60,7 +60,7 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
     pub fn new(model: &'m Model, reference: R, frame: FrameId, law: Law, posture: Gains) -> Result<Self, Error> {
         model.check_frame(frame)?;
         posture.check(model)?;
-        let (Law::Acceleration { p: p, d: d } | Law::Impedance { stiffness: p, damping: d }) = law;
+        let (Law::Acceleration { p, d } | Law::Impedance { stiffness: p, damping: d }) = law;
         for (what, list) in [("the task's K_p", p), ("the task's K_d", d)] {
             let fine = list.iter().all(|x| *x >= 0.0 && x.is_finite());
             check(fine, what, format!("{list:?}"), "finite numbers that are not negative")?;

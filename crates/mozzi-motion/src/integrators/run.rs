@@ -46,8 +46,8 @@ pub struct Run {
 /// A step of any integrator.
 enum Stepper {
     Fixed(Method, f64),
-    DormandPrince(DormandPrince),
-    Midpoint(Midpoint),
+    DormandPrince(Box<DormandPrince>),
+    Midpoint(Box<Midpoint>),
 }
 
 impl Stepper {
@@ -271,11 +271,11 @@ impl<'a> Simulation<'a> {
         match self.integrator {
             Integrator::Fixed(method, step) => positive("step", step).map(|()| Stepper::Fixed(method, step)),
             Integrator::Midpoint { step } => {
-                positive("step", step).map(|()| Stepper::Midpoint(Midpoint::new(model, step)))
+                positive("step", step).map(|()| Stepper::Midpoint(Box::new(Midpoint::new(model, step))))
             }
             Integrator::DormandPrince { tolerance } => {
                 positive("tolerance", tolerance)?;
-                Ok(Stepper::DormandPrince(DormandPrince::new(model.n(), model.nq(), tolerance)))
+                Ok(Stepper::DormandPrince(Box::new(DormandPrince::new(model.n(), model.nq(), tolerance))))
             }
         }
     }
