@@ -57,6 +57,15 @@ impl Workspace {
             Inner::Fused(..) => "fma",
         }
     }
+
+    /// Was all that the last [`forward_dynamics`] or [`forward_dynamics_derivatives`] divided by far from rounding? See
+    /// [`Workspace::is_regular`](crate::Workspace::is_regular).
+    pub fn is_regular(&self) -> bool {
+        match &self.0 {
+            Inner::Plain(workspace) => workspace.is_regular(),
+            Inner::Fused(workspace, _) => workspace.is_regular(),
+        }
+    }
 }
 
 fn fused(x: &[f64]) -> &[Fused] {
@@ -252,6 +261,7 @@ mod tests {
                 mass_matrix(&model, &theta, &mut w, &mut M);
                 coriolis_matrix(&model, &theta, &dtheta, &mut w, &mut C);
                 let mut by = [(); 6].map(|()| vec![0.0; n * n]);
+                assert!(w.is_regular());
                 let ([a, b, c_, d, e, f], mut again) = (by.each_mut().map(|x| &mut x[..]), vec![0.0; n]);
                 inverse_dynamics_derivatives(&model, &theta, &dtheta, &x, &environment, &mut w, [a, b, c_]);
                 let three = [d, e, f];
