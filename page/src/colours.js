@@ -7,16 +7,3 @@ export function seriesColour(k, count) {
   if (count <= FEW.length) return FEW[k];
   return `hsl(${((210 + k * 137.508) % 360).toFixed(0)}, 55%, 52%)`;
 }
-
-// Of what the scene shows, the same in its buttons and in its arrows.
-export const KINDS = {
-  axes: "#8a63d2",
-  frames: "#7a8794",
-  masses: "#c79a12",
-  twists: "#2f9e6e",
-  wrenches: "#d0433f",
-  inertia: "#b8962e",
-  manipulability: "#1f9bb0",
-  force: "#e07b39",
-  path: "#3b7dd8",
-};

@@ -1,5 +1,5 @@
-// The data that mozzi writes into the page: `robot`, `meshes` and `motion`, see docs/page.md. Numbers of a motion are 32-bit floats,
-// base64; meshes are gzipped.
+// The data that mozzi writes into the page: `robot`, `meshes` and `motion`, see crates/mozzi-report. Numbers of a motion are 32-bit
+// floats, base64, its times 64-bit ones; meshes are gzipped.
 
 import { fromRows } from "./lie.js";
 
@@ -13,10 +13,11 @@ export async function unzipped(base64) {
   return new Response(stream).arrayBuffer();
 }
 
-function floats(base64) {
+function floats(base64, size = 4) {
   const raw = bytes(base64);
   const view = new DataView(raw.buffer);
-  return Float64Array.from({ length: raw.length / 4 }, (_, k) => view.getFloat32(4 * k, true));
+  const at = size === 8 ? (k) => view.getFloat64(8 * k, true) : (k) => view.getFloat32(4 * k, true);
+  return Float64Array.from({ length: raw.length / size }, (_, k) => at(k));
 }
 
 export function readRobot(raw) {
@@ -37,7 +38,7 @@ export function readMotion(raw, robot) {
   const list = (base64) => (base64 ? Array.from(floats(base64)) : null);
   return {
     title: raw.title,
-    t: list(raw.t),
+    t: Array.from(floats(raw.t, 8)),
     theta: rows(raw.theta, robot.nq),
     dtheta: rows(raw.dtheta, robot.n),
     ddtheta: rows(raw.ddtheta, robot.n),
@@ -62,5 +63,5 @@ export function stateAt(motion, time) {
   const part = high > low ? Math.min(Math.max((time - t[low]) / (t[high] - t[low]), 0), 1) : 0;
   const between = (rows) => rows && rows[low].map((x, k) => x + part * (rows[high][k] - x));
   const [theta, dtheta, ddtheta, tau, tip] = [motion.theta, motion.dtheta, motion.ddtheta, motion.tau, motion.tip].map(between);
-  return { theta, dtheta, ddtheta, tau, tip };
+  return { theta, dtheta, ddtheta, tau, tip, low, part };
 }

@@ -100,20 +100,6 @@ export function wrenches(robot, T, dtheta, ddtheta, tip) {
   return F;
 }
 
-// 𝒦 = ½ Σ Vᵀ𝒢V + ½ Σ armature θ̇² and 𝒫 = −Σ m gᵀc of what moves.
-export function energies(robot, theta, dtheta) {
-  const T = poses(robot, theta);
-  const [V, G] = [twists(robot, T, dtheta), inertias(robot, T)];
-  const moving = robot.isFloating ? 0 : 1;
-  let kinetic = dot(robot.armature, dtheta.map((rate) => rate * rate)) / 2;
-  let potential = 0;
-  for (let k = moving; k < T.length; k++) {
-    kinetic += dot(V[k], momentum(G[k], V[k])) / 2;
-    potential -= dot(robot.gravity, G[k].slice(1, 4));
-  }
-  return { kinetic, potential };
-}
-
 // Centre of mass of what moves, or null where nothing weighs anything.
 export function centerOfMass(robot, T) {
   const all = sum(inertias(robot, T).slice(robot.isFloating ? 0 : 1).map((G) => G.slice(0, 4)), 4);

@@ -1,9 +1,9 @@
 // What the buttons show over the robot: screw axes, frames, centres of mass, twists, wrenches, ellipsoids, the end effector's path.
 
 import * as THREE from "three";
-import { KINDS } from "./colours.js";
 import { centerOfMass, linearGram, poses, twists, wrenches } from "./dynamics.js";
 import { add, angular, cross, eigen, linear, moved, norm, scaled } from "./lie.js";
+import { KINDS } from "./kinds.js";
 import { Arrow, Ellipsoid, massMark, triad } from "./marks.js";
 import { lineOf } from "./skeleton.js";
 
@@ -33,11 +33,11 @@ export class Overlays {
     const thickness = 0.008 * reach;
     const moving = this.inertias.map(() => null);
     this.spin = moving.map(() => this.put("twists", new Arrow("#8ccf4d", thickness)));
-    this.speed = moving.map(() => this.put("twists", new Arrow(KINDS.twists, thickness)));
+    this.speed = moving.map(() => this.put("twists", new Arrow(KINDS.twists.colour, thickness)));
     this.moment = moving.map(() => this.put("wrenches", new Arrow("#ef9f3c", thickness)));
-    this.force = moving.map(() => this.put("wrenches", new Arrow(KINDS.wrenches, thickness)));
-    this.manipulability = this.put("manipulability", new Ellipsoid(KINDS.manipulability));
-    this.forceEllipsoid = this.put("force", new Ellipsoid(KINDS.force));
+    this.force = moving.map(() => this.put("wrenches", new Arrow(KINDS.wrenches.colour, thickness)));
+    this.manipulability = this.put("manipulability", new Ellipsoid(KINDS.manipulability.colour));
+    this.forceEllipsoid = this.put("torque", new Ellipsoid(KINDS.torque.colour));
     this.total = this.put("masses", massMark(0.028 * reach, "#e5484d"));
     this.longest = { spin: 1, speed: 1, moment: 1, force: 1 };
   }
@@ -73,7 +73,7 @@ export class Overlays {
       const [a, b, c] = principal.map(({ value }) => value);
       // semi-axes of the homogeneous ellipsoid with this inertia
       const semi = (x, y, z) => Math.sqrt(Math.max((5 * (y + z - x)) / (2 * inertia[0]), 0));
-      const ellipsoid = new Ellipsoid(KINDS.inertia);
+      const ellipsoid = new Ellipsoid(KINDS.inertia.colour);
       const lengths = [semi(a, b, c), semi(b, c, a), semi(c, a, b)];
       ellipsoid.set(center(inertia), principal.map(({ vector }, i) => ({ vector, length: lengths[i] })));
       attach("inertia", k, new THREE.Group().add(ellipsoid));
@@ -103,7 +103,7 @@ export class Overlays {
       const T = poses(this.robot, theta)[this.frame.body];
       return new THREE.Vector3(...moved(T, this.frame.T.p));
     });
-    const material = new THREE.LineBasicMaterial({ color: KINDS.path, transparent: true, opacity: 0.9 });
+    const material = new THREE.LineBasicMaterial({ color: KINDS.path.colour, transparent: true, opacity: 0.9 });
     layer.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), material));
   }
 
@@ -150,7 +150,7 @@ export class Overlays {
       this.total.visible = c !== null;
       if (c) this.total.position.set(...c);
     }
-    if (layers.manipulability.visible || layers.force.visible) this.ellipsoids(T);
+    if (layers.manipulability.visible || layers.torque.visible) this.ellipsoids(T);
   }
 
   // Of linear velocity, ‖θ̇‖ = 1: semi-axes σ along the singular directions of J_v; of force, ‖τ‖ = 1: 1/σ.

@@ -8,6 +8,7 @@ export class Player {
     this.time = this.start;
     this.speed = 1;
     this.isPlaying = false;
+    this.isLooping = false;
     this.onTime = onTime;
   }
 
@@ -25,7 +26,10 @@ export class Player {
       if (!this.isPlaying) return;
       this.time += (Math.max(now - last, 0) / 1000) * this.speed;
       last = now;
-      if (this.time >= this.end) {
+      if (this.time >= this.end && this.isLooping) {
+        this.time = this.start;
+        requestAnimationFrame(tick);
+      } else if (this.time >= this.end) {
         this.time = this.end;
         this.isPlaying = false;
       } else {

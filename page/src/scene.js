@@ -51,8 +51,9 @@ export class Scene {
     this.world.add(this.sky, this.sun, this.sun.target);
   }
 
-  // Grid and shadow, at the robot's lowest point or at the base.
+  // Grid and shadow.
   ground(size, height) {
+    [this.groundSize, this.groundHeight] = [size, height];
     if (this.floor) {
       this.world.remove(this.floor);
       this.floor.traverse((part) => part.geometry?.dispose());
@@ -80,6 +81,8 @@ export class Scene {
     this.size = size;
   }
 
+  matrixOf = matrixOf;
+
   place(T) {
     T.forEach((pose, k) => this.bodies[k].matrix.copy(matrixOf(pose)));
     const base = new THREE.Vector3(...T[0].p);
@@ -92,12 +95,22 @@ export class Scene {
     this.draw();
   }
 
-  // The camera where all of the robot is seen.
-  fit(center, radius) {
-    const wide = Math.min(this.camera.aspect, 1);
-    const distance = (1.12 * radius) / Math.sin((this.camera.fov * Math.PI) / 360) / wide;
+  // The camera as near as it can be with all points in sight, from a corner a little above.
+  fit(points) {
+    const center = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());
+    const towards = new THREE.Vector3(1, -0.75, 0.42).normalize();
+    const right = new THREE.Vector3(0, 0, 1).cross(towards).normalize();
+    const up = towards.clone().cross(right);
+    const tall = Math.tan((this.camera.fov * Math.PI) / 360);
+    const wide = tall * this.camera.aspect;
+    let distance = 1e-3;
+    for (const point of points) {
+      const from = point.clone().sub(center);
+      const beside = Math.max(Math.abs(from.dot(right)) / (0.84 * wide), Math.abs(from.dot(up)) / (0.76 * tall));
+      distance = Math.max(distance, beside + from.dot(towards));
+    }
     this.controls.target.copy(center);
-    this.camera.position.copy(new THREE.Vector3(1, -0.75, 0.42).normalize().multiplyScalar(distance).add(center));
+    this.camera.position.copy(towards.multiplyScalar(distance).add(center));
     this.camera.near = distance / 100;
     this.camera.far = distance * 60;
     this.camera.updateProjectionMatrix();
@@ -105,11 +118,10 @@ export class Scene {
     this.draw();
   }
 
-  // Of what is in the bodies' groups.
-  bounds() {
+  bounds(parts) {
     const box = new THREE.Box3();
     this.world.updateMatrixWorld(true);
-    for (const body of this.bodies) box.expandByObject(body);
+    for (const part of parts) box.expandByObject(part);
     return box;
   }
 

@@ -28,9 +28,9 @@ const readers = {
   stl: (buffer) => new THREE.Mesh(new STLLoader().parse(buffer)),
   obj: (buffer) => new OBJLoader(manager).parse(new TextDecoder().decode(buffer)),
   dae: (buffer) => {
-    const { scene } = new ColladaLoader(manager).parse(new TextDecoder().decode(buffer), "");
-    scene.rotation.set(0, 0, 0); // a URDF's mesh is meant as its numbers stand, whatever axis the file calls up
-    return scene;
+    // a URDF's mesh is meant as its numbers stand, whatever axis the file calls up
+    const text = new TextDecoder().decode(buffer).replace(/<up_axis>\s*\w+\s*<\/up_axis>/, "<up_axis>Y_UP</up_axis>");
+    return new ColladaLoader(manager).parse(text, "").scene;
   },
 };
 

@@ -1,6 +1,7 @@
 //! `cargo test --workspace`, doc tests included, with the tests counted.
 
 use crate::oracles;
+use crate::page;
 use crate::report::Outcome;
 use crate::venv;
 use crate::workspace::Workspace;
@@ -45,6 +46,7 @@ pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
     let python = venv::python(workspace);
     give(&mut cargo, "MOZZI_PYTHON", python.is_file().then_some(python));
+    give(&mut cargo, "MOZZI_BROWSER", page::browser());
     println!("$ cargo test --workspace --no-fail-fast");
     match stream(&mut cargo, |line| count.add(line)) {
         Err(error) => Outcome::Failed(format!("cargo test did not run: {error}")),

@@ -20,3 +20,4 @@ pub mod terms_json;
 pub mod terms_text;
 pub mod tour;
 pub mod trajectories;
+pub mod view;

@@ -4,6 +4,7 @@ use crate::columns::{Columns, save};
 use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::{WRENCH, array, number};
+use crate::report::{self, MeshArguments};
 use crate::robot::{RobotArguments, Units};
 use crate::samples::{ENERGIES, Samples, first_column};
 use crate::state::StartArguments;
@@ -53,6 +54,11 @@ pub struct SimulateArguments {
     /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n, energies and works
     #[arg(long, value_name = "FILE.csv")]
     out: Option<String>,
+    /// Write the motion as a page to look at: the robot in 3-D, plots, one HTML file that needs no network
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<String>,
+    #[command(flatten)]
+    meshes: MeshArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -84,10 +90,15 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
         save(file, &columns(&model, &motion).text())?;
     }
+    let said =
+        arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &motion, &options)).transpose()?;
     match arguments.out.as_deref() {
         Some("-") => Ok(columns(&model, &motion).text()),
         _ if arguments.robot.json => Ok(json::print(&object(&model, &motion, &options))),
-        file => Ok(page(&model, &motion, &options, &arguments.torque, file)),
+        file => {
+            let said = said.map(|line| line + "\n").unwrap_or_default();
+            Ok(page(&model, &motion, &options, &arguments.torque, file) + &said)
+        }
     }
 }
 
@@ -104,6 +115,13 @@ impl SimulateArguments {
             Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
         };
         Ok(Options { method, friction, record_every: self.record_every, ..Options::with_step(time, step)? })
+    }
+
+    fn write_report(&self, file: &str, model: &Model, motion: &Trajectory, options: &Options) -> Result<String> {
+        let (method, time) = (options.method.name(), scalar(options.duration));
+        let title = format!("{method}, {time} s in {} steps, motors: {}", motion.steps, self.torque);
+        let motion = report::simulated(title, motion, self.wrench(model)?)?;
+        self.meshes.write(file, &self.robot.model, model, Some(&motion))
     }
 
     fn torque<'m>(&self, model: &'m Model) -> Result<Box<dyn Input + 'm>> {
