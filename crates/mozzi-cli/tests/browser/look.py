@@ -42,15 +42,13 @@ def look(browser, job):
         page.evaluate("(theta) => mozzi.setTheta(theta)", theta)
         found["states"].append(page.evaluate(STATE, job["frames"]))
     pressed = "(button) => button.getAttribute('aria-pressed')"
-    toggles = page.query_selector_all("#toggles button")
     found["toggles"] = {}
-    for button in toggles:
-        before = button.evaluate(pressed)
-        button.click()
-        after = button.evaluate(pressed)
-        page.wait_for_timeout(30)
-        button.click()
-        found["toggles"][button.get_attribute("data-kind")] = [before, after, button.evaluate(pressed)]
+    for button in page.query_selector_all("#toggles button"):
+        states = [button.evaluate(pressed)]
+        for _ in range(2):
+            button.dispatch_event("click")
+            states.append(button.evaluate(pressed))
+        found["toggles"][button.get_attribute("data-kind")] = states
     dark = "() => document.documentElement.dataset.theme"
     found["themes"] = [page.evaluate(dark)]
     page.keyboard.press("d")
@@ -72,7 +70,7 @@ def look(browser, job):
 
 
 def scrub(page):
-    """The time after: start, the slider's middle, a row on, half a second of play, a click on a plot's right end."""
+    """The time after: start, the slider's middle, a row on, slow play and pause, a click on a plot's right end."""
     time = "() => Number(document.getElementById('time').value)"
     page.evaluate("mozzi.seek(0)")
     times = [page.evaluate(time)]
@@ -82,8 +80,10 @@ def scrub(page):
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("Shift+ArrowRight")
     times.append(page.evaluate(time))
+    for _ in range(4):
+        page.keyboard.press("-")
     page.keyboard.press(" ")
-    page.wait_for_function("(before) => Number(document.getElementById('time').value) > before + 0.02", arg=times[-1])
+    page.wait_for_function("(before) => Number(document.getElementById('time').value) > before + 0.001", arg=times[-1])
     page.keyboard.press(" ")
     times.append(page.evaluate(time))
     plot = page.query_selector(".plot canvas")
