@@ -62,6 +62,9 @@ enum Command {
     /// The robot in a browser: a motion with its plots, or a slider for each joint
     #[command(after_help = TABLES)]
     View(commands::view::ViewArguments),
+    /// A figure for a paper, SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
+    #[command(after_help = TABLES)]
+    Plot(commands::plot::PlotArguments),
     /// Is the file a robot? All that is wrong or odd, with its place
     Check(check::CheckArguments),
     /// The same robot in another file: URDF, JSON, or Python for NumPy
@@ -98,6 +101,7 @@ Examples:
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
   mozzi simulate ur5 --report fall.html                 the motion as a page: 3-D, plots, one file
+  mozzi plot energy double_pendulum swing.csv --out energy.svg
   mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
   mozzi view double_pendulum swing.csv --out swing.html a motion from a table
 
@@ -169,6 +173,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),
         Some(Command::Explain(arguments)) => explain::run(arguments),
+        Some(Command::Plot(arguments)) => commands::plot::run(arguments),
         Some(Command::View(arguments)) => commands::view::run(arguments),
     }
 }

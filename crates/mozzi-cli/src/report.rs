@@ -2,6 +2,7 @@
 
 use crate::columns::save;
 use crate::failure::{self, Failure, Result};
+use crate::samples::{Samples, first_column};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::Input;
 use mozzi::{Model, Trajectory, Wrench};
@@ -64,4 +65,23 @@ pub fn simulated(title: String, motion: &Trajectory, mut wrench: impl Input) -> 
     }
     let is_any = applied.iter().any(|F| *F != Wrench::zero());
     Ok(Motion { tip_wrench: is_any.then_some(applied), ..Motion::simulated(title, motion) })
+}
+
+/// A table's motion; energies follow from it.
+pub fn read(file: &str, model: &Model) -> Result<Motion> {
+    let samples = Samples::read(file, model)?;
+    let t = samples.need(&samples.t, "t")?.clone();
+    let theta = samples.need(&samples.theta, &first_column(model, "theta"))?.concat();
+    let list = |rows: &Option<Vec<Vec<f64>>>| rows.as_ref().map(|rows| rows.concat());
+    let motion = Motion {
+        title: samples.file.clone(),
+        t,
+        theta,
+        dtheta: list(&samples.dtheta),
+        ddtheta: list(&samples.ddtheta),
+        tau: list(&samples.tau),
+        tip_wrench: samples.tip_wrench.clone(),
+        ..Motion::default()
+    };
+    motion.with_energies(model).map_err(|error| Failure::wrong(format!("{file}: {error}")))
 }

@@ -1,4 +1,5 @@
-//! A robot and its motion as one HTML file, which needs no network and no program but a browser.
+//! A robot and its motion as one HTML file, which needs no network and no program but a browser; and as figures for papers, SVG
+//! ([`pictures`]).
 //!
 //! ```
 //! use mozzi::simulation::{Options, Zero};
@@ -20,8 +21,10 @@
 mod base64;
 mod drawing;
 mod error;
+pub mod figure;
 mod motion;
 mod page;
+pub mod pictures;
 mod robot;
 
 pub use drawing::{Drawing, Meshes};

@@ -63,7 +63,7 @@ impl Motion {
         Ok(self)
     }
 
-    fn check(&self, model: &Model) -> Result<(), Error> {
+    pub(crate) fn check(&self, model: &Model) -> Result<(), Error> {
         let rows = self.t.len();
         let increases = |k: usize| self.t[k].is_finite() && (k == 0 || self.t[k] > self.t[k - 1]);
         if let Some(k) = (0..rows).find(|&k| !increases(k)) {

@@ -11,6 +11,7 @@ pub mod explain;
 pub mod forward_dynamics;
 pub mod info;
 pub mod inverse_dynamics;
+pub mod plot;
 pub mod python;
 pub mod screws;
 pub mod simulate;

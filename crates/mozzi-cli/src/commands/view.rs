@@ -1,13 +1,10 @@
 //! `mozzi view`: the robot to look at, still or moving, in a file or served to this machine's browser.
 
 use crate::failure::{self, Failure, Result};
-use crate::report::MeshArguments;
+use crate::report::{self, MeshArguments};
 use crate::robot::RobotArguments;
-use crate::samples::{Samples, first_column};
 use crate::serve;
 use clap::Args;
-use mozzi::Model;
-use mozzi_report::Motion;
 
 #[derive(Args, Debug)]
 pub struct ViewArguments {
@@ -28,7 +25,7 @@ pub struct ViewArguments {
 
 pub fn run(arguments: &ViewArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let motion = arguments.trajectory.as_deref().map(|file| read(file, &model)).transpose()?;
+    let motion = arguments.trajectory.as_deref().map(|file| report::read(file, &model)).transpose()?;
     if let Some(file) = &arguments.out {
         return Ok(arguments.meshes.write(file, &arguments.robot.model, &model, motion.as_ref())? + "\n");
     }
@@ -42,23 +39,4 @@ pub fn run(arguments: &ViewArguments) -> Result<String> {
     ));
     server.run(&page).map_err(cannot)?;
     Ok(String::new())
-}
-
-/// A table's motion; energies follow from it.
-fn read(file: &str, model: &Model) -> Result<Motion> {
-    let samples = Samples::read(file, model)?;
-    let t = samples.need(&samples.t, "t")?.clone();
-    let theta = samples.need(&samples.theta, &first_column(model, "theta"))?.concat();
-    let list = |rows: &Option<Vec<Vec<f64>>>| rows.as_ref().map(|rows| rows.concat());
-    let motion = Motion {
-        title: samples.file.clone(),
-        t,
-        theta,
-        dtheta: list(&samples.dtheta),
-        ddtheta: list(&samples.ddtheta),
-        tau: list(&samples.tau),
-        tip_wrench: samples.tip_wrench.clone(),
-        ..Motion::default()
-    };
-    motion.with_energies(model).map_err(|error| Failure::wrong(format!("{file}: {error}")))
 }
