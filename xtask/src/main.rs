@@ -104,8 +104,8 @@ fn check(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
     report.step("clippy", || {
-        let arguments = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
-        command::outcome(workspace.cargo(&arguments))
+        let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
+        command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
     });
     report.step("documentation", || {
         // Libraries: the program `mozzi` would be written over the library of the same name, at the same time.

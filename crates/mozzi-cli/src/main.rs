@@ -7,6 +7,7 @@ mod commands;
 mod compare;
 mod failure;
 mod json;
+mod log;
 mod numbers;
 mod quantities;
 mod random;

@@ -128,7 +128,8 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let title = format!("{}, {} s", model.description().name, scalar(time));
     let mut text = save(Convergence::figure(title, &found), &arguments.out)?;
     for each in &found {
-        let order = each.measured_order().map_or("unknown: too few steps went well".into(), |order| format!("{order:.2}"));
+        let order =
+            each.measured_order().map_or("unknown: too few steps went well".into(), |order| format!("{order:.2}"));
         text += &format!("{}: order {}, measured {order}\n", each.method.name(), each.method.order());
     }
     Ok(text)
@@ -184,5 +185,7 @@ fn png(svg: &str) -> Result<Vec<u8>> {
 
 #[cfg(not(feature = "png"))]
 fn png(_svg: &str) -> Result<Vec<u8>> {
-    Err(Failure::wrong("--out ends in .png, which this program was built without: cargo install --features png; .svg works"))
+    Err(Failure::wrong(
+        "--out ends in .png, which this program was built without: cargo install --features png; .svg works",
+    ))
 }

@@ -1,8 +1,9 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
-use crate::columns::{Columns, save};
+use crate::columns::Columns;
 use crate::failure::{Failure, Result};
 use crate::json;
+use crate::log;
 use crate::numbers::{WRENCH, array, number};
 use crate::report::{self, MeshArguments};
 use crate::robot::{RobotArguments, Units};
@@ -51,8 +52,9 @@ pub struct SimulateArguments {
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1)]
     record_every: usize,
-    /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n, energies and works
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the motion to a file, by its ending: .csv ("-": standard output), .npy, .npz, .arrow, .feather; .parquet and .mcap where
+    /// the program was built with these features. Columns t, theta_1 … tau_n, energies and works
+    #[arg(long, value_name = "FILE")]
     out: Option<String>,
     /// Write the motion as a page to look at: the robot in 3-D, plots, one HTML file that needs no network
     #[arg(long, value_name = "FILE.html")]
@@ -82,13 +84,14 @@ enum Beyond {
 }
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
+    arguments.out.as_deref().map(log::Format::of).transpose()?; // before the motion, which may take long
     let model = arguments.robot.load()?;
     let (theta, dtheta) = arguments.start.read(&model)?;
     let options = arguments.options()?;
     let input = (arguments.torque(&model)?, arguments.wrench(&model)?);
     let motion = simulate(&model, &theta, &dtheta, input, &options)?;
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
-        save(file, &columns(&model, &motion).text())?;
+        log::write(file, &model, &motion)?;
     }
     let said =
         arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &motion, &options)).transpose()?;
@@ -208,7 +211,7 @@ pub fn columns(model: &Model, motion: &Trajectory) -> Columns {
     columns
 }
 
-fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
+pub fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
     let of = |pick: fn(&simulation::Energy) -> f64| motion.energy.iter().map(pick).collect();
     [of(|e| e.kinetic), of(|e| e.potential), of(|e| e.motor_work), of(|e| e.friction_loss), of(|e| e.applied_work)]
 }

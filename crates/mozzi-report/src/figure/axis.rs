@@ -67,7 +67,8 @@ fn round_step(raw: f64) -> f64 {
 }
 
 fn superscript(exponent: i64) -> String {
-    let digit = |c: char| c.to_digit(10).map_or('⁻', |d| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][d as usize]);
+    let digit =
+        |c: char| c.to_digit(10).map_or('⁻', |d| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][d as usize]);
     exponent.to_string().chars().map(digit).collect()
 }
 
@@ -77,7 +78,8 @@ mod tests {
 
     #[test]
     fn ticks_are_round_numbers() {
-        let names = |scale, range, about| Ticks::new(scale, range, about).0.into_iter().map(|(_, n)| n).collect::<Vec<_>>();
+        let names =
+            |scale, range, about| Ticks::new(scale, range, about).0.into_iter().map(|(_, n)| n).collect::<Vec<_>>();
         assert_eq!(names(Scale::Linear, [-0.1, 1.1], 5), ["0.0", "0.5", "1.0"]);
         assert_eq!(names(Scale::Linear, [-3.0, 7.0], 5), ["−2", "0", "2", "4", "6"]);
         assert_eq!(names(Scale::Linear, [0.0, 3e-7], 3), ["0.0e0", "1.0e-7", "2.0e-7", "3.0e-7"]);

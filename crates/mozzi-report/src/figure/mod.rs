@@ -90,7 +90,10 @@ mod tests {
     fn wave(scale: Scale) -> Figure {
         let points = (1..=2000).map(|k| f64::from(k) * 0.01).map(|t| [t, 2.0 + t.sin()]).collect();
         let panel = Panel { x_label: "t [s]".into(), y_label: "θ̇ <1>".into(), scale, ..Panel::default() };
-        let curves = vec![Curve::line("a & b", 0, points), Curve { name: "none".into(), color: 1, stroke: Stroke::Marked, points: Vec::new() }];
+        let curves = vec![
+            Curve::line("a & b", 0, points),
+            Curve { name: "none".into(), color: 1, stroke: Stroke::Marked, points: Vec::new() },
+        ];
         Figure { title: "A wave".into(), panels: vec![Panel { curves, ..panel }], columns: 1 }
     }
 

@@ -6,6 +6,8 @@ use std::fmt::Write;
 /// A page of a paper is 720 wide; all lengths are in these units.
 const WIDTH: f64 = 720.0;
 const PANEL_HEIGHT: f64 = 190.0;
+/// Of a panel that is alone.
+const ONLY_HEIGHT: f64 = 340.0;
 /// Around a panel's axes: left, right, above, below.
 const MARGIN: [f64; 4] = [62.0, 12.0, 8.0, 40.0];
 /// Points that are nearer to each other are one.
@@ -36,7 +38,7 @@ impl Figure {
         }
         y = self.legend(&mut body, y);
         for row in self.panels.chunks(columns) {
-            let tall = row.iter().map(|panel| panel.height(width)).fold(0.0, f64::max);
+            let tall = row.iter().map(|panel| panel.height(width, self.panels.len())).fold(0.0, f64::max);
             for (k, panel) in row.iter().enumerate() {
                 panel.draw(&mut body, [k as f64 * width, y], [width, tall]);
             }
@@ -68,7 +70,14 @@ impl Figure {
                 (x, y) = (MARGIN[0], y + LEGEND_LINE);
             }
             let ends = [[x, y], [x + 20.0, y]];
-            line(out, &ends, &Curve { stroke: if curve.stroke == Stroke::Dashed { Stroke::Dashed } else { Stroke::Line }, ..curve.clone() });
+            line(
+                out,
+                &ends,
+                &Curve {
+                    stroke: if curve.stroke == Stroke::Dashed { Stroke::Dashed } else { Stroke::Line },
+                    ..curve.clone()
+                },
+            );
             text(out, [x + 25.0, y + 3.8], "start", 11.0, &curve.name);
             x += long;
         }
@@ -77,9 +86,9 @@ impl Figure {
 }
 
 impl Panel {
-    fn height(&self, width: f64) -> f64 {
+    fn height(&self, width: f64, panels: usize) -> f64 {
         if !self.equal {
-            return PANEL_HEIGHT;
+            return if panels == 1 { ONLY_HEIGHT } else { PANEL_HEIGHT };
         }
         // as tall as the units ask, within reason
         let [[left, right], [low, high]] = self.ranges();
@@ -105,7 +114,7 @@ impl Panel {
             let _ = writeln!(out, "<path d=\"M{0:.1} {top:.1}v{h:.1}\" stroke=\"#e3e6ea\"/>", across(place));
             text(out, [across(place), top + h + 14.0], "middle", 10.5, &name);
         }
-        for (place, name) in self.ticks(ys, (h / 36.0) as usize).0 {
+        for (place, name) in self.ticks(ys, (h / 28.0) as usize).0 {
             let _ = writeln!(out, "<path d=\"M{left:.1} {0:.1}h{w:.1}\" stroke=\"#e3e6ea\"/>", up(place));
             text(out, [left - 6.0, up(place) + 3.6], "end", 10.5, &name);
         }
@@ -158,5 +167,8 @@ fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve) {
 
 fn text(out: &mut String, [x, y]: [f64; 2], anchor: &str, size: f64, what: &str) {
     let what = what.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"#222\">{what}</text>");
+    let _ = writeln!(
+        out,
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"#222\">{what}</text>"
+    );
 }

@@ -77,7 +77,7 @@ impl Convergence {
             y_label: "error of θ at the end [rad, m]".into(),
             scale: Scale::Logarithmic,
             curves,
-            equal: true,
+            equal: false,
         };
         Figure { title: title.into(), panels: vec![panel], columns: 1 }
     }

@@ -47,7 +47,12 @@ pub fn trajectories(model: &Model, motion: &Motion) -> Result<Figure, Error> {
             };
             let curves: Vec<Curve> = of_kind.map(curve).collect();
             if !curves.is_empty() {
-                panels.push(Panel { x_label: "t [s]".into(), y_label: format!("{symbol} [{unit}]"), curves, ..Panel::default() });
+                panels.push(Panel {
+                    x_label: "t [s]".into(),
+                    y_label: format!("{symbol} [{unit}]"),
+                    curves,
+                    ..Panel::default()
+                });
             }
         }
     }
@@ -69,9 +74,16 @@ pub fn energy(model: &Model, motion: &Motion) -> Result<Figure, Error> {
         .collect();
     if curves.is_empty() {
         let rows = motion.t.len();
-        return Err(Error::Motion { what: "kinetic and potential energy", found: 0, expected: 2 * rows, rows, width: 2 });
+        return Err(Error::Motion {
+            what: "kinetic and potential energy",
+            found: 0,
+            expected: 2 * rows,
+            rows,
+            width: 2,
+        });
     }
-    let panel = |y_label: &str, curves| Panel { x_label: "t [s]".into(), y_label: y_label.into(), curves, ..Panel::default() };
+    let panel =
+        |y_label: &str, curves| Panel { x_label: "t [s]".into(), y_label: y_label.into(), curves, ..Panel::default() };
     let mut panels = vec![panel("energy [J]", curves)];
     if let Some(drift) = &motion.drift {
         panels.push(panel("drift [J]", vec![Curve::line("", 3, over_time(drift))]));
