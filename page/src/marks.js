@@ -61,7 +61,7 @@ export class Ellipsoid extends THREE.Group {
   constructor(colour) {
     super();
     const ball = new THREE.SphereGeometry(1, 36, 24);
-    const skin = new THREE.Mesh(ball, paint(colour, { opacity: 0.22, depthWrite: false }));
+    const skin = new THREE.Mesh(ball, paint(colour, { opacity: 0.13, depthWrite: false }));
     const rings = [[0, 0], [Math.PI / 2, 0], [0, Math.PI / 2]].map(([x, y]) => {
       const circle = Array.from({ length: 73 }, (_, k) => new THREE.Vector3(Math.cos((k * Math.PI) / 36), Math.sin((k * Math.PI) / 36), 0));
       const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(circle), new THREE.LineBasicMaterial({ color: new THREE.Color(colour), depthTest: false, transparent: true }));

@@ -30,7 +30,7 @@ export class Overlays {
     }
     this.inertias = [robot.baseInertia, ...robot.bodies.map((body) => body.inertia)];
     this.fixedParts(jointColour);
-    const thickness = 0.008 * reach;
+    const thickness = 0.006 * reach;
     const moving = this.inertias.map(() => null);
     this.spin = moving.map(() => this.put("twists", new Arrow("#8ccf4d", thickness)));
     this.speed = moving.map(() => this.put("twists", new Arrow(KINDS.twists.colour, thickness)));
@@ -58,7 +58,7 @@ export class Overlays {
     };
     robot.bodies.forEach((body, k) => {
       const { point, direction } = lineOf(body.A);
-      const axis = new Arrow(jointColour(body.j), 0.008 * reach);
+      const axis = new Arrow(jointColour(body.j), 0.0045 * reach);
       axis.set(add(point, scaled(direction, -0.16 * reach)), scaled(direction, 0.38 * reach));
       attach("axes", k + 1, new THREE.Group().add(axis));
       attach("frames", k + 1, triad(0.11 * reach));

@@ -119,6 +119,7 @@ export class Plot {
     }
     draw.restore();
     this.y = y;
+    this.room = Math.floor(this.readout.clientWidth / (this.legend ? 90 : 50));
     this.cursor(this.time);
   }
 
@@ -170,7 +171,7 @@ export class Plot {
       }
       said.push({ name, fill, text: this.legend ? `${name} ${short(value)}` : short(value) });
     }
-    this.readout.replaceChildren(...(said.length <= 8 ? said : []).map(({ name, fill, text }) => {
+    this.readout.replaceChildren(...(said.length <= Math.min(this.room, 8) ? said : []).map(({ name, fill, text }) => {
       const span = document.createElement("span");
       span.style.color = fill;
       span.title = name;
