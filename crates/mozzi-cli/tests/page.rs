@@ -152,10 +152,10 @@ fn the_page_shows_what_mozzi_computes() {
         json!({ "url": url(&report), "width": 800, "height": 400, "times": looked.map(|k| times[k]), "frames": names(&ur5) }),
         json!({ "url": url(&still), "width": 390, "height": 844, "theta": [stand], "frames": names(&anymal) }),
     ];
-    // with meshes: Collada of an arm, STL of a humanoid
-    let arm = robot("panda_description/urdf/panda.urdf").map(|file| (load(&file), file, "visual"));
+    // with meshes: Collada of a quadruped, STL of a humanoid
+    let quadruped = robot("hyq_description/robots/hyq_no_sensors.urdf").map(|file| (load(&file), file, "visual"));
     let humanoid = robot("talos_data/robots/talos_reduced.urdf").map(|file| (load(&file), file, "collision"));
-    let meshed: Vec<_> = arm.into_iter().chain(humanoid).collect();
+    let meshed: Vec<_> = quadruped.into_iter().chain(humanoid).collect();
     for (model, file, meshes) in &meshed {
         let page = folder.join(format!("{meshes}.html"));
         text(&["view", file, "--meshes", meshes, "--out", page.to_str().expect("text")]);
