@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | bench`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | page | bench`: what CI runs, anyone can run.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -15,6 +15,7 @@ mod main_job;
 mod metadata;
 mod no_std;
 mod oracles;
+mod page;
 mod report;
 mod source_text;
 mod spdx;
@@ -34,6 +35,8 @@ usage: cargo xtask COMMAND
           a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   docs    write the pages of docs/ anew; `test` holds them current
+  page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` sees whether that was done
+          --check                                     build it elsewhere and compare
   bench   beside Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
           --robots ur5,panda,anymal,talos,tree,chain  these alone, into target/bench/RESULTS.md
           --peers pinocchio,mujoco,kdl,dynibo,casadi  these alone, likewise
@@ -48,9 +51,11 @@ fn main() -> ExitCode {
         ["test"] => test(&workspace),
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
-        ["bench", "--criterion"] => run_benches(|| bench::criterion(&workspace)),
+        ["page"] => one("page", || page::write(&workspace)),
+        ["page", "--check"] => one("page", || page::compare(&workspace)),
+        ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
-            Ok(options) => run_benches(|| bench::run(&workspace, &options)),
+            Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),
             Err(why) => {
                 eprintln!("bench: {why}\n{USAGE}");
                 ExitCode::from(2)
@@ -72,6 +77,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     let mut count = tests::Count::default();
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
+    report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
     report.step("fuzzing", || fuzz::run(workspace));
     report.step("no_std", || no_std::check(workspace));
@@ -98,8 +104,8 @@ fn check(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
     report.step("clippy", || {
-        let arguments = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
-        command::outcome(workspace.cargo(&arguments))
+        let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
+        command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
     });
     report.step("for build scripts", || {
         let arguments = ["clippy", "--package", "mozzi-codegen", "--no-default-features", "--", "-D", "warnings"];
@@ -116,8 +122,9 @@ fn check(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
-fn run_benches(benches: impl FnOnce() -> report::Outcome) -> ExitCode {
+/// A command of one step.
+fn one(name: &str, step: impl FnOnce() -> report::Outcome) -> ExitCode {
     let mut report = Report::default();
-    report.step("benchmarks", benches);
+    report.step(name, step);
     report.finish()
 }

@@ -1,9 +1,10 @@
 //! `cargo test --workspace`, doc tests included, with the tests counted.
 
 use crate::oracles;
+use crate::page;
 use crate::report::Outcome;
 use crate::venv;
-use crate::workspace::Workspace;
+use crate::workspace::{FEATURES, Workspace};
 use std::fmt;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
@@ -41,11 +42,13 @@ impl fmt::Display for Count {
 /// Run every test, whichever fails before it.
 pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     let mut cargo = workspace.cargo(&["test", "--workspace", "--no-fail-fast"]);
+    cargo.args(FEATURES);
     give(&mut cargo, "MOZZI_ORACLES", oracles::folder(workspace));
     give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
     let python = venv::python(workspace);
     give(&mut cargo, "MOZZI_PYTHON", python.is_file().then_some(python));
-    println!("$ cargo test --workspace --no-fail-fast");
+    give(&mut cargo, "MOZZI_BROWSER", page::browser());
+    println!("$ cargo test --workspace --no-fail-fast {}", FEATURES.join(" "));
     match stream(&mut cargo, |line| count.add(line)) {
         Err(error) => Outcome::Failed(format!("cargo test did not run: {error}")),
         Ok(true) => Outcome::Passed(format!("{count}, {} ignored", count.ignored)),

@@ -10,14 +10,17 @@ mod failure;
 mod goals;
 mod interrupt;
 mod json;
+mod log;
 mod motors;
 mod numbers;
 mod progress;
 mod quantities;
 mod random;
+mod report;
 mod robot;
 mod robot_json;
 mod samples;
+mod serve;
 mod state;
 mod text;
 
@@ -67,6 +70,12 @@ enum Command {
     /// The motion from a state, under torques and a tip wrench
     #[command(after_help = SIMULATIONS)]
     Simulate(simulate::SimulateArguments),
+    /// The robot in a browser: a motion with its plots, or a slider for each joint
+    #[command(after_help = TABLES)]
+    View(commands::view::ViewArguments),
+    /// A figure for a paper, SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
+    #[command(after_help = TABLES)]
+    Plot(commands::plot::PlotArguments),
     /// Is the file a robot? All that is wrong or odd, with its place
     Check(check::CheckArguments),
     /// The same robot in another file: URDF, JSON, or Python for NumPy
@@ -103,6 +112,10 @@ Examples:
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions that put the tool there
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
+  mozzi simulate ur5 --report fall.html                 the motion as a page: 3-D, plots, one file
+  mozzi plot energy double_pendulum swing.csv --out energy.svg
+  mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
+  mozzi view double_pendulum swing.csv --out swing.html a motion from a table
 
 Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
 F_tip is what the robot applies to the environment, in the end effector's frame.
@@ -197,5 +210,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),
         Some(Command::Explain(arguments)) => explain::run(arguments),
+        Some(Command::Plot(arguments)) => commands::plot::run(arguments),
+        Some(Command::View(arguments)) => commands::view::run(arguments),
     }
 }

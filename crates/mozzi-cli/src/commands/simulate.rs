@@ -1,15 +1,16 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
 use super::simulate_page::{columns, limits_reached, object, page};
-use crate::columns::save;
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::motors::{Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
+use crate::report::{self, MeshArguments};
 use crate::robot::RobotArguments;
 use crate::state::StartArguments;
-use crate::{interrupt, json};
+use crate::text::scalar;
+use crate::{interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::{Friction, Input, Method, Options};
 use mozzi::{Model, Trajectory};
@@ -47,9 +48,15 @@ pub struct SimulateArguments {
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1)]
     record_every: usize,
-    /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n, energies and works
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the motion to a file, by its ending: .csv ("-": standard output), .npy, .npz, .arrow, .feather; .parquet and .mcap where
+    /// the program was built with these features. Columns t, theta_1 … tau_n, energies and works
+    #[arg(long, value_name = "FILE")]
     out: Option<String>,
+    /// Write the motion as a page to look at: the robot in 3-D, plots, one HTML file that needs no network
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<String>,
+    #[command(flatten)]
+    meshes: MeshArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -80,18 +87,23 @@ pub struct Outcome {
 }
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
+    arguments.out.as_deref().map(log::Format::of).transpose()?; // before the motion, which may take long
     let model = arguments.robot.load()?;
     let outcome = arguments.simulate(&model)?;
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
-        save(file, &columns(&model, &outcome.motion).text())?;
+        log::write(file, &model, &outcome.motion)?;
     }
+    let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
         Some("-") => {
             limits_reached(&outcome).iter().for_each(|line| failure::note(line));
             columns(&model, &outcome.motion).text()
         }
         _ if arguments.robot.json => json::print(&object(&model, &outcome)),
-        file => page(&model, &outcome, file),
+        file => {
+            let said = said.map(|line| line + "\n").unwrap_or_default();
+            page(&model, &outcome, file) + &said
+        }
     };
     if outcome.motion.complete {
         return Ok(text);
@@ -136,6 +148,13 @@ impl SimulateArguments {
             tracking: reference.as_ref().map(|reference| tracking_error(model, &motion, reference)),
             motion,
         })
+    }
+
+    fn write_report(&self, file: &str, model: &Model, outcome: &Outcome) -> Result<String> {
+        let (motion, time) = (&outcome.motion, scalar(outcome.duration));
+        let title = format!("{}, {time} s in {} steps, motors: {}", outcome.method, motion.steps, outcome.motors);
+        let motion = report::simulated(title, motion, self.motors.wrench(model, outcome.duration)?)?;
+        self.meshes.write(file, &self.robot.model, model, Some(&motion))
     }
 
     fn integrate(

@@ -29,7 +29,7 @@ pub fn columns(model: &Model, motion: &Trajectory) -> Columns {
     columns
 }
 
-fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
+pub fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
     let of = |pick: fn(&simulation::Energy) -> f64| motion.energy.iter().map(pick).collect();
     [of(|e| e.kinetic), of(|e| e.potential), of(|e| e.motor_work), of(|e| e.friction_loss), of(|e| e.applied_work)]
 }
