@@ -9,8 +9,8 @@ use mozzi_motion::controllers::{Gains, PdGravity};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arms = Arm::both()?;
     let gains = |n: usize| Gains {
-        p: (0..n).map(|j| if j < 4 { 1200.0 } else { 120.0 }).collect(),
-        d: (0..n).map(|j| if j < 4 { 120.0 } else { 6.0 }).collect(),
+        p: (0..n).map(|j| if j < 3 { 1200.0 } else { 80.0 }).collect(),
+        d: (0..n).map(|j| if j < 3 { 120.0 } else { 1.5 }).collect(),
     };
     let errors =
         both_loads(&arms, "pd gravity", |arm| Ok(PdGravity::new(&arm.model, arm.motion()?, gains(arm.model.n()))?))?;
