@@ -21,9 +21,9 @@ pub struct Figure {
 /// Two axes and what is drawn between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// What the abscissa is: "t [s]".
+    /// What the abscissa is: `"t [s]"`.
     pub x_label: String,
-    /// What the ordinate is: "θ [rad]".
+    /// What the ordinate is: `"θ [rad]"`.
     pub y_label: String,
     /// Of both axes.
     pub scale: Scale,
