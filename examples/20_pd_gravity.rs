@@ -8,10 +8,9 @@ use mozzi_motion::controllers::{Gains, PdGravity};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arms = Arm::both()?;
-    let gains = |n: usize| Gains {
-        p: (0..n).map(|j| if j < 3 { 1200.0 } else { 80.0 }).collect(),
-        d: (0..n).map(|j| if j < 3 { 120.0 } else { 1.5 }).collect(),
-    };
+    // stiff at the base, soft at the wrist, where the inertia is small
+    let (p, d) = ([600.0, 600.0, 400.0, 300.0, 30.0, 30.0, 10.0], [20.0, 20.0, 15.0, 10.0, 0.6, 0.6, 0.2]);
+    let gains = |n: usize| Gains { p: p[..n].to_vec(), d: d[..n].to_vec() };
     let errors =
         both_loads(&arms, "pd gravity", |arm| Ok(PdGravity::new(&arm.model, arm.motion()?, gains(arm.model.n()))?))?;
     for [free, loaded] in errors {
