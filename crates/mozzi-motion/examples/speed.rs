@@ -1,0 +1,39 @@
+//! How long a simulation takes: 10 s of the Panda's seven joints at 1 ms, let go where it stands with a brake of 0.5 N m s/rad, by each integrator; the least of some runs.
+//!
+//! `cargo run --release -p mozzi-motion --example speed [RUNS]`
+
+use mozzi::simulation::{Method, Options, torque};
+use mozzi_motion::Policy;
+use mozzi_motion::integrators::{Integrator, Simulation};
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let runs: usize = std::env::args().nth(1).map_or(Ok(10), |text| text.parse())?;
+    // the fingers locked: their slide has no end, and falls out of the numbers
+    let panda = mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.02)])?;
+    let (start, still) = ([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8], [0.0; 7]);
+    // a little friction, without which the fall is wilder than the first-order methods stand
+    let brake = || torque(|_, _, dtheta, tau| tau.iter_mut().zip(dtheta).for_each(|(tau, rate)| *tau -= 0.5 * rate));
+    let least = |run: &dyn Fn() -> Result<f64, Box<dyn std::error::Error>>| {
+        let mut best = (f64::INFINITY, 0.0);
+        for _ in 0..runs {
+            let begin = Instant::now();
+            let drift = run()?;
+            best = (begin.elapsed().as_secs_f64().min(best.0), drift);
+        }
+        Ok::<_, Box<dyn std::error::Error>>(best)
+    };
+    println!("{:40} {:>8} {:>18}", "Panda, 10 s", "ms", "largest drift, J");
+    for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
+        // rows are recorded every 100 steps, energies with them
+        let options = Options { method, record_every: 100, ..Options::new(10.0, 10_000) };
+        let (seconds, drift) = least(&|| Ok(panda.simulate(&start, &still, brake(), &options)?.largest_drift()))?;
+        println!("{:40} {:8.2} {:18.1e}", format!("{}, 1 ms", method.name()), 1e3 * seconds, drift);
+    }
+    for integrator in [Integrator::Midpoint { step: 1e-3 }, Integrator::DormandPrince { tolerance: 1e-6 }] {
+        let simulation = Simulation { integrator, record: 0.1, stops: Policy::Ignore, ..Simulation::new(10.0) };
+        let (seconds, drift) = least(&|| Ok(simulation.run(&panda, &start, &still, brake())?.motion.largest_drift()))?;
+        println!("{:40} {:8.2} {:18.1e}", format!("{integrator:?}"), 1e3 * seconds, drift);
+    }
+    Ok(())
+}
