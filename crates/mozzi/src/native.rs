@@ -17,6 +17,7 @@
 //! # }
 //! ```
 
+use crate::api::far_from_singular;
 use crate::dynamics as kernel;
 use crate::model::{Environment, FrameId, Model};
 use crate::scalar::Fused;
@@ -55,6 +56,15 @@ impl Workspace {
         match self.0 {
             Inner::Plain(_) => "portable",
             Inner::Fused(..) => "fma",
+        }
+    }
+
+    /// Was all that the last [`forward_dynamics`] or [`forward_dynamics_derivatives`] divided by far from rounding? Where not,
+    /// [`Model::forward_dynamics`] looks closer, and says which joint's inertia is too small.
+    pub fn is_regular(&self) -> bool {
+        match &self.0 {
+            Inner::Plain(workspace) => far_from_singular(workspace.pivots().iter().copied()),
+            Inner::Fused(workspace, _) => far_from_singular(workspace.pivots().iter().map(|pivot| pivot.0)),
         }
     }
 }
@@ -252,6 +262,7 @@ mod tests {
                 mass_matrix(&model, &theta, &mut w, &mut M);
                 coriolis_matrix(&model, &theta, &dtheta, &mut w, &mut C);
                 let mut by = [(); 6].map(|()| vec![0.0; n * n]);
+                assert!(w.is_regular());
                 let ([a, b, c_, d, e, f], mut again) = (by.each_mut().map(|x| &mut x[..]), vec![0.0; n]);
                 inverse_dynamics_derivatives(&model, &theta, &dtheta, &x, &environment, &mut w, [a, b, c_]);
                 let three = [d, e, f];

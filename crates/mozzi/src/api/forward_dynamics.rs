@@ -98,13 +98,10 @@ impl Model<f64> {
     /// matrix is singular where it is rounding of the joint's inertia with all of them locked, M_jj.
     pub(crate) fn check_pivots(&self, theta: &[f64], workspace: &mut Workspace) -> Result<(), Error> {
         let n = self.n();
-        let pivots = &workspace.pivots;
-        let largest = pivots.iter().fold(0.0_f64, |m, &d| m.max(d));
-        let fine = |d: f64| d > 1e-8 * largest && d.is_finite();
-        if pivots.iter().all(|&d| fine(d)) || theta.iter().any(|x| !x.is_finite()) {
+        if far_from_singular(workspace.pivots.iter().copied()) || theta.iter().any(|x| !x.is_finite()) {
             return Ok(());
         }
-        let pivots = pivots.clone();
+        let pivots = workspace.pivots.clone();
         let mut M = vec![0.0; n * n];
         kernel::mass_matrix(self, theta, workspace, &mut M);
         // the outermost first: what it divided by spoils those below
@@ -121,4 +118,10 @@ impl Model<f64> {
         let joint = self.velocity_names().nth(j).unwrap_or_default().to_string();
         Error::SingularMassMatrix { joint, pivot, diagonal, theta: theta.to_vec() }
     }
+}
+
+/// No pivot comes near to rounding of the largest.
+pub(crate) fn far_from_singular(mut pivots: impl Iterator<Item = f64> + Clone) -> bool {
+    let largest = pivots.clone().fold(0.0_f64, f64::max);
+    pivots.all(|d| d > 1e-8 * largest && d.is_finite())
 }

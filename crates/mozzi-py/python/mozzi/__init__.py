@@ -1,0 +1,31 @@
+"""Dynamics of open-chain robots, in the screw notation of Lynch and Park, *Modern Robotics*.
+
+Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
+"""
+
+from . import models
+from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
+from ._results import (
+    EnergyRegressors,
+    ForwardDynamicsDerivatives,
+    InverseDynamicsDerivatives,
+    ScrewLists,
+    TaskSpaceDynamics,
+    Trajectory,
+)
+
+__all__ = [
+    "DivergedError",
+    "EnergyRegressors",
+    "ForwardDynamicsDerivatives",
+    "InverseDynamicsDerivatives",
+    "LoadError",
+    "LoadWarning",
+    "Model",
+    "ScrewLists",
+    "SingularError",
+    "TaskSpaceDynamics",
+    "Trajectory",
+    "__version__",
+    "models",
+]

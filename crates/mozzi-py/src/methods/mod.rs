@@ -1,0 +1,5 @@
+//! The quantities, as methods of Python's `Model`.
+
+mod derivatives;
+mod dynamics;
+mod kinematics;

@@ -1,0 +1,107 @@
+//! A model with what computing takes: memory for one state, batches for many.
+
+use crate::failure::of_batch;
+use mozzi::{FrameId, Model, native};
+use mozzi_batch::{Batch, Number};
+use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Memory for the kernels at one state.
+pub struct Memory {
+    pub native: native::Workspace,
+    pub plain: mozzi::Workspace,
+}
+
+impl Memory {
+    fn new(model: &Model) -> Self {
+        Memory { native: native::Workspace::new(model), plain: mozzi::Workspace::new(model) }
+    }
+}
+
+pub struct Robot {
+    pub model: Model,
+    /// Used while Python's lock is held, so that nobody waits.
+    memory: Mutex<Memory>,
+    double: Mutex<Engines<f64>>,
+    single: Mutex<Engines<f32>>,
+}
+
+impl Robot {
+    pub fn new(model: Model) -> Self {
+        let memory = Mutex::new(Memory::new(&model));
+        Robot { model, memory, double: Mutex::default(), single: Mutex::default() }
+    }
+
+    #[inline(always)]
+    pub fn memory(&self) -> MutexGuard<'_, Memory> {
+        unpoisoned(&self.memory)
+    }
+
+    /// The frame of this name; without one the end effector.
+    pub fn frame(&self, name: Option<&str>) -> Result<FrameId, mozzi::Error> {
+        name.map_or_else(|| self.model.end_effector(), |name| self.model.frame(name))
+    }
+}
+
+/// A panic leaves memory that has no meaning between calls, which may be used again.
+fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The batches of a model that were needed, by their number of threads.
+pub struct Engines<T: Number> {
+    /// The process that they were made in: a fork has none of their threads.
+    process: u32,
+    made: Vec<(Option<usize>, Batch<T>)>,
+}
+
+impl<T: Number> Default for Engines<T> {
+    fn default() -> Self {
+        Engines { process: std::process::id(), made: Vec::new() }
+    }
+}
+
+/// The numbers that a robot has batches for.
+pub trait HasEngines: Number {
+    fn engines(robot: &Robot) -> &Mutex<Engines<Self>>;
+}
+impl HasEngines for f64 {
+    fn engines(robot: &Robot) -> &Mutex<Engines<f64>> {
+        &robot.double
+    }
+}
+impl HasEngines for f32 {
+    fn engines(robot: &Robot) -> &Mutex<Engines<f32>> {
+        &robot.single
+    }
+}
+
+/// Was this process forked from the one that loaded the module? Then the threads that all batches share stayed behind.
+fn is_fork() -> bool {
+    static LOADED_BY: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+    *LOADED_BY.get_or_init(std::process::id) != std::process::id()
+}
+
+/// To be called when the module is loaded.
+pub fn remember_process() {
+    is_fork();
+}
+
+/// The batch on this many threads; without a number on all cores.
+pub fn batch<T: HasEngines>(robot: &Robot, threads: Option<usize>) -> PyResult<Batch<T>> {
+    let mut engines = unpoisoned(T::engines(robot));
+    if engines.process != std::process::id() {
+        // their threads do not exist here, and dropping would wait for them
+        std::mem::forget(std::mem::take(&mut *engines));
+    }
+    if let Some((_, batch)) = engines.made.iter().find(|(known, _)| *known == threads) {
+        return Ok(batch.clone());
+    }
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let count = threads.or_else(|| is_fork().then(cores));
+    let batch = Batch::<T>::of(&robot.model);
+    let batch =
+        count.map_or(Ok(batch.clone()), |count| batch.with_threads(count)).map_err(|error| of_batch(error, &[]))?;
+    engines.made.push((threads, batch.clone()));
+    Ok(batch)
+}
