@@ -1,7 +1,7 @@
 //! The quantities of a model at many states.
 
 use crate::chunk::{Chunk, Table, TableMut, Worker};
-use crate::columns::Layout;
+use crate::columns::{Layout, place};
 use crate::instruction_set::{Entry, InstructionSet, Number, OnLanes, choose};
 use crate::lanes::Lane;
 use crate::quantity::Quantity;
@@ -115,8 +115,7 @@ impl<T: Number> Batch<T> {
     /// The inverse of [`to_blocks`](Self::to_blocks), of the first states.
     pub fn to_rows(&self, blocks: &[T], width: usize, states: usize) -> Vec<T> {
         let lanes = self.lanes();
-        let at = |state: usize, column: usize| blocks[(state / lanes * width + column) * lanes + state % lanes];
-        (0..states).flat_map(|state| (0..width).map(move |column| at(state, column))).collect()
+        (0..states).flat_map(|state| (0..width).map(move |column| blocks[place(state, column, width, lanes)])).collect()
     }
 
     fn states(&self, theta: &[T]) -> Result<usize, Error> {
@@ -138,9 +137,7 @@ impl<T: Number> Batch<T> {
 
     /// The number at this state's place in a table.
     fn at(&self, (table, width): Table<T>, state: usize) -> Vec<f64> {
-        let lanes = self.block();
-        let place = |column| (state / lanes * width + column) * lanes + state % lanes;
-        (0..width).map(|column| to_f64(table[place(column)])).collect()
+        (0..width).map(|column| table[place(state, column, width, self.block())].into()).collect()
     }
 
     /// The number of states; an error for tables that do not go with it, frames of other models, and quaternions that are none.
@@ -238,12 +235,10 @@ impl<T: Number> Batch<T> {
     }
 
     fn check_quaternions(&self, theta: Table<T>, states: usize) -> Result<(), Error> {
-        let lanes = self.block();
         let (near, one) = (T::from_f64(1e-4), T::one());
         for index in 0..states {
-            let first = (index / lanes * theta.1) * lanes + index % lanes;
             let square = (0..4).fold(T::zero(), |sum, k| {
-                let x = theta.0[first + k * lanes];
+                let x = theta.0[place(index, k, theta.1, self.block())];
                 sum + x * x
             });
             if !((square - one) <= near && (one - square) <= near) {
@@ -271,12 +266,6 @@ impl<T: Number> Batch<T> {
         let state: Vec<Vec<f64>> = inputs.iter().map(|&(_, table)| self.at(table, index)).collect();
         quantity.again(&self.model, &state, &environment).map_err(|source| Error::State { index, source })
     }
-}
-
-pub(crate) fn to_f64<T: Number>(x: T) -> f64 {
-    // the numbers are f64 or f32, whose text is exact
-    let any: &dyn core::any::Any = &x;
-    any.downcast_ref::<f64>().copied().or(any.downcast_ref::<f32>().map(|&x| x.into())).unwrap_or(f64::NAN)
 }
 
 /// Runs every chunk on the registers chosen.

@@ -51,6 +51,12 @@ impl<L: Lane> Worker<L> {
         input.resize(chunk.inputs.iter().map(|&(_, width)| width).sum(), L::zero());
         output.resize(chunk.outputs.iter().map(|&(_, width)| width).sum(), L::zero());
         let own = input.len() - 6 * chunk.frames.len();
+        let around = Environment {
+            gravity: given.gravity.map(number),
+            base_twist: given.base_twist.map(number),
+            base_acceleration: given.base_acceleration.map(number),
+            applied: &[],
+        };
 
         for block in 0..chunk.states.div_ceil(L::WIDTH) {
             let first = block * L::WIDTH;
@@ -67,13 +73,7 @@ impl<L: Lane> Worker<L> {
             for (F, columns) in applied[given.applied.len()..].iter_mut().zip(input[own..].as_chunks().0) {
                 F.1 = Wrench::from_array(*columns);
             }
-            let environment = Environment {
-                gravity: given.gravity.map(number),
-                base_twist: given.base_twist.map(number),
-                base_acceleration: given.base_acceleration.map(number),
-                applied,
-            };
-            q.evaluate(model, &input[..own], &environment, memory, output);
+            q.evaluate(model, &input[..own], &Environment { applied, ..around }, memory, output);
             if Q::PIVOTS {
                 look_at_pivots(memory.workspace.pivots(), chunk.first + first, rows, suspects);
                 if let Some(task) = &memory.task {

@@ -14,13 +14,18 @@ pub enum Layout {
     Blocks,
 }
 
+/// Where a number of a state stands in a table of `width` numbers a state, in blocks of `lanes`; rows are blocks of one.
+pub(crate) fn place(state: usize, column: usize, width: usize, lanes: usize) -> usize {
+    (state / lanes * width + column) * lanes + state % lanes
+}
+
 /// A square of WIDTH registers, its rows and columns exchanged: each of log₂ WIDTH perfect shuffles turns the address of a number
 /// (row bits, column bits) by one place.
 #[inline(always)]
-fn transpose<L: Lane>(square: &mut [L; MOST]) {
+fn transpose<L: Lane>(mut square: [L; MOST]) -> [L; MOST] {
     let mut size = 1;
     while size < L::WIDTH {
-        let old = *square;
+        let old = square;
         let mut i = 0;
         while i < L::WIDTH / 2 {
             (square[2 * i], square[2 * i + 1]) = old[i].zip(old[i + L::WIDTH / 2]);
@@ -28,32 +33,54 @@ fn transpose<L: Lane>(square: &mut [L; MOST]) {
         }
         size *= 2;
     }
+    square
 }
 
-/// Row `row` of a block, clamped to the last: a block's remainder repeats a state.
+/// The registers of a slice, at most WIDTH; further ones are 0. Every index is a constant once the loop is unrolled, so that a square stays in
+/// registers: a copy of as many as there are would make it memory.
 #[inline(always)]
-fn place(width: usize, first: usize, row: usize, rows: usize, column: usize) -> usize {
-    (first + row.min(rows - 1)) * width + column
+fn take<L: Lane>(part: &[L]) -> [L; MOST] {
+    let mut square = [L::zero(); MOST];
+    let mut k = 0;
+    while k < L::WIDTH {
+        if k < part.len() {
+            square[k] = part[k];
+        }
+        k += 1;
+    }
+    square
 }
 
-/// `columns[c]` is column c of the `rows` ≤ WIDTH states from `first` on, in a table of `columns.len()` numbers a state. A row is read a
-/// register at a time, past its end into the next, whose numbers are dropped.
+/// The inverse of [`take`].
+#[inline(always)]
+fn put<L: Lane>(square: [L; MOST], part: &mut [L]) {
+    let mut k = 0;
+    while k < L::WIDTH {
+        if k < part.len() {
+            part[k] = square[k];
+        }
+        k += 1;
+    }
+}
+
+/// `columns[c]` is column c of the `rows` ≤ WIDTH states from `first` on, in a table of `columns.len()` numbers a state; a block's
+/// remainder repeats its last state. A row is read a register at a time, past its end into the next, whose numbers are dropped.
 #[inline(always)]
 pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize, columns: &mut [L]) {
     let width = columns.len();
-    let mut c = 0;
-    while c < width {
+    let table = &table[first * width..];
+    let last = (rows - 1) * width;
+    for (k, part) in columns.chunks_mut(L::WIDTH).enumerate() {
+        let c = k * L::WIDTH;
         let mut square = [L::zero(); MOST];
-        let mut row = 0;
+        let (mut row, mut place) = (0, c);
         while row < L::WIDTH {
-            let from = &table[place(width, first, row, rows, c)..];
+            let from = &table[place..];
             square[row] = if from.len() >= L::WIDTH { L::load(from) } else { load_part(from) };
+            place = (place + width).min(last + c);
             row += 1;
         }
-        transpose(&mut square);
-        let count = (width - c).min(L::WIDTH);
-        columns[c..c + count].copy_from_slice(&square[..count]);
-        c += L::WIDTH;
+        put(transpose(square), part);
     }
 }
 
@@ -62,21 +89,17 @@ pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize,
 #[inline(always)]
 pub(crate) fn write_rows<L: Lane>(table: &mut [L::Number], first: usize, rows: usize, columns: &[L]) {
     let width = columns.len();
-    let mut c = width.next_multiple_of(L::WIDTH);
-    while c > 0 {
-        c -= L::WIDTH;
-        let mut square = [L::zero(); MOST];
-        let count = (width - c).min(L::WIDTH);
-        square[..count].copy_from_slice(&columns[c..c + count]);
-        transpose(&mut square);
-        let mut row = 0;
-        while row < rows {
-            let to = &mut table[place(width, first, row, rows, c)..];
-            if to.len() >= L::WIDTH {
-                square[row].store(to)
-            } else {
-                store_part(square[row], to)
+    let table = &mut table[first * width..];
+    for (k, part) in columns.chunks(L::WIDTH).enumerate().rev() {
+        let c = k * L::WIDTH;
+        let square = transpose(take(part));
+        let (mut row, mut place) = (0, c);
+        while row < L::WIDTH {
+            if row < rows {
+                let to = &mut table[place..];
+                if to.len() >= L::WIDTH { square[row].store(to) } else { store_part(square[row], to) }
             }
+            place += width;
             row += 1;
         }
     }

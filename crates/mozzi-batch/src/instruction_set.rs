@@ -68,7 +68,7 @@ impl InstructionSet {
 }
 
 /// `f64` or `f32`: a number that batches are of, with its registers.
-pub trait Number: Float + Bits<Number = Self> + Send + Sync {
+pub trait Number: Float + Bits<Number = Self> + Into<f64> + Send + Sync {
     /// One number on any processor: wider arrays are no faster, and take their width in time to compile.
     type Portable: Lane<Number = Self>;
     /// AVX2.

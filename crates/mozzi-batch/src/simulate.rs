@@ -1,6 +1,5 @@
 //! Many robots of one model in time.
 
-use crate::batch::to_f64;
 use crate::quantity::ForwardDynamics;
 use crate::threads::Threads;
 use crate::{Batch, Error, Layout, Number, Surroundings};
@@ -75,7 +74,7 @@ impl<T: Number> Batch<T> {
                 }
                 let diverged = lost(dtheta, &motion.dtheta).map(|k| {
                     let (joint, value) =
-                        (alone.model().velocity_names().nth(k % n).unwrap_or_default(), to_f64(motion.dtheta[k]));
+                        (alone.model().velocity_names().nth(k % n).unwrap_or_default(), motion.dtheta[k].into());
                     let (joint, time) = (joint.to_string(), duration);
                     let source =
                         mozzi::Error::Diverged { quantity: "dtheta", joint, value, step: steps, time, step_size: h };

@@ -61,6 +61,8 @@ enum Command {
     Check(check::CheckArguments),
     /// The same robot in another file: URDF, JSON, or Python for NumPy
     Convert(convert::ConvertArguments),
+    /// Source text of a robot's quantities in Rust, C or CUDA; the work that folding left
+    Codegen(commands::codegen::CodegenArguments),
     /// What Pinocchio and MuJoCo compute of the same file, and why it differs (asks Python)
     Compare(commands::compare::CompareArguments),
     /// What the code of a diagnostic means, such as mozzi::urdf::zero_axis
@@ -86,6 +88,8 @@ Examples:
   mozzi derivatives ur5 --theta 0,-1.2,1.5,0.3,1.1,0    exact derivatives of τ and θ̈
   mozzi batch ur5 --quantity mass-matrix --in states.npy --out M.npy
   mozzi bench panda                                     nanoseconds a state on your machine
+  mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
+  mozzi codegen panda --explain                         the work before and after folding
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
 
@@ -153,6 +157,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Codegen(arguments)) => commands::codegen::run(arguments),
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),
         Some(Command::Explain(arguments)) => explain::run(arguments),

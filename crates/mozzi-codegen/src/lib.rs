@@ -5,6 +5,7 @@
 //! - [`Quantity::record`] a program: `mozzi`'s own kernel, run once on the scalar [`Traced`], without all that the robot's zeros and ones make
 //!   superfluous, every operation once. [`LeftOpen`] tells which numbers of the robot stay inputs. A [`Program`] is printed, read, counted and
 //!   evaluated in any [`Scalar`](mozzi::Scalar).
+//! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C.
 //! - [`record`] any computation on scalars, and make a [`Kernel`] of it.
 //!
 //! ```
@@ -13,7 +14,7 @@
 //! let model = mozzi_urdf::open("ur5")?.build()?;
 //! let program = Quantity::InverseDynamics.record(&model, LeftOpen::default());
 //! let before = program.count_before_folding().ok_or("recorded here")?;
-//! println!("{before}\n{}", program.count()); // 1932 flops, of which 400 are left
+//! println!("{before}\n{}", program.count()); // 1710 flops, of which 380 are left
 //! assert!(program.count().flops() < before.flops() / 4);
 //! let tau = program.evaluate(&[&[0.1; 6], &[0.2; 6], &[0.3; 6]]);
 //! let reference = model.inverse_dynamics(&[0.1; 6], &[0.2; 6], &[0.3; 6], &model.environment())?;
@@ -26,6 +27,7 @@
 mod batch;
 mod compiled;
 mod count;
+mod emit;
 mod function;
 mod jit;
 mod program;
@@ -37,6 +39,7 @@ mod traced;
 
 pub use compiled::{Compiled, Engine, compile};
 pub use count::Count;
+pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_programs};
 pub use function::Function;
 pub use jit::{Kernel, LONGEST_CODE, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};

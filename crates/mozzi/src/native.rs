@@ -17,7 +17,6 @@
 //! # }
 //! ```
 
-use crate::api::far_from_singular;
 use crate::dynamics as kernel;
 use crate::model::{Environment, FrameId, Model};
 use crate::scalar::Fused;
@@ -59,12 +58,12 @@ impl Workspace {
         }
     }
 
-    /// Was all that the last [`forward_dynamics`] or [`forward_dynamics_derivatives`] divided by far from rounding? Where not,
-    /// [`Model::forward_dynamics`] looks closer, and says which joint's inertia is too small.
+    /// Was all that the last [`forward_dynamics`] or [`forward_dynamics_derivatives`] divided by far from rounding? See
+    /// [`Workspace::is_regular`](crate::Workspace::is_regular).
     pub fn is_regular(&self) -> bool {
         match &self.0 {
-            Inner::Plain(workspace) => far_from_singular(workspace.pivots().iter().copied()),
-            Inner::Fused(workspace, _) => far_from_singular(workspace.pivots().iter().map(|pivot| pivot.0)),
+            Inner::Plain(workspace) => workspace.is_regular(),
+            Inner::Fused(workspace, _) => workspace.is_regular(),
         }
     }
 }

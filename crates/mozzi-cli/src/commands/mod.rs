@@ -3,6 +3,7 @@
 pub mod batch;
 pub mod bench;
 pub mod check;
+pub mod codegen;
 pub mod compare;
 pub mod convert;
 pub mod derivatives;

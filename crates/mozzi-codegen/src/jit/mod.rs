@@ -8,7 +8,9 @@ mod lower;
 mod shape;
 mod sin_cos;
 
+pub(crate) use instruction::{Node, Operation};
 pub use shape::Shape;
+pub(crate) use sin_cos::SinCos;
 
 use crate::program::{Array, Program};
 use executable::Executable;

@@ -8,10 +8,10 @@ use std::cell::RefCell;
 use std::marker::PhantomData;
 
 /// The instructions from an angle, node 0, to its sine and cosine.
-pub(super) struct SinCos {
-    nodes: Vec<Node>,
-    sin: Value,
-    cos: Value,
+pub(crate) struct SinCos {
+    pub nodes: Vec<Node>,
+    pub sin: Value,
+    pub cos: Value,
 }
 
 thread_local!(static NODES: RefCell<Vec<Node>> = const { RefCell::new(Vec::new()) });
@@ -71,7 +71,7 @@ impl SinCos {
 }
 
 /// `f64` or `f32`, with its bits.
-pub(super) trait Number: Float {
+pub(crate) trait Number: Float {
     const SIGN: u64;
     fn raw(self) -> u64;
 }

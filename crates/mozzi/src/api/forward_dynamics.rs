@@ -98,7 +98,7 @@ impl Model<f64> {
     /// matrix is singular where it is rounding of the joint's inertia with all of them locked, M_jj.
     pub(crate) fn check_pivots(&self, theta: &[f64], workspace: &mut Workspace) -> Result<(), Error> {
         let n = self.n();
-        if far_from_singular(workspace.pivots.iter().copied()) || theta.iter().any(|x| !x.is_finite()) {
+        if workspace.is_regular() || theta.iter().any(|x| !x.is_finite()) {
             return Ok(());
         }
         let pivots = workspace.pivots.clone();
@@ -118,10 +118,4 @@ impl Model<f64> {
         let joint = self.velocity_names().nth(j).unwrap_or_default().to_string();
         Error::SingularMassMatrix { joint, pivot, diagonal, theta: theta.to_vec() }
     }
-}
-
-/// No pivot comes near to rounding of the largest.
-pub(crate) fn far_from_singular(mut pivots: impl Iterator<Item = f64> + Clone) -> bool {
-    let largest = pivots.clone().fold(0.0_f64, f64::max);
-    pivots.all(|d| d > 1e-8 * largest && d.is_finite())
 }

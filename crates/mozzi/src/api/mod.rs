@@ -10,9 +10,6 @@ mod momentum;
 mod newton_euler;
 mod regressor;
 
-#[cfg(feature = "std")]
-pub(crate) use forward_dynamics::far_from_singular;
-
 pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 

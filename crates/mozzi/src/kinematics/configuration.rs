@@ -86,8 +86,8 @@ fn moved<S: Real>([w, x, y, z, px, py, pz]: [S; 7], xi: Twist<S>) -> [S; 7] {
 }
 
 /// u̇ for T = T₀ e^{`[u]`} that moves with the body twist 𝒱: 𝒱 + ½`[ad_u]`𝒱 + ¹⁄₁₂`[ad_u]`²𝒱, to the third order in u, as a method of
-/// order four needs it (Munthe-Kaas 1999).
-pub(crate) fn rate_of_logarithm<S: Real>(u: Twist<S>, V: Twist<S>) -> Twist<S> {
+/// order up to five needs it (Munthe-Kaas 1999).
+pub fn rate_of_logarithm<S: Real>(u: Twist<S>, V: Twist<S>) -> Twist<S> {
     let once = u.ad() * V;
     V + once * S::from_f64(0.5) + u.ad() * once * S::from_f64(1.0 / 12.0)
 }

@@ -13,12 +13,12 @@ mod link_twists;
 mod tests;
 
 pub(crate) use base::{base_motion, base_pose, base_twist};
-pub(crate) use configuration::{advance, rate_of_logarithm};
+pub(crate) use configuration::advance;
 pub(crate) use jacobian::twist_of;
 pub(crate) use joint_transforms::{joint_sines, joint_transforms};
 pub(crate) use link_twists::link_twists;
 
-pub use configuration::{difference, integrate, moving_along};
+pub use configuration::{difference, integrate, moving_along, rate_of_logarithm};
 pub use forward::{forward_kinematics, frame_poses};
 pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
 pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};

@@ -40,6 +40,13 @@ impl Neg for Fused {
     }
 }
 
+impl From<Fused> for f64 {
+    #[inline(always)]
+    fn from(x: Fused) -> f64 {
+        x.0
+    }
+}
+
 impl From<f64> for Fused {
     #[inline(always)]
     fn from(x: f64) -> Self {

@@ -1,12 +1,20 @@
 //! The differential equation of a driven robot: θ̈ = FD(θ, θ̇, τ, F), and the powers beside it.
+//!
+//! Forward dynamics is asked with the machine's fused multiply-add, where there is `std` to find it.
 
 use super::options::check;
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
-use crate::dynamics::{forward_dynamics, kinetic_energy, potential_energy};
-use crate::kinematics::link_twists;
+#[cfg(not(feature = "std"))]
+use crate::dynamics::forward_dynamics;
+use crate::dynamics::{kinetic_energy, potential_energy};
+use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
+#[cfg(not(feature = "std"))]
+use crate::model::Workspace as Fast;
 use crate::model::{Environment, Error, FrameId, Model, Workspace};
+#[cfg(feature = "std")]
+use crate::native::{Workspace as Fast, forward_dynamics};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use alloc::format;
@@ -15,26 +23,30 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 /// Powers in watts: of the motors, of friction, and what the environment takes.
-pub(super) type Powers = [f64; 3];
+pub type Powers = [f64; 3];
 
-/// Model, input and memory.
-pub(super) struct Equation<'m, I> {
+/// A robot, its input, and memory: what a method of integration asks, [`Method`](super::Method)'s or one's own. Gravity and friction are
+/// those of the [`Options`]; nothing else of them is used.
+pub struct Equation<'m, I> {
     model: &'m Model,
     input: I,
     gravity: Vec3,
     friction: Friction,
     /// δt and the step that is being taken, for errors.
     step_size: f64,
-    pub step: usize,
+    step: usize,
     /// The motors' τ of the last evaluation.
-    pub tau: Vec<f64>,
+    tau: Vec<f64>,
     /// τ as forward dynamics gets it.
     force: Vec<f64>,
     wrenches: Vec<(FrameId, Wrench)>,
+    columns: Vec<Twist>,
+    fast: Fast,
     workspace: Workspace,
 }
 
 impl<'m, I: Input> Equation<'m, I> {
+    /// At step 0.
     pub fn new(model: &'m Model, input: I, options: &Options) -> Self {
         Equation {
             model,
@@ -46,27 +58,50 @@ impl<'m, I: Input> Equation<'m, I> {
             tau: vec![0.0; model.n()],
             force: vec![0.0; model.n()],
             wrenches: Vec::new(),
+            columns: vec![Twist::zero(); model.n()],
+            fast: Fast::new(model),
             workspace: Workspace::new(model),
         }
     }
 
-    /// Writes θ̈ and returns the powers.
+    /// Which step is being taken, from 1, and how long it is in seconds: for errors.
+    pub fn at_step(&mut self, step: usize, step_size: f64) {
+        (self.step, self.step_size) = (step, step_size);
+    }
+
+    /// The motors' τ of the last evaluation.
+    pub fn tau(&self) -> &[f64] {
+        &self.tau
+    }
+
+    /// Asks the input, writes θ̈ and returns the powers. O(n), no allocation but the input's.
+    ///
+    /// # Errors
+    /// [`Error::Diverged`], [`Error::SingularMassMatrix`], [`Error::BadArgument`] for an input that is not finite, what the input
+    /// answers.
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
     pub fn evaluate(&mut self, t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]) -> Result<Powers, Error> {
         self.bounded("theta", t, theta)?;
         self.bounded("dtheta", t, dtheta)?;
         self.ask_input(t, theta, dtheta)?;
         let friction_power = self.friction(dtheta);
         let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
-        let workspace = &mut self.workspace;
-        forward_dynamics(self.model, theta, dtheta, &self.force, &environment, workspace, ddtheta);
-        let applied_power = self.applied_power(theta, dtheta); // of the configurations in the workspace, before others use it
-        self.model.check_pivots(theta, &mut self.workspace)?;
+        forward_dynamics(self.model, theta, dtheta, &self.force, &environment, &mut self.fast, ddtheta);
+        if !self.fast.is_regular() {
+            self.model.forward_dynamics(theta, dtheta, &self.force, &environment)?; // looks closer
+        }
+        let applied_power = self.applied_power(theta, dtheta);
         self.bounded("ddtheta", t, ddtheta)?;
         let motor_power = self.tau.iter().zip(dtheta).map(|(tau, rate)| tau * rate).sum();
         Ok([motor_power, friction_power, applied_power])
     }
 
-    /// The energies of a state, with works.
+    /// The energies of a state, with works: of the motors, lost in friction, given to the environment.
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
     pub fn energy(
         &mut self,
         theta: &[f64],
@@ -120,12 +155,11 @@ impl<'m, I: Input> Equation<'m, I> {
         power
     }
 
-    /// Σ 𝒱_bᵀF_b, with the configurations T_{i,i−1} that forward dynamics left behind.
+    /// Σ 𝒱_bᵀF_b with 𝒱_b = J_b θ̇.
     fn applied_power(&mut self, theta: &[f64], dtheta: &[f64]) -> f64 {
-        link_twists(self.model, theta, dtheta, Twist::zero(), &mut self.workspace);
         let power = |&(frame, F): &(FrameId, Wrench)| {
-            let frame = self.model.frame_at::<f64>(frame);
-            (frame.T.inverse().Ad() * self.workspace.V[frame.slot]).dot(F)
+            body_jacobian(self.model, theta, frame, &mut self.columns);
+            twist_of(&self.columns, dtheta).dot(F)
         };
         self.wrenches.iter().map(power).sum()
     }

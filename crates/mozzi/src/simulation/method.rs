@@ -230,7 +230,7 @@ mod tests {
     use crate::model::{Model, Workspace};
     use crate::simulation::robots::{difference, smooth_tree};
     use crate::simulation::{Options, torque};
-    use crate::{Dual, testing};
+    use crate::{Dual, native, testing};
     use core::convert::Infallible;
 
     /// A smooth motor torque of t, θ and θ̇.
@@ -279,10 +279,12 @@ mod tests {
         let options = Options { method: Method::Euler, ..Options::new(t_f, N) };
         let motion = model.simulate(&theta, &dtheta, torque(motors), &options).expect("a motion");
         let dt = t_f / N as f64;
+        let mut workspace = native::Workspace::new(&model);
         for k in 0..=N {
-            let mut tau = vec![0.0; model.n()];
+            let (mut tau, mut ddtheta) = (vec![0.0; model.n()], vec![0.0; model.n()]);
             motors(if k == N { t_f } else { k as f64 * dt }, &theta, &dtheta, &mut tau);
-            let ddtheta = model.forward_dynamics(&theta, &dtheta, &tau, &model.environment()).expect("regular");
+            let environment = model.environment();
+            native::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, &mut ddtheta);
             let sample = motion.sample(k);
             assert_eq!((sample.theta, sample.dtheta), (theta.as_slice(), dtheta.as_slice()), "step {k}");
             assert_eq!((sample.ddtheta, sample.tau), (ddtheta.as_slice(), tau.as_slice()), "step {k}");

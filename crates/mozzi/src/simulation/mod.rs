@@ -19,6 +19,7 @@ mod trajectory;
 #[cfg(test)]
 mod robots;
 
+pub use equation::{Equation, Powers};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
 pub use method::{Method, Motion};
 pub use options::{Friction, Options};
@@ -28,9 +29,7 @@ pub use trajectory::{Energy, Sample, Trajectory};
 
 use crate::model::{Error, Model};
 use alloc::format;
-use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use equation::Equation;
 
 impl Model<f64> {
     /// The motion from (θ(0), θ̇(0)) under an input, by N steps of δt = t_f / N.
@@ -97,10 +96,10 @@ impl Model<f64> {
         let mut equation = Equation::new(self, input, options);
         let mut motion =
             Motion::start(self.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
-        let mut trajectory = Trajectory::of(self);
-        trajectory.record(&motion, &mut equation);
+        let mut trajectory = Trajectory::new(self);
+        trajectory.record(motion.sample(&mut equation));
         for k in 1..=steps {
-            equation.step = k;
+            equation.at_step(k, options.step());
             motion.step(options.method, options.step(), options.time(k), |t, q, dq, ddq| {
                 equation.evaluate(t, q, dq, ddq)
             })?;
@@ -108,7 +107,7 @@ impl Model<f64> {
             let told = k == steps || k % steps.div_ceil(100) == 0;
             let stop = told && progress(k, steps).is_break();
             if k % options.record_every == 0 || k == steps || stop {
-                trajectory.record(&motion, &mut equation);
+                trajectory.record(motion.sample(&mut equation));
             }
             if stop {
                 break;
@@ -119,29 +118,11 @@ impl Model<f64> {
     }
 }
 
-impl Trajectory {
-    fn of(model: &Model) -> Self {
-        Trajectory {
-            nq: model.nq(),
-            n: model.n(),
-            t: Vec::new(),
-            theta: Vec::new(),
-            dtheta: Vec::new(),
-            ddtheta: Vec::new(),
-            tau: Vec::new(),
-            energy: Vec::new(),
-            steps: 0,
-            complete: false,
-        }
-    }
-
-    fn record<I: Input>(&mut self, motion: &Motion<f64, 3>, equation: &mut Equation<I>) {
-        self.t.push(motion.t);
-        self.theta.extend(&motion.theta);
-        self.dtheta.extend(&motion.dtheta);
-        self.ddtheta.extend(&motion.ddtheta);
-        self.tau.extend(&equation.tau);
-        self.energy.push(equation.energy(&motion.theta, &motion.dtheta, motion.integrals));
+impl Motion<f64, 3> {
+    fn sample<'a, I: Input>(&'a self, equation: &'a mut Equation<I>) -> Sample<'a> {
+        let energy = equation.energy(&self.theta, &self.dtheta, self.integrals);
+        let Motion { t, theta, dtheta, ddtheta, .. } = self;
+        Sample { t: *t, theta, dtheta, ddtheta, tau: equation.tau(), energy }
     }
 }
 
@@ -151,6 +132,7 @@ mod tests {
     use super::*;
     use crate::model::description::Joint;
     use crate::{Description, SpatialInertia, Wrench, testing};
+    use alloc::vec::Vec;
     use core::f64::consts::PI;
 
     /// T = 2π √(l/g) / agm(1, cos(θ₀/2)), exactly.

@@ -1,5 +1,6 @@
 //! What a simulation found.
 
+use crate::model::Model;
 use alloc::vec::Vec;
 
 /// Where the energy is and where it went, in joules. Work counts from the start of the simulation: W = ∫ power dt is a
@@ -73,12 +74,45 @@ pub struct Sample<'a> {
 }
 
 impl Trajectory {
+    /// Of this robot, without rows: for an integration of one's own, which [`record`](Self::record)s them.
+    pub fn new(model: &Model) -> Self {
+        Trajectory {
+            nq: model.nq(),
+            n: model.n(),
+            t: Vec::new(),
+            theta: Vec::new(),
+            dtheta: Vec::new(),
+            ddtheta: Vec::new(),
+            tau: Vec::new(),
+            energy: Vec::new(),
+            steps: 0,
+            complete: false,
+        }
+    }
+
+    /// One row more.
+    ///
+    /// # Panics
+    /// When the row is as long as another robot's.
+    pub fn record(&mut self, row: Sample) {
+        assert!(row.theta.len() == self.nq, "theta has {} entries, expected {}", row.theta.len(), self.nq);
+        for list in [row.dtheta, row.ddtheta, row.tau] {
+            assert!(list.len() == self.n, "a slice has {} entries, expected {}", list.len(), self.n);
+        }
+        self.t.push(row.t);
+        self.theta.extend(row.theta);
+        self.dtheta.extend(row.dtheta);
+        self.ddtheta.extend(row.ddtheta);
+        self.tau.extend(row.tau);
+        self.energy.push(row.energy);
+    }
+
     /// Rows.
     pub fn len(&self) -> usize {
         self.t.len()
     }
 
-    /// Never: the start is always recorded.
+    /// Never of a simulation: the start is always recorded.
     pub fn is_empty(&self) -> bool {
         self.t.is_empty()
     }

@@ -1,0 +1,90 @@
+//! `mozzi codegen`: files of source text, and the work that folding left.
+
+mod common;
+
+use common::{complaint, folder, json, mozzi, text};
+
+#[test]
+fn files_of_each_language() {
+    let folder = folder("codegen");
+    let out = folder.join("new").join("folder");
+    let out = out.to_str().expect("a path");
+    for (lang, files) in [("rust", &["ur5.rs"][..]), ("c", &["ur5.h", "ur5.c"]), ("cuda", &["ur5.cu"])] {
+        let arguments = ["codegen", "ur5", "--quantity", "inverse-dynamics", "--quantity", "body-jacobian"];
+        let arguments = [&arguments[..], &["--lang", lang, "--precision", "f32", "--out", out]].concat();
+        let said = text(&arguments);
+        let told = json(&arguments);
+        assert_eq!((told["robot"].as_str(), told["precision"].as_str()), (Some("ur5"), Some("f32")));
+        for (k, name) in files.iter().enumerate() {
+            let written = std::fs::read_to_string(std::path::Path::new(out).join(name)).expect("a file");
+            assert!(written.contains("inverse_dynamics") && written.contains("body_jacobian_"), "{lang}");
+            assert!(said.contains(&format!("{name}: {} bytes", written.len())), "{said}");
+            assert_eq!(told["files"][k]["bytes"], written.len());
+        }
+        assert_eq!(told["files"].as_array().map(Vec::len), Some(files.len()));
+    }
+    // gravity of the command line is built in; left open, it is an argument
+    let header = |more: &[&str]| {
+        let arguments = ["codegen", "ur5", "--quantity", "gravity-forces", "--lang", "c", "--out", out];
+        text(&[&arguments[..], more].concat());
+        std::fs::read_to_string(std::path::Path::new(out).join("ur5.h")).expect("a file")
+    };
+    assert!(header(&["--gravity", "0,0,-1.62"]).contains("(0, 0, -1.62) m/s^2"));
+    assert!(header(&["--open", "gravity"]).contains("const double theta[6], const double gravity[3], double g[6]);"));
+    let both = header(&["--open", "wrench", "--open", "parameters"]);
+    assert!(both.contains("const double parameters[") && both.contains("const double wrench[6]"));
+}
+
+#[test]
+fn explain_tells_the_work() {
+    let all = json(&["codegen", "panda", "--explain", "--end-effector", "panda_hand_tcp"]);
+    let work = all["work"].as_array().expect("a list");
+    assert_eq!(work.len(), 11);
+    for entry in work {
+        let flops = |when: &str| entry[when]["flops"].as_u64().expect("a count");
+        assert!(0 < flops("after") && flops("after") < flops("before"), "{entry}");
+        let code = entry["machine_code"].as_array().expect("a list");
+        assert!(code.len() == 2 && code[0]["states"] == 1);
+        assert!(code.iter().all(|code| code["bytes"].is_null() != code["none_because"].is_null()), "{entry}");
+    }
+    assert_eq!(all["files"].as_array().map(Vec::len), Some(0));
+    let page = text(&["codegen", "panda", "--explain", "--quantity", "inverse-dynamics"]);
+    let after = work[0]["after"]["flops"].to_string();
+    let line = page.lines().find(|line| line.contains("inverse-dynamics")).expect("its line");
+    assert!(line.split_whitespace().any(|word| word == after), "{page}");
+    assert!(!page.contains("mass-matrix"), "{page}");
+    // fewer numbers are folded where more are arguments
+    let open = json(&["codegen", "panda", "--explain", "--quantity", "inverse-dynamics", "--open", "parameters"]);
+    assert!(open["work"][0]["after"]["flops"].as_u64() > work[0]["after"]["flops"].as_u64());
+}
+
+#[test]
+fn wrong_usage_is_told() {
+    let usage = |arguments: &[&str], words: &[&str]| {
+        let (code, message) = complaint(&[&["codegen"], arguments].concat());
+        assert_eq!(code, 2, "{message}");
+        words.iter().for_each(|word| assert!(message.contains(word), "{word} in {message}"));
+    };
+    let rest = ["--lang", "c", "--out", "x"];
+    usage(
+        &[&["ur5", "--quantity", "inverse-dynamic"][..], &rest].concat(),
+        &["inverse-dynamic'", "'inverse-dynamics'"],
+    );
+    usage(&[&["ur5"][..], &rest].concat(), &["--quantity"]);
+    usage(&["ur5", "--quantity", "mass-matrix", "--lang", "c"], &["--out"]);
+    usage(&["ur5", "--quantity", "mass-matrix", "--lang", "fortran", "--out", "x"], &["fortran", "rust, c, cuda"]);
+    let wrong = |arguments: &[&str], words: &[&str]| {
+        let (code, message) = complaint(&[&["codegen"], arguments].concat());
+        assert_eq!(code, 1, "{message}");
+        words.iter().for_each(|word| assert!(message.contains(word), "{word} in {message}"));
+    };
+    wrong(&[&["ur6", "--quantity", "mass-matrix"][..], &rest].concat(), &["`ur6`", "ur5"]);
+    wrong(&[&["anymal", "--quantity", "body-jacobian"][..], &rest].concat(), &["end effector"]);
+    let folder = folder("codegen_wrong");
+    let file = common::file(&folder, "file", "no folder");
+    wrong(&["ur5", "--quantity", "mass-matrix", "--lang", "c", "--out", &file], &[&file, "cannot be written"]);
+    // where the chain branches, what is of a frame is left out of all, and told
+    let output = mozzi(&["codegen", "anymal", "--explain"]);
+    let (page, note) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && !page.contains("jacobian") && note.contains("left out"), "{page}{note}");
+}

@@ -1,0 +1,69 @@
+//! The lines of a function: its steps.
+
+use super::dialect::{Dialect, Emitted};
+use crate::function::Function;
+use crate::program::{Step, Value};
+use std::collections::BTreeMap;
+
+/// A line a step; an entry of an output as soon as it is known.
+pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
+    let steps = &function.program.steps;
+    let operand = |value: Value| match steps[value as usize] {
+        Step::Constant(x) => dialect.literal(x),
+        Step::Input(array, index) => dialect.entry(&function.inputs[array as usize].name, index as usize),
+        Step::Apply(..) => format!("v{value}"),
+    };
+    // of each angle the places of its sine and cosine
+    let mut angles: BTreeMap<Value, [Option<Value>; 2]> = BTreeMap::new();
+    for (place, step) in (0..).zip(steps) {
+        if let Step::Apply(function @ (Function::Sin | Function::Cos), [angle, ..]) = step {
+            angles.entry(*angle).or_default()[usize::from(*function == Function::Cos)].get_or_insert(place);
+        }
+    }
+    let mut entries: Vec<Vec<String>> = vec![Vec::new(); steps.len()];
+    for (output, argument) in function.program.outputs.iter().zip(&function.outputs) {
+        for (index, value) in output.values.iter().enumerate() {
+            entries[*value as usize].push(dialect.entry(&argument.name, index));
+        }
+    }
+    let mut is_needed: Vec<bool> = entries.iter().map(|entries| !entries.is_empty()).collect();
+    for (place, step) in steps.iter().enumerate().rev().filter(|(_, step)| !step.operands().is_empty()) {
+        if is_needed[place] {
+            step.operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
+        }
+    }
+    let mut lines = Vec::new();
+    for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
+        if let Step::Apply(function, operands) = step {
+            let name = format!("v{place}");
+            let [a, b, c] =
+                operands.map(|value| if (value as usize) < steps.len() { operand(value) } else { String::new() });
+            let fused = |a: &str, b: &str, c: &str| format!("{}({a}, {b}, {c})", dialect.helper("mul_add"));
+            let expression = match function {
+                Function::Sin | Function::Cos => {
+                    if let Some([sin, cos]) = angles.remove(&operands[0]) {
+                        let [sin, cos] = [sin, cos].map(|place| place.map(|place| format!("v{place}")));
+                        lines.extend(dialect.bind_sin_cos(sin.as_deref(), cos.as_deref(), &a));
+                    }
+                    None
+                }
+                Function::Add => Some(format!("{a} + {b}")),
+                Function::Sub => Some(format!("{a} - {b}")),
+                Function::Mul => Some(format!("{a} * {b}")),
+                Function::Div => Some(format!("{a} / {b}")),
+                Function::Neg => Some(format!("-{a}")),
+                Function::MulAdd => Some(fused(&a, &b, &c)),
+                Function::MulSub => Some(fused(&a, &b, &format!("-{c}"))),
+                Function::NegMulAdd => Some(fused(&format!("-{a}"), &b, &c)),
+                Function::NegMulSub => Some(fused(&format!("-{a}"), &b, &format!("-{c}"))),
+                Function::Sqrt | Function::Tanh | Function::Sgn => {
+                    Some(format!("{}({a})", dialect.helper(function.name())))
+                }
+            };
+            lines.extend(expression.map(|expression| dialect.bind(&name, &expression)));
+        }
+        let value = operand(place);
+        lines.extend(entries[place as usize].iter().map(|entry| format!("{entry} = {value};")));
+    }
+    lines
+}

@@ -1,0 +1,163 @@
+//! CUDA C: one state's function, and kernels of one thread a state on two layouts.
+//!
+//! The function reads and writes entries that are `stride` apart; each kernel calls it with its own, so that a program is written once.
+
+use super::c::C;
+use super::dialect::{Argument, Dialect, Emitted, Source};
+use super::{SourceFile, body, sin_cos};
+use crate::function::Function;
+use std::cell::RefCell;
+
+struct Cuda<'s> {
+    c: C,
+    prefix: &'s str,
+    /// The file's constants, by their bits.
+    constants: RefCell<Vec<f64>>,
+}
+
+impl Cuda<'_> {
+    fn is_f64(&self) -> bool {
+        self.c.0.is_f64()
+    }
+}
+
+impl Dialect for Cuda<'_> {
+    fn literal(&self, x: f64) -> String {
+        let mut constants = self.constants.borrow_mut();
+        let index = constants.iter().position(|known| known.to_bits() == x.to_bits()).unwrap_or_else(|| {
+            constants.push(x);
+            constants.len() - 1
+        });
+        format!("{}_constant[{index}]", self.prefix)
+    }
+    fn entry(&self, array: &str, index: usize) -> String {
+        format!("{array}[{index} * stride]")
+    }
+    fn helper(&self, name: &str) -> String {
+        match name {
+            "mul_add" if self.is_f64() => "fma".to_string(),
+            "mul_add" => "fmaf".to_string(),
+            "sgn" | "sin_cos" => format!("{}_{name}", self.prefix),
+            _ => self.c.helper(name),
+        }
+    }
+    fn bind(&self, name: &str, expression: &str) -> String {
+        self.c.bind(name, expression)
+    }
+    fn bind_sin_cos(&self, sin: Option<&str>, cos: Option<&str>, angle: &str) -> Vec<String> {
+        let names: Vec<&str> = sin.into_iter().chain(cos).collect();
+        let address = |name: Option<&str>| name.map_or("0".to_string(), |name| format!("&{name}"));
+        vec![
+            format!("{} {};", self.c.number(), names.join(", ")),
+            format!("{}({angle}, {}, {});", self.helper("sin_cos"), address(sin), address(cos)),
+        ]
+    }
+    fn bind_bits(&self, name: &str, expression: &str) -> String {
+        let bits = if self.is_f64() { "unsigned long long" } else { "unsigned int" };
+        format!("const {bits} {name} = {expression};")
+    }
+    fn bits(&self, bits: u64) -> String {
+        if self.is_f64() { format!("{bits:#x}ull") } else { format!("{bits:#x}u") }
+    }
+    fn to_bits(&self, x: &str) -> String {
+        let function = if self.is_f64() { "(unsigned long long) __double_as_longlong" } else { "__float_as_uint" };
+        format!("{function}({x})")
+    }
+    fn number_of_bits(&self, x: &str) -> String {
+        match self.is_f64() {
+            true => format!("__longlong_as_double((long long) ({x}))"),
+            false => format!("__uint_as_float({x})"),
+        }
+    }
+    fn difference_of_bits(&self, a: &str, b: &str) -> String {
+        self.c.difference_of_bits(a, b)
+    }
+}
+
+/// One file.
+pub(super) fn files(source: &Source) -> Vec<SourceFile> {
+    let name = &source.name;
+    let cuda = Cuda { c: C(source.precision), prefix: name, constants: RefCell::default() };
+    // the constants are known when all that uses them is written, and stand before it
+    let helpers = helpers(source, &cuda);
+    let functions: Vec<String> = source.functions.iter().flat_map(|function| written(function, &cuda)).collect();
+    let mut lines: Vec<String> = source.about.iter().map(|line| format!("// {line}").trim_end().to_string()).collect();
+    let constants = cuda.constants.take();
+    if !constants.is_empty() {
+        lines.push(format!("\n__constant__ {} {name}_constant[{}] = {{", source.c_type(), constants.len()));
+        lines.extend(constants.chunks(4).map(|row| {
+            let row: Vec<String> = row.iter().map(|&x| format!("{},", cuda.c.literal(x))).collect();
+            format!("    {}", row.join(" "))
+        }));
+        lines.push("};".to_string());
+    }
+    lines.extend(helpers);
+    lines.extend(functions);
+    let text = lines.iter().flat_map(|line| [line, "\n"]).collect();
+    vec![SourceFile { name: format!("{name}.cu"), text }]
+}
+
+fn written(function: &Emitted, cuda: &Cuda) -> Vec<String> {
+    let (number, name) = (cuda.c.number(), format!("{}_{}", cuda.prefix, function.name));
+    let pointer = |before: &str, argument: &Argument| format!("{before}{number} *__restrict__ {}", argument.name);
+    let arguments: Vec<String> = function
+        .inputs
+        .iter()
+        .map(|input| pointer("const ", input))
+        .chain(function.outputs.iter().map(|output| pointer("", output)))
+        .collect();
+    let arguments = arguments.join(", ");
+    let mut lines = vec![String::new()];
+    lines.extend(function.lines().iter().map(|line| format!("// {line}")));
+    lines.push("// Of one state: entry k of an array is at k * stride.".to_string());
+    lines.push(format!(
+        "static __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
+    ));
+    lines.extend(function.unused().map(|input| format!("    (void) {};", input.name)));
+    lines.extend(body::lines(function, cuda).iter().map(|line| format!("    {line}")));
+    lines.push("}".to_string());
+    let layouts = [
+        ("rows", "entry k of state i at i * length + k", "1"),
+        ("columns", "entry k of state i at k * count + i", "count"),
+    ];
+    for (layout, about, stride) in layouts {
+        let of_state = |argument: &Argument| match layout {
+            "rows" => format!("{} + i * {}", argument.name, argument.length),
+            _ => format!("{} + i", argument.name),
+        };
+        let arrays: Vec<String> = function.inputs.iter().chain(&function.outputs).map(of_state).collect();
+        lines.push(format!("\n// Of `count` states, a thread each: {about}."));
+        lines.push(format!(
+            "extern \"C\" __global__ void {name}_{layout}({arguments}, const unsigned long long count)\n{{"
+        ));
+        lines.push(
+            "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string(),
+        );
+        lines.push(format!("    if (i < count) {name}({}, {stride});\n}}", arrays.join(", ")));
+    }
+    lines
+}
+
+fn helpers(source: &Source, cuda: &Cuda) -> Vec<String> {
+    let (number, mut lines) = (cuda.c.number(), Vec::new());
+    if source.has(|function| function == Function::Sgn) {
+        let (name, [zero, one]) = (cuda.helper("sgn"), [0.0, 1.0].map(|x| cuda.c.literal(x)));
+        lines.push(format!(
+            "\n// -1, 0 or 1; NaN of NaN.\nstatic __device__ __forceinline__ {number} {name}({number} x)\n{{\n    return x > {zero} ? {one} : x < {zero} ? -{one} : x;\n}}"
+        ));
+    }
+    if source.has_sines() {
+        let (name, largest) = (cuda.helper("sin_cos"), cuda.c.literal(source.precision.largest_angle()));
+        let nan = if cuda.is_f64() { 0x7ff8_0000_0000_0000 } else { 0x7fc0_0000 };
+        lines.push(format!("\n// Of |x| <= {largest}; beyond, NaN."));
+        lines.push(format!(
+            "static __device__ __forceinline__ void {name}({number} x, {number} *sin_x, {number} *cos_x)\n{{"
+        ));
+        lines
+            .push(format!("    x = x >= -{largest} && x <= {largest} ? x : {};", cuda.number_of_bits(&cuda.bits(nan))));
+        let (body, [sin, cos]) = sin_cos::lines(source.precision, cuda);
+        lines.extend(body.iter().map(|line| format!("    {line}")));
+        lines.push(format!("    if (sin_x) *sin_x = {sin};\n    if (cos_x) *cos_x = {cos};\n}}"));
+    }
+    lines
+}

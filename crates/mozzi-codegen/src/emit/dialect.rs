@@ -1,0 +1,99 @@
+//! What a text is made of, and what languages say differently.
+
+use super::Precision;
+use crate::function::Function;
+use crate::program::{Program, Step};
+
+/// An array that a function takes.
+pub(super) struct Argument {
+    pub name: String,
+    pub length: usize,
+    /// Shape, meaning, unit, frame.
+    pub about: String,
+}
+
+/// A program with the names that its function has.
+pub(super) struct Emitted<'p> {
+    pub name: String,
+    pub program: &'p Program,
+    pub inputs: Vec<Argument>,
+    pub outputs: Vec<Argument>,
+    pub about: Vec<String>,
+}
+
+impl Emitted<'_> {
+    /// The arguments in words, and the work.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = self.about.clone();
+        for argument in self.inputs.iter().chain(&self.outputs).filter(|argument| !argument.about.is_empty()) {
+            lines.push(format!("{}: {}", argument.name, argument.about));
+        }
+        lines.push(format!("{}.", self.program.count()));
+        lines
+    }
+
+    pub fn has(&self, of_kind: impl Fn(Function) -> bool) -> bool {
+        self.program.steps.iter().any(|step| matches!(step, Step::Apply(function, _) if of_kind(*function)))
+    }
+
+    /// Inputs that no step reads.
+    pub fn unused(&self) -> impl Iterator<Item = &Argument> {
+        let is_read = |k: usize| {
+            self.program.steps.iter().any(|step| matches!(step, Step::Input(array, _) if *array as usize == k))
+        };
+        (0..).zip(&self.inputs).filter(move |(k, _)| !is_read(*k)).map(|(_, argument)| argument)
+    }
+}
+
+/// A whole text.
+pub(super) struct Source<'p> {
+    pub name: String,
+    pub about: Vec<String>,
+    pub functions: Vec<Emitted<'p>>,
+    pub precision: Precision,
+}
+
+impl Source<'_> {
+    pub fn has(&self, of_kind: impl Fn(Function) -> bool) -> bool {
+        self.functions.iter().any(|function| function.has(&of_kind))
+    }
+
+    pub fn has_sines(&self) -> bool {
+        self.has(|function| matches!(function, Function::Sin | Function::Cos))
+    }
+
+    /// `float` or `double`.
+    pub fn c_type(&self) -> &'static str {
+        if self.precision.is_f64() { "double" } else { "float" }
+    }
+}
+
+/// How a language says a step.
+pub(super) trait Dialect {
+    /// A constant that is not negative.
+    fn literal(&self, x: f64) -> String;
+    /// An entry of an argument.
+    fn entry(&self, array: &str, index: usize) -> String;
+    /// What the file calls one of its helpers, or of the language's functions: `mul_add`, `sgn`, `sqrt`, `tanh`, `sin_cos`.
+    fn helper(&self, name: &str) -> String;
+    /// A new number.
+    fn bind(&self, name: &str, expression: &str) -> String;
+    /// Two new numbers, sine and cosine; where one is not needed, none.
+    fn bind_sin_cos(&self, sin: Option<&str>, cos: Option<&str>, angle: &str) -> Vec<String>;
+    /// New bits, as many as a number has.
+    fn bind_bits(&self, name: &str, expression: &str) -> String;
+    /// A constant's bits.
+    fn bits(&self, bits: u64) -> String;
+    /// The bits of a number.
+    fn to_bits(&self, x: &str) -> String;
+    /// The number of bits.
+    fn number_of_bits(&self, x: &str) -> String;
+    /// A difference of bits that wraps around.
+    fn difference_of_bits(&self, a: &str, b: &str) -> String;
+}
+
+/// A constant with every digit that its precision has, as all languages read it.
+pub(super) fn digits(x: f64, precision: Precision) -> String {
+    let text = if precision.is_f64() { format!("{x:?}") } else { format!("{:?}", x as f32) };
+    if text.starts_with('-') { format!("({text})") } else { text }
+}

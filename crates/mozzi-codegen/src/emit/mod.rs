@@ -1,0 +1,211 @@
+//! Programs as source text: Rust, C99 and CUDA C.
+//!
+//! All three say the same steps in the same order, one line each; what differs is a [`Dialect`]. The text is the same for the same
+//! robot and quantities, whatever the machine.
+
+mod body;
+mod c;
+mod cuda;
+mod describe;
+mod dialect;
+mod names;
+mod rust;
+mod sin_cos;
+
+use crate::function::Function;
+use crate::program::{Program, Step};
+use crate::quantity::{LeftOpen, Quantity};
+use dialect::{Argument, Emitted, Source};
+use mozzi::Model;
+use mozzi::scalar::Float;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A language that programs are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Language {
+    /// One file without attributes of a crate, for `mod` or `include!`: no `std`, no allocation, no panic, no dependency. Arguments are
+    /// references to arrays.
+    Rust,
+    /// C99, a header and a source, dependent on <stdint.h> and <math.h> alone; from C++, too.
+    C,
+    /// CUDA C, one file without includes: a function for one state, and for many, a thread each, kernels on two layouts: `_rows` (entry k
+    /// of state i at `i · length + k`) and `_columns` (at `k · count + i`).
+    Cuda,
+}
+
+/// The numbers of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// `float`.
+    F32,
+    /// `double`.
+    F64,
+}
+
+impl Precision {
+    fn is_f64(self) -> bool {
+        self == Precision::F64
+    }
+
+    /// The largest angle whose sine is computed.
+    pub fn largest_angle(self) -> f64 {
+        if self.is_f64() { f64::LARGEST } else { f32::LARGEST.into() }
+    }
+}
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceFile {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What is in it.
+    pub text: String,
+}
+
+impl SourceFile {
+    /// Writes it into a folder, where it does not stand there already: tools that look at times see a change only where there is one.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn write(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        let path = folder.join(&self.name);
+        if std::fs::read(&path).ok().as_deref() != Some(self.text.as_bytes()) {
+            std::fs::write(&path, &self.text)?;
+        }
+        Ok(path)
+    }
+}
+
+/// Why there is no text.
+#[derive(Debug)]
+pub enum EmitError {
+    /// No quantity was asked for.
+    Nothing,
+    /// A frame of another model.
+    Frame(mozzi::Error),
+    /// A function that the language has not without its standard library: tanh in Rust.
+    Function(Function, Language),
+    /// A constant that is no number of this precision.
+    Constant(f64, Precision),
+}
+
+impl fmt::Display for EmitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EmitError::Nothing => write!(f, "no quantity, expected one or more"),
+            EmitError::Frame(error) => write!(f, "{error}"),
+            EmitError::Function(function, language) => {
+                write!(f, "{function}: {language:?} has none without its standard library, expected C or CUDA")
+            }
+            EmitError::Constant(x, precision) => write!(f, "a constant is {x:?}, expected a finite {precision:?}"),
+        }
+    }
+}
+impl std::error::Error for EmitError {}
+
+/// The text of a robot's quantities, in its own gravity, its base at rest, where `open` leaves nothing else. Each becomes a function named
+/// for the quantity, of a frame for both; in C and CUDA the robot's name stands before. Names are made valid, and each once. The text's
+/// first lines tell the robot, its joints and units, frames and gravity; each function's, its arguments and its work.
+///
+/// ```
+/// use mozzi_codegen::{Language, LeftOpen, Precision, Quantity, emit};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let model = mozzi_urdf::open("ur5")?.build()?;
+/// let files = emit(&model, &[Quantity::GravityForces], LeftOpen::default(), Language::C, Precision::F32)?;
+/// assert!(files[0].name == "ur5.h" && files[0].text.contains("void ur5_gravity_forces(const float theta[6], float g[6]);"));
+/// assert!(files[1].name == "ur5.c");
+/// # Ok(()) }
+/// ```
+///
+/// Sines are the library's own, within an ulp up to |x| = 10⁶ (`f32`: 8192, 1.5 ulp); a larger angle, or NaN, gives NaN in all that
+/// depends on it. Compilers must not be allowed to reorder sums (`-ffast-math`): C refuses it.
+///
+/// # Errors
+/// [`EmitError`].
+pub fn emit(
+    model: &Model,
+    quantities: &[Quantity],
+    open: LeftOpen,
+    language: Language,
+    precision: Precision,
+) -> Result<Vec<SourceFile>, EmitError> {
+    let frames = quantities.iter().filter_map(|quantity| quantity.frame()).chain(open.wrench);
+    frames.into_iter().try_for_each(|frame| model.check_frame(frame)).map_err(EmitError::Frame)?;
+    let programs: Vec<Program> = quantities.iter().map(|quantity| quantity.record(model, open)).collect();
+    let mut functions = Vec::new();
+    let mut taken = BTreeSet::new();
+    for (quantity, program) in quantities.iter().zip(&programs) {
+        let frame = quantity.frame().map(|frame| format!("_{}", model.frame_name(frame))).unwrap_or_default();
+        let mut function = written(&format!("{}{frame}", quantity.name()), program, &mut taken);
+        function.about = describe::quantity(model, *quantity, open, program);
+        for argument in function.inputs.iter_mut().chain(&mut function.outputs) {
+            argument.about = describe::array(model, *quantity, open, &argument.name);
+        }
+        functions.push(function);
+    }
+    let about = describe::robot(model, open, precision);
+    files(&model.description().name, about, functions, language, precision)
+}
+
+/// The text of programs, each a function of its own name; `name` is the file's. See [`emit`] for robots.
+///
+/// # Errors
+/// [`EmitError`].
+pub fn emit_programs(
+    name: &str,
+    programs: &[Program],
+    language: Language,
+    precision: Precision,
+) -> Result<Vec<SourceFile>, EmitError> {
+    let mut taken = BTreeSet::new();
+    let functions = programs.iter().map(|program| written(program.name(), program, &mut taken)).collect();
+    files(name, Vec::new(), functions, language, precision)
+}
+
+/// A program's function, its names valid.
+fn written<'p>(name: &str, program: &'p Program, taken: &mut BTreeSet<String>) -> Emitted<'p> {
+    let mut arrays = BTreeSet::new();
+    let mut argument = |name: &str, length: usize| Argument {
+        name: names::unique(&names::identifier(name, "x"), &mut arrays),
+        length,
+        about: String::new(),
+    };
+    Emitted {
+        name: names::unique(&names::identifier(name, "f"), taken),
+        inputs: program.inputs.iter().map(|input| argument(&input.name, input.length)).collect(),
+        outputs: program.outputs.iter().map(|output| argument(&output.name, output.values.len())).collect(),
+        about: Vec::new(),
+        program,
+    }
+}
+
+fn files(
+    name: &str,
+    about: Vec<String>,
+    functions: Vec<Emitted>,
+    language: Language,
+    precision: Precision,
+) -> Result<Vec<SourceFile>, EmitError> {
+    if functions.is_empty() {
+        return Err(EmitError::Nothing);
+    }
+    for step in functions.iter().flat_map(|function| &function.program.steps) {
+        match *step {
+            Step::Constant(x) if !x.is_finite() || !precision.is_f64() && !(x as f32).is_finite() => {
+                return Err(EmitError::Constant(x, precision));
+            }
+            Step::Apply(Function::Tanh, _) if language == Language::Rust => {
+                return Err(EmitError::Function(Function::Tanh, language));
+            }
+            _ => {}
+        }
+    }
+    let source = Source { name: names::identifier(name, "robot"), about, functions, precision };
+    Ok(match language {
+        Language::Rust => rust::files(&source),
+        Language::C => c::files(&source),
+        Language::Cuda => cuda::files(&source),
+    })
+}
