@@ -1,12 +1,11 @@
-//! The numbered examples: each `examples/NN_name.rs`, and its `.py` twin where the Python package is built.
+//! The numbered examples: each `examples/NN_name.rs`, and its `.py` twin.
 
 use crate::command;
 use crate::oracles;
+use crate::package;
 use crate::report::Outcome;
-use crate::venv;
 use crate::workspace::Workspace;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
 
 pub enum Example {
     Rust(String),
@@ -61,15 +60,7 @@ impl Example {
                 }
                 command::outcome(cargo)
             }
-            Self::Python(_) if !has_mozzi(workspace) => Outcome::Skipped("the Python package is not built yet".into()),
-            Self::Python(file) => command::outcome(Command::new(venv::python(workspace)).arg(file).current_dir(folder)),
+            Self::Python(file) => command::outcome(package::python(workspace).arg(file).current_dir(folder)),
         }
     }
-}
-
-fn has_mozzi(workspace: &Workspace) -> bool {
-    let mut python = Command::new(venv::python(workspace));
-    // Away from the root, so that no folder there is taken for the package.
-    python.args(["-c", "import mozzi; mozzi.__file__[0]"]).current_dir(workspace.path("target"));
-    python.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
 }

@@ -15,6 +15,7 @@ mod main_job;
 mod metadata;
 mod no_std;
 mod oracles;
+mod package;
 mod report;
 mod source_text;
 mod spdx;
@@ -31,7 +32,7 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
-          a while of fuzzing, the no_std check, every example, the main job
+          the Python package, a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   docs    write the pages of docs/ anew; `test` holds them current
   bench   beside Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
@@ -73,6 +74,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
+    report.step("Python package", || package::test(workspace, &mut count));
     report.step("fuzzing", || fuzz::run(workspace));
     report.step("no_std", || no_std::check(workspace));
     for example in examples::list(workspace) {

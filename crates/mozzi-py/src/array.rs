@@ -50,6 +50,14 @@ impl<'py> Numbers<'py> {
         if !matches!(kind, 'f' | 'i' | 'u' | 'b' | 'O') {
             return Err(refused(format!("{name} has dtype {dtype}, expected real numbers"), None));
         }
+        let count =
+            |condition: Bound<'py, PyAny>| function(py, "count_nonzero")?.call1((condition,))?.extract::<usize>();
+        if kind == 'O' && array.call_method1("ravel", ())?.call_method0("tolist")?.contains(py.None())? {
+            return Err(refused(format!("{name} holds None, expected real numbers"), None)); // NumPy would make NaN of it
+        }
+        if given.hasattr("mask")? && given.hasattr("filled")? && count(given.getattr("mask")?)? > 0 {
+            return Err(refused(format!("{name} has masked entries, expected real numbers"), None));
+        }
         let wanted = if is_single { f32::NAME } else { f64::NAME };
         let array = function(py, "array")?
             .call((array,), Some(&[("dtype", wanted), ("order", "C")].into_py_dict(py)?))

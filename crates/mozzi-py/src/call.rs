@@ -6,8 +6,9 @@ use crate::numpy::{self, Element, Fresh};
 use crate::quantity::{AtMany, Quantity};
 use crate::robot::{HasEngines, Robot, batch};
 use crate::surroundings::{Arguments, Around, Given};
+use crate::threads::Threads;
 use mozzi::FrameId;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
 
@@ -15,7 +16,7 @@ use pyo3::types::{PyFloat, PyTuple};
 #[derive(Default)]
 pub struct Options<'a, 'py> {
     pub out: Given<'a, 'py>,
-    pub threads: Option<usize>,
+    pub threads: Option<Threads>,
 }
 
 /// An argument's name, and what it is.
@@ -148,7 +149,7 @@ impl Robot {
         let shapes: Vec<Vec<usize>> =
             quantity.shapes(&self.model).into_iter().map(|tail| [&leading[..], &tail].concat()).collect();
         if let Some(out) = options.out {
-            return self.into_out::<T>(py, quantity, &state, &around, &options, (&leading, &shapes[0]), out);
+            return self.write_out::<T>(py, quantity, &state, &around, &options, (&leading, &shapes[0]), out);
         }
         let mut fresh = shapes.iter().map(|shape| Fresh::<T>::new(py, shape)).collect::<PyResult<Vec<_>>>()?;
         let mut slices: Vec<&mut [T]> = fresh.iter_mut().map(Fresh::numbers).collect();
@@ -163,7 +164,7 @@ impl Robot {
 
     /// Results in the caller's array: written there if it can be, else converted by NumPy.
     #[allow(clippy::too_many_arguments)]
-    fn into_out<'py, T: Element + HasEngines + AtMany>(
+    fn write_out<'py, T: Element + HasEngines + AtMany>(
         &self,
         py: Python<'py>,
         quantity: Quantity,
@@ -202,13 +203,10 @@ impl Robot {
         quantity: Quantity,
         state: &[Numbers<'py>],
         around: &Around<'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
         leading: &[usize],
         out: &mut [&mut [T]],
     ) -> PyResult<()> {
-        if threads == Some(0) {
-            return Err(PyValueError::new_err("threads is 0, expected at least 1, or None for all cores"));
-        }
         let slices = state.iter().map(Numbers::slice::<T>).collect::<PyResult<Vec<_>>>()?;
         let tables: Vec<(FrameId, &[T])> = around.slices()?;
         let states: usize = leading.iter().product();

@@ -13,6 +13,7 @@ mod quantity;
 mod robot;
 mod simulate;
 mod surroundings;
+mod threads;
 
 use pyo3::prelude::*;
 

@@ -26,6 +26,21 @@ struct ArrayObject {
     flags: c_int,
 }
 
+/// The head of a `PyArray_Descr`, the same in NumPy 1 and 2.
+#[repr(C)]
+struct DtypeObject {
+    object: ffi::PyObject,
+    scalar: *mut ffi::PyTypeObject,
+    kind: c_char,
+    letter: c_char,
+    byte_order: c_char,
+    flags: c_char,
+    number: c_int,
+}
+
+/// What NumPy has for the machine's own order of bytes.
+const OWN_ORDER: [u8; 2] = [b'=', if cfg!(target_endian = "little") { b'<' } else { b'>' }];
+
 const C_CONTIGUOUS: c_int = 0x1;
 const ALIGNED: c_int = 0x100;
 const WRITEABLE: c_int = 0x400;
@@ -57,6 +72,8 @@ static API: PyOnceLock<Api> = PyOnceLock::new();
 pub trait Element: mozzi_batch::Number + Default {
     /// As NumPy calls it.
     const NAME: &'static str;
+    /// NumPy's number of its type.
+    const NUMBER: c_int;
     /// Its place in `Api::dtypes`.
     const PLACE: usize;
     fn to_f64(self) -> f64;
@@ -66,6 +83,7 @@ impl Element for f32 {
         self.into()
     }
     const NAME: &'static str = "float32";
+    const NUMBER: c_int = FLOAT32;
     const PLACE: usize = 0;
 }
 impl Element for f64 {
@@ -73,6 +91,7 @@ impl Element for f64 {
         self
     }
     const NAME: &'static str = "float64";
+    const NUMBER: c_int = FLOAT64;
     const PLACE: usize = 1;
 }
 
@@ -119,8 +138,18 @@ fn behaved<'a, T: Element>(array: &'a Bound<'_, PyAny>) -> Option<&'a ArrayObjec
         }
         let fields = &*array.as_ptr().cast::<ArrayObject>();
         let whole = fields.flags & (C_CONTIGUOUS | ALIGNED) == C_CONTIGUOUS | ALIGNED;
-        (whole && fields.dtype == api.dtypes[T::PLACE]).then_some(fields)
+        (whole && (fields.dtype == api.dtypes[T::PLACE] || is_equal::<T>(fields.dtype))).then_some(fields)
     }
+}
+
+/// Is this dtype the same but for being another object, as that of an array which was pickled?
+///
+/// # Safety
+/// It is the dtype of an array.
+unsafe fn is_equal<T: Element>(dtype: *mut ffi::PyObject) -> bool {
+    // SAFETY: an array keeps its dtype, of this layout.
+    let dtype = unsafe { &*dtype.cast::<DtypeObject>() };
+    dtype.number == T::NUMBER && OWN_ORDER.contains(&(dtype.byte_order as u8))
 }
 
 /// Its lengths.
@@ -146,7 +175,9 @@ pub fn view<'a, T: Element>(array: &'a Bound<'_, PyAny>) -> Option<(&'a [usize],
     Some((shape, unsafe { std::slice::from_raw_parts(fields.data.cast::<T>(), length) }))
 }
 
-/// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs.
+/// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs. A method asks once, of `out`
+/// alone.
+#[allow(clippy::mut_from_ref)] // of NumPy's memory, which the reference only keeps
 pub fn view_mut<'a, T: Element>(
     array: &'a Bound<'_, PyAny>,
     inputs: &[&Bound<'_, PyAny>],

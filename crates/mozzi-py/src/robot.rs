@@ -1,6 +1,7 @@
 //! A model with what computing takes: memory for one state, batches for many.
 
 use crate::failure::of_batch;
+use crate::threads::Threads;
 use mozzi::{FrameId, Model, native};
 use mozzi_batch::{Batch, Number};
 use pyo3::prelude::*;
@@ -52,7 +53,7 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 pub struct Engines<T: Number> {
     /// The process that they were made in: a fork has none of their threads.
     process: u32,
-    made: Vec<(Option<usize>, Batch<T>)>,
+    made: Vec<(Option<Threads>, Batch<T>)>,
 }
 
 impl<T: Number> Default for Engines<T> {
@@ -88,7 +89,7 @@ pub fn remember_process() {
 }
 
 /// The batch on this many threads; without a number on all cores.
-pub fn batch<T: HasEngines>(robot: &Robot, threads: Option<usize>) -> PyResult<Batch<T>> {
+pub fn batch<T: HasEngines>(robot: &Robot, threads: Option<Threads>) -> PyResult<Batch<T>> {
     let mut engines = unpoisoned(T::engines(robot));
     if engines.process != std::process::id() {
         // their threads do not exist here, and dropping would wait for them
@@ -98,7 +99,7 @@ pub fn batch<T: HasEngines>(robot: &Robot, threads: Option<usize>) -> PyResult<B
         return Ok(batch.clone());
     }
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let count = threads.or_else(|| is_fork().then(cores));
+    let count = threads.map(|Threads(count)| count).or_else(|| is_fork().then(cores));
     let batch = Batch::<T>::of(&robot.model);
     let batch =
         count.map_or(Ok(batch.clone()), |count| batch.with_threads(count)).map_err(|error| of_batch(error, &[]))?;

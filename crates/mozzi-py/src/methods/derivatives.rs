@@ -5,6 +5,7 @@ use crate::call::{Options, named};
 use crate::model::PyModel;
 use crate::quantity::Quantity;
 use crate::surroundings::{Arguments, Given};
+use crate::threads::Threads;
 use mozzi::Vec3;
 use pyo3::prelude::*;
 
@@ -48,7 +49,7 @@ impl PyModel {
         applied_wrenches: Given<'_, 'py>,
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let found = self.robot().ask_all(
             py,
@@ -98,7 +99,7 @@ impl PyModel {
         applied_wrenches: Given<'_, 'py>,
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let found = self.robot().ask_all(
             py,
@@ -133,7 +134,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         gravity: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -170,7 +171,7 @@ impl PyModel {
         tip_wrench: Given<'_, 'py>,
         applied_wrenches: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -204,7 +205,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         x: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -236,7 +237,7 @@ impl PyModel {
         py: Python<'py>,
         theta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(py, Quantity::CenterOfMass, [("theta", theta)], Arguments::default(), Options { out, threads })
     }
@@ -265,7 +266,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -303,7 +304,7 @@ impl PyModel {
         dtheta: &Bound<'py, PyAny>,
         ddtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -334,7 +335,7 @@ impl PyModel {
         py: Python<'py>,
         theta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -372,7 +373,7 @@ impl PyModel {
         dtheta: &Bound<'py, PyAny>,
         about: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let about = point(about)?;
         self.robot().ask(
@@ -415,7 +416,7 @@ impl PyModel {
         ddtheta: &Bound<'py, PyAny>,
         about: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let about = point(about)?;
         self.robot().ask(
@@ -447,7 +448,7 @@ impl PyModel {
         py: Python<'py>,
         theta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -482,7 +483,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -530,7 +531,7 @@ impl PyModel {
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -562,7 +563,7 @@ impl PyModel {
         py: Python<'py>,
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let found = self.robot().ask_all(
             py,

@@ -4,6 +4,7 @@ use crate::call::Options;
 use crate::model::PyModel;
 use crate::quantity::Quantity;
 use crate::surroundings::{Arguments, Given};
+use crate::threads::Threads;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -60,7 +61,7 @@ impl PyModel {
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -126,7 +127,7 @@ impl PyModel {
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -166,7 +167,7 @@ impl PyModel {
         py: Python<'py>,
         theta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(py, Quantity::MassMatrix, [("theta", theta)], Arguments::default(), Options { out, threads })
     }
@@ -194,7 +195,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -228,7 +229,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -263,7 +264,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -298,7 +299,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         gravity: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -347,7 +348,7 @@ impl PyModel {
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -385,7 +386,7 @@ impl PyModel {
         tip_wrench: Given<'_, 'py>,
         applied_wrenches: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -417,7 +418,7 @@ impl PyModel {
         py: Python<'py>,
         dtheta: &Bound<'py, PyAny>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -455,7 +456,7 @@ impl PyModel {
         dtheta: &Bound<'py, PyAny>,
         base_twist: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,
@@ -490,7 +491,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         gravity: Given<'_, 'py>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.robot().ask(
             py,

@@ -5,6 +5,7 @@ use crate::failure::of_model;
 use crate::model::PyModel;
 use crate::quantity::Quantity;
 use crate::surroundings::{Arguments, Given};
+use crate::threads::Threads;
 use mozzi::{Task, TaskFrame};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -45,7 +46,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -80,7 +81,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -115,7 +116,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -153,7 +154,7 @@ impl PyModel {
         dtheta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -191,7 +192,7 @@ impl PyModel {
         dtheta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -227,7 +228,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -263,7 +264,7 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         frame: Option<&str>,
         out: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         self.robot().ask(
@@ -324,7 +325,7 @@ impl PyModel {
         applied_wrenches: Given<'_, 'py>,
         base_twist: Given<'_, 'py>,
         base_acceleration: Given<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame = self.frame(frame)?;
         let rows = rows.unwrap_or_else(|| (0..6).collect());
