@@ -5,7 +5,28 @@ use crate::oracles;
 use crate::package;
 use crate::report::Outcome;
 use crate::workspace::Workspace;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::process::Command;
+
+/// The Rust examples' programs, by name.
+pub type Programs = BTreeMap<String, PathBuf>;
+
+/// Those of the whole workspace, in the profile in which `cargo test` has just built them: nothing is built twice.
+pub fn build(workspace: &Workspace, programs: &mut Programs) -> Outcome {
+    let arguments = ["build", "--quiet", "--workspace", "--examples", "--profile", "test", "--message-format", "json"];
+    let messages = match command::output(workspace.cargo(&arguments)) {
+        Ok((true, messages)) => messages,
+        Ok((false, _)) => return Outcome::Failed("cargo build --workspace --examples failed".into()),
+        Err(why) => return Outcome::Failed(why),
+    };
+    programs.extend(messages.lines().filter_map(|line| {
+        let message: Value = serde_json::from_str(line).ok()?;
+        Some((message["target"]["name"].as_str()?.to_owned(), message["executable"].as_str()?.into()))
+    }));
+    Outcome::Passed(format!("{} programs", programs.len()))
+}
 
 pub enum Example {
     Rust(String),
@@ -41,7 +62,7 @@ impl Example {
     }
 
     /// In an empty folder under `target/`, where it may write.
-    pub fn run(&self, workspace: &Workspace) -> Outcome {
+    pub fn run(&self, workspace: &Workspace, programs: &Programs) -> Outcome {
         let folder = match workspace.scratch(&self.name()) {
             Ok(folder) => folder,
             Err(why) => return Outcome::Failed(why),
@@ -51,15 +72,14 @@ impl Example {
             Self::Rust(_) if !workspace.path("examples/Cargo.toml").exists() => {
                 Outcome::Failed("there is no examples/Cargo.toml".into())
             }
-            Self::Rust(name) => {
-                // The profile in which `cargo test` has just built it.
-                let arguments = ["--quiet", "--profile", "test", "-p", "mozzi-examples", "--example", name];
-                let mut cargo = workspace.cargo_run_in(&folder, &arguments);
-                if let Some(robots) = oracles::robots(workspace) {
-                    cargo.env("MOZZI_ROBOTS", robots);
+            Self::Rust(name) => match programs.get(name) {
+                Some(program) => {
+                    let mut command = Command::new(program);
+                    command.envs(oracles::robots(workspace).map(|robots| ("MOZZI_ROBOTS", robots)));
+                    command::outcome(command.current_dir(&folder))
                 }
-                command::outcome(cargo)
-            }
+                None => Outcome::Failed(format!("cargo build made no program of examples/{name}.rs")),
+            },
             Self::Python(file) => command::outcome(package::python(workspace).arg(file).current_dir(folder)),
         }
     }

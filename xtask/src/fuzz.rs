@@ -5,7 +5,6 @@ use crate::report::Outcome;
 use crate::workspace::Workspace;
 
 pub fn run(workspace: &Workspace) -> Outcome {
-    let packages = ["--package", "mozzi-urdf", "--package", "mozzi-codegen"];
-    let arguments = [&["test"], &packages[..], &["--test", "fuzz", "--", "--ignored", "--nocapture"]].concat();
-    command::outcome(workspace.cargo(&arguments))
+    // Of the whole workspace, as the tests before: fewer packages would ask for fewer features, and everything would be built again.
+    command::outcome(workspace.cargo(&["test", "--workspace", "--test", "fuzz", "--", "--ignored", "--nocapture"]))
 }

@@ -77,8 +77,10 @@ fn test(workspace: &Workspace) -> ExitCode {
     report.step("Python package", || package::test(workspace, &mut count));
     report.step("fuzzing", || fuzz::run(workspace));
     report.step("no_std", || no_std::check(workspace));
+    let mut programs = examples::Programs::new();
+    report.step("examples", || examples::build(workspace, &mut programs));
     for example in examples::list(workspace) {
-        report.step(&format!("example {}", example.name()), || example.run(workspace));
+        report.step(&format!("example {}", example.name()), || example.run(workspace, &programs));
     }
     report.step("main job", || main_job::run(workspace));
     let exit = report.finish();
