@@ -1,10 +1,10 @@
 //! What Python gives for an array, as numbers in C's order; shapes that do not fit, named.
 
-use crate::numpy::{self, Element};
+use crate::numpy::{self, Element, Fresh};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::IntoPyDict;
+use pyo3::types::{IntoPyDict, PyFloat, PyInt, PyList};
 
 /// An argument as an array of float64 or float32, without gaps.
 pub struct Numbers<'py> {
@@ -33,6 +33,10 @@ impl<'py> Numbers<'py> {
             return Ok(Numbers { name, array: given.clone(), shape: shape.to_vec(), is_single: true });
         }
         let py = given.py();
+        if let Some(array) = plain(given)? {
+            let shape = vec![array.len()];
+            return Ok(Numbers { name, array: array.into_array(), shape, is_single: false });
+        }
         let refused = |why: String, cause: Option<PyErr>| {
             let error = PyTypeError::new_err(why);
             error.set_cause(py, cause);
@@ -127,6 +131,20 @@ impl<'py> Numbers<'py> {
         let slice = numbers.slice::<f64>()?;
         Ok(std::array::from_fn(|row| std::array::from_fn(|column| slice[row * C + column])))
     }
+}
+
+/// A list of Python's own numbers, without asking NumPy.
+fn plain<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<Fresh<'py, f64>>> {
+    let Ok(list) = given.cast_exact::<PyList>() else { return Ok(None) };
+    let mut fresh = Fresh::<f64>::new(given.py(), &[list.len()])?;
+    for (place, item) in fresh.numbers().iter_mut().zip(list) {
+        if !(item.is_exact_instance_of::<PyFloat>() || item.is_exact_instance_of::<PyInt>()) {
+            return Ok(None);
+        }
+        let Ok(x) = item.extract() else { return Ok(None) }; // an int beyond float64: NumPy tells
+        *place = x;
+    }
+    Ok((!list.is_empty()).then_some(fresh))
 }
 
 /// `theta has shape (6,), expected (..., 7): …`

@@ -8,6 +8,7 @@ mod html;
 mod load;
 mod methods;
 mod model;
+mod modern_robotics;
 mod numpy;
 mod quantity;
 mod robot;
@@ -24,6 +25,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     numpy::prepare(py)?;
     robot::remember_process();
     module.add_class::<model::PyModel>()?;
+    modern_robotics::add_to(module)?;
     module.add("LoadError", py.get_type::<failure::LoadError>())?;
     module.add("LoadWarning", py.get_type::<failure::LoadWarning>())?;
     module.add("SingularError", py.get_type::<failure::SingularError>())?;

@@ -237,6 +237,11 @@ impl<'py, T: Element> Fresh<'py, T> {
         }
     }
 
+    /// How many numbers there are.
+    pub fn len(&self) -> usize {
+        self.length
+    }
+
     pub fn into_array(self) -> Bound<'py, PyAny> {
         self.array
     }
