@@ -2,6 +2,7 @@
 
 mod array;
 mod call;
+mod conventions;
 mod describe;
 mod failure;
 mod html;
@@ -25,6 +26,8 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     numpy::prepare(py)?;
     robot::remember_process();
     module.add_class::<model::PyModel>()?;
+    module.add_class::<conventions::Pinocchio>()?;
+    module.add_class::<conventions::MuJoCo>()?;
     modern_robotics::add_to(module)?;
     module.add("LoadError", py.get_type::<failure::LoadError>())?;
     module.add("LoadWarning", py.get_type::<failure::LoadWarning>())?;

@@ -3,7 +3,7 @@
 Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
 """
 
-from . import models
+from . import conventions, models
 from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
 from ._results import (
     EnergyRegressors,
@@ -27,5 +27,6 @@ __all__ = [
     "TaskSpaceDynamics",
     "Trajectory",
     "__version__",
+    "conventions",
     "models",
 ]
