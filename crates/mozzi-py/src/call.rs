@@ -70,10 +70,7 @@ impl Robot {
                 _ => return Ok(None),
             }
         }
-        let environment = self.model.environment();
-        let compute = |out: &mut [f64]| {
-            quantity.one(&self.model, &mut self.memory(), &slices, &environment, &mut [out]).map_err(of_model)
-        };
+        let compute = |out: &mut [f64]| self.one(quantity, &slices, None, &mut [out]).map_err(of_model);
         if let Some(out) = out {
             return match numpy::view_mut::<f64>(out, &state.map(|(_, array)| array)) {
                 Some((found, numbers)) if found == shape => compute(numbers).map(|()| Some(out.clone())),
@@ -211,6 +208,12 @@ impl Robot {
         let tables: Vec<(FrameId, &[T])> = around.slices()?;
         let states: usize = leading.iter().product();
         let alone = leading.is_empty() && tables.is_empty() && T::PLACE == f64::PLACE;
+        if let Some(compiled) = self.compiled_for_many()
+            && (!alone && around.is_own && threads.is_none())
+            && let Some(result) = py.detach(|| T::many_compiled(compiled, quantity, &slices, out))
+        {
+            return result.map_err(|error| of_batch(error, leading));
+        }
         if !alone && self.model.nq() > 0 {
             let batch = batch::<T>(self, threads)?;
             let surroundings = around.surroundings(&tables);
@@ -240,9 +243,8 @@ impl Robot {
             }
             let environment = mozzi::Environment { applied: &applied, ..environment };
             let mut results: Vec<&mut [f64]> = found.iter_mut().map(Vec::as_mut_slice).collect();
-            quantity
-                .one(&self.model, &mut self.memory(), &rows, &environment, &mut results)
-                .map_err(|error| of_state(error, index, leading))?;
+            let environment = (!around.is_own).then_some(&environment);
+            self.one(quantity, &rows, environment, &mut results).map_err(|error| of_state(error, index, leading))?;
             for ((out, found), &length) in out.iter_mut().zip(&found).zip(&lengths) {
                 let place = &mut out[index * length..][..length];
                 place.iter_mut().zip(found).for_each(|(out, &x)| *out = T::from_f64(x));

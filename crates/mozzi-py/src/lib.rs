@@ -2,6 +2,7 @@
 
 mod array;
 mod call;
+mod compiled;
 mod conventions;
 mod describe;
 mod failure;

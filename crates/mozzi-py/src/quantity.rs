@@ -3,6 +3,7 @@
 use crate::robot::Memory;
 use mozzi::{self as kernel, Environment, Error, FrameId, Model, Task, Twist, Vec3, native};
 use mozzi_batch::{Batch, Surroundings};
+use mozzi_codegen::Compiled;
 
 /// A quantity of a state.
 #[derive(Clone, Copy)]
@@ -43,6 +44,7 @@ pub enum Quantity<'a> {
     CentroidalMomentumBias,
     Regressor,
     EnergyRegressors,
+    FramePoses,
 }
 use Quantity::*;
 
@@ -74,6 +76,7 @@ impl Quantity<'_> {
             CentroidalMomentumMatrix => vec![vec![6, n]],
             Regressor => vec![vec![n, model.parameter_count()]],
             EnergyRegressors => vec![vec![model.parameter_count()]; 2],
+            FramePoses => vec![vec![model.frames().len(), 4, 4]],
         }
     }
 
@@ -178,6 +181,11 @@ impl Quantity<'_> {
                 out[0].copy_from_slice(kinetic.transpose().as_slice());
                 out[1].copy_from_slice(potential.transpose().as_slice());
             }
+            FramePoses => {
+                let poses = model.frame_poses(s[0])?;
+                let numbers = poses.into_iter().flat_map(|T| T.to_matrix().into_iter().flatten());
+                out[0].iter_mut().zip(numbers).for_each(|(place, x)| *place = x);
+            }
             _ => unreachable!("the quantities of `one`"),
         }
         Ok(())
@@ -196,10 +204,24 @@ pub trait AtMany: Sized {
     ) -> Option<Result<(), mozzi_batch::Error>>
     where
         Self: mozzi_batch::Number;
+
+    /// Likewise by machine code, of those numbers that there is some for.
+    fn many_compiled(
+        compiled: &Compiled,
+        quantity: Quantity,
+        state: &[&[Self]],
+        out: &mut [&mut [Self]],
+    ) -> Option<Result<(), mozzi_batch::Error>>;
 }
 
 macro_rules! at_many {
-    ($($T:ty),*) => { $(impl AtMany for $T {
+    ($($T:ty, $many_compiled:expr;)*) => { $(impl AtMany for $T {
+        fn many_compiled(compiled: &Compiled, quantity: Quantity, state: &[&[$T]], out: &mut [&mut [$T]])
+            -> Option<Result<(), mozzi_batch::Error>>
+        {
+            $many_compiled(compiled, quantity, state, out)
+        }
+
         fn many(quantity: Quantity, batch: &Batch<$T>, s: &[&[$T]], around: &Surroundings<$T>, out: &mut [&mut [$T]])
             -> Option<Result<(), mozzi_batch::Error>>
         {
@@ -232,7 +254,10 @@ macro_rules! at_many {
         }
     })* };
 }
-at_many!(f32, f64);
+at_many! {
+    f32, |_, _, _, _| None;
+    f64, crate::compiled::many;
+}
 
 /// A matrix that is stored by columns, by rows.
 pub fn rows(M: &mozzi::nalgebra::DMatrix<f64>, out: &mut [f64]) {
@@ -246,7 +271,8 @@ fn by_rows(n: usize, out: &mut [f64], fill: impl FnOnce(&mut [Twist])) {
     jacobian_rows(&columns, out);
 }
 
-fn jacobian_rows(columns: &[Twist], out: &mut [f64]) {
+/// A Jacobian's columns, as its rows.
+pub fn jacobian_rows(columns: &[Twist], out: &mut [f64]) {
     for (j, column) in columns.iter().enumerate() {
         column.to_array().into_iter().enumerate().for_each(|(row, x)| out[row * columns.len() + j] = x);
     }

@@ -1,9 +1,12 @@
 //! A model with what computing takes: memory for one state, batches for many.
 
+use crate::compiled;
 use crate::failure::of_batch;
+use crate::quantity::Quantity;
 use crate::threads::Threads;
-use mozzi::{FrameId, Model, native};
+use mozzi::{Environment, FrameId, Model, native};
 use mozzi_batch::{Batch, Number};
+use mozzi_codegen::Compiled;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -25,12 +28,40 @@ pub struct Robot {
     memory: Mutex<Memory>,
     double: Mutex<Engines<f64>>,
     single: Mutex<Engines<f32>>,
+    /// The quantities that are machine code, and the names by which they were asked for.
+    pub compiled: Option<(Compiled, Vec<Asked>)>,
 }
+
+/// A quantity's name, and its frame's where it is of one.
+pub type Asked = (String, Option<String>);
 
 impl Robot {
     pub fn new(model: Model) -> Self {
         let memory = Mutex::new(Memory::new(&model));
-        Robot { model, memory, double: Mutex::default(), single: Mutex::default() }
+        Robot { model, memory, double: Mutex::default(), single: Mutex::default(), compiled: None }
+    }
+
+    /// The quantity at one state, whose lengths were checked; by machine code where nothing but the robot's own surrounds it.
+    #[inline(always)]
+    pub fn one(
+        &self,
+        quantity: Quantity,
+        state: &[&[f64]],
+        environment: Option<&Environment>,
+        out: &mut [&mut [f64]],
+    ) -> Result<(), mozzi::Error> {
+        if let (Some((compiled, _)), None) = (&self.compiled, environment)
+            && compiled::one(compiled, quantity, state, out)?
+        {
+            return Ok(());
+        }
+        let own = self.model.environment();
+        quantity.one(&self.model, &mut self.memory(), state, environment.unwrap_or(&own), out)
+    }
+
+    /// The machine code for many states, if it may be used in this process.
+    pub fn compiled_for_many(&self) -> Option<&Compiled> {
+        self.compiled.as_ref().map(|(compiled, _)| compiled).filter(|_| !is_fork())
     }
 
     #[inline(always)]

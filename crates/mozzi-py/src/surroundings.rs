@@ -44,6 +44,8 @@ pub struct Around<'py> {
     pub tables: Vec<(FrameId, Numbers<'py>)>,
     /// Were all wrenches of float32?
     pub is_single: bool,
+    /// Is it the model's own, with nothing touched?
+    pub is_own: bool,
 }
 
 impl<'py> Around<'py> {
@@ -56,6 +58,7 @@ impl<'py> Around<'py> {
             applied: Vec::new(),
             tables: Vec::new(),
             is_single: true,
+            is_own: given.are_none(),
         };
         if let Some(gravity) = given.gravity {
             around.gravity = Vec3(Numbers::fixed("gravity", gravity, "(3,): m/s² in the base's axes")?);

@@ -46,6 +46,7 @@ METHODS = {
     "centroidal_momentum_bias": ("theta", "dtheta"),
     "regressor": ("theta", "dtheta", "ddtheta"),
     "energy_regressors": ("theta", "dtheta"),
+    "frame_poses": ("theta",),
 }
 TAKES_OUT = [name for name in METHODS if name not in ("task_space_dynamics", "energy_regressors") and "dynamics_deriv" not in name]
 

@@ -192,3 +192,31 @@ def test_the_lists_make_the_same_robot(ur5, random):
     theta, dtheta, ddtheta = state(ur5, random, 3)
     mine = ur5.inverse_dynamics(theta, dtheta, ddtheta) - ur5.joint_friction(dtheta)
     assert_close(again.inverse_dynamics(theta, dtheta, ddtheta), mine)
+
+
+def test_closed_form_and_recursion(robot, random):
+    theta, dtheta, ddtheta = state(robot, random)
+    wrench, frame = random.uniform(-3, 3, 6), tip(robot)
+    form = robot.closed_form(theta, dtheta, applied_wrenches={frame: wrench})
+    size = np.abs(robot.bias_forces(theta, dtheta)).max()
+    assert_close(form.M, robot.mass_matrix(theta))
+    assert_close(form.c, robot.velocity_product(theta, dtheta), size)
+    assert_close(form.g, robot.gravity_forces(theta), size)
+    assert_close(form.tip_forces, robot.tip_forces(theta, applied_wrenches={frame: wrench}))
+    assert_close(form.L, np.linalg.inv(np.eye(len(form.L)) - form.W))
+    assert_close(form.A.T @ form.L.T @ form.G @ form.L @ form.A + np.diag(form.armature), form.M)
+    found = robot.newton_euler(theta, dtheta, ddtheta, applied_wrenches={frame: wrench})
+    assert_close(found.tau, robot.inverse_dynamics(theta, dtheta, ddtheta, applied_wrenches={frame: wrench}), size)
+    if not robot.is_floating:
+        assert_close(found.twists.ravel(), form.V)
+    poses = robot.frame_poses(np.stack([theta, theta]))
+    assert_close(poses[1, robot.frames.index(frame)], robot.forward_kinematics(theta, frame))
+    with pytest.raises(ValueError, match=r"theta has shape \(2, \d+\), expected \(\d+,\): one state"):
+        robot.closed_form(np.stack([theta, theta]), dtheta)
+
+
+def test_base_parameters(ur5, random):
+    base = ur5.base_parameters()
+    Y = ur5.regressor(*state(ur5, random, 50)).reshape(300, -1)
+    assert np.linalg.matrix_rank(Y, 1e-9 * np.linalg.norm(Y)) == len(base.columns) == len(base.names)
+    assert_close(Y[:, base.columns] @ base.combination, Y)

@@ -35,7 +35,7 @@ def run(module, name, monkeypatch):
     program, _ = example(name)
     # fewer steps and no plots of the longest ones; the package's own would take minutes
     program = program.split("# Output using matplotlib")[0].replace("N= 1000", "N= 50").replace("(1000,3 )", "(50,3 )")
-    program = program.replace("(1000, 3)", "(50, 3)").replace("dt = 0.01", "dt = 0.1")
+    program = program.replace("(1000, 3)", "(50, 3)").replace("dt = 0.01", "dt = 0.05").replace("intRes = 8", "intRes = 2")
     monkeypatch.setitem(sys.modules, "modern_robotics", module)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     given = {"np": np, "mr": module}

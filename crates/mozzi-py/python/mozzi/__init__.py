@@ -6,15 +6,20 @@ Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What t
 from . import conventions, models
 from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
 from ._results import (
+    BaseParameters,
+    ClosedForm,
     EnergyRegressors,
     ForwardDynamicsDerivatives,
     InverseDynamicsDerivatives,
+    NewtonEuler,
     ScrewLists,
     TaskSpaceDynamics,
     Trajectory,
 )
 
 __all__ = [
+    "BaseParameters",
+    "ClosedForm",
     "DivergedError",
     "EnergyRegressors",
     "ForwardDynamicsDerivatives",
@@ -22,6 +27,7 @@ __all__ = [
     "LoadError",
     "LoadWarning",
     "Model",
+    "NewtonEuler",
     "ScrewLists",
     "SingularError",
     "TaskSpaceDynamics",

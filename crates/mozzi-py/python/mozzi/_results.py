@@ -2,36 +2,79 @@
 
 from typing import Any, NamedTuple
 
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
 
 class InverseDynamicsDerivatives(NamedTuple):
     """∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M, each (..., n, n)."""
 
-    by_theta: Any
-    by_dtheta: Any
-    by_ddtheta: Any
+    by_theta: Array
+    by_dtheta: Array
+    by_ddtheta: Array
 
 
 class ForwardDynamicsDerivatives(NamedTuple):
     """θ̈ (..., n); ∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹, each (..., n, n)."""
 
-    ddtheta: Any
-    by_theta: Any
-    by_dtheta: Any
-    by_tau: Any
+    ddtheta: Array
+    by_theta: Array
+    by_dtheta: Array
+    by_tau: Array
 
 
 class TaskSpaceDynamics(NamedTuple):
     """Λ (..., k, k) and η (..., k) of 𝓕 = Λ𝒱̇ + η."""
 
-    Lambda: Any
-    eta: Any
+    Lambda: Array
+    eta: Array
 
 
 class EnergyRegressors(NamedTuple):
     """The rows of the kinetic and the potential energy, each (..., parameters)."""
 
-    kinetic: Any
-    potential: Any
+    kinetic: Array
+    potential: Array
+
+
+class ClosedForm(NamedTuple):
+    """The book's stacked matrices over N bodies, and what they give: see ``Model.closed_form``."""
+
+    A: Array
+    G: Array
+    W: Array
+    L: Array
+    ad_V: Array
+    ad_Adtheta: Array
+    V: Array
+    V_base: Array
+    dV_base: Array
+    F_tip: Array
+    M: Array
+    c: Array
+    g: Array
+    tip_forces: Array
+    friction: Array
+    armature: Array
+
+
+class NewtonEuler(NamedTuple):
+    """The recursion's twists, accelerations and wrenches (N, 6), the base's reaction (6,), τ (n,): see ``Model.newton_euler``."""
+
+    twists: Array
+    accelerations: Array
+    wrenches: Array
+    base_reaction: Array
+    tau: Array
+
+
+class BaseParameters(NamedTuple):
+    """Independent columns of the regressor, K of π_b = K π, and their names: see ``Model.base_parameters``."""
+
+    columns: list[int]
+    combination: Array
+    names: list[str]
 
 
 class ScrewLists(NamedTuple):
@@ -40,33 +83,33 @@ class ScrewLists(NamedTuple):
     joints: list[str]
     links: list[str]
     parents: list[int]
-    M: Any
-    M_relative: Any
-    S: Any
-    A: Any
-    B: Any
-    G: Any
-    end_effector: Any
+    M: Array
+    M_relative: Array
+    S: Array
+    A: Array
+    B: Array
+    G: Array
+    end_effector: tuple[str, Array] | None
 
 
 class Trajectory(NamedTuple):
     """A simulated motion: one row for each recorded time; works in J since the start."""
 
-    t: Any
-    theta: Any
-    dtheta: Any
-    ddtheta: Any
-    tau: Any
-    kinetic_energy: Any
-    potential_energy: Any
-    motor_work: Any
-    friction_loss: Any
-    applied_work: Any
+    t: Array
+    theta: Array
+    dtheta: Array
+    ddtheta: Array
+    tau: Array
+    kinetic_energy: Array
+    potential_energy: Array
+    motor_work: Array
+    friction_loss: Array
+    applied_work: Array
     position_names: list[str]
     velocity_names: list[str]
 
     @property
-    def energy(self) -> Any:
+    def energy(self) -> Array:
         """Kinetic and potential, J."""
         return self.kinetic_energy + self.potential_energy
 

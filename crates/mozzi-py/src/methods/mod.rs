@@ -3,3 +3,4 @@
 mod derivatives;
 mod dynamics;
 mod kinematics;
+mod to_look_at;
