@@ -3,7 +3,7 @@
 Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
 """
 
-from . import conventions, models
+from . import conventions, models, modern_robotics
 from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
 from ._results import (
     BaseParameters,
@@ -35,4 +35,5 @@ __all__ = [
     "__version__",
     "conventions",
     "models",
+    "modern_robotics",
 ]

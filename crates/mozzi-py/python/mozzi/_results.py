@@ -1,5 +1,6 @@
 """Results of several parts. The compiled methods make them by position."""
 
+import importlib
 from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
@@ -115,8 +116,7 @@ class Trajectory(NamedTuple):
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame over t, with the columns theta.<joint>, dtheta.<joint>, ddtheta.<joint>, tau.<joint>."""
-        import pandas
-
+        pandas: Any = importlib.import_module("pandas")
         columns = {f"theta.{name}": self.theta[:, k] for k, name in enumerate(self.position_names)}
         for what in ("dtheta", "ddtheta", "tau"):
             columns |= {f"{what}.{name}": getattr(self, what)[:, k] for k, name in enumerate(self.velocity_names)}
