@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | bench`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | bench | wheel`: what CI runs, anyone can run.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -22,6 +22,7 @@ mod spdx;
 mod stamp;
 mod tests;
 mod venv;
+mod wheel;
 mod workspace;
 
 use report::Report;
@@ -40,7 +41,9 @@ usage: cargo xtask COMMAND
           --peers pinocchio,mujoco,kdl,dynibo,casadi  these alone, likewise
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first
-          --criterion                                 each kernel alone, without peers";
+          --criterion                                 each kernel alone, without peers
+          --python                                    Python's calls beside Pinocchio's and the Modern Robotics package's
+  wheel   the Python package for Linux, into target/wheels; installed into an empty environment, where its README runs";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -49,6 +52,8 @@ fn main() -> ExitCode {
         ["test"] => test(&workspace),
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
+        ["wheel"] => wheel(&workspace),
+        ["bench", "--python"] => run_benches(|| bench::python(&workspace)),
         ["bench", "--criterion"] => run_benches(|| bench::criterion(&workspace)),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
             Ok(options) => run_benches(|| bench::run(&workspace, &options)),
@@ -86,6 +91,13 @@ fn test(workspace: &Workspace) -> ExitCode {
     let exit = report.finish();
     println!("{count}"); // CI reads this line
     exit
+}
+
+fn wheel(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("Python environment", || venv::prepare(workspace));
+    report.step("wheel", || wheel::build(workspace));
+    report.finish()
 }
 
 fn docs(workspace: &Workspace) -> ExitCode {

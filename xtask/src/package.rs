@@ -35,14 +35,23 @@ pub fn test(workspace: &Workspace, count: &mut Count) -> Outcome {
 }
 
 fn stage(workspace: &Workspace) -> Result<(), String> {
-    let folder = workspace.fresh_folder("target/python")?.join("mozzi");
-    copy(&workspace.path(SOURCES), &folder)?;
-    let name = format!("{}_mozzi{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     // built already, with the tests; by itself it would be built once more, with other features of its dependencies
-    command::run(workspace.cargo(&["test", "--quiet", "--workspace", "--no-run"]))?;
-    let built = workspace.target().join("debug/deps").join(&name);
+    put_together(workspace, &folder(workspace), &["test", "--quiet", "--workspace", "--no-run"], "debug")
+}
+
+/// The package in this folder, its library built by `cargo` with these arguments, in the profile of this name.
+pub fn put_together(workspace: &Workspace, to: &Path, cargo: &[&str], profile: &str) -> Result<(), String> {
+    command::run(workspace.cargo(cargo))?;
+    let package = to.join("mozzi");
+    let failed = |what: &Path, error: std::io::Error| format!("{}: {error}", what.display());
+    if package.exists() {
+        std::fs::remove_dir_all(&package).map_err(|error| failed(&package, error))?;
+    }
+    copy(&workspace.path(SOURCES), &package)?;
+    let name = format!("{}_mozzi{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let built = workspace.target().join(profile).join("deps").join(&name);
     let module = if cfg!(windows) { "_mozzi.pyd" } else { "_mozzi.abi3.so" };
-    std::fs::copy(&built, folder.join(module)).map_err(|error| format!("{}: {error}", built.display()))?;
+    std::fs::copy(&built, package.join(module)).map_err(|error| failed(&built, error))?;
     Ok(())
 }
 

@@ -208,8 +208,8 @@ impl Robot {
         let tables: Vec<(FrameId, &[T])> = around.slices()?;
         let states: usize = leading.iter().product();
         let alone = leading.is_empty() && tables.is_empty() && T::PLACE == f64::PLACE;
-        if let Some(compiled) = self.compiled_for_many()
-            && (!alone && around.is_own && threads.is_none())
+        if let Some(compiled) = self.compiled_for_many(threads)
+            && (!alone && around.is_own)
             && let Some(result) = py.detach(|| T::many_compiled(compiled, quantity, &slices, out))
         {
             return result.map_err(|error| of_batch(error, leading));

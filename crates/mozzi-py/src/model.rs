@@ -3,9 +3,10 @@
 use crate::array::Numbers;
 use crate::call::named;
 use crate::describe::{State, from_state, pose, refused, to_state};
-use crate::failure::of_model;
+use crate::failure::{of_batch, of_model};
 use crate::numpy::Fresh;
-use crate::robot::{Asked, Robot};
+use crate::robot::{Asked, Machine, Robot};
+use crate::threads::Threads;
 use crate::{compiled, html, load};
 use mozzi::model::Base;
 use mozzi::{FrameId, SpatialInertia};
@@ -46,13 +47,17 @@ impl PyModel {
         self.0.frame(name).map_err(of_model)
     }
 
-    fn compiled(&self, names: Vec<Asked>) -> PyResult<Self> {
+    fn compiled(&self, names: Vec<Asked>, threads: Option<usize>) -> PyResult<Self> {
         let model = &self.0.model;
         let quantity = |(name, frame): &Asked| compiled::named(model, name, self.0.frame(frame.as_deref()));
         let quantities = names.iter().map(quantity).collect::<PyResult<Vec<_>>>()?;
         let code = mozzi_codegen::compile(model, &quantities).map_err(of_model)?;
         let mut robot = Robot::new(model.clone());
-        robot.compiled = Some((code, names));
+        let code = match threads {
+            Some(count) => code.with_threads(count).map_err(|error| of_batch(error, &[]))?,
+            None => code,
+        };
+        robot.compiled = Some(Machine { code, names, threads });
         Ok(PyModel(robot))
     }
 
@@ -118,16 +123,19 @@ impl PyModel {
     }
 
     #[staticmethod]
-    fn _from_state(state: State, compiled: Vec<Asked>) -> PyResult<Self> {
+    fn _from_state(state: State, compiled: Vec<Asked>, threads: Option<usize>) -> PyResult<Self> {
         let model = Self::built(from_state(state)?.build())?;
-        if compiled.is_empty() { Ok(model) } else { model.compiled(compiled) }
+        if compiled.is_empty() { Ok(model) } else { model.compiled(compiled, threads) }
     }
 
     #[allow(clippy::type_complexity)] // what pickle wants
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State, Vec<Asked>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State, Vec<Asked>, Option<usize>))> {
         let rebuild = py.get_type::<PyModel>().getattr("_from_state")?;
-        let compiled = self.0.compiled.as_ref().map(|(_, names)| names.clone()).unwrap_or_default();
-        Ok((rebuild, (to_state(self.0.model.description()), compiled)))
+        let (names, threads) = match &self.0.compiled {
+            Some(machine) => (machine.names.clone(), machine.threads),
+            None => (Vec::new(), None),
+        };
+        Ok((rebuild, (to_state(self.0.model.description()), names, threads)))
     }
 
     /// The same robot, these quantities of it made machine code: its methods are faster, on one state and on many, as long as
@@ -140,6 +148,8 @@ impl PyModel {
     ///     'gravity_forces', 'forward_kinematics', 'space_jacobian', 'body_jacobian' and the derivatives of both dynamics.
     /// frame : str, optional
     ///     Of poses and Jacobians; by default the end effector.
+    /// threads : int, optional
+    ///     As many at most share many states; by default all cores. A method's own `threads` other than that is for the kernels.
     ///
     /// Returns
     /// -------
@@ -154,14 +164,14 @@ impl PyModel {
     /// >>> theta = [0, -1.2, 1.5, 0.3, 1.1, 0]
     /// >>> bool(abs(fast.mass_matrix(theta) - ur5.mass_matrix(theta)).max() < 1e-12)
     /// True
-    #[pyo3(signature = (*quantities, frame=None))]
-    fn compile(&self, quantities: Vec<String>, frame: Option<String>) -> PyResult<Self> {
+    #[pyo3(signature = (*quantities, frame=None, threads=None))]
+    fn compile(&self, quantities: Vec<String>, frame: Option<String>, threads: Option<Threads>) -> PyResult<Self> {
         let asked = quantities.into_iter().map(|name| {
             let of_frame = matches!(name.as_str(), "forward_kinematics" | "space_jacobian" | "body_jacobian");
             (name, frame.clone().filter(|_| of_frame))
         });
-        let before = self.0.compiled.iter().flat_map(|(_, names)| names.clone());
-        self.compiled(before.chain(asked).collect())
+        let before = self.0.compiled.iter().flat_map(|machine| machine.names.clone());
+        self.compiled(before.chain(asked).collect(), threads.map(|Threads(count)| count))
     }
 
     /// What computes a quantity at one state, of a frame where it has one, of the end effector by default.
@@ -173,7 +183,7 @@ impl PyModel {
     #[pyo3(signature = (quantity, frame=None))]
     fn engine(&self, quantity: &str, frame: Option<&str>) -> PyResult<String> {
         let quantity = compiled::named(&self.0.model, quantity, self.0.frame(frame))?;
-        let compiled = self.0.compiled.as_ref().map(|(compiled, _)| compiled.engine(quantity));
+        let compiled = self.0.compiled.as_ref().map(|machine| machine.code.engine(quantity));
         Ok(compiled.unwrap_or(Engine::Kernels(Refusal::NotAsked)).to_string())
     }
 

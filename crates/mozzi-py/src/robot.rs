@@ -28,8 +28,15 @@ pub struct Robot {
     memory: Mutex<Memory>,
     double: Mutex<Engines<f64>>,
     single: Mutex<Engines<f32>>,
-    /// The quantities that are machine code, and the names by which they were asked for.
-    pub compiled: Option<(Compiled, Vec<Asked>)>,
+    pub compiled: Option<Machine>,
+}
+
+/// The quantities that are machine code.
+pub struct Machine {
+    pub code: Compiled,
+    /// As they were asked for.
+    pub names: Vec<Asked>,
+    pub threads: Option<usize>,
 }
 
 /// A quantity's name, and its frame's where it is of one.
@@ -50,8 +57,8 @@ impl Robot {
         environment: Option<&Environment>,
         out: &mut [&mut [f64]],
     ) -> Result<(), mozzi::Error> {
-        if let (Some((compiled, _)), None) = (&self.compiled, environment)
-            && compiled::one(compiled, quantity, state, out)?
+        if let (Some(machine), None) = (&self.compiled, environment)
+            && compiled::one(&machine.code, quantity, state, out)?
         {
             return Ok(());
         }
@@ -59,9 +66,11 @@ impl Robot {
         quantity.one(&self.model, &mut self.memory(), state, environment.unwrap_or(&own), out)
     }
 
-    /// The machine code for many states, if it may be used in this process.
-    pub fn compiled_for_many(&self) -> Option<&Compiled> {
-        self.compiled.as_ref().map(|(compiled, _)| compiled).filter(|_| !is_fork())
+    /// The machine code for many states, if it is for as many threads, which this process has.
+    pub fn compiled_for_many(&self, threads: Option<Threads>) -> Option<&Compiled> {
+        let machine = self.compiled.as_ref()?;
+        let is_asked = threads.is_none_or(|Threads(count)| machine.threads == Some(count));
+        (is_asked && (machine.threads == Some(1) || !is_fork())).then_some(&machine.code)
     }
 
     #[inline(always)]

@@ -40,6 +40,15 @@ def test_results_are_the_kernels(name, robot, random):
     assert fast == robot and copy.copy(fast) == robot
 
 
+def test_threads(ur5, random):
+    given = state(ur5, random, 1000)
+    expected = ur5.inverse_dynamics(*given)
+    for fast in (ur5.compile("inverse_dynamics", threads=1), ur5.compile("inverse_dynamics", threads=2)):
+        for threads in (None, 1, 2):
+            assert_close(fast.inverse_dynamics(*given, threads=threads), expected)
+            assert_close(pickle.loads(pickle.dumps(fast)).inverse_dynamics(*given, threads=threads), expected)
+
+
 def test_what_computes(ur5):
     assert ur5.engine("mass_matrix") == "kernels: nobody asked for machine code"
     fast = ur5.compile("mass_matrix").compile("body_jacobian")

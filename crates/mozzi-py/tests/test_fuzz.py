@@ -123,7 +123,7 @@ def test_everything_else(data):
         lambda: robot.newton_euler(draw(), draw(), draw()),
         lambda: robot.task_space_dynamics(draw(), draw(), rows=draw()),
         lambda: robot.compile(draw()),
-        lambda: mozzi.Model._from_state(draw(), draw()),
+        lambda: mozzi.Model._from_state(draw(), draw(), draw()),
         lambda: mozzi.conventions.Pinocchio(robot).configuration(draw()),
         lambda: mozzi.conventions.Pinocchio(robot).mass_matrix(draw()),
         lambda: mozzi.conventions.MuJoCo(robot).bias_forces(draw(), draw(), draw(), draw()),
