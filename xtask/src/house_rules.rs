@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const UNSAFE_ALLOWED: [&str; 5] = [
     "crates/mozzi/src/native",
     "crates/mozzi-batch/src/instruction_set",
-    "crates/mozzi-batch/src/lanes/x86",
+    "crates/mozzi-batch/src/lanes/",
     "crates/mozzi-codegen/src/jit/executable",
     "crates/mozzi-py/src/numpy",
 ];

@@ -115,6 +115,10 @@ fn check(workspace: &Workspace) -> ExitCode {
         let arguments = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
         command::outcome(workspace.cargo(&arguments))
     });
+    report.step("for build scripts", || {
+        let arguments = ["clippy", "--package", "mozzi-codegen", "--no-default-features", "--", "-D", "warnings"];
+        command::outcome(workspace.cargo(&arguments))
+    });
     report.step("documentation", || {
         // Libraries: the program `mozzi` would be written over the library of the same name, at the same time.
         let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);

@@ -38,7 +38,11 @@ fn try_build(workspace: &Workspace) -> Result<String, String> {
     if cfg!(target_os = "linux") {
         maturin.args(["--zig", "--compatibility", "manylinux_2_17"]);
     }
-    command::run(maturin)?;
+    // maturin finds zig as a module of the first Python in PATH
+    let bin = venv::python(workspace).parent().map(Path::to_path_buf).unwrap_or_default();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(bin).chain(std::env::split_paths(&path)));
+    command::run(maturin.env("PATH", path.map_err(|error| error.to_string())?))?;
     let wheel = only_file(&wheels)?;
     let bytes = std::fs::metadata(&wheel).map_err(|error| format!("{}: {error}", wheel.display()))?.len();
     if bytes > MOST_BYTES {

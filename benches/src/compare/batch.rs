@@ -1,17 +1,26 @@
 //! mozzi at many states at once, on one thread: tables in rows, as a caller has them.
 
+use crate::compiled;
 use crate::contestant::Contestant;
 use crate::quantity::Quantity;
 use mozzi::Model;
 use mozzi_batch::{Batch, Error, InstructionSet, Surroundings};
 use mozzi_benches::States;
+use mozzi_codegen::{Compiled, Engine, Kernel, LeftOpen, Shape};
 use std::hint::black_box;
+
+/// What computes them.
+enum Means {
+    Kernels(Batch, Surroundings<'static>),
+    MachineCode(Compiled),
+}
 
 /// All states in one call.
 pub struct Batched<'a> {
     model: &'a Model,
-    batch: Batch,
-    surroundings: Surroundings<'static>,
+    means: Means,
+    /// With the flops of their programs, where they have one.
+    quantities: Vec<(Quantity, Option<usize>)>,
     /// θ, θ̇, θ̈, τ.
     tables: [Vec<f64>; 4],
     vectors: Vec<f64>,
@@ -19,9 +28,27 @@ pub struct Batched<'a> {
 }
 
 impl<'a> Batched<'a> {
-    /// None where the machine has no such registers.
-    pub fn new(model: &'a Model, states: &States, set: InstructionSet) -> Option<Self> {
+    /// By the kernels; none where the machine has no such registers, as in [`by_machine_code`](Self::by_machine_code).
+    pub fn by_kernels(model: &'a Model, states: &States, set: InstructionSet) -> Option<Self> {
         let batch = Batch::new(model).with_instruction_set(set).and_then(|batch| batch.with_threads(1)).ok()?;
+        let quantities = Quantity::ALL.map(|quantity| (quantity, None)).to_vec();
+        Some(Self::new(model, states, Means::Kernels(batch, model.environment().into()), quantities))
+    }
+
+    pub fn by_machine_code(model: &'a Model, states: &States, set: InstructionSet) -> Option<Self> {
+        let robot = compiled::many(model, set)?;
+        let shape = if set == InstructionSet::Avx512 { Shape::EightF64 } else { Shape::FourF64 };
+        let quantity = |quantity| {
+            let code = compiled::code(quantity)?;
+            let Engine::MachineCode(..) = robot.batch_engine(code) else { return None };
+            let kernel = Kernel::new(&code.record(model, LeftOpen::default()), shape).ok()?;
+            Some((quantity, Some(kernel.flops())))
+        };
+        let quantities = Quantity::ALL.into_iter().filter_map(quantity).collect();
+        Some(Self::new(model, states, Means::MachineCode(robot), quantities))
+    }
+
+    fn new(model: &'a Model, states: &States, means: Means, quantities: Vec<(Quantity, Option<usize>)>) -> Self {
         let mut tables: [Vec<f64>; 4] = Default::default();
         for state in states.iter() {
             for (table, row) in tables.iter_mut().zip(state) {
@@ -30,14 +57,31 @@ impl<'a> Batched<'a> {
         }
         let (n, count) = (model.n(), states.count());
         let matrices = [(); 3].map(|()| vec![0.0; count * n * n]);
-        let surroundings = model.environment().into();
-        Some(Batched { model, batch, surroundings, tables, vectors: vec![0.0; count * n], matrices })
+        Batched { model, means, quantities, tables, vectors: vec![0.0; count * n], matrices }
     }
 
     fn evaluate(&mut self, quantity: Quantity) -> Result<(), Error> {
         let [theta, dtheta, ddtheta, tau] = self.tables.each_ref().map(|table| black_box(&table[..]));
-        let (batch, around, x) = (&self.batch, &self.surroundings, &mut self.vectors[..]);
+        let x = &mut self.vectors[..];
         let [a, b, c] = self.matrices.each_mut().map(|matrix| &mut matrix[..]);
+        let (batch, around) = match &self.means {
+            Means::Kernels(batch, around) => (batch, around),
+            Means::MachineCode(robot) => {
+                return match quantity {
+                    Quantity::InverseDynamics => robot.inverse_dynamics_batch(theta, dtheta, ddtheta, x),
+                    Quantity::ForwardDynamics => robot.forward_dynamics_batch(theta, dtheta, tau, x),
+                    Quantity::MassMatrix => robot.mass_matrix_batch(theta, a),
+                    Quantity::CoriolisMatrix => robot.batch().coriolis_matrix(theta, dtheta, a),
+                    Quantity::BiasForces => robot.bias_forces_batch(theta, dtheta, x),
+                    Quantity::InverseDynamicsDerivatives => {
+                        robot.inverse_dynamics_derivatives_batch(theta, dtheta, ddtheta, a, b, c)
+                    }
+                    Quantity::ForwardDynamicsDerivatives => {
+                        robot.forward_dynamics_derivatives_batch(theta, dtheta, tau, x, a, b, c)
+                    }
+                };
+            }
+        };
         match quantity {
             Quantity::InverseDynamics => batch.inverse_dynamics(theta, dtheta, ddtheta, around, x),
             Quantity::ForwardDynamics => batch.forward_dynamics(theta, dtheta, tau, around, x),
@@ -56,17 +100,21 @@ impl<'a> Batched<'a> {
 
 impl Contestant for Batched<'_> {
     fn algorithms(&self) -> Vec<(Quantity, String)> {
-        Quantity::ALL.iter().map(|&quantity| (quantity, String::new())).collect()
+        self.quantities.iter().map(|&(quantity, _)| (quantity, String::new())).collect()
+    }
+
+    fn flops(&self, algorithm: usize) -> Option<usize> {
+        self.quantities[algorithm].1
     }
 
     fn run(&mut self, algorithm: usize) {
-        let result = self.evaluate(Quantity::ALL[algorithm]);
+        let result = self.evaluate(self.quantities[algorithm].0);
         black_box((&mut self.vectors, &mut self.matrices));
         result.expect("states that were computed before"); // `result` found their errors
     }
 
     fn result(&mut self, algorithm: usize, state: usize) -> Result<Vec<f64>, String> {
-        let quantity = Quantity::ALL[algorithm];
+        let quantity = self.quantities[algorithm].0;
         if state == 0 {
             self.evaluate(quantity).map_err(|error| error.to_string())?; // of all states
         }

@@ -151,14 +151,16 @@ mod tests {
     #[test]
     fn a_mark_stands_at_its_ratio() {
         let column = |name: &str| Column { name: name.into(), width: None, difference: 0.0 };
-        let time = |least| Some(Time { algorithm: String::new(), least, median: least });
+        let time = |least| Some(Time { algorithm: String::new(), least, median: least, flops: None });
         let row = Row {
             quantity: Quantity::MassMatrix,
             count: Count::default(),
             times: vec![time(100.0), time(200.0), None],
         };
         let columns = vec![column("mozzi"), column("a & b"), column("c")];
-        let text = svg(&[Table { robot: "arm".into(), n: 6, states: 1, rounds: 1, columns, rows: vec![row] }]);
+        let rows = vec![row];
+        let text =
+            svg(&[Table { robot: "arm".into(), n: 6, states: 1, rounds: 1, to_first_result: None, columns, rows }]);
         assert!(text.contains("a &amp; b") && !text.contains(" & "), "{text}");
         assert_eq!(text.matches("<polygon").count(), 2, "the first one's in the legend and in the panel: {text}");
         assert!(text.contains("points=\"505.0,"), "twice as long is at the right end of 1 to 2: {text}");

@@ -13,6 +13,10 @@ pub trait Contestant {
     fn algorithms(&self) -> Vec<(Quantity, String)>;
     /// The k-th algorithm at all states.
     fn run(&mut self, algorithm: usize);
+    /// The flops of its own program, where it has one; else the kernels' are counted.
+    fn flops(&self, _algorithm: usize) -> Option<usize> {
+        None
+    }
     /// Its result at one state in mozzi's conventions, matrices by rows.
     fn result(&mut self, algorithm: usize, state: usize) -> Result<Vec<f64>, String>;
 }
@@ -27,7 +31,7 @@ pub struct Entry<'a> {
 
 /// All that can hold this robot; the first is mozzi at one state, which gives the reference and the unit.
 pub fn all<'a>(name: &str, model: &'a Model, states: &'a States, peers: &'a [Peer]) -> Result<Vec<Entry<'a>>, String> {
-    let mut entries = mozzi_ways::all(model, states);
+    let mut entries = mozzi_ways::all(model, states)?;
     for peer in peers {
         if let Some(robot) = peer.robot(name, model, states)? {
             entries.push(Entry { name: peer.name.clone(), width: None, contestant: Box::new(robot) });

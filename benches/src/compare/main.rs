@@ -5,6 +5,7 @@
 mod arguments;
 mod batch;
 mod chart;
+mod compiled;
 mod contestant;
 mod convention;
 mod count;

@@ -1,6 +1,7 @@
 //! mozzi's ways to compute: each is one entry of the list.
 
 use crate::batch::Batched;
+use crate::compiled;
 use crate::contestant::{Contestant, Entry};
 use crate::peak::Width;
 use crate::quantity::Quantity;
@@ -11,20 +12,26 @@ use mozzi_benches::{State, States};
 use std::hint::black_box;
 
 /// All of them; the first is the unit of the tables.
-pub fn all<'a>(model: &'a Model, states: &'a States) -> Vec<Entry<'a>> {
+pub fn all<'a>(model: &'a Model, states: &'a States) -> Result<Vec<Entry<'a>>, String> {
     let one = |name: &str, workspace| {
         let contestant = Box::new(OneState::new(model, states, workspace));
         Entry { name: name.into(), width: Some(Width::Scalar), contestant }
     };
     let mut entries = vec![one("mozzi", Workspace::new(model)), one("portable", Workspace::portable(model))];
     let registers = [(InstructionSet::Avx2, Width::Four), (InstructionSet::Avx512, Width::Eight)];
-    for (set, width) in registers.into_iter().filter(|(set, _)| set.is_available()) {
-        let batched = Batched::new(model, states, set).map(|batched| Box::new(batched) as Box<dyn Contestant>);
-        let entry =
-            batched.map(|contestant| Entry { name: format!("batch {}", set.name()), width: Some(width), contestant });
-        entries.extend(entry);
+    let mut many = |name: &str, set: InstructionSet, width, batched: Option<Batched<'a>>| {
+        let name = format!("{name} {}", set.name());
+        entries.extend(batched.map(|batched| Entry { name, width: Some(width), contestant: Box::new(batched) }));
+    };
+    for (set, width) in registers {
+        many("batch", set, width, Batched::by_kernels(model, states, set));
     }
-    entries
+    for (set, width) in registers {
+        many("compiled", set, width, Batched::by_machine_code(model, states, set));
+    }
+    let contestant = Box::new(compiled::OneState::new(model, states)?);
+    entries.insert(2, Entry { name: "compiled".into(), width: Some(Width::Scalar), contestant });
+    Ok(entries)
 }
 
 /// One state a call.

@@ -1,5 +1,6 @@
 //! One robot: first that all values agree, then everything in turn, again and again.
 
+use crate::compiled;
 use crate::contestant::{self, Entry};
 use crate::count::{Count, count};
 use crate::peak::Width;
@@ -20,6 +21,8 @@ pub struct Time {
     pub algorithm: String,
     pub least: f64,
     pub median: f64,
+    /// Of the column's own program, where it has one.
+    pub flops: Option<usize>,
 }
 
 /// One quantity of one robot.
@@ -44,6 +47,8 @@ pub struct Table {
     pub n: usize,
     pub states: usize,
     pub rounds: usize,
+    /// Milliseconds from the model to the first inverse dynamics by machine code.
+    pub to_first_result: Option<f64>,
     pub columns: Vec<Column>,
     pub rows: Vec<Row>,
 }
@@ -54,6 +59,7 @@ struct Runner {
     algorithm: usize,
     quantity: Quantity,
     name: String,
+    flops: Option<usize>,
     times: Vec<f64>,
 }
 
@@ -65,7 +71,8 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
     let mut runners = Vec::new();
     for (entry, Entry { contestant, .. }) in entries.iter().enumerate() {
         for (algorithm, (quantity, name)) in contestant.algorithms().into_iter().enumerate() {
-            runners.push(Runner { entry, algorithm, quantity, name, times: Vec::new() });
+            let flops = contestant.flops(algorithm);
+            runners.push(Runner { entry, algorithm, quantity, name, flops, times: Vec::new() });
         }
     }
     runners.sort_by_key(|runner| Quantity::ALL.iter().position(|&quantity| quantity == runner.quantity));
@@ -87,7 +94,8 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
         times: (0..entries.len()).map(|entry| fastest(&runners, entry, quantity)).collect(),
     });
     let rows = Vec::from(rows);
-    Ok(Table { robot: title.into(), n: model.n(), states: states.count(), rounds, columns, rows })
+    let to_first_result = compiled::to_first_result(model, &states);
+    Ok(Table { robot: title.into(), n: model.n(), states: states.count(), rounds, to_first_result, columns, rows })
 }
 
 /// The columns, once every algorithm gave the first one's numbers at every state.
@@ -131,7 +139,8 @@ fn fastest(runners: &[Runner], entry: usize, quantity: Quantity) -> Option<Time>
     let times = mine.map(|runner| {
         let mut sorted = runner.times.clone();
         sorted.sort_by(f64::total_cmp);
-        Time { algorithm: runner.name.clone(), least: sorted[0], median: sorted[sorted.len() / 2] }
+        let (algorithm, flops) = (runner.name.clone(), runner.flops);
+        Time { algorithm, least: sorted[0], median: sorted[sorted.len() / 2], flops }
     });
     times.min_by(|a, b| a.least.total_cmp(&b.least))
 }

@@ -27,10 +27,16 @@ pub fn text(
     let peaks_text = peaks.iter().map(peak).collect::<Vec<_>>().join("; ");
     line(&mut text, &format!("- Peak, measured, in flops a nanosecond, a fused multiply-add being two: {peaks_text}."));
     text += "\n![Times of the peers over mozzi's](results.svg)\n";
-    text += "\n## The fastest library's time over mozzi's\n";
-    fastest_peers(&mut text, tables, false);
-    text += "\n## The time of C generated for the one robot, over mozzi's\n";
-    fastest_peers(&mut text, tables, true);
+    for (title, is_generated) in
+        [("The fastest library's time", false), ("The time of C generated for the one robot", true)]
+    {
+        line(&mut text, &format!("\n## {title} over mozzi's"));
+        for (column, way) in WAYS {
+            line(&mut text, &format!("\n{way}:"));
+            fastest_peers(&mut text, tables, is_generated, column);
+        }
+    }
+    first_results(&mut text, tables);
     for table in tables {
         robot(&mut text, table, peaks);
     }
@@ -56,7 +62,8 @@ fn how() -> String {
   Where a library has several algorithms for a quantity, the fastest is quoted.
 - Nanoseconds for one state: least of all rounds / median. In bold the time over mozzi's, least over least; behind it median over median.
 - mozzi: {rustc}, release profile, no flags: `mozzi::native` finds FMA when it runs; portable is the same source
-  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows.
+  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows; compiled is `mozzi_codegen`, machine code
+  made for the one robot when the program runs, where it is not longer than the instruction cache.
 "
     )
 }
@@ -64,8 +71,18 @@ fn how() -> String {
 /// What is written for one robot, and no library that takes any.
 const GENERATED: &str = "CasADi";
 
-/// Of each robot and quantity the fastest of the peers over mozzi, libraries or generated code.
-fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool) {
+/// The columns of ours that the peers are set against.
+const WAYS: [(&str, &str); 6] = [
+    ("mozzi", "One state a call"),
+    ("compiled", "One state a call, compiled"),
+    ("batch avx2", "Many states, AVX2"),
+    ("batch avx512", "Many states, AVX-512"),
+    ("compiled avx2", "Many states, compiled, AVX2"),
+    ("compiled avx512", "Many states, compiled, AVX-512"),
+];
+
+/// Of each robot and quantity the fastest of the peers over one of ours, libraries or generated code.
+fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool, ours: &str) {
     let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
     line(text, &format!("\n| | {} |", head.join(" | ")));
     line(text, &format!("|---|{}", "---|".repeat(tables.len())));
@@ -76,7 +93,8 @@ fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool) {
             let columns = table.columns.iter().zip(&row.times);
             let peers = columns.filter(|(c, _)| c.width.is_none() && (c.name == GENERATED) == is_generated);
             let timed = peers.filter_map(|(column, time)| Some((&column.name, time.as_ref()?)));
-            match (timed.min_by(|a, b| a.1.least.total_cmp(&b.1.least)), &row.times[0]) {
+            let unit = table.columns.iter().position(|column| column.name == ours).and_then(|k| row.times[k].as_ref());
+            match (timed.min_by(|a, b| a.1.least.total_cmp(&b.1.least)), unit) {
                 (Some((_, time)), Some(unit)) if is_generated => ratio(time, unit),
                 (Some((name, time)), Some(unit)) => format!("{} {name}", ratio(time, unit)),
                 _ => "–".into(),
@@ -89,6 +107,13 @@ fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool) {
 /// How many times as long: of the least / of the medians.
 fn ratio(time: &Time, unit: &Time) -> String {
     format!("**{:.2}** / {:.2}", time.least / unit.least, time.median / unit.median)
+}
+
+/// How soon machine code answers.
+fn first_results(text: &mut String, tables: &[Table]) {
+    *text += "\nFrom the model to its first inverse dynamics by machine code, the least of a few: ";
+    let of = |table: &Table| Some(format!("{} {:.2} ms", table.robot, table.to_first_result?));
+    line(text, &format!("{}.", tables.iter().filter_map(of).collect::<Vec<_>>().join(", ")));
 }
 
 fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
@@ -133,7 +158,9 @@ fn nanoseconds(x: f64) -> String {
 fn shares(table: &Table, row: &Row, peaks: &[(Width, Option<f64>)]) -> String {
     let ours = table.columns.iter().zip(&row.times).filter_map(|(column, time)| {
         let peak = peaks.iter().find(|(width, _)| Some(*width) == column.width)?.1?;
-        Some(format!("{:.0} %", 100.0 * row.count.flops() as f64 / time.as_ref()?.least / peak))
+        let time = time.as_ref()?;
+        let flops = time.flops.unwrap_or(row.count.flops() as usize);
+        Some(format!("{:.0} %", 100.0 * flops as f64 / time.least / peak))
     });
     ours.collect::<Vec<_>>().join(", ")
 }
@@ -145,7 +172,7 @@ fn operations(text: &mut String, tables: &[Table]) {
 What the kernels' source asks for at one state, counted by running it on a number that counts: sums + products + fused multiply-adds +
 divisions and roots, (sines and cosines). Flops are all of them, a fused one twice, sines and cosines not at all. A compiler fuses no
 more and leaves out what multiplies by a constant 0 or 1. Of the peak: flops over time over the peak of the
-instructions that a way runs on, for each of mozzi's columns.
+instructions that a way runs on, for each of mozzi's columns; of compiled ones the flops of the robot's own program, with its sines.
 
 ";
     let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();

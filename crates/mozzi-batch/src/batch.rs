@@ -5,6 +5,7 @@ use crate::columns::{Layout, place};
 use crate::instruction_set::{Entry, InstructionSet, Number, OnLanes, choose};
 use crate::lanes::Lane;
 use crate::quantity::Quantity;
+use crate::shelf::Shelf;
 use crate::threads::Threads;
 use crate::{Error, Surroundings};
 use mozzi::{Environment, FrameId, Model, Wrench};
@@ -24,6 +25,8 @@ pub struct Batch<T: Number = f64> {
     set: InstructionSet,
     layout: Layout,
     threads: Threads,
+    /// Workers of earlier calls.
+    shelf: Shelf,
 }
 
 impl Batch {
@@ -42,6 +45,7 @@ impl<T: Number> Batch<T> {
             set: InstructionSet::best(),
             layout: Layout::Rows,
             threads: Threads::All,
+            shelf: Shelf::default(),
         }
     }
 
@@ -281,8 +285,9 @@ impl<T: Number, Q: Quantity> OnLanes<T, Q> for Run<'_, '_, T, Q> {
         let model = &*self.batch.constants;
         let suspects = self.batch.threads.map(
             self.chunks,
-            || Worker::<L>::new(model),
-            |worker, chunk| {
+            || self.batch.shelf.lend::<Worker<L>>(),
+            |lent, chunk| {
+                let worker = lent.get(|| Worker::new(model));
                 entry(self.quantity, model, worker, chunk);
                 core::mem::take(&mut worker.suspects)
             },

@@ -4,7 +4,7 @@ use crate::lanes::Lane;
 use crate::quantity::{Memory, Quantity};
 use crate::{Batch, Error, Number, Surroundings};
 use mozzi::scalar::Float;
-use mozzi::{Environment, Model, Scalar, Vec3};
+use mozzi::{Environment, Model, Vec3};
 
 /// What computes a block of states by its own means: as many as a register holds ([`Batch::lanes`](crate::Batch::lanes)), column by
 /// column, the states of a column side by side.
@@ -22,19 +22,10 @@ impl<K: BlockKernel> Quantity for External<'_, K> {
         _: &Model<L::Number>,
         input: &[L],
         _: &Environment<L>,
-        memory: &mut Memory<L>,
+        _: &mut Memory<L>,
         output: &mut [L],
     ) {
-        let numbers = &mut memory.numbers;
-        numbers.resize((input.len() + output.len()) * L::WIDTH, L::Number::zero());
-        let (given, found) = numbers.split_at_mut(input.len() * L::WIDTH);
-        for (x, to) in input.iter().zip(given.chunks_exact_mut(L::WIDTH)) {
-            x.store(to);
-        }
-        self.0.evaluate(given, found);
-        for (x, from) in output.iter_mut().zip(found.chunks_exact(L::WIDTH)) {
-            *x = L::load(from);
-        }
+        self.0.evaluate(L::numbers(input), L::numbers_mut(output));
     }
 }
 

@@ -76,7 +76,7 @@ impl<L: Lane> Worker<L> {
             q.evaluate(model, &input[..own], &Environment { applied, ..around }, memory, output);
             if Q::PIVOTS {
                 look_at_pivots(memory.workspace.pivots(), chunk.first + first, rows, suspects);
-                if let Some(task) = &memory.task {
+                if let Some((_, task)) = &memory.task {
                     look_at_pivots(&task.pivots, chunk.first + first, rows, suspects);
                 }
             }

@@ -15,8 +15,11 @@ pub enum Layout {
 }
 
 /// Where a number of a state stands in a table of `width` numbers a state, in blocks of `lanes`; rows are blocks of one.
+/// `lanes` is a power of two: shifts, since a division takes as long as a register's arithmetic for a whole link.
+#[inline(always)]
 pub(crate) fn place(state: usize, column: usize, width: usize, lanes: usize) -> usize {
-    (state / lanes * width + column) * lanes + state % lanes
+    let places = lanes.trailing_zeros();
+    (((state >> places) * width + column) << places) + (state & (lanes - 1))
 }
 
 /// A square of WIDTH registers, its rows and columns exchanged: each of log₂ WIDTH perfect shuffles turns the address of a number

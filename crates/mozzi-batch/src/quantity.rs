@@ -32,10 +32,8 @@ pub(crate) struct Memory<L: Lane> {
     pub columns: Vec<Twist<L>>,
     /// n of them.
     pub zeros: Vec<L>,
-    /// Of task-space dynamics, from its first call on.
-    pub task: Option<TaskMemory<L>>,
-    /// A block's numbers, for what is computed elsewhere.
-    pub numbers: Vec<L::Number>,
+    /// Of task-space dynamics, with its rows, from the first call on.
+    pub task: Option<(usize, TaskMemory<L>)>,
 }
 
 impl<L: Lane> Memory<L> {
@@ -44,7 +42,6 @@ impl<L: Lane> Memory<L> {
             workspace: Workspace::new(model),
             columns: vec![Twist::zero(); model.n()],
             zeros: vec![L::zero(); model.n()],
-            numbers: Vec::new(),
             task: None,
         }
     }
@@ -214,7 +211,10 @@ impl Quantity for TaskSpaceDynamics<'_> {
     ) {
         let (task, k) = (self.0, self.0.rows.len());
         let (theta, dtheta) = input.split_at(model.nq());
-        let own = memory.task.get_or_insert_with(|| TaskMemory::new(model, k));
+        if memory.task.as_ref().is_none_or(|(rows, _)| *rows != k) {
+            memory.task = None;
+        }
+        let (_, own) = memory.task.get_or_insert_with(|| (k, TaskMemory::new(model, k)));
         let (Lambda, eta) = output.split_at_mut(k * k);
         kernel::task_space_dynamics(model, theta, dtheta, task, environment, &mut memory.workspace, own, Lambda, eta);
     }

@@ -1,6 +1,6 @@
 //! The compiled robot at many states: its machine code in the place of a batch's kernels.
 
-use crate::compiled::{Compiled, are_regular};
+use crate::compiled::{Compiled, is_regular};
 use crate::jit::Kernel;
 use crate::quantity::Quantity;
 use mozzi::scalar::Float;
@@ -66,17 +66,17 @@ impl Compiled {
         let widths: Vec<usize> = inputs.iter().map(|(name, _)| width(name)).collect();
         // all of them a state and lane: the batch says which table is of a wrong length
         let states = inputs[0].1.len() / nq.max(1);
-        let has_pivots = machine.lengths.len() > outputs.len();
-        let (mut pivots, mut squares) = (vec![0.0; if has_pivots { n * states } else { 0 }], vec![0.0; states]);
+        let has_pivots = machine.lane_lengths.len() > outputs.len();
+        let (mut pivots, mut squares) = (vec![0.0; if has_pivots { 2 * states } else { 0 }], vec![0.0; states]);
         let mut tables: Vec<(&'static str, &mut [f64], usize)> = outputs
             .iter_mut()
-            .zip(&machine.lengths)
+            .zip(&machine.lane_lengths)
             .map(|((name, table), &width)| (*name, &mut **table, width))
             .collect();
-        tables.extend(has_pivots.then_some(("pivots", &mut pivots[..], n)));
+        tables.extend(has_pivots.then_some(("pivots", &mut pivots[..], 2)));
         tables.push(("squares", &mut squares, 1));
         let given: Vec<_> = inputs.iter().zip(&widths).map(|(&(name, table), &width)| (name, table, width)).collect();
-        let block = Block { kernel, inputs: &widths, outputs: &machine.lengths };
+        let block = Block { kernel, inputs: &widths, outputs: &machine.lane_lengths };
         self.batch.run_kernel(&block, &given, tables)?;
 
         let place = self.places();
@@ -84,8 +84,8 @@ impl Compiled {
             (0..width).map(|column| table[place(width, state, column)]).collect()
         };
         for index in 0..states {
-            let is_regular = !has_pivots || are_regular(&of(&pivots, n, index));
-            if kernel.is_exact(squares[index]) && is_regular {
+            let pivot = |k| pivots[place(2, index, k)];
+            if kernel.is_exact(squares[index]) && (!has_pivots || is_regular(pivot(0), pivot(1))) {
                 continue;
             }
             let mut k = 0;

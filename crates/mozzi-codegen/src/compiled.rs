@@ -26,9 +26,11 @@ pub struct Compiled {
 pub(crate) struct Machine {
     quantity: Quantity,
     one: Result<Kernel, Refusal>,
-    pub lanes: Result<Kernel, Refusal>,
     /// The lengths of its outputs.
-    pub lengths: Vec<usize>,
+    lengths: Vec<usize>,
+    pub lanes: Result<Kernel, Refusal>,
+    /// The same, pivots condensed to two numbers.
+    pub lane_lengths: Vec<usize>,
 }
 
 /// The machine code of these quantities of a robot. About a quarter of a millisecond for an arm's inverse dynamics.
@@ -50,19 +52,24 @@ pub(crate) struct Machine {
 /// # Errors
 /// [`Error::BadArgument`] for a frame of another model.
 pub fn compile(model: &Model, quantities: &[Quantity]) -> Result<Compiled, Error> {
-    quantities.iter().filter_map(|quantity| quantity.frame()).try_for_each(|frame| model.check_frame(frame))?;
-    let batch = Batch::new(model);
-    let lanes = if batch.instruction_set() == InstructionSet::Avx512 { Shape::EightF64 } else { Shape::FourF64 };
-    let machine = |&quantity: &Quantity| {
+    Compiled::of(Batch::new(model), quantities)
+}
+
+impl Machine {
+    fn new(model: &Model, quantity: Quantity, set: InstructionSet) -> Self {
         let program = quantity.record(model, LeftOpen::default());
-        Machine {
-            quantity,
-            one: Kernel::new(&program, Shape::OneF64),
-            lanes: Kernel::new(&program, lanes),
-            lengths: program.outputs().iter().map(|output| output.values.len()).collect(),
-        }
-    };
-    Ok(Compiled { model: model.clone(), quantities: quantities.iter().map(machine).collect(), batch })
+        let lengths: Vec<usize> = program.outputs().iter().map(|output| output.values.len()).collect();
+        let divides = matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsDerivatives);
+        let pivots = divides.then_some(lengths.len() - 1);
+        let mut lane_lengths = lengths.clone();
+        pivots.into_iter().for_each(|last| lane_lengths[last] = 2);
+        let lanes = match set {
+            InstructionSet::Avx512 => Kernel::condensing(&program, Shape::EightF64, pivots),
+            InstructionSet::Avx2 => Kernel::condensing(&program, Shape::FourF64, pivots),
+            _ => Err(Refusal::Processor),
+        };
+        Machine { quantity, one: Kernel::new(&program, Shape::OneF64), lengths, lanes, lane_lengths }
+    }
 }
 
 /// What computes a quantity.
@@ -92,6 +99,17 @@ fn engine(kernel: Option<&Result<Kernel, Refusal>>) -> Engine {
 }
 
 impl Compiled {
+    /// Many states as this batch has them: its instructions, its threads, its layout. See [`compile`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of(batch: Batch, quantities: &[Quantity]) -> Result<Self, Error> {
+        let model = batch.model().clone();
+        quantities.iter().filter_map(|quantity| quantity.frame()).try_for_each(|frame| model.check_frame(frame))?;
+        let machine = |&quantity: &Quantity| Machine::new(&model, quantity, batch.instruction_set());
+        Ok(Compiled { quantities: quantities.iter().map(machine).collect(), model, batch })
+    }
+
     /// The robot.
     pub fn model(&self) -> &Model {
         &self.model
@@ -287,7 +305,11 @@ impl Compiled {
 }
 
 /// Far from a singular matrix; nearer, the model's method looks again.
-pub(crate) fn are_regular(pivots: &[f64]) -> bool {
-    let largest = pivots.iter().fold(0.0_f64, |m, &d| m.max(d));
-    pivots.iter().all(|&d| d > 1e-8 * largest && d.is_finite())
+fn are_regular(pivots: &[f64]) -> bool {
+    is_regular(pivots.iter().fold(f64::INFINITY, |m, &d| m.min(d)), pivots.iter().sum())
+}
+
+/// The same of the least pivot and their sum.
+pub(crate) fn is_regular(least: f64, sum: f64) -> bool {
+    least > 1e-8 * sum && sum.is_finite()
 }

@@ -5,7 +5,8 @@
 //! - [`Quantity::record`] a program: `mozzi`'s own kernel, run once on the scalar [`Traced`], without all that the robot's zeros and ones make
 //!   superfluous, every operation once. [`LeftOpen`] tells which numbers of the robot stay inputs. A [`Program`] is printed, read, counted and
 //!   evaluated in any [`Scalar`](mozzi::Scalar).
-//! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C.
+//! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C; [`emit_into`] a folder, for `build.rs`. Without the feature `batch`,
+//!   which build scripts do not need, there is no [`compile`], and nothing of `mozzi-batch` is built.
 //! - [`record`] any computation on scalars, and make a [`Kernel`] of it.
 //!
 //! ```
@@ -24,7 +25,9 @@
 //!
 //! `unsafe` is in one module, with its argument: `jit/executable.rs`.
 
+#[cfg(feature = "batch")]
 mod batch;
+#[cfg(feature = "batch")]
 mod compiled;
 mod count;
 mod emit;
@@ -37,9 +40,10 @@ mod tape;
 mod text;
 mod traced;
 
+#[cfg(feature = "batch")]
 pub use compiled::{Compiled, Engine, compile};
 pub use count::Count;
-pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_programs};
+pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
 pub use function::Function;
 pub use jit::{Kernel, LONGEST_CODE, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};

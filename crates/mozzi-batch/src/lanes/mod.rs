@@ -20,6 +20,10 @@ pub trait Lane: Scalar + Bits + From<Self::Number> + Send + Sync + 'static {
     fn load(from: &[Self::Number]) -> Self;
     /// Into the first numbers of the slice.
     fn store(self, to: &mut [Self::Number]);
+    /// The numbers of registers, one after the other.
+    fn numbers(registers: &[Self]) -> &[Self::Number];
+    /// Likewise, to be written.
+    fn numbers_mut(registers: &mut [Self]) -> &mut [Self::Number];
     /// (a₀ b₀ a₁ b₁ …), the first register of it and the second.
     fn zip(self, other: Self) -> (Self, Self);
     /// The smaller ones; of a NaN, either.

@@ -97,6 +97,14 @@ impl<T: Float + Bits<Number = T>, const W: usize> Lane for Portable<T, W> {
     fn store(self, to: &mut [T]) {
         to[..W].copy_from_slice(&self.0);
     }
+    fn numbers(registers: &[Self]) -> &[T] {
+        // SAFETY: the type is a transparent array.
+        unsafe { core::slice::from_raw_parts(registers.as_ptr().cast(), registers.len() * W) }
+    }
+    fn numbers_mut(registers: &mut [Self]) -> &mut [T] {
+        // SAFETY: likewise; the borrow is exclusive.
+        unsafe { core::slice::from_raw_parts_mut(registers.as_mut_ptr().cast(), registers.len() * W) }
+    }
     #[inline(always)]
     fn zip(self, other: Self) -> (Self, Self) {
         let of = |k: usize| if k.is_multiple_of(2) { self.0[k / 2] } else { other.0[k / 2] };

@@ -88,6 +88,16 @@ macro_rules! register {
                 unsafe { $store(to.as_mut_ptr(), self.0) }
             }
             #[inline(always)]
+            fn numbers(registers: &[Self]) -> &[$number] {
+                // a register is its numbers in their order, at least as aligned, and any bits are numbers
+                unsafe { core::slice::from_raw_parts(registers.as_ptr().cast(), registers.len() * $width) }
+            }
+            #[inline(always)]
+            fn numbers_mut(registers: &mut [Self]) -> &mut [$number] {
+                // likewise; the borrow is exclusive
+                unsafe { core::slice::from_raw_parts_mut(registers.as_mut_ptr().cast(), registers.len() * $width) }
+            }
+            #[inline(always)]
             fn zip(self, other: Self) -> (Self, Self) {
                 let (low, high) = unsafe {
                     let ($a, $b) = (self.0, other.0);

@@ -161,9 +161,10 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
 
 /// Their paths and lengths.
 fn write(folder: &Path, files: &[SourceFile]) -> Result<Vec<(String, usize)>> {
-    let wrong = |error: std::io::Error| Failure::wrong(format!("{} cannot be written: {error}", folder.display()));
-    std::fs::create_dir_all(folder).map_err(wrong)?;
-    let write = |file: &SourceFile| Ok((file.write(folder).map_err(wrong)?.display().to_string(), file.text.len()));
+    let write = |file: &SourceFile| {
+        let path = file.write(folder).map_err(|error| Failure::wrong(error.to_string()))?;
+        Ok((path.display().to_string(), file.text.len()))
+    };
     files.iter().map(write).collect()
 }
 

@@ -65,14 +65,16 @@ pub struct SourceFile {
 }
 
 impl SourceFile {
-    /// Writes it into a folder, where it does not stand there already: tools that look at times see a change only where there is one.
+    /// Writes it into a folder, which is made; not where it stands there already: tools that look at times see a change only where there is
+    /// one.
     ///
     /// # Errors
-    /// The system's.
-    pub fn write(&self, folder: &Path) -> std::io::Result<PathBuf> {
+    /// [`EmitError::Write`].
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, EmitError> {
         let path = folder.join(&self.name);
         if std::fs::read(&path).ok().as_deref() != Some(self.text.as_bytes()) {
-            std::fs::write(&path, &self.text)?;
+            let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&path, &self.text));
+            written.map_err(|error| EmitError::Write(path.clone(), error))?;
         }
         Ok(path)
     }
@@ -89,6 +91,8 @@ pub enum EmitError {
     Function(Function, Language),
     /// A constant that is no number of this precision.
     Constant(f64, Precision),
+    /// A folder or file that cannot be written.
+    Write(PathBuf, std::io::Error),
 }
 
 impl fmt::Display for EmitError {
@@ -99,6 +103,7 @@ impl fmt::Display for EmitError {
             EmitError::Function(function, language) => {
                 write!(f, "{function}: {language:?} has none without its standard library, expected C or CUDA")
             }
+            EmitError::Write(path, error) => write!(f, "{} cannot be written: {error}", path.display()),
             EmitError::Constant(x, precision) => write!(f, "a constant is {x:?}, expected a finite {precision:?}"),
         }
     }
@@ -147,6 +152,22 @@ pub fn emit(
     }
     let about = describe::robot(model, open, precision);
     files(&model.description().name, about, functions, language, precision)
+}
+
+/// [`emit`] into a folder. In a project's `build.rs` that is `OUT_DIR`, from which `include!` takes the text, so that it is written anew from
+/// the robot's file at every build; `examples/panda_controller` is such a project.
+///
+/// # Errors
+/// [`EmitError`].
+pub fn emit_into(
+    folder: &Path,
+    model: &Model,
+    quantities: &[Quantity],
+    open: LeftOpen,
+    language: Language,
+    precision: Precision,
+) -> Result<Vec<PathBuf>, EmitError> {
+    emit(model, quantities, open, language, precision)?.iter().map(|file| file.write(folder)).collect()
 }
 
 /// The text of programs, each a function of its own name; `name` is the file's. See [`emit`] for robots.

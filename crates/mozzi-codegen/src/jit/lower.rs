@@ -12,6 +12,17 @@ pub(crate) struct Lowered {
     pub outputs: Vec<Vec<Value>>,
 }
 
+impl Lowered {
+    /// Operations in floating point, a product with a sum being two.
+    pub fn flops(&self) -> usize {
+        let work = |node: &Node| match node {
+            Node::Apply(operation, _) if !operation.is_of_bits() => operation.arity().saturating_sub(1).max(1),
+            _ => 0,
+        };
+        self.nodes.iter().map(work).sum()
+    }
+}
+
 /// Nodes in the making, of `f64` or of `f32`.
 pub(crate) struct Builder {
     pub is_f64: bool,
@@ -62,8 +73,9 @@ impl Builder {
     }
 }
 
-/// None where the program has a function that there is no machine code for: tanh.
-pub(crate) fn lower(program: &Program, is_f64: bool) -> Option<Lowered> {
+/// None where the program has a function that there is no machine code for: tanh. In the place of the output `condensed` stand its least
+/// entry and the sum of its entries, which is not finite where an entry is not.
+pub(crate) fn lower(program: &Program, is_f64: bool, condensed: Option<usize>) -> Option<Lowered> {
     let mut builder = Builder { is_f64, nodes: Vec::with_capacity(2 * program.steps.len()), constants: HashMap::new() };
     let mut place: Vec<Value> = Vec::with_capacity(program.steps.len());
     let mut angles: HashMap<u32, (Value, Value)> = HashMap::new();
@@ -110,6 +122,16 @@ pub(crate) fn lower(program: &Program, is_f64: bool) -> Option<Lowered> {
     }
     let of = |values: &Vec<u32>| values.iter().map(|&value| place[value as usize]).collect();
     let mut outputs: Vec<Vec<Value>> = program.outputs.iter().map(|output| of(&output.values)).collect();
+    for output in outputs.iter_mut().skip(condensed.unwrap_or(usize::MAX)).take(1) {
+        let by = |builder: &mut Builder, operation| {
+            output
+                .iter()
+                .copied()
+                .reduce(|a, b| builder.apply(operation, [a, b]))
+                .unwrap_or_else(|| builder.constant(0.0))
+        };
+        *output = vec![by(&mut builder, Operation::Min), by(&mut builder, Operation::Add)];
+    }
     outputs.push(vec![squares]);
     Some(Lowered { nodes: builder.nodes, outputs })
 }

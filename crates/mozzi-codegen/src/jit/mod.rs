@@ -56,6 +56,7 @@ pub struct Kernel {
     code_bytes: usize,
     instructions: usize,
     frame_bytes: usize,
+    flops: usize,
 }
 
 impl Kernel {
@@ -64,12 +65,18 @@ impl Kernel {
     /// # Errors
     /// [`Refusal`] with the reason why there is none.
     pub fn new(program: &Program, shape: Shape) -> Result<Self, Refusal> {
+        Self::condensing(program, shape, None)
+    }
+
+    /// Likewise; in the place of one output stand its least entry and the sum of its entries.
+    pub(crate) fn condensing(program: &Program, shape: Shape, output: Option<usize>) -> Result<Self, Refusal> {
         if !shape.is_supported() {
             return Err(Refusal::Processor);
         }
-        let lowered = lower::lower(program, shape.is_f64()).ok_or(Refusal::Program)?;
+        let lowered = lower::lower(program, shape.is_f64(), output).ok_or(Refusal::Program)?;
         let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
         let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
+        let flops = lowered.flops();
         let code = allocate::allocate(shape, &lowered, &inputs).ok_or(Refusal::Program)?;
         if code.bytes.len() > LONGEST_CODE {
             return Err(Refusal::Long);
@@ -77,7 +84,7 @@ impl Kernel {
         let largest = if shape.is_f64() { f64::LARGEST } else { f32::LARGEST.into() };
         let executable = Executable::new(shape, &code, &inputs, &outputs).ok_or(Refusal::Memory)?;
         let (code_bytes, instructions, frame_bytes) = (code.bytes.len(), code.instructions, code.frame);
-        Ok(Kernel { executable, shape, angle_limit: largest * largest, code_bytes, instructions, frame_bytes })
+        Ok(Kernel { executable, shape, angle_limit: largest * largest, code_bytes, instructions, frame_bytes, flops })
     }
 
     /// The registers and numbers that it works on.
@@ -93,6 +100,11 @@ impl Kernel {
     /// How many instructions, loads and stores among them.
     pub fn instructions(&self) -> usize {
         self.instructions
+    }
+
+    /// Operations in floating point at one state, those of the sines among them; a product with a sum is two.
+    pub fn flops(&self) -> usize {
+        self.flops
     }
 
     /// The memory for what registers could not hold, in bytes.
