@@ -31,7 +31,8 @@ def tables(draw):
     shape, dtype = draw(shapes), draw(dtypes)
     array = np.zeros(shape, dtype)
     if array.dtype.kind == "f" and array.size:
-        array[...] = draw(st.sampled_from([0.0, 1.0, -2.5, np.nan, np.inf, 1e300, 1e-320]))
+        with np.errstate(over="ignore"):
+            array[...] = draw(st.sampled_from([0.0, 1.0, -2.5, np.nan, np.inf, 1e300, 1e-320]))
     way = draw(st.integers(0, 6))
     if way == 1:
         array = np.asfortranarray(array)
