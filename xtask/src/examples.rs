@@ -4,7 +4,7 @@ use crate::command;
 use crate::oracles;
 use crate::package;
 use crate::report::Outcome;
-use crate::workspace::Workspace;
+use crate::workspace::{FEATURES, Workspace};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ pub type Programs = BTreeMap<String, PathBuf>;
 /// Those of the whole workspace, in the profile in which `cargo test` has just built them: nothing is built twice.
 pub fn build(workspace: &Workspace, programs: &mut Programs) -> Outcome {
     let arguments = ["build", "--quiet", "--workspace", "--examples", "--profile", "test", "--message-format", "json"];
-    let messages = match command::output(workspace.cargo(&arguments)) {
+    let messages = match command::output(workspace.cargo(&arguments).args(FEATURES)) {
         Ok((true, messages)) => messages,
         Ok((false, _)) => return Outcome::Failed("cargo build --workspace --examples failed".into()),
         Err(why) => return Outcome::Failed(why),

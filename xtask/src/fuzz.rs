@@ -2,9 +2,10 @@
 
 use crate::command;
 use crate::report::Outcome;
-use crate::workspace::Workspace;
+use crate::workspace::{FEATURES, Workspace};
 
 pub fn run(workspace: &Workspace) -> Outcome {
     // Of the whole workspace, as the tests before: fewer packages would ask for fewer features, and everything would be built again.
-    command::outcome(workspace.cargo(&["test", "--workspace", "--test", "fuzz", "--", "--ignored", "--nocapture"]))
+    let mut cargo = workspace.cargo(&["test", "--workspace", "--test", "fuzz"]);
+    command::outcome(cargo.args(FEATURES).args(["--", "--ignored", "--nocapture"]))
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | bench | wheel`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | page | bench | wheel`: what CI runs, anyone can run.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -16,6 +16,7 @@ mod metadata;
 mod no_std;
 mod oracles;
 mod package;
+mod page;
 mod report;
 mod source_text;
 mod spdx;
@@ -36,6 +37,8 @@ usage: cargo xtask COMMAND
           the Python package, a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   docs    write the pages of docs/ anew; `test` holds them current
+  page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` sees whether that was done
+          --check                                     build it elsewhere and compare
   bench   beside Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
           --robots ur5,panda,anymal,talos,tree,chain  these alone, into target/bench/RESULTS.md
           --peers pinocchio,mujoco,kdl,dynibo,casadi  these alone, likewise
@@ -52,11 +55,13 @@ fn main() -> ExitCode {
         ["test"] => test(&workspace),
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
+        ["page"] => one("page", || page::write(&workspace)),
+        ["page", "--check"] => one("page", || page::compare(&workspace)),
         ["wheel"] => wheel(&workspace),
-        ["bench", "--python"] => run_benches(|| bench::python(&workspace)),
-        ["bench", "--criterion"] => run_benches(|| bench::criterion(&workspace)),
+        ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
+        ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
-            Ok(options) => run_benches(|| bench::run(&workspace, &options)),
+            Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),
             Err(why) => {
                 eprintln!("bench: {why}\n{USAGE}");
                 ExitCode::from(2)
@@ -78,6 +83,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     let mut count = tests::Count::default();
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
+    report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
     report.step("Python package", || package::test(workspace, &mut count));
     report.step("fuzzing", || fuzz::run(workspace));
@@ -112,8 +118,8 @@ fn check(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
     report.step("clippy", || {
-        let arguments = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
-        command::outcome(workspace.cargo(&arguments))
+        let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
+        command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
     });
     report.step("for build scripts", || {
         let arguments = ["clippy", "--package", "mozzi-codegen", "--no-default-features", "--", "-D", "warnings"];
@@ -130,8 +136,9 @@ fn check(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
-fn run_benches(benches: impl FnOnce() -> report::Outcome) -> ExitCode {
+/// A command of one step.
+fn one(name: &str, step: impl FnOnce() -> report::Outcome) -> ExitCode {
     let mut report = Report::default();
-    report.step("benchmarks", benches);
+    report.step(name, step);
     report.finish()
 }

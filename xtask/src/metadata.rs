@@ -14,7 +14,8 @@ pub struct Dependency {
 
 /// Every one in `Cargo.lock`, whatever the platform; the workspace's own packages left out.
 pub fn dependencies(workspace: &Workspace) -> Result<Vec<Dependency>, String> {
-    let (true, text) = command::output(workspace.cargo(&["metadata", "--format-version", "1"]))? else {
+    let (true, text) = command::output(workspace.cargo(&["metadata", "--all-features", "--format-version", "1"]))?
+    else {
         return Err("`cargo metadata` failed".into());
     };
     let metadata: Value = serde_json::from_str(&text).map_err(|error| format!("`cargo metadata`: {error}"))?;

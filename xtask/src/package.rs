@@ -5,7 +5,7 @@ use crate::command;
 use crate::report::Outcome;
 use crate::tests::{self, Count};
 use crate::venv;
-use crate::workspace::Workspace;
+use crate::workspace::{FEATURES, Workspace};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -36,7 +36,8 @@ pub fn test(workspace: &Workspace, count: &mut Count) -> Outcome {
 
 fn stage(workspace: &Workspace) -> Result<(), String> {
     // built already, with the tests; by itself it would be built once more, with other features of its dependencies
-    put_together(workspace, &folder(workspace), &["test", "--quiet", "--workspace", "--no-run"], "debug")
+    let cargo = [&["test", "--quiet", "--workspace", "--no-run"], &FEATURES[..]].concat();
+    put_together(workspace, &folder(workspace), &cargo, "debug")
 }
 
 /// The package in this folder, its library built by `cargo` with these arguments, in the profile of this name.

@@ -2,9 +2,10 @@
 
 use crate::command;
 use crate::oracles;
+use crate::page;
 use crate::report::Outcome;
 use crate::venv;
-use crate::workspace::Workspace;
+use crate::workspace::{FEATURES, Workspace};
 use std::fmt;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
@@ -66,10 +67,12 @@ impl fmt::Display for Count {
 /// Run every test, whichever fails before it.
 pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     let mut cargo = workspace.cargo(&["test", "--workspace", "--no-fail-fast"]);
+    cargo.args(FEATURES);
     give(&mut cargo, "MOZZI_ORACLES", oracles::folder(workspace));
     give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
     let python = venv::python(workspace);
     give(&mut cargo, "MOZZI_PYTHON", python.is_file().then_some(python));
+    give(&mut cargo, "MOZZI_BROWSER", page::browser());
     run_counted(&mut cargo, count, Count::add)
 }
 

@@ -39,6 +39,11 @@ impl Columns {
         self.values.first().map_or(0, Vec::len)
     }
 
+    /// Each with its name.
+    pub fn into_pairs(self) -> Vec<(String, Vec<f64>)> {
+        self.names.into_iter().zip(self.values).collect()
+    }
+
     pub fn text(&self) -> String {
         let mut text = self.names.join(",") + "\n";
         for row in 0..self.rows() {

@@ -7,12 +7,15 @@ mod commands;
 mod compare;
 mod failure;
 mod json;
+mod log;
 mod numbers;
 mod quantities;
 mod random;
+mod report;
 mod robot;
 mod robot_json;
 mod samples;
+mod serve;
 mod state;
 mod text;
 
@@ -57,6 +60,12 @@ enum Command {
     /// The motion from a state, under torques and a tip wrench
     #[command(after_help = TABLES)]
     Simulate(simulate::SimulateArguments),
+    /// The robot in a browser: a motion with its plots, or a slider for each joint
+    #[command(after_help = TABLES)]
+    View(commands::view::ViewArguments),
+    /// A figure for a paper, SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
+    #[command(after_help = TABLES)]
+    Plot(commands::plot::PlotArguments),
     /// Is the file a robot? All that is wrong or odd, with its place
     Check(check::CheckArguments),
     /// The same robot in another file: URDF, JSON, or Python for NumPy
@@ -92,6 +101,10 @@ Examples:
   mozzi codegen panda --explain                         the work before and after folding
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
+  mozzi simulate ur5 --report fall.html                 the motion as a page: 3-D, plots, one file
+  mozzi plot energy double_pendulum swing.csv --out energy.svg
+  mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
+  mozzi view double_pendulum swing.csv --out swing.html a motion from a table
 
 Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
 F_tip is what the robot applies to the environment, in the end effector's frame.
@@ -161,5 +174,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),
         Some(Command::Explain(arguments)) => explain::run(arguments),
+        Some(Command::Plot(arguments)) => commands::plot::run(arguments),
+        Some(Command::View(arguments)) => commands::view::run(arguments),
     }
 }

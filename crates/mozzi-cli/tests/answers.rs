@@ -25,7 +25,7 @@ fn help_names_every_subcommand_and_gives_examples() {
         assert!(help.contains(&format!("mozzi {name} ")), "an example of {name}");
         assert!(text(&[name, "--help"]).contains("MODEL"));
     }
-    for name in ["convert", "explain", "batch", "bench", "codegen"] {
+    for name in ["convert", "explain", "batch", "bench", "codegen", "view", "plot"] {
         assert!(help.contains(&format!("\n  {name} ")) && help.contains(&format!("mozzi {name} ")), "{name} in {help}");
     }
     assert!(text(&["inverse-dynamics", "--help"]).contains("theta_1 … theta_n"));

@@ -82,6 +82,10 @@ impl Diagnostic {
     pub(crate) fn into_error(self) -> Self {
         Diagnostic { severity: Severity::Error, ..self }
     }
+
+    pub(crate) fn into_warning(self) -> Self {
+        Diagnostic { severity: Severity::Warning, ..self }
+    }
 }
 
 impl fmt::Display for Diagnostic {

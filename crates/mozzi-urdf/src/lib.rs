@@ -14,7 +14,8 @@
 //!   Floating joints inside the tree and ball joints are refused.
 //! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
 //!   namespaces) silent, other unknown ones a warning once per kind.
-//! - A file that xacro has not expanded is an error, with the command that expands it. Meshes are never looked for.
+//! - A file that xacro has not expanded is an error, with the command that expands it. Meshes do not matter to a robot's dynamics: [`geometry`]
+//!   alone looks for them.
 //! - An axis that is not of length 1 is a direction, with a warning beyond 10⁻³; positions stay radians or metres.
 //! - A missing limit is a warning, and no limit; limits do not enter the dynamics.
 //! - An inertia that breaks the triangle inequality is computed as given, with a warning. A negative principal moment is an
@@ -49,6 +50,7 @@ mod error;
 mod explain;
 mod finding;
 mod floating;
+pub mod geometry;
 mod joint;
 mod limit;
 mod link;
@@ -132,13 +134,17 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, LoadError> {
 /// As [`load`].
 pub fn load_with(path: impl AsRef<Path>, policy: Policy) -> Result<Loaded, LoadError> {
     let path = path.as_ref();
+    parse_in(path.parent(), &path.to_string_lossy(), &file_bytes(path)?, policy)
+}
+
+fn file_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
     let mut bytes = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| {
         // one byte more than is accepted, so that a file which is too large is known as such and never read whole
         file.take(bytes::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)
     });
     match read {
-        Ok(_) => parse_in(path.parent(), &path.to_string_lossy(), &bytes, policy),
+        Ok(_) => Ok(bytes),
         Err(source) => Err(LoadError::File { path: path.to_path_buf(), source }),
     }
 }

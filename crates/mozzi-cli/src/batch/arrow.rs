@@ -7,7 +7,7 @@ use crate::samples::{GROUPS, Places};
 use arrow_array::{Array, Float32Array, Float64Array, Int64Array, RecordBatch};
 use arrow_ipc::reader::FileReader;
 use arrow_ipc::writer::FileWriter;
-use arrow_schema::{Field, Schema};
+use arrow_schema::{ArrowError, Field, Schema};
 use mozzi::Model;
 use std::fs::File;
 use std::sync::Arc;
@@ -68,14 +68,19 @@ fn numbers(column: &dyn Array, to: &mut Vec<f64>) -> std::result::Result<(), (Op
 }
 
 /// Columns, each with its name.
-pub fn write<T: Precision>(file: &str, columns: Vec<(String, Vec<T>)>) -> Result<()> {
-    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
+pub fn batch<T: Precision>(columns: Vec<(String, Vec<T>)>) -> std::result::Result<RecordBatch, ArrowError> {
     let (names, arrays): (Vec<String>, Vec<_>) =
         columns.into_iter().map(|(name, values)| (name, T::column(values))).unzip();
     let field = |(name, array): (String, &Arc<dyn Array>)| Field::new(name, array.data_type().clone(), false);
     let schema = Arc::new(Schema::new(names.into_iter().zip(&arrays).map(field).collect::<Vec<_>>()));
-    let batch = RecordBatch::try_new(schema.clone(), arrays).map_err(|error| cannot(&error))?;
+    RecordBatch::try_new(schema, arrays)
+}
+
+/// The same into a file.
+pub fn write<T: Precision>(file: &str, columns: Vec<(String, Vec<T>)>) -> Result<()> {
+    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
+    let batch = batch(columns).map_err(|error| cannot(&error))?;
     let to = File::create(file).map_err(|error| cannot(&error))?;
-    let mut writer = FileWriter::try_new_buffered(to, &schema).map_err(|error| cannot(&error))?;
+    let mut writer = FileWriter::try_new_buffered(to, &batch.schema()).map_err(|error| cannot(&error))?;
     writer.write(&batch).and_then(|()| writer.finish()).map_err(|error| cannot(&error))
 }

@@ -1,9 +1,11 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
-use crate::columns::{Columns, save};
+use crate::columns::Columns;
 use crate::failure::{Failure, Result};
 use crate::json;
+use crate::log;
 use crate::numbers::{WRENCH, array, number};
+use crate::report::{self, MeshArguments};
 use crate::robot::{RobotArguments, Units};
 use crate::samples::{ENERGIES, Samples, first_column};
 use crate::state::StartArguments;
@@ -50,9 +52,15 @@ pub struct SimulateArguments {
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1)]
     record_every: usize,
-    /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n, energies and works
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the motion to a file, by its ending: .csv ("-": standard output), .npy, .npz, .arrow, .feather; .parquet and .mcap where
+    /// the program was built with these features. Columns t, theta_1 … tau_n, energies and works
+    #[arg(long, value_name = "FILE")]
     out: Option<String>,
+    /// Write the motion as a page to look at: the robot in 3-D, plots, one HTML file that needs no network
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<String>,
+    #[command(flatten)]
+    meshes: MeshArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -76,18 +84,24 @@ enum Beyond {
 }
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
+    arguments.out.as_deref().map(log::Format::of).transpose()?; // before the motion, which may take long
     let model = arguments.robot.load()?;
     let (theta, dtheta) = arguments.start.read(&model)?;
     let options = arguments.options()?;
     let input = (arguments.torque(&model)?, arguments.wrench(&model)?);
     let motion = simulate(&model, &theta, &dtheta, input, &options)?;
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
-        save(file, &columns(&model, &motion).text())?;
+        log::write(file, &model, &motion)?;
     }
+    let said =
+        arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &motion, &options)).transpose()?;
     match arguments.out.as_deref() {
         Some("-") => Ok(columns(&model, &motion).text()),
         _ if arguments.robot.json => Ok(json::print(&object(&model, &motion, &options))),
-        file => Ok(page(&model, &motion, &options, &arguments.torque, file)),
+        file => {
+            let said = said.map(|line| line + "\n").unwrap_or_default();
+            Ok(page(&model, &motion, &options, &arguments.torque, file) + &said)
+        }
     }
 }
 
@@ -104,6 +118,13 @@ impl SimulateArguments {
             Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
         };
         Ok(Options { method, friction, record_every: self.record_every, ..Options::with_step(time, step)? })
+    }
+
+    fn write_report(&self, file: &str, model: &Model, motion: &Trajectory, options: &Options) -> Result<String> {
+        let (method, time) = (options.method.name(), scalar(options.duration));
+        let title = format!("{method}, {time} s in {} steps, motors: {}", motion.steps, self.torque);
+        let motion = report::simulated(title, motion, self.wrench(model)?)?;
+        self.meshes.write(file, &self.robot.model, model, Some(&motion))
     }
 
     fn torque<'m>(&self, model: &'m Model) -> Result<Box<dyn Input + 'm>> {
@@ -190,7 +211,7 @@ pub fn columns(model: &Model, motion: &Trajectory) -> Columns {
     columns
 }
 
-fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
+pub fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
     let of = |pick: fn(&simulation::Energy) -> f64| motion.energy.iter().map(pick).collect();
     [of(|e| e.kinetic), of(|e| e.potential), of(|e| e.motor_work), of(|e| e.friction_loss), of(|e| e.applied_work)]
 }

@@ -1,8 +1,8 @@
 //! Registers for a straight line: what is needed last gives way first (Belady 1966), which for equal costs is the best that can be done.
 
-use super::assembler::{Assembler, Operand, Register};
-use super::instruction::{Node, Operation, Value};
-use super::lower::Lowered;
+use super::assembler::{Assembler, Memory, Operand, Register};
+use super::instruction::{Node, Operation, SINES, Value};
+use super::lower::{Lowered, SHAPE_TOGETHER};
 use super::shape::{Encoding, Shape};
 
 const NEVER: u32 = u32::MAX;
@@ -21,38 +21,63 @@ pub(crate) struct Code {
 /// its own than there is.
 pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Option<Code> {
     let mut pool = Vec::new();
-    let repeat = if shape.encoding() == Encoding::Vex { shape.lanes() } else { 1 };
-    let constants: Vec<usize> = lowered
-        .nodes
-        .iter()
-        .map(|node| {
-            let byte = pool.len();
-            if let Node::Constant(bits) = node {
-                (0..repeat).for_each(|_| pool.extend(&bits.to_le_bytes()[..shape.number()]));
-            }
-            byte
-        })
-        .collect();
+    let before = lowered.before.as_deref().map(|before| (before, put_constants(SHAPE_TOGETHER, before, &mut pool)));
+    let constants = put_constants(shape, lowered, &mut pool);
     let lengths = inputs.iter().copied().chain(lowered.outputs.iter().map(Vec::len));
     let mut sizes: Vec<usize> = lengths.map(|length| length * shape.width()).collect();
     sizes.push(pool.len());
     if sizes.len() >= super::assembler::MOST_ARRAYS {
         return None;
     }
-    let mut line = Line::new(shape, lowered, inputs.len(), constants, Assembler::new(shape, &sizes));
-    for place in 0..lowered.nodes.len() {
-        line.step(place);
+    let memory = sizes.len() - 1;
+    let mut assembler = Assembler::new(shape, &sizes);
+    let mut used = 0;
+    if let Some((before, constants)) = before {
+        // what it finds stands at the frame's beginning
+        used = before.outputs[0].len() * SHAPE_TOGETHER.width();
+        let places = Places { constants, pool: memory, first_output: assembler.frame(), stride: shape.number(), used };
+        assembler.set_shape(SHAPE_TOGETHER);
+        assembler = Line::new(SHAPE_TOGETHER, before, places, assembler).code();
+        assembler.set_shape(shape);
     }
-    let (instructions, frame) = (line.assembler.instructions(), line.assembler.frame_bytes());
+    let places = Places { constants, pool: memory, first_output: inputs.len(), stride: shape.width(), used };
+    let assembler = Line::new(shape, lowered, places, assembler).code();
+    let (instructions, frame) = (assembler.instructions(), assembler.frame_bytes());
     let is_small = frame <= super::assembler::LARGEST_FRAME;
-    is_small.then(|| Code { bytes: line.assembler.finish(), pool, instructions, frame })
+    is_small.then(|| Code { bytes: assembler.finish(), pool, instructions, frame })
+}
+
+/// Of each node that is a constant the byte where it stands now.
+fn put_constants(shape: Shape, lowered: &Lowered, pool: &mut Vec<u8>) -> Vec<usize> {
+    let repeat = if shape.encoding() == Encoding::Vex { shape.lanes() } else { 1 };
+    let put = |node: &Node| {
+        let byte = pool.len();
+        if let Node::Constant(bits) = node {
+            (0..repeat).for_each(|_| pool.extend(&bits.to_le_bytes()[..shape.number()]));
+        }
+        byte
+    };
+    lowered.nodes.iter().map(put).collect()
+}
+
+/// Where a line finds what is in memory.
+struct Places {
+    /// Of each constant the byte in the pool.
+    constants: Vec<usize>,
+    /// The array of constants.
+    pool: Memory,
+    /// The first array of outputs.
+    first_output: Memory,
+    /// From one entry of an input to the next, in bytes.
+    stride: usize,
+    /// Bytes of the frame that are not the line's own.
+    used: usize,
 }
 
 struct Line<'p> {
     shape: Shape,
     nodes: &'p [Node],
-    constants: Vec<usize>,
-    pool: usize,
+    places: Places,
     assembler: Assembler,
     /// Of each value the places that need it, in `needs[first[v]..first[v + 1]]`; those before `next[v]` are past.
     needs: Vec<u32>,
@@ -68,13 +93,13 @@ struct Line<'p> {
 }
 
 impl<'p> Line<'p> {
-    fn new(shape: Shape, lowered: &'p Lowered, inputs: usize, constants: Vec<usize>, assembler: Assembler) -> Self {
+    fn new(shape: Shape, lowered: &'p Lowered, places: Places, assembler: Assembler) -> Self {
         let nodes = &lowered.nodes[..];
         let mut outputs = vec![Vec::new(); nodes.len()];
         let mut is_needed = vec![false; nodes.len()];
         for (array, values) in lowered.outputs.iter().enumerate() {
             for (index, &value) in values.iter().enumerate() {
-                outputs[value as usize].push((inputs + array, index));
+                outputs[value as usize].push((places.first_output + array, index));
                 is_needed[value as usize] = true;
             }
         }
@@ -102,8 +127,8 @@ impl<'p> Line<'p> {
         Line {
             shape,
             nodes,
-            constants,
-            pool: inputs + lowered.outputs.len(),
+            slots: places.used / shape.width(),
+            places,
             assembler,
             needs,
             next: first[..nodes.len()].to_vec(),
@@ -113,8 +138,13 @@ impl<'p> Line<'p> {
             held: vec![None; shape.registers()],
             slot: vec![None; nodes.len()],
             free_slots: Vec::new(),
-            slots: 0,
         }
+    }
+
+    /// The assembler with all of it.
+    fn code(mut self) -> Assembler {
+        (0..self.nodes.len()).for_each(|place| self.step(place));
+        self.assembler
     }
 
     /// The place that needs a value next.
@@ -128,11 +158,12 @@ impl<'p> Line<'p> {
         let width = self.shape.width();
         match (self.nodes[value as usize], self.slot[value as usize]) {
             (Node::Constant(_), _) => {
-                let byte = self.constants[value as usize];
+                let (pool, byte) = (self.places.pool, self.places.constants[value as usize]);
                 let is_repeated = self.shape.encoding() == Encoding::Evex;
-                if is_repeated { Operand::Repeated(self.pool, byte) } else { Operand::Lanes(self.pool, byte) }
+                if is_repeated { Operand::Repeated(pool, byte) } else { Operand::Lanes(pool, byte) }
             }
-            (Node::Input(array, index), _) => Operand::Lanes(array as usize, index as usize * width),
+            (Node::Input(SINES, index), _) => Operand::Lanes(self.assembler.frame(), index as usize * width),
+            (Node::Input(array, index), _) => Operand::Lanes(array as usize, index as usize * self.places.stride),
             (_, Some(slot)) => Operand::Lanes(self.assembler.frame(), slot * width),
             (_, None) => unreachable!("value {value} was lost"),
         }

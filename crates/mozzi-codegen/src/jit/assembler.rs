@@ -67,6 +67,11 @@ impl Assembler {
         Assembler { shape, frame: sizes.len() - 1, sizes, body: Vec::new(), instructions: 0 }
     }
 
+    /// What follows works on these registers.
+    pub fn set_shape(&mut self, shape: Shape) {
+        self.shape = shape;
+    }
+
     /// The array of what registers could not hold.
     pub fn frame(&self) -> Memory {
         self.frame

@@ -50,12 +50,15 @@ impl Operation {
     }
 }
 
+/// The array that sines and cosines stand in where they are computed before.
+pub(crate) const SINES: u32 = u32::MAX;
+
 /// A node of the lowered program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Node {
     /// The bits of a number, the same in every lane.
     Constant(u64),
-    /// An entry of an array of the caller.
+    /// An entry of an array of the caller, or of [`SINES`].
     Input(u32, u32),
     Apply(Operation, [Value; 3]),
 }

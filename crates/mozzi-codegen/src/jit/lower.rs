@@ -1,6 +1,7 @@
 //! From a program to what the processor can do.
 
-use super::instruction::{Node, Operation, Value};
+use super::instruction::{Node, Operation, SINES, Value};
+use super::shape::Shape;
 use super::sin_cos::SinCos;
 use crate::function::Function;
 use crate::program::{Program, Step};
@@ -10,7 +11,16 @@ use std::collections::HashMap;
 pub(crate) struct Lowered {
     pub nodes: Vec<Node>,
     pub outputs: Vec<Vec<Value>>,
+    /// What is computed before, in registers of several numbers: the sines and cosines of neighbouring angles of one state. Its inputs are
+    /// [`TOGETHER`] numbers of an array from an entry on; its one output is what [`SINES`] are read from.
+    pub before: Option<Box<Lowered>>,
 }
+
+/// How many angles of one state have their sines computed in one register.
+pub(crate) const TOGETHER: usize = 4;
+
+/// The shape that does it.
+pub(crate) const SHAPE_TOGETHER: Shape = Shape::FourF64;
 
 impl Lowered {
     /// Operations in floating point, a product with a sum being two.
@@ -19,7 +29,8 @@ impl Lowered {
             Node::Apply(operation, _) if !operation.is_of_bits() => operation.arity().saturating_sub(1).max(1),
             _ => 0,
         };
-        self.nodes.iter().map(work).sum()
+        let before = self.before.as_ref().map_or(0, |before| TOGETHER * before.flops());
+        before + self.nodes.iter().map(work).sum::<usize>()
     }
 }
 
@@ -75,7 +86,9 @@ impl Builder {
 
 /// None where the program has a function that there is no machine code for: tanh. In the place of the output `condensed` stand its least
 /// entry and the sum of its entries, which is not finite where an entry is not.
-pub(crate) fn lower(program: &Program, is_f64: bool, condensed: Option<usize>) -> Option<Lowered> {
+pub(crate) fn lower(program: &Program, shape: Shape, condensed: Option<usize>) -> Option<Lowered> {
+    let is_f64 = shape.is_f64();
+    let windows = if shape == Shape::OneF64 { windows(program) } else { Vec::new() };
     let mut builder = Builder { is_f64, nodes: Vec::with_capacity(2 * program.steps.len()), constants: HashMap::new() };
     let mut place: Vec<Value> = Vec::with_capacity(program.steps.len());
     let mut angles: HashMap<u32, (Value, Value)> = HashMap::new();
@@ -108,7 +121,13 @@ pub(crate) fn lower(program: &Program, is_f64: bool, condensed: Option<usize>) -
                             Some(&known) => known,
                             None => {
                                 squares = builder.apply(Operation::MulAdd, [a, a, squares]);
-                                let both = sin_cos.at(&mut builder, a);
+                                let both = match program.steps[angle as usize] {
+                                    Step::Input(array, index) if let Some(sin) = together(&windows, array, index) => {
+                                        let entry = |entry: u32| Node::Input(SINES, entry);
+                                        (builder.push(entry(sin)), builder.push(entry(sin + TOGETHER as u32)))
+                                    }
+                                    _ => sin_cos.at(&mut builder, a),
+                                };
                                 angles.insert(angle, both);
                                 both
                             }
@@ -133,5 +152,50 @@ pub(crate) fn lower(program: &Program, is_f64: bool, condensed: Option<usize>) -
         *output = vec![by(&mut builder, Operation::Min), by(&mut builder, Operation::Add)];
     }
     outputs.push(vec![squares]);
-    Some(Lowered { nodes: builder.nodes, outputs })
+    let before = (!windows.is_empty()).then(|| Box::new(sines(&windows, &sin_cos)));
+    Some(Lowered { nodes: builder.nodes, outputs, before })
+}
+
+/// Where a register's angles begin: array, entry.
+type Window = (u32, u32);
+
+/// Registers of neighbouring inputs that hold all angles, as far as an array is as long as one.
+fn windows(program: &Program) -> Vec<Window> {
+    let mut angles: Vec<Window> = program
+        .steps
+        .iter()
+        .filter_map(|step| match *step {
+            Step::Apply(Function::Sin | Function::Cos, [angle, ..]) => match program.steps[angle as usize] {
+                Step::Input(array, index) => Some((array, index)),
+                _ => None,
+            },
+            _ => None,
+        })
+        .collect();
+    angles.sort_unstable();
+    let mut windows: Vec<Window> = Vec::new();
+    for (array, index) in angles {
+        let length = program.inputs[array as usize].length;
+        if length >= TOGETHER && together(&windows, array, index).is_none() {
+            windows.push((array, index.min((length - TOGETHER) as u32)));
+        }
+    }
+    windows
+}
+
+/// Where the sine of an angle stands, its cosine `TOGETHER` numbers on.
+fn together(windows: &[Window], array: u32, index: u32) -> Option<u32> {
+    let of = |&(its, first): &Window| its == array && (first..first + TOGETHER as u32).contains(&index);
+    let k = windows.iter().position(of)?;
+    Some((2 * k * TOGETHER) as u32 + index - windows[k].1)
+}
+
+fn sines(windows: &[Window], sin_cos: &SinCos) -> Lowered {
+    let mut builder = Builder { is_f64: true, nodes: Vec::new(), constants: HashMap::new() };
+    let both = windows.iter().flat_map(|&(array, first)| {
+        let angles = builder.push(Node::Input(array, first));
+        <[Value; 2]>::from(sin_cos.at(&mut builder, angles))
+    });
+    let outputs = vec![both.collect()];
+    Lowered { nodes: builder.nodes, outputs, before: None }
 }

@@ -73,7 +73,7 @@ impl Kernel {
         if !shape.is_supported() {
             return Err(Refusal::Processor);
         }
-        let lowered = lower::lower(program, shape.is_f64(), output).ok_or(Refusal::Program)?;
+        let lowered = lower::lower(program, shape, output).ok_or(Refusal::Program)?;
         let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
         let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
         let flops = lowered.flops();

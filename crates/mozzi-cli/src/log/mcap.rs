@@ -1,0 +1,68 @@
+//! MCAP: `/joint_states`, `/tf` and the energies as messages of ROS 2.
+
+use super::ros::{self, FLOAT64, JOINT_STATE, Message, TRANSFORMS};
+use crate::failure::{Failure, Result};
+use ::mcap::records::MessageHeader;
+use ::mcap::{McapResult, WriteOptions, Writer};
+use mozzi::{Model, Trajectory};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+
+pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
+    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
+    let to = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
+    let mut log = Log::new(to).map_err(|error| cannot(&error))?;
+    let names: Vec<&str> = model.joint_names().collect();
+    let space = ros::space_frame(model);
+    let (positions, velocities) = (model.base().positions(), model.base().velocities());
+    let topics = [
+        ("/joint_states", JOINT_STATE),
+        ("/tf", TRANSFORMS),
+        ("/kinetic_energy", FLOAT64),
+        ("/potential_energy", FLOAT64),
+    ];
+    let mut channels = Vec::new();
+    for (topic, message) in topics {
+        channels.push(log.channel(topic, &message).map_err(|error| cannot(&error))?);
+    }
+    for (sequence, row) in motion.samples().enumerate() {
+        let time = ros::nanoseconds(row.t);
+        let poses = model.frame_poses(row.theta)?;
+        let frames: Vec<_> =
+            model.frames().map(|(_, name)| name).zip(poses).filter(|(name, _)| *name != space).collect();
+        let joints = [&row.theta[positions..], &row.dtheta[velocities..], &row.tau[velocities..]];
+        let messages = [
+            ros::joint_state(time, &names, joints),
+            ros::transforms(time, space, &frames),
+            ros::float64(row.energy.kinetic),
+            ros::float64(row.energy.potential),
+        ];
+        for (channel, bytes) in channels.iter().zip(messages) {
+            log.message(*channel, sequence, time, &bytes).map_err(|error| cannot(&error))?;
+        }
+    }
+    log.finish().map_err(|error| cannot(&error))
+}
+
+struct Log(Writer<BufWriter<File>>);
+
+impl Log {
+    fn new(to: BufWriter<File>) -> McapResult<Self> {
+        WriteOptions::new().profile("ros2").library("mozzi").compression(None).create(to).map(Log)
+    }
+
+    fn channel(&mut self, topic: &str, message: &Message) -> McapResult<u16> {
+        let schema = self.0.add_schema(message.name, "ros2msg", message.definition.as_bytes())?;
+        self.0.add_channel(schema, topic, "cdr", &BTreeMap::new())
+    }
+
+    fn message(&mut self, channel_id: u16, sequence: usize, time: u64, bytes: &[u8]) -> McapResult<()> {
+        let header = MessageHeader { channel_id, sequence: sequence as u32, log_time: time, publish_time: time };
+        self.0.write_to_known_channel(&header, bytes)
+    }
+
+    fn finish(mut self) -> McapResult<()> {
+        self.0.finish().map(|_| ())
+    }
+}

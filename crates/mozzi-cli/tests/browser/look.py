@@ -1,0 +1,100 @@
+"""Opens pages in a browser and does to them what a visitor does: python look.py BROWSER < jobs.json > found.json
+
+A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}.
+"""
+
+import json
+import sys
+
+from playwright.sync_api import sync_playwright
+
+ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+
+STATE = """(frames) => ({
+  theta: mozzi.state().theta,
+  poses: frames.map(mozzi.framePose),
+  M: mozzi.massMatrix(),
+  vectors: mozzi.vectors(),
+  clock: document.getElementById("clock").textContent,
+})"""
+
+PAINTED = """() => {
+  const scene = document.querySelector("#scene canvas");
+  const small = Object.assign(document.createElement("canvas"), { width: 64, height: 64 });
+  small.getContext("2d").drawImage(scene, 0, 0, 64, 64);
+  const { data } = small.getContext("2d").getImageData(0, 0, 64, 64);
+  return data.filter((_, k) => k % 4 === 3 && data[k] > 200).length;
+}"""
+
+
+def look(browser, job):
+    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]})
+    found = {"errors": [], "requests": [], "states": []}
+    page.on("console", lambda said: said.type == "error" and found["errors"].append(said.text))
+    page.on("pageerror", lambda error: found["errors"].append(str(error)))
+    page.on("request", lambda request: request.url.startswith("data:") or found["requests"].append(request.url))
+    page.goto(job["url"])
+    page.evaluate("mozzi.ready.then(() => true)")
+    for time in job.get("times", []):
+        page.evaluate("(time) => mozzi.seek(time)", time)
+        found["states"].append(page.evaluate(STATE, job["frames"]))
+    for theta in job.get("theta", []):
+        page.evaluate("(theta) => mozzi.setTheta(theta)", theta)
+        found["states"].append(page.evaluate(STATE, job["frames"]))
+    pressed = "(button) => button.getAttribute('aria-pressed')"
+    found["toggles"] = {}
+    for button in page.query_selector_all("#toggles button"):
+        states = [button.evaluate(pressed)]
+        for _ in range(2):
+            button.dispatch_event("click")
+            states.append(button.evaluate(pressed))
+        found["toggles"][button.get_attribute("data-kind")] = states
+    dark = "() => document.documentElement.dataset.theme"
+    found["themes"] = [page.evaluate(dark)]
+    page.keyboard.press("d")
+    found["themes"].append(page.evaluate(dark))
+    page.evaluate("mozzi.show('axes', true)")
+    page.wait_for_timeout(100)
+    found["painted"] = page.evaluate(PAINTED)
+    found["width"] = page.evaluate("document.documentElement.scrollWidth")
+    if job.get("times"):
+        found["scrubbed"] = scrub(page)
+    else:
+        slider = page.query_selector("#panel input[type=range]")
+        slider.focus()
+        before = page.evaluate("mozzi.state().theta")
+        page.keyboard.press("ArrowRight")
+        found["slid"] = [before, page.evaluate("mozzi.state().theta")]
+    page.close()
+    return found
+
+
+def scrub(page):
+    """The time after: start, the slider's middle, a row on, slow play and pause, a click on a plot's right end."""
+    time = "() => Number(document.getElementById('time').value)"
+    page.evaluate("mozzi.seek(0)")
+    times = [page.evaluate(time)]
+    box = page.query_selector("#time").bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    times.append(page.evaluate(time))
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("Shift+ArrowRight")
+    times.append(page.evaluate(time))
+    for _ in range(4):
+        page.keyboard.press("-")
+    page.keyboard.press(" ")
+    page.wait_for_function("(before) => Number(document.getElementById('time').value) > before + 0.001", arg=times[-1])
+    page.keyboard.press(" ")
+    times.append(page.evaluate(time))
+    plot = page.query_selector(".plot canvas")
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    page.mouse.click(box["x"] + box["width"] - 9, box["y"] + 30)
+    times.append(page.evaluate(time))
+    return times
+
+
+with sync_playwright() as playwright:
+    browser = playwright.chromium.launch(executable_path=sys.argv[1], args=ARGUMENTS)
+    print(json.dumps([look(browser, job) for job in json.load(sys.stdin)]))
+    browser.close()

@@ -1,0 +1,105 @@
+//! A motion in files of each format, read back by the formats' own libraries in Python.
+
+mod common;
+
+use common::{assert_close, complaint, folder, json, numbers, rows, text};
+use mozzi::Model;
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::Command;
+
+const FALL: [&str; 9] = ["simulate", "anymal", "--floating", "--time", "0.05", "--step", "0.01", "--dtheta", RATES];
+const RATES: &str = "0.1,0.2,0.3,0,0,1,1,-1,0.5,0.3,0.2,0.1,0,0,0,0,0,0.4";
+
+/// Python with these modules, or why there is none.
+fn python(modules: &str) -> Result<PathBuf, String> {
+    let python = PathBuf::from(std::env::var_os("MOZZI_PYTHON").ok_or("MOZZI_PYTHON is not set")?);
+    let probe = Command::new(&python).args(["-c", &format!("import {modules}")]).output();
+    match probe.is_ok_and(|output| output.status.success()) {
+        true => Ok(python),
+        false => Err(format!("{} has not all of {modules}", python.display())),
+    }
+}
+
+#[test]
+fn every_format_holds_the_motion() {
+    let python = match python("numpy, pyarrow, mcap, mcap_ros2") {
+        Ok(python) => python,
+        Err(why) => return println!("skipped: {why}"),
+    };
+    let folder = folder("logs");
+    let mut formats = vec!["npy", "npz", "arrow"];
+    formats.extend(cfg!(feature = "parquet").then_some("parquet"));
+    formats.extend(cfg!(feature = "mcap").then_some("mcap"));
+    for format in &formats {
+        let file = folder.join(format!("motion.{format}"));
+        text(&[&FALL[..], &["--out", file.to_str().expect("text")]].concat());
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/logs/read.py");
+    let output = Command::new(python).arg(script).arg(&folder).output().expect("Python starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(found.as_object().map(serde_json::Map::len), Some(formats.len()));
+
+    let motion = json(&FALL);
+    let csv = text(&[&FALL[..], &["--out", "-"]].concat());
+    let header: Vec<&str> = csv.lines().next().expect("a header").split(',').collect();
+    let table: Vec<Vec<f64>> =
+        csv.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    assert_eq!(rows(&found[".npy"]), table);
+    for name in ["t", "kinetic_energy", "applied_work"] {
+        assert_eq!(numbers(&found[".npz"][name]), numbers(&motion[name]), "{name}");
+    }
+    for name in ["theta", "dtheta", "ddtheta", "tau"] {
+        assert_eq!(rows(&found[".npz"][name]), rows(&motion[name]), "{name}");
+    }
+    for format in [".arrow", ".parquet"].into_iter().filter(|format| found.get(format).is_some()) {
+        for (c, name) in header.iter().enumerate() {
+            let column: Vec<f64> = table.iter().map(|row| row[c]).collect();
+            assert_eq!(numbers(&found[format][name]), column, "{format} {name}");
+        }
+    }
+    if let Some(messages) = found.get(".mcap") {
+        assert_messages(messages, &motion);
+    }
+}
+
+/// Joint states by name, and every link's place as mozzi computes it, seen from {s}.
+fn assert_messages(messages: &Value, motion: &Value) {
+    let model: Model = mozzi_urdf::open("anymal").expect("embedded").description.floating().build().expect("sound");
+    let states = messages["joints"].as_array().expect("messages");
+    assert_eq!(states.len(), 6);
+    for (k, state) in states.iter().enumerate() {
+        let t = motion["t"][k].as_f64().expect("a time");
+        assert_eq!(state[0].as_u64(), Some((t * 1e9).round() as u64));
+        assert!((state[1].as_f64().expect("a stamp") - t).abs() < 1e-9);
+        let names: Vec<&str> = state[2].as_array().expect("names").iter().filter_map(Value::as_str).collect();
+        assert_eq!(names, model.joint_names().collect::<Vec<_>>());
+        assert_eq!(numbers(&state[3]), numbers(&motion["theta"][k])[7..]);
+        assert_eq!(numbers(&state[4]), numbers(&motion["dtheta"][k])[6..]);
+        assert_eq!(numbers(&state[5]), numbers(&motion["tau"][k])[6..]);
+        let theta = numbers(&motion["theta"][k]);
+        for (frame, name) in model.frames() {
+            let found = messages["frames"][k][name].as_array().expect("a transform");
+            assert_eq!(found[0], "world");
+            let expected = model.forward_kinematics(&theta, frame).expect("a pose").to_pose();
+            assert_close(&numbers(&found[1..].iter().cloned().collect()), &expected, 1e-12);
+        }
+    }
+    assert_eq!(numbers(&messages["kinetic_energy"]), numbers(&motion["kinetic_energy"]));
+}
+
+#[test]
+fn formats_that_are_not_known_or_not_built_in_are_named_before_the_motion_runs() {
+    let said = |file: &str| complaint(&["simulate", "ur5", "--time", "1e5", "--out", file]);
+    let (code, message) = said("motion.txt");
+    assert_eq!(code, 1);
+    assert!(message.contains("motion.txt: expected a name that ends in .csv, .npy, .npz, .arrow"), "{message}");
+    for (format, is_built) in [("parquet", cfg!(feature = "parquet")), ("mcap", cfg!(feature = "mcap"))] {
+        if !is_built {
+            let (code, message) = said(&format!("motion.{format}"));
+            assert_eq!(code, 1);
+            assert!(message.contains(&format!("--features {format}")), "{message}");
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The page of `--report` and `view` in a real browser: what stands in the scene is what mozzi computes.
+
+mod common;
+
+use common::{folder, json, numbers, rows, text};
+use mozzi::model::description::JointKind;
+use mozzi::nalgebra::DMatrix;
+use mozzi::{BodyFrame, FrameId, Model, SE3, Vec3};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Write};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// Positions go to the page as 32-bit floats.
+const SINGLE: f64 = 2e-6;
+
+/// A browser and a Python that drives it; or why there is none.
+fn browser() -> Result<(PathBuf, PathBuf), String> {
+    let given = |name: &str| std::env::var_os(name).map(PathBuf::from).ok_or(format!("{name} is not set"));
+    let (browser, python) = (given("MOZZI_BROWSER")?, given("MOZZI_PYTHON")?);
+    let probe = Command::new(&python).args(["-c", "import playwright"]).output();
+    match probe.is_ok_and(|output| output.status.success()) {
+        true => Ok((browser, python)),
+        false => Err(format!("{} has no playwright", python.display())),
+    }
+}
+
+fn look((browser, python): &(PathBuf, PathBuf), jobs: &Value) -> Vec<Value> {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser/look.py");
+    let mut child = Command::new(python)
+        .arg(script)
+        .arg(browser)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("Python starts");
+    child.stdin.take().expect("a pipe").write_all(jobs.to_string().as_bytes()).expect("written");
+    let output = child.wait_with_output().expect("it ends");
+    assert!(output.status.success(), "look.py failed, see above");
+    serde_json::from_slice::<Vec<Value>>(&output.stdout).expect("JSON")
+}
+
+fn all_frames(model: &Model) -> Vec<(FrameId, String)> {
+    model.frames().map(|(id, name)| (id, name.to_string())).collect()
+}
+
+fn pose(value: &Value) -> SE3 {
+    let x = numbers(value);
+    SE3::from_matrix([
+        [x[0], x[1], x[2], x[3]],
+        [x[4], x[5], x[6], x[7]],
+        [x[8], x[9], x[10], x[11]],
+        [0.0, 0.0, 0.0, 1.0],
+    ])
+    .expect("a configuration")
+}
+
+fn assert_near(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+    let size = expected.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+    let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert_eq!(found.len(), expected.len(), "{what}");
+    assert!(apart < tolerance * size, "{what}: {found:?} and {expected:?} differ by {apart:e}");
+}
+
+/// A state of the page is the one of mozzi at the same positions: poses, M, and twists and wrenches where rates are given.
+fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f64]; 2]>) {
+    assert_near("theta", &numbers(&found["theta"]), theta, SINGLE);
+    let poses = model.frame_poses(theta).expect("poses");
+    for ((_, name), (found, expected)) in
+        all_frames(model).iter().zip(found["poses"].as_array().expect("poses").iter().zip(&poses))
+    {
+        let apart = (pose(found).inverse() * *expected).log().to_array();
+        assert_near(name, &apart, &[0.0; 6], 3.0 * SINGLE);
+    }
+    let M = model.mass_matrix(theta).expect("M");
+    let found_M = rows(&found["M"]).concat();
+    assert_near("M", &found_M, DMatrix::transpose(&M).as_slice(), 20.0 * SINGLE);
+    let still = vec![0.0; model.n()];
+    let [dtheta, ddtheta] = rates.unwrap_or([&still, &still]);
+    let environment = model.environment();
+    let of = |frame| model.newton_euler(theta, dtheta, ddtheta, &environment, frame).expect("a state");
+    let (at_link, at_mass) = (of(BodyFrame::Link), of(BodyFrame::CenterOfMass));
+    let link = |name: &str| model.forward_kinematics(theta, model.frame(name).expect("a link")).expect("a pose");
+    for (k, joint) in model.moving_joints().enumerate() {
+        assert!(matches!(joint.kind, JointKind::Screw(_)));
+        let R = link(&joint.child).R;
+        let vectors = |kind: &str| numbers(&found["vectors"][kind][k + 1]);
+        let compare = |kind: &str, expected: Vec3| assert_near(kind, &vectors(kind), &(R * expected).0, 100.0 * SINGLE);
+        compare("spin", at_link.twists[k].w);
+        compare("speed", at_mass.twists[k].v);
+        compare("force", at_link.wrenches[k].f);
+        compare("moment", at_link.wrenches[k].m);
+    }
+}
+
+fn assert_usable(found: &Value, width: u64) {
+    assert_eq!(found["errors"], json!([]), "no error on the console");
+    assert_eq!(
+        found["requests"].as_array().map(Vec::len),
+        Some(1),
+        "nothing but the page is asked for: {}",
+        found["requests"]
+    );
+    for (kind, states) in found["toggles"].as_object().expect("toggles") {
+        let [before, after, again] = [0, 1, 2].map(|k| states[k].as_str().expect("true or false"));
+        assert!(before != after && before == again, "{kind}: {states}");
+    }
+    assert!(found["toggles"].as_object().is_some_and(|all| all.len() >= 9), "{}", found["toggles"]);
+    assert_ne!(found["themes"][0], found["themes"][1]);
+    assert!(found["painted"].as_u64().expect("a count") > 20, "the scene is empty");
+    assert!(found["width"].as_u64().expect("a width") <= width, "wider than the screen: {}", found["width"]);
+}
+
+fn url(path: &std::path::Path) -> String {
+    format!("file://{}", path.display())
+}
+
+/// A robot of example-robot-data, with meshes.
+fn robot(path: &str) -> Option<String> {
+    let file = PathBuf::from(std::env::var_os("MOZZI_ROBOTS")?).join(path);
+    file.is_file().then(|| file.to_string_lossy().into_owned())
+}
+
+#[test]
+fn the_page_shows_what_mozzi_computes() {
+    let program = match browser() {
+        Ok(program) => program,
+        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
+    };
+    let folder = folder("page");
+    let load = |name: &str| mozzi_urdf::open(name).and_then(mozzi_urdf::Loaded::build).expect("a robot");
+    let (ur5, anymal) = (load("ur5"), load("anymal"));
+
+    let report = folder.join("ur5.html");
+    let report_name = report.to_str().expect("text");
+    let start =
+        ["--theta", "0,-1.2,1.5,0.3,1.1,0", "--time", "0.5", "--step", "0.01", "--torque", "gravity-compensation"];
+    let simulate = [&["simulate", "ur5", "--dtheta", "1,0.2,-0.5,0.4,0.3,1"], &start[..]].concat();
+    let motion = json(&simulate);
+    assert!(text(&[&simulate[..], &["--report", report_name]].concat()).contains("a page of "));
+    let names = |model: &Model| all_frames(model).into_iter().map(|(_, name)| name).collect::<Vec<_>>();
+    let times = numbers(&motion["t"]);
+    let looked = [0, 17, 50];
+
+    let still = folder.join("anymal.html");
+    text(&["view", "anymal", "--floating", "--out", still.to_str().expect("text")]);
+    let mut stand = vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    stand.extend((0..12).map(|k| 0.1 * f64::from(k) - 0.5));
+    let anymal = mozzi_urdf::open("anymal").expect("embedded").description.floating().build().unwrap_or(anymal);
+
+    let mut jobs = vec![
+        json!({ "url": url(&report), "width": 800, "height": 400, "times": looked.map(|k| times[k]), "frames": names(&ur5) }),
+        json!({ "url": url(&still), "width": 390, "height": 844, "theta": [stand], "frames": names(&anymal) }),
+    ];
+    // with meshes: Collada of a quadruped, STL of a humanoid
+    let quadruped = robot("hyq_description/robots/hyq_no_sensors.urdf").map(|file| (load(&file), file, "visual"));
+    let humanoid = robot("talos_data/robots/talos_reduced.urdf").map(|file| (load(&file), file, "collision"));
+    let meshed: Vec<_> = quadruped.into_iter().chain(humanoid).collect();
+    for (model, file, meshes) in &meshed {
+        let page = folder.join(format!("{meshes}.html"));
+        text(&["view", file, "--meshes", meshes, "--out", page.to_str().expect("text")]);
+        let theta: Vec<f64> = (0..model.n()).map(|k| 0.3 - 0.05 * k as f64).collect();
+        jobs.push(json!({ "url": url(&page), "width": 500, "height": 300, "theta": [theta], "frames": names(model) }));
+    }
+    let found = look(&program, &Value::Array(jobs.clone()));
+
+    for (k, state) in looked.iter().zip(found[0]["states"].as_array().expect("states")) {
+        let row = |name: &str| numbers(&motion[name][*k]);
+        let (dtheta, ddtheta) = (row("dtheta"), row("ddtheta"));
+        assert_state(&ur5, state, &row("theta"), Some([&dtheta, &ddtheta]));
+        assert_eq!(state["clock"], format!("{:.3} s", times[*k]));
+    }
+    let scrubbed = numbers(&found[0]["scrubbed"]);
+    assert!(scrubbed[0] == 0.0 && (scrubbed[1] - 0.25).abs() < 0.01, "{scrubbed:?}");
+    let row_on = scrubbed[2] - scrubbed[1];
+    assert!(row_on > 0.0 && row_on <= 0.0101 && scrubbed[3] > scrubbed[2] + 0.001, "{scrubbed:?}");
+    assert!((scrubbed[4] - 0.5).abs() < 0.01, "{scrubbed:?}");
+    assert_state(&anymal, &found[1]["states"][0], &stand, None);
+    for (((model, _, name), found), job) in meshed.iter().zip(&found[2..]).zip(&jobs[2..]) {
+        assert_state(model, &found["states"][0], &numbers(&job["theta"][0]), None);
+        assert!(found["toggles"].get("shapes").is_some(), "{name} meshes are shapes");
+    }
+    for found in &found[1..] {
+        assert_ne!(found["slid"][0], found["slid"][1], "a slider moves its joint");
+    }
+    for (found, job) in found.iter().zip(&jobs) {
+        assert_usable(found, job["width"].as_u64().expect("a width"));
+    }
+}
+
+#[test]
+fn view_serves_the_page_on_this_machine_alone() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_mozzi"))
+        .args(["view", "double_pendulum"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut line = String::new();
+    BufReader::new(child.stderr.take().expect("a pipe")).read_line(&mut line).expect("a line");
+    let address = line.split("http://").nth(1).and_then(|rest| rest.split('/').next()).expect("an address").to_string();
+    assert!(address.starts_with("127.0.0.1:"), "{line}");
+    let mut stream = std::net::TcpStream::connect(&address).expect("it listens");
+    write!(stream, "GET / HTTP/1.1\r\nHost: {address}\r\n\r\n").expect("asked");
+    let mut page = String::new();
+    std::io::Read::read_to_string(&mut stream, &mut page).expect("answered");
+    child.kill().and_then(|()| child.wait()).expect("ended");
+    assert!(page.starts_with("HTTP/1.1 200 OK") && page.contains("<title>double_pendulum</title>"), "{:.200}", page);
+}
+
+#[test]
+fn a_table_becomes_a_page_and_a_wrong_one_is_refused() {
+    let folder = folder("page_tables");
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (table, page) = (path("swing.csv"), path("swing.html"));
+    text(&["simulate", "double_pendulum", "--theta", "1.5,0", "--time", "0.1", "--out", &table]);
+    let said = text(&["view", "double_pendulum", &table, "--out", &page]);
+    assert!(said.ends_with(&format!("written to {page}\n")), "{said}");
+    let html = std::fs::read_to_string(&page).expect("a page");
+    assert!(html.starts_with("<!doctype html>") && html.contains("\"potential_energy\":\""));
+    let backwards = common::file(&folder, "back.csv", "t,theta_1,theta_2\n1,0,0\n0,0,0\n");
+    let (code, said) = common::complaint(&["view", "double_pendulum", &backwards, "--out", &page]);
+    assert_eq!(code, 1);
+    assert!(said.contains("back.csv: the motion's time is 0 s in row 2, expected times that increase"), "{said}");
+}

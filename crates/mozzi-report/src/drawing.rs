@@ -1,0 +1,179 @@
+//! The shapes of a robot, with the files of their meshes.
+
+use crate::base64;
+use crate::robot::rows;
+use flate2::{Compression, write::GzEncoder};
+use mozzi_urdf::LoadError;
+use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, geometry, locate};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A larger file is left out.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// The formats that the page reads, by the files' endings.
+const FORMATS: [&str; 3] = ["stl", "obj", "dae"];
+
+/// Which meshes go into the page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Meshes {
+    /// Those that are meant to be seen; of a link without any, those that collide.
+    #[default]
+    Visual,
+    /// Those that collide: mostly smaller.
+    Collision,
+    /// None: boxes, cylinders and balls alone, and a skeleton.
+    None,
+}
+
+/// The shapes of a robot and the files of their meshes, ready for a page.
+#[derive(Clone, Debug, Default)]
+pub struct Drawing {
+    shapes: Vec<Shape>,
+    /// By the address in the robot's file.
+    meshes: Vec<Mesh>,
+    /// What was left out and why, a sentence each.
+    pub notes: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+struct Mesh {
+    address: String,
+    format: &'static str,
+    gzip: Vec<u8>,
+}
+
+impl Drawing {
+    /// Of an embedded robot by its name, or of a file. Meshes that are not at hand are left out, and noted.
+    ///
+    /// # Errors
+    /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
+    pub fn of_file(name_or_path: &str, meshes: Meshes) -> Result<Self, LoadError> {
+        let Geometry { shapes, left_out } = geometry(name_or_path)?;
+        let mut drawing = Drawing { notes: left_out.iter().map(ToString::to_string).collect(), ..Drawing::default() };
+        for shape in chosen(shapes, meshes) {
+            if drawing.has_mesh(&shape.form, Path::new(name_or_path)) {
+                drawing.shapes.push(shape);
+            }
+        }
+        Ok(drawing)
+    }
+
+    /// Reads the mesh of a form, if it has one; false and noted where that fails.
+    fn has_mesh(&mut self, form: &Form, robot_file: &Path) -> bool {
+        let Form::Mesh { file, .. } = form else { return true };
+        if self.meshes.iter().any(|mesh| mesh.address == *file) {
+            return true;
+        }
+        match read(robot_file, file) {
+            Ok((format, gzip)) => {
+                self.meshes.push(Mesh { address: file.clone(), format, gzip });
+                true
+            }
+            Err(why) => {
+                if !self.notes.contains(&why) {
+                    self.notes.push(why);
+                }
+                false
+            }
+        }
+    }
+
+    pub(crate) fn meshes_to_json(&self) -> Value {
+        let mesh =
+            |mesh: &Mesh| json!({ "name": mesh.address, "format": mesh.format, "gzip": base64::encode(&mesh.gzip) });
+        self.meshes.iter().map(mesh).collect()
+    }
+
+    /// Shapes of links that the model has no frame for (what a free base is freed from) are left out.
+    pub(crate) fn shapes_to_json(&self, frame_of: &dyn Fn(&str) -> Option<usize>) -> Value {
+        let shape = |shape: &Shape| {
+            let (kind, size, mesh) = self.form(&shape.form);
+            Some(json!({
+                "frame": frame_of(&shape.link)?, "use": shape.purpose.name(), "T": rows(shape.T),
+                "kind": kind, "size": size, "mesh": mesh, "color": shape.color,
+            }))
+        };
+        self.shapes.iter().filter_map(shape).collect()
+    }
+
+    fn form(&self, form: &Form) -> (&'static str, Vec<f64>, Option<usize>) {
+        match form {
+            Form::Box { size } => ("box", size.to_vec(), None),
+            Form::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None),
+            Form::Capsule { radius, length } => ("capsule", vec![*radius, *length], None),
+            Form::Sphere { radius } => ("sphere", vec![*radius], None),
+            Form::Mesh { file, scale } => {
+                ("mesh", scale.to_vec(), self.meshes.iter().position(|mesh| mesh.address == *file))
+            }
+        }
+    }
+}
+
+/// The shapes that are drawn.
+fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
+    let looks: Vec<String> =
+        shapes.iter().filter(|shape| shape.purpose == Purpose::Visual).map(|shape| shape.link.clone()).collect();
+    let is_chosen = |shape: &Shape| match (meshes, shape.purpose) {
+        (Meshes::None, _) if matches!(shape.form, Form::Mesh { .. }) => false,
+        (Meshes::Collision, purpose) => purpose == Purpose::Collision,
+        (_, Purpose::Visual) => true,
+        (_, Purpose::Collision) => !looks.contains(&shape.link),
+    };
+    shapes.into_iter().filter(is_chosen).collect()
+}
+
+/// The format of a mesh, and its file gzipped; or why there is none.
+fn read(robot_file: &Path, address: &str) -> Result<(&'static str, Vec<u8>), String> {
+    let ending = Path::new(address).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let Some(&format) = FORMATS.iter().find(|format| ending.as_deref() == Some(**format)) else {
+        return Err(format!("mesh {address}: is no .stl, .obj or .dae"));
+    };
+    let path = locate(robot_file, address).map_err(|error| error.to_string())?;
+    let cannot = |error: std::io::Error| format!("mesh {address}: {} cannot be read: {error}", path.display());
+    let bytes = small(&path).map_err(cannot)?;
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
+    gzip.write_all(&bytes).and_then(|()| gzip.finish()).map(|gzip| (format, gzip)).map_err(cannot)
+}
+
+fn small(path: &PathBuf) -> std::io::Result<Vec<u8>> {
+    let found = std::fs::metadata(path)?.len();
+    if found > MOST_BYTES {
+        return Err(std::io::Error::other(format!("it has {found} bytes, expected at most {MOST_BYTES}")));
+    }
+    std::fs::read(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ARM: &str = r#"<robot name="arm">
+  <link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual>
+    <visual><geometry><mesh filename="a.stl" scale="2 2 2"/></geometry></visual>
+    <collision><geometry><box size="1 1 1"/></geometry></collision></link>
+  <link name="b"><visual><geometry><mesh filename="b.ply"/></geometry></visual>
+    <visual><geometry><mesh filename="c.obj"/></geometry></visual></link>
+  <link name="d"><collision><geometry><sphere radius="1"/></geometry></collision></link>
+</robot>"#;
+
+    #[test]
+    fn meshes_are_read_once_and_what_is_missing_is_noted() {
+        let folder = std::env::temp_dir().join(format!("mozzi-drawing-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let file = folder.join("arm.urdf");
+        std::fs::write(&file, ARM).expect("a file");
+        std::fs::write(folder.join("a.stl"), "solid a\nendsolid a\n").expect("a file");
+        let of = |meshes| Drawing::of_file(&file.to_string_lossy(), meshes).expect("read");
+        let drawing = of(Meshes::Visual);
+        let kinds: Vec<_> = drawing.shapes.iter().map(|shape| (&*shape.link, shape.purpose.name())).collect();
+        assert_eq!(kinds, [("a", "visual"), ("a", "visual"), ("d", "collision")]);
+        assert_eq!(drawing.meshes.len(), 1);
+        assert!(drawing.meshes[0].gzip.starts_with(&[0x1f, 0x8b]));
+        assert_eq!(drawing.notes[0], "mesh b.ply: is no .stl, .obj or .dae");
+        assert!(drawing.notes[1].starts_with("mesh c.obj is not at hand: neither "), "{:?}", drawing.notes);
+        assert_eq!((of(Meshes::Collision).shapes.len(), of(Meshes::None).shapes.len()), (2, 1));
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
+}

@@ -1,0 +1,32 @@
+//! Why there is no page.
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A column of the motion is not as long as its times and the robot's joints ask.
+    #[error("the motion's {what} has {found} numbers, expected {expected}: {rows} rows of {width}")]
+    Motion {
+        /// The column: `theta`, `tau`, …
+        what: &'static str,
+        /// Numbers in it.
+        found: usize,
+        /// Numbers that there should be.
+        expected: usize,
+        /// Times.
+        rows: usize,
+        /// Numbers a row.
+        width: usize,
+    },
+    /// The times of the motion do not increase, or there are none.
+    #[error("the motion's time is {t} s in row {row}, expected times that increase")]
+    Time {
+        /// The row, from 1.
+        row: usize,
+        /// Its time, s.
+        t: f64,
+    },
+    /// What mozzi says of a state.
+    #[error(transparent)]
+    Model(#[from] mozzi::Error),
+}

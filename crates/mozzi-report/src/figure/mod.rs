@@ -1,0 +1,126 @@
+//! A figure for a paper: panels of curves, as SVG.
+
+mod axis;
+mod svg;
+
+pub use axis::Scale;
+
+use axis::Ticks;
+
+/// Panels in rows, below a legend that they share.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figure {
+    /// Above all.
+    pub title: String,
+    /// In reading order.
+    pub panels: Vec<Panel>,
+    /// Panels in a row; 0 is 1.
+    pub columns: usize,
+}
+
+/// Two axes and what is drawn between them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// What the abscissa is: `"t [s]"`.
+    pub x_label: String,
+    /// What the ordinate is: `"θ [rad]"`.
+    pub y_label: String,
+    /// Of both axes.
+    pub scale: Scale,
+    /// Is a unit as long on both axes?
+    pub equal: bool,
+    /// Later ones are drawn over earlier ones.
+    pub curves: Vec<Curve>,
+}
+
+/// A list of points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// In the legend; an empty name is not.
+    pub name: String,
+    /// A number of the palette.
+    pub color: usize,
+    /// How it is drawn.
+    pub stroke: Stroke,
+    /// (x, y); one that is not finite breaks the curve.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stroke {
+    /// A line.
+    #[default]
+    Line,
+    /// A line with gaps.
+    Dashed,
+    /// A line with a mark at each point.
+    Marked,
+    /// Closed, its inside tinted.
+    Filled,
+    /// Thick, with a mark at each point: links and joints.
+    Links,
+}
+
+impl Curve {
+    /// A line of a palette's colour.
+    pub fn line(name: impl Into<String>, color: usize, points: Vec<[f64; 2]>) -> Self {
+        Curve { name: name.into(), color, points, stroke: Stroke::Line }
+    }
+}
+
+impl Panel {
+    /// Lowest and highest of both coordinates, with air.
+    fn ranges(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|side| {
+            let values = self.curves.iter().flat_map(|curve| &curve.points).map(|point| point[side]);
+            self.scale.range(values)
+        })
+    }
+
+    fn ticks(&self, range: [f64; 2], about: usize) -> Ticks {
+        Ticks::new(self.scale, range, about)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(scale: Scale) -> Figure {
+        let points = (1..=2000).map(|k| f64::from(k) * 0.01).map(|t| [t, 2.0 + t.sin()]).collect();
+        let panel = Panel { x_label: "t [s]".into(), y_label: "θ̇ <1>".into(), scale, ..Panel::default() };
+        let curves = vec![
+            Curve::line("a & b", 0, points),
+            Curve { name: "none".into(), color: 1, stroke: Stroke::Marked, points: Vec::new() },
+        ];
+        Figure { title: "A wave".into(), panels: vec![Panel { curves, ..panel }], columns: 1 }
+    }
+
+    #[test]
+    fn a_figure_is_well_formed_and_small() {
+        for scale in [Scale::Linear, Scale::Logarithmic] {
+            let svg = wave(scale).svg();
+            assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && svg.ends_with("</svg>\n"));
+            assert!(svg.contains("a &amp; b") && svg.contains("θ̇ &lt;1&gt;") && svg.contains("A wave"));
+            assert!(!svg.contains("NaN") && !svg.contains("inf"));
+            assert!(svg.len() < 30_000, "points closer than a hair are one: {} bytes", svg.len());
+        }
+    }
+
+    #[test]
+    fn nothing_to_draw_is_drawn_as_nothing() {
+        let empty = Figure { panels: vec![Panel::default()], ..Figure::default() };
+        assert!(empty.svg().contains("</svg>") && !empty.svg().contains("NaN"));
+    }
+
+    #[test]
+    fn curves_break_where_a_number_is_none() {
+        let mut figure = wave(Scale::Linear);
+        figure.panels[0].curves[0].points[1000] = [10.0, f64::NAN];
+        let svg = figure.svg();
+        let paths: Vec<&str> = svg.lines().filter(|line| line.contains("stroke=\"#2f6fcb\"")).collect();
+        let [_legend, path] = paths[..] else { panic!("{paths:?}") };
+        assert_eq!(path.matches('M').count(), 2, "{path:.80}");
+    }
+}

@@ -1,0 +1,174 @@
+//! The figure's text.
+
+use super::{Curve, Figure, Panel, Stroke};
+use std::fmt::Write;
+
+/// A page of a paper is 720 wide; all lengths are in these units.
+const WIDTH: f64 = 720.0;
+const PANEL_HEIGHT: f64 = 190.0;
+/// Of a panel that is alone.
+const ONLY_HEIGHT: f64 = 340.0;
+/// Around a panel's axes: left, right, above, below.
+const MARGIN: [f64; 4] = [62.0, 12.0, 8.0, 40.0];
+/// Points that are nearer to each other are one.
+const HAIR: f64 = 0.35;
+const LEGEND_LINE: f64 = 17.0;
+/// A letter of the legend, about.
+const LETTER: f64 = 6.2;
+
+/// Told apart on white, also in grey, for the first four at least.
+const PALETTE: [&str; 10] =
+    ["#2f6fcb", "#d96a26", "#2a8f63", "#b83a5e", "#7a52c7", "#9a7b16", "#16879b", "#c253a6", "#555d66", "#111111"];
+
+fn color(k: usize) -> &'static str {
+    PALETTE[k % PALETTE.len()]
+}
+
+impl Figure {
+    /// As SVG: black on white, text as text.
+    pub fn svg(&self) -> String {
+        let columns = self.columns.max(1);
+        let width = WIDTH / columns as f64;
+        let mut body = String::new();
+        let mut y = 8.0;
+        if !self.title.is_empty() {
+            y += 16.0;
+            text(&mut body, [WIDTH / 2.0, y], "middle", 14.0, &self.title);
+            y += 8.0;
+        }
+        y = self.legend(&mut body, y);
+        for row in self.panels.chunks(columns) {
+            let tall = row.iter().map(|panel| panel.height(width, self.panels.len())).fold(0.0, f64::max);
+            for (k, panel) in row.iter().enumerate() {
+                panel.draw(&mut body, [k as f64 * width, y], [width, tall]);
+            }
+            y += tall;
+        }
+        let height = y + 4.0;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" height=\"{height:.0}\" \
+             font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" fill=\"none\" stroke-linejoin=\"round\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+        )
+    }
+
+    /// The names of all panels' curves, once each; answers where it ends.
+    fn legend(&self, out: &mut String, top: f64) -> f64 {
+        let mut names: Vec<&Curve> = Vec::new();
+        for curve in self.panels.iter().flat_map(|panel| &panel.curves) {
+            if !curve.name.is_empty() && names.iter().all(|known| known.name != curve.name) {
+                names.push(curve);
+            }
+        }
+        if names.len() < 2 {
+            return top;
+        }
+        let (mut x, mut y) = (MARGIN[0], top + 10.0);
+        for curve in names {
+            let long = 34.0 + LETTER * curve.name.chars().count() as f64;
+            if x + long > WIDTH - MARGIN[1] && x > MARGIN[0] {
+                (x, y) = (MARGIN[0], y + LEGEND_LINE);
+            }
+            let ends = [[x, y], [x + 20.0, y]];
+            line(
+                out,
+                &ends,
+                &Curve {
+                    stroke: if curve.stroke == Stroke::Dashed { Stroke::Dashed } else { Stroke::Line },
+                    ..curve.clone()
+                },
+            );
+            text(out, [x + 25.0, y + 3.8], "start", 11.0, &curve.name);
+            x += long;
+        }
+        y + LEGEND_LINE - 4.0
+    }
+}
+
+impl Panel {
+    fn height(&self, width: f64, panels: usize) -> f64 {
+        if !self.equal {
+            return if panels == 1 { ONLY_HEIGHT } else { PANEL_HEIGHT };
+        }
+        // as tall as the units ask, within reason
+        let [[left, right], [low, high]] = self.ranges();
+        let inner = (width - MARGIN[0] - MARGIN[1]) * ((high - low) / (right - left)).clamp(0.4, 1.2);
+        inner + MARGIN[2] + MARGIN[3]
+    }
+
+    fn draw(&self, out: &mut String, [x0, y0]: [f64; 2], [width, height]: [f64; 2]) {
+        let [left, top] = [x0 + MARGIN[0], y0 + MARGIN[2]];
+        let (w, h) = (width - MARGIN[0] - MARGIN[1], height - MARGIN[2] - MARGIN[3]);
+        let [mut xs, mut ys] = self.ranges();
+        if self.equal {
+            let unit = ((xs[1] - xs[0]) / w).max((ys[1] - ys[0]) / h);
+            let widened = |[low, high]: [f64; 2], size: f64| {
+                let (middle, half) = (0.5 * (low + high), 0.5 * size * unit);
+                [middle - half, middle + half]
+            };
+            (xs, ys) = (widened(xs, w), widened(ys, h));
+        }
+        let across = |x: f64| left + (x - xs[0]) / (xs[1] - xs[0]) * w;
+        let up = |y: f64| top + (1.0 - (y - ys[0]) / (ys[1] - ys[0])) * h;
+        for (place, name) in self.ticks(xs, (w / 75.0) as usize).0 {
+            let _ = writeln!(out, "<path d=\"M{0:.1} {top:.1}v{h:.1}\" stroke=\"#e3e6ea\"/>", across(place));
+            text(out, [across(place), top + h + 14.0], "middle", 10.5, &name);
+        }
+        for (place, name) in self.ticks(ys, (h / 28.0) as usize).0 {
+            let _ = writeln!(out, "<path d=\"M{left:.1} {0:.1}h{w:.1}\" stroke=\"#e3e6ea\"/>", up(place));
+            text(out, [left - 6.0, up(place) + 3.6], "end", 10.5, &name);
+        }
+        for curve in &self.curves {
+            let point = |p: &[f64; 2]| [across(self.scale.place(p[0])), up(self.scale.place(p[1]))];
+            line(out, &curve.points.iter().map(point).collect::<Vec<_>>(), curve);
+        }
+        let _ = writeln!(out, "<path d=\"M{left:.1} {top:.1}v{h:.1}h{w:.1}\" stroke=\"#333\"/>");
+        text(out, [left + w / 2.0, top + h + 30.0], "middle", 11.5, &self.x_label);
+        let (x, y) = (x0 + 14.0, top + h / 2.0);
+        let _ = write!(out, "<g transform=\"rotate(-90 {x:.1} {y:.1})\">");
+        text(out, [x, y], "middle", 11.5, &self.y_label);
+        out.push_str("</g>\n");
+    }
+}
+
+fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve) {
+    let (mut path, mut marks) = (String::new(), String::new());
+    let mut last: Option<[f64; 2]> = None;
+    for (k, &[x, y]) in points.iter().enumerate() {
+        if !(x.is_finite() && y.is_finite()) {
+            last = None;
+            continue;
+        }
+        let is_end = points.get(k + 1).is_none_or(|next| !(next[0].is_finite() && next[1].is_finite()));
+        if let (Some([a, b]), false) = (last, is_end)
+            && (x - a).hypot(y - b) < HAIR
+        {
+            continue;
+        }
+        let _ = write!(path, "{}{x:.1} {y:.1}", if last.is_some() { "L" } else { "M" });
+        if matches!(curve.stroke, Stroke::Marked | Stroke::Links) {
+            let _ = write!(marks, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\"/>");
+        }
+        last = Some([x, y]);
+    }
+    let color = color(curve.color);
+    let style = match curve.stroke {
+        Stroke::Line | Stroke::Marked => "stroke-width=\"1.4\"".to_string(),
+        Stroke::Dashed => "stroke-width=\"1.2\" stroke-dasharray=\"5 3\"".to_string(),
+        Stroke::Filled => format!("stroke-width=\"1.2\" fill=\"{color}\" fill-opacity=\"0.12\""),
+        Stroke::Links => "stroke-width=\"3\" stroke-linecap=\"round\"".to_string(),
+    };
+    let close = if curve.stroke == Stroke::Filled && !path.is_empty() { "Z" } else { "" };
+    let _ = writeln!(out, "<path d=\"{path}{close}\" stroke=\"{color}\" {style}/>");
+    if !marks.is_empty() {
+        let _ = writeln!(out, "<g fill=\"{color}\">{marks}</g>");
+    }
+}
+
+fn text(out: &mut String, [x, y]: [f64; 2], anchor: &str, size: f64, what: &str) {
+    let what = what.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let _ = writeln!(
+        out,
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"#222\">{what}</text>"
+    );
+}

@@ -1,0 +1,53 @@
+//! A robot and its motion as one HTML file, which needs no network and no program but a browser; and as figures for papers, SVG
+//! ([`pictures`]).
+//!
+//! ```
+//! use mozzi::simulation::{Options, Zero};
+//! use mozzi_report::{Drawing, Meshes, Motion};
+//!
+//! let model = mozzi_urdf::open("ur5")?.build()?;
+//! let fall = model.simulate(&[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], &[0.0; 6], Zero, &Options::new(0.2, 200))?;
+//! let drawing = Drawing::of_file("ur5", Meshes::Visual)?;
+//! let page = mozzi_report::html(&model, &drawing, Some(&Motion::simulated("let go", &fall)))?;
+//! assert!(page.starts_with("<!doctype html>") && page.contains("ur5, let go"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! What stands in the file: the page (`page/` in the repository, bundled by `cargo xtask page`), and the data, a JSON object:
+//!
+//! - `robot`: bodies with their joints' screws and inertias, named frames, shapes, as [`Model`] has them, in the frames of the robot's file;
+//! - `meshes`: the files of meshes, gzipped;
+//! - `motion`: rows of a trajectory, as 32-bit floats (times: 64).
+mod base64;
+mod drawing;
+mod error;
+pub mod figure;
+mod motion;
+mod page;
+pub mod pictures;
+mod robot;
+
+pub use drawing::{Drawing, Meshes};
+pub use error::Error;
+pub use motion::Motion;
+
+use mozzi::Model;
+
+/// The file. Without a motion it has a slider for each joint.
+///
+/// # Errors
+/// [`Error::Motion`] where the motion's rows are not as long as this robot's.
+pub fn html(model: &Model, drawing: &Drawing, motion: Option<&Motion>) -> Result<String, Error> {
+    let title = match motion {
+        Some(motion) => format!("{}, {}", model.description().name, motion.title),
+        None => model.description().name.clone(),
+    };
+    let rows = motion.map(|motion| motion.to_json(model)).transpose()?;
+    let data = serde_json::json!({
+        "robot": robot::to_json(model, drawing)?,
+        "meshes": drawing.meshes_to_json(),
+        "motion": rows,
+        "notes": drawing.notes,
+    });
+    Ok(page::fill(&title, &data))
+}

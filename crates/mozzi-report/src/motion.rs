@@ -1,0 +1,150 @@
+//! A motion, by rows.
+
+use crate::base64;
+use crate::error::Error;
+use mozzi::{Model, Trajectory, Wrench};
+use serde_json::{Value, json};
+
+/// What is known of a motion: a row for each time, row-major lists. What is `None` is not shown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// What it is, in a few words.
+    pub title: String,
+    /// Seconds, increasing.
+    pub t: Vec<f64>,
+    /// θ, rows of nq.
+    pub theta: Vec<f64>,
+    /// θ̇, rows of n; likewise what follows.
+    pub dtheta: Option<Vec<f64>>,
+    /// θ̈.
+    pub ddtheta: Option<Vec<f64>>,
+    /// τ.
+    pub tau: Option<Vec<f64>>,
+    /// What the end effector applies to the environment, in its own frame.
+    pub tip_wrench: Option<Vec<Wrench>>,
+    /// 𝒦, J.
+    pub kinetic_energy: Option<Vec<f64>>,
+    /// 𝒫, J.
+    pub potential_energy: Option<Vec<f64>>,
+    /// Energy that the method made, J: [`Trajectory::drift`].
+    pub drift: Option<Vec<f64>>,
+}
+
+impl Motion {
+    /// A simulation's.
+    pub fn simulated(title: impl Into<String>, motion: &Trajectory) -> Self {
+        Motion {
+            title: title.into(),
+            t: motion.t.clone(),
+            theta: motion.theta.clone(),
+            dtheta: Some(motion.dtheta.clone()),
+            ddtheta: Some(motion.ddtheta.clone()),
+            tau: Some(motion.tau.clone()),
+            tip_wrench: None,
+            kinetic_energy: Some(motion.energy.iter().map(|energy| energy.kinetic).collect()),
+            potential_energy: Some(motion.energy.iter().map(|energy| energy.potential).collect()),
+            drift: Some((0..motion.len()).map(|k| motion.drift(k)).collect()),
+        }
+    }
+
+    /// The same with the energies that its positions and velocities have: 𝒫, and 𝒦 where velocities are known.
+    ///
+    /// # Errors
+    /// [`Error::Motion`] where the rows are not as long as this robot's.
+    pub fn with_energies(mut self, model: &Model) -> Result<Self, Error> {
+        self.check(model)?;
+        let positions = || self.theta.chunks(model.nq().max(1));
+        self.potential_energy = Some(positions().map(|theta| model.potential_energy(theta)).collect::<Result<_, _>>()?);
+        if let Some(dtheta) = &self.dtheta {
+            let rows = positions().zip(dtheta.chunks(model.n().max(1)));
+            let kinetic = rows.map(|(theta, dtheta)| model.kinetic_energy(theta, dtheta));
+            self.kinetic_energy = Some(kinetic.collect::<Result<_, _>>()?);
+        }
+        Ok(self)
+    }
+
+    pub(crate) fn check(&self, model: &Model) -> Result<(), Error> {
+        let rows = self.t.len();
+        let increases = |k: usize| self.t[k].is_finite() && (k == 0 || self.t[k] > self.t[k - 1]);
+        if let Some(k) = (0..rows).find(|&k| !increases(k)) {
+            return Err(Error::Time { row: k + 1, t: self.t[k] });
+        }
+        let (nq, n) = (model.nq(), model.n());
+        let columns = [
+            ("theta", Some(&self.theta), nq),
+            ("dtheta", self.dtheta.as_ref(), n),
+            ("ddtheta", self.ddtheta.as_ref(), n),
+            ("tau", self.tau.as_ref(), n),
+            ("kinetic energy", self.kinetic_energy.as_ref(), 1),
+            ("potential energy", self.potential_energy.as_ref(), 1),
+            ("drift", self.drift.as_ref(), 1),
+        ];
+        for (what, values, width) in columns {
+            let (expected, found) = (rows * width, values.map_or(rows * width, Vec::len));
+            if found != expected || rows == 0 {
+                return Err(Error::Motion { what, found, expected, rows, width });
+            }
+        }
+        let wrenches = self.tip_wrench.as_ref().map_or(rows, Vec::len);
+        if wrenches != rows {
+            return Err(Error::Motion { what: "tip wrench", found: 6 * wrenches, expected: 6 * rows, rows, width: 6 });
+        }
+        Ok(())
+    }
+
+    pub(crate) fn to_json(&self, model: &Model) -> Result<Value, Error> {
+        self.check(model)?;
+        let list = |values: &Option<Vec<f64>>| values.as_deref().map(singles);
+        let wrenches = self.tip_wrench.as_ref().map(|list| list.iter().flat_map(|F| F.to_array()).collect::<Vec<_>>());
+        Ok(json!({
+            "title": self.title,
+            "t": base64::encode(&self.t.iter().flat_map(|t| t.to_le_bytes()).collect::<Vec<_>>()),
+            "theta": singles(&self.theta),
+            "dtheta": list(&self.dtheta),
+            "ddtheta": list(&self.ddtheta),
+            "tau": list(&self.tau),
+            "tip_wrench": list(&wrenches),
+            "kinetic_energy": list(&self.kinetic_energy),
+            "potential_energy": list(&self.potential_energy),
+            "drift": list(&self.drift),
+        }))
+    }
+}
+
+/// 32-bit floats, little-endian, as text.
+fn singles(values: &[f64]) -> String {
+    base64::encode(&values.iter().flat_map(|&x| (x as f32).to_le_bytes()).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mozzi::simulation::{Options, Zero};
+
+    #[test]
+    fn energies_are_those_of_the_simulation() {
+        let model = mozzi_urdf::open("double_pendulum").and_then(mozzi_urdf::Loaded::build).expect("embedded");
+        let fall = model.simulate(&[1.0, 0.3], &[0.0; 2], Zero, &Options::new(0.1, 20)).expect("a motion");
+        let whole = Motion::simulated("fall", &fall);
+        let again = Motion { kinetic_energy: None, potential_energy: None, ..whole.clone() }.with_energies(&model);
+        let again = again.expect("energies");
+        let apart = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| {
+            let pairs = a.iter().flatten().zip(b.iter().flatten());
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        assert!(apart(&again.kinetic_energy, &whole.kinetic_energy) < 1e-12);
+        assert!(apart(&again.potential_energy, &whole.potential_energy) < 1e-12);
+    }
+
+    #[test]
+    fn rows_of_another_robot_are_refused() {
+        let model = mozzi_urdf::open("ur5").and_then(mozzi_urdf::Loaded::build).expect("embedded");
+        let motion = Motion { t: vec![0.0, 1.0], theta: vec![0.0; 4], ..Motion::default() };
+        let message = motion.to_json(&model).expect_err("too short").to_string();
+        assert_eq!(message, "the motion's theta has 4 numbers, expected 12: 2 rows of 6");
+        let motion = Motion { t: vec![0.0, 0.0], theta: vec![0.0; 12], ..Motion::default() };
+        let message = motion.to_json(&model).expect_err("no time between").to_string();
+        assert_eq!(message, "the motion's time is 0 s in row 2, expected times that increase");
+        assert!(Motion::default().to_json(&model).is_err());
+    }
+}

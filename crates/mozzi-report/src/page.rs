@@ -1,0 +1,36 @@
+//! The bundled page, and the places in it that wait for data.
+
+use serde_json::Value;
+
+/// Made by `cargo xtask page` from `page/`.
+const PAGE: &str = include_str!("../bundle/page.html");
+
+/// A text inside of HTML's elements, and a JSON inside of its `<script>`, hold no `<` that could end them.
+pub fn fill(title: &str, data: &Value) -> String {
+    let title = title.replace('&', "&amp;").replace('<', "&lt;");
+    let data = data.to_string().replace('<', "\\u003c");
+    let (head, rest) = PAGE.split_once("{{title}}").unwrap_or((PAGE, ""));
+    let (middle, tail) = rest.split_once("{{data}}").unwrap_or((rest, ""));
+    [head, &title, middle, &data, tail].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_cannot_leave_their_place() {
+        let bad = "</script><script>alert(1)</script>";
+        let page = fill(bad, &serde_json::json!({ "name": bad }));
+        assert!(!page.contains("<script>alert"));
+        assert!(page.contains("&lt;/script>") && page.contains("\\u003c/script>"));
+    }
+
+    #[test]
+    fn the_bundle_asks_for_nothing_and_is_small() {
+        assert!(PAGE.contains("default-src 'none'") && PAGE.contains("connect-src 'none'"));
+        assert!(PAGE.contains("three.js") && PAGE.contains("The MIT License"), "the notice of three.js");
+        assert!(PAGE.len() < 2_000_000, "{} bytes", PAGE.len());
+        assert_eq!((PAGE.matches("{{title}}").count(), PAGE.matches("{{data}}").count()), (1, 1));
+    }
+}

@@ -1,0 +1,73 @@
+//! A shape: what it is, where it is, how it is painted.
+
+use mozzi::SE3;
+
+/// A solid or a surface on a link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The link that it belongs to.
+    pub link: String,
+    /// To be seen, or to collide.
+    pub purpose: Purpose,
+    /// Its frame, seen from the link's.
+    pub T: SE3,
+    /// What it is.
+    pub form: Form,
+    /// Red, green, blue, opacity from 0 to 1, where the file says it.
+    pub color: Option<[f64; 4]>,
+}
+
+/// What a shape is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// `<visual>`
+    Visual,
+    /// `<collision>`
+    Collision,
+}
+
+impl Purpose {
+    /// "visual" or "collision".
+    pub fn name(self) -> &'static str {
+        match self {
+            Purpose::Visual => "visual",
+            Purpose::Collision => "collision",
+        }
+    }
+}
+
+/// A form about the origin of its own frame, lengths in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// With these edges along x, y, z.
+    Box {
+        /// Three edges.
+        size: [f64; 3],
+    },
+    /// About z.
+    Cylinder {
+        /// Its radius.
+        radius: f64,
+        /// Along z.
+        length: f64,
+    },
+    /// A cylinder about z, closed by two hemispheres.
+    Capsule {
+        /// Of cylinder and hemispheres.
+        radius: f64,
+        /// Of the cylinder alone.
+        length: f64,
+    },
+    /// A ball.
+    Sphere {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A surface in a file of its own.
+    Mesh {
+        /// As written; [`locate`](super::locate) finds the file.
+        file: String,
+        /// By which its numbers are multiplied to be metres; a negative one mirrors.
+        scale: [f64; 3],
+    },
+}

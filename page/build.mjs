@@ -1,0 +1,48 @@
+// Bundles the page into one HTML file: `node build.mjs [FILE]`. The same sources give the same bytes.
+
+import { createHash } from "node:crypto";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const text = (file) => readFileSync(join(here, file), "utf8").replaceAll("\r\n", "\n");
+
+// 64-bit FNV-1a of all sources, which `cargo xtask test` computes again: was the bundle made from them?
+function stamp() {
+  const scripts = readdirSync(join(here, "src")).filter((name) => name.endsWith(".js")).map((name) => `src/${name}`);
+  const files = ["build.mjs", "index.html", "package-lock.json", "package.json", "style.css", ...scripts].sort();
+  let hash = 0xcbf29ce484222325n;
+  for (const byte of Buffer.from(files.map((file) => `${file}\n${text(file)}`).join(""))) {
+    hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
+  }
+  return hash.toString(16).padStart(16, "0");
+}
+
+const bundled = await build({
+  entryPoints: [join(here, "src/main.js")],
+  bundle: true, minify: true, write: false, format: "iife", target: "es2022", legalComments: "none", charset: "ascii",
+});
+const script = bundled.outputFiles[0].text.trim().replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+const { code } = await (await import("esbuild")).transform(text("style.css"), { loader: "css", minify: true, charset: "ascii" });
+const style = code.trim();
+
+const hashed = (part) => `'sha256-${createHash("sha256").update(part).digest("base64")}'`;
+// nothing is fetched; the textures that a mesh asks for are an empty picture
+const policy = [
+  "default-src 'none'", `script-src ${hashed(script)}`, "style-src 'unsafe-inline'", "img-src data: blob:", "connect-src 'none'",
+  "base-uri 'none'", "form-action 'none'",
+].join("; ");
+
+const { version } = JSON.parse(readFileSync(join(here, "node_modules/three/package.json"), "utf8"));
+const notice = `<!--
+Made by \`cargo xtask page\` from the sources in page/, stamp ${stamp()}. It contains three.js ${version}, https://threejs.org:
+
+${text("node_modules/three/LICENSE").trim()}
+-->`;
+const parts = { policy, style, script };
+const page = text("index.html").replace(/\{\{(policy|style|script)\}\}/g, (_, name) => parts[name]);
+const file = process.argv[2] ?? join(here, "../crates/mozzi-report/bundle/page.html");
+writeFileSync(file, page.replace("<!doctype html>", () => `<!doctype html>\n${notice}`));
+console.log(`${file}: ${page.length} bytes, three.js ${version}`);

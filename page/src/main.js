@@ -1,0 +1,277 @@
+// The page: reads its data, builds the scene and the panel, ties them to the time.
+
+import * as THREE from "three";
+import { seriesColour } from "./colours.js";
+import { plotsOf } from "./curves.js";
+import { readMotion, readRobot, stateAt } from "./data.js";
+import { massMatrix, poses } from "./dynamics.js";
+import { fillHelp } from "./help.js";
+import { KINDS } from "./kinds.js";
+import { onKeys } from "./keys.js";
+import { MatrixPicture } from "./matrix.js";
+import { Overlays } from "./overlays.js";
+import { Player, SPEEDS } from "./player.js";
+import { Plot } from "./plots.js";
+import { Scene } from "./scene.js";
+import { addShapes, seeThrough } from "./shapes.js";
+import { addSkeleton } from "./skeleton.js";
+import { addSliders } from "./sliders.js";
+import { startTheme } from "./theme.js";
+
+const find = (id) => document.getElementById(id);
+const raw = JSON.parse(find("data").textContent);
+const robot = readRobot(raw.robot);
+const motion = readMotion(raw.motion, robot);
+const asked = new URLSearchParams(location.hash.slice(1)); // #t=1.2&show=axes,twists&theme=dark
+const jointColour = (j) => seriesColour(j, robot.n);
+
+const neutral = [...(robot.isFloating ? [1, 0, 0, 0, 0, 0, 0] : []), ...robot.slides.map(() => 0)];
+const still = () => ({ theta: [...neutral], dtheta: null, ddtheta: null, tip: null });
+let state = motion ? stateAt(motion, motion.t[0]) : still();
+
+find("name").textContent = robot.name;
+find("about").textContent = motion ? motion.title : `${robot.n} velocities, ${robot.bodies.length} moving links`;
+
+const scene = new Scene(find("scene"), robot);
+const reach = reachOf();
+const overlays = new Overlays(robot, scene, reach, jointColour);
+const skeleton = addSkeleton(robot, scene, reach, jointColour);
+const matrix = new MatrixPicture(find("matrix"), robot.velocities);
+const plots = [];
+
+// How far frames are from the base: what all marks are scaled by.
+function reachOf() {
+  const T = poses(robot, neutral);
+  const far = robot.bodies.map((_, k) => Math.hypot(...T[k + 1].p.map((x, i) => x - T[0].p[i])));
+  const frames = robot.frames.map(({ body, T: at }) => Math.hypot(...T[body].p.map((x, i) => x - T[0].p[i])) + Math.hypot(...at.p));
+  return Math.max(...far, ...frames, 0.05);
+}
+
+function place() {
+  const T = poses(robot, state.theta);
+  scene.place(T);
+  overlays.update(state, T);
+  if (shown.mass) matrix.show(massMatrix(robot, state.theta));
+}
+
+// What is shown, by kind.
+const shown = {};
+let layers = { visual: [], collision: [] };
+const possible = {
+  shapes: robot.shapes.length > 0,
+  glass: robot.shapes.length > 0,
+  twists: Boolean(motion?.dtheta),
+  wrenches: !motion || Boolean(motion.dtheta && motion.ddtheta),
+  path: Boolean(motion),
+  mass: robot.n > 0,
+};
+const buttons = {};
+
+function show(kind, isOn) {
+  shown[kind] = isOn;
+  buttons[kind]?.setAttribute("aria-pressed", String(isOn));
+  const all = [...layers.visual, ...layers.collision];
+  if (kind === "shapes") all.forEach((holder) => (holder.visible = isOn));
+  else if (kind === "glass") seeThrough(all, isOn);
+  else if (kind === "skeleton") skeleton.forEach((part) => (part.visible = isOn));
+  else if (kind === "mass") find("matrix").hidden = !isOn;
+  else overlays.show(kind, isOn);
+  place();
+}
+
+for (const [kind, { name, key, colour, about }] of Object.entries(KINDS)) {
+  if (possible[kind] === false) continue;
+  const button = find("toggles").appendChild(document.createElement("button"));
+  button.appendChild(document.createElement("i"));
+  button.append(name);
+  button.style.setProperty("--colour", colour);
+  button.title = `${about} (${key.toUpperCase()})`;
+  button.dataset.kind = kind;
+  button.addEventListener("click", () => show(kind, !shown[kind]));
+  buttons[kind] = button;
+}
+
+function row() {
+  const div = find("panel").appendChild(document.createElement("div"));
+  div.className = "row";
+  return div;
+}
+
+// The frame with the most joints before it, where no end effector is named.
+function farthest() {
+  const depth = [0];
+  robot.bodies.forEach(({ parent }) => depth.push(depth[parent] + 1));
+  return robot.frames.reduce((best, { body }, k) => (depth[body] >= depth[robot.frames[best].body] ? k : best), 0);
+}
+
+// The frame whose path and ellipsoids are meant.
+function addFrameChoice() {
+  const div = row();
+  const label = div.appendChild(document.createElement("label"));
+  label.textContent = "End effector ";
+  const select = label.appendChild(document.createElement("select"));
+  robot.frames.forEach(({ name }, k) => select.append(new Option(name, k)));
+  select.value = robot.endEffector ?? farthest();
+  const take = () => {
+    overlays.setFrame(Number(select.value), motion);
+    place();
+  };
+  select.addEventListener("change", take);
+  take();
+}
+
+function addPlots() {
+  const described = plotsOf(robot, motion, jointColour);
+  const joints = robot.velocities.slice(robot.isFloating ? 6 : 0);
+  const chips = find("panel").appendChild(document.createElement("div"));
+  chips.className = "chips";
+  joints.forEach((name, k) => {
+    const chip = chips.appendChild(document.createElement("button"));
+    chip.appendChild(document.createElement("i"));
+    chip.append(name);
+    chip.style.setProperty("--colour", jointColour(k + (robot.isFloating ? 6 : 0)));
+    chip.setAttribute("aria-pressed", "true");
+    chip.title = `${name}: shown or not; double click: alone`;
+    const set = (isOn) => {
+      chip.setAttribute("aria-pressed", String(isOn));
+      plots.forEach((plot) => plot.hide(name, !isOn));
+    };
+    chip.addEventListener("click", () => set(chip.getAttribute("aria-pressed") !== "true"));
+    chip.addEventListener("dblclick", () => {
+      const isAlone = [...chips.children].every((other) => other === chip || other.getAttribute("aria-pressed") === "false");
+      [...chips.children].forEach((other) => other.set(isAlone || other === chip));
+    });
+    chip.set = set;
+  });
+  for (const plot of described) plots.push(new Plot(find("panel"), { ...plot, t: motion.t, seek: (time) => player.seek(time) }));
+}
+
+// Value of a curve between rows.
+function between(time) {
+  const { low, part } = stateAt(motion, time);
+  return (values) => values[low] + (part > 0 ? part * (values[low + 1] - values[low]) : 0);
+}
+
+function atTime(time) {
+  state = stateAt(motion, time);
+  const at = between(time);
+  plots.forEach((plot) => plot.cursor(time, at));
+  const digits = motion.t.at(-1) - motion.t[0] < 0.1 ? 5 : 3;
+  find("time").value = time;
+  find("clock").textContent = `${time.toFixed(digits)} s`;
+  find("play").classList.toggle("playing", player.isPlaying);
+  find("play").setAttribute("aria-label", player.isPlaying ? "Pause" : "Play");
+  place();
+}
+
+const player = motion && new Player(motion.t, atTime);
+
+function addTransport() {
+  find("transport").hidden = false;
+  const time = find("time");
+  [time.min, time.max] = [player.start, player.end];
+  time.addEventListener("input", () => player.seek(time.valueAsNumber));
+  find("play").addEventListener("click", () => player.toggle());
+  SPEEDS.forEach((speed) => find("speed").append(new Option(`${speed}×`, speed, speed === 1, speed === 1)));
+  find("speed").addEventListener("change", () => (player.speed = Number(find("speed").value)));
+  find("loop").addEventListener("click", () => {
+    player.isLooping = !player.isLooping;
+    find("loop").setAttribute("aria-pressed", String(player.isLooping));
+  });
+}
+
+// Of the robot's shapes, or of its skeleton, where it is now.
+const bounds = () => scene.bounds(layers.visual.length + layers.collision.length > 0 ? [...layers.visual, ...layers.collision] : skeleton);
+
+// All of the robot in sight: where it is now, and of a bolted one wherever the motion takes it.
+function look() {
+  const box = bounds();
+  const { min, max } = box;
+  const points = box.isEmpty() ? [] : [0, 1, 2, 3, 4, 5, 6, 7].map((k) =>
+    new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
+  for (const { theta } of motion && !robot.isFloating ? some(24) : [state]) {
+    const T = poses(robot, theta);
+    robot.frames.forEach(({ body, T: at }) => points.push(new THREE.Vector3(...at.p).applyMatrix4(scene.matrixOf(T[body]))));
+  }
+  if (new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3()).length() < 0.1 * reach)
+    for (const sign of [-1, 1]) points.push(new THREE.Vector3(sign * reach, sign * reach, sign * reach));
+  scene.fit(points);
+}
+
+// Some of the motion's states, evenly.
+function some(count) {
+  const last = motion.t.length - 1;
+  const step = Math.max(Math.ceil(last / count), 1);
+  return Array.from({ length: Math.floor(last / step) + 1 }, (_, k) => stateAt(motion, motion.t[k * step]));
+}
+
+function randomStates(count) {
+  return Array.from({ length: count }, () => ({
+    ...still(), theta: neutral.map((x, k) => (robot.isFloating && k < 7 ? x : robot.slides[k - (robot.isFloating ? 7 : 0)] ? 0 : Math.random() * 6)),
+  }));
+}
+
+function savePicture() {
+  const link = document.createElement("a");
+  link.download = `${robot.name}.png`;
+  link.href = scene.picture();
+  link.click();
+}
+
+const theme = startTheme(find("theme"), () => {
+  plots.forEach((plot) => plot.redraw());
+  if (scene.floor) scene.ground(scene.groundSize, scene.groundHeight);
+  place();
+});
+
+let setJoints = null;
+
+async function start() {
+  if (asked.has("theme")) theme.set(asked.get("theme"));
+  else theme.apply();
+  addFrameChoice();
+  if (motion) {
+    addPlots();
+    addTransport();
+  } else {
+    setJoints = addSliders(find("panel"), robot, state.theta, jointColour, place);
+  }
+  overlays.measure(motion ? some(60) : randomStates(30));
+  const read = await addShapes(robot, raw.meshes, scene);
+  layers = read.layers;
+  const notes = [...raw.notes, ...read.failures];
+  fillHelp(find("about-page"), Boolean(motion), notes);
+  find("help").addEventListener("click", () => find("about-page").showModal());
+  find("picture").addEventListener("click", savePicture);
+  find("hint").textContent = notes.length > 0 ? `${notes.length} shapes were left out: see ?` : "";
+  onKeys({ player, player_speed: find("speed"), loop: find("loop"), theme, look, savePicture, help: find("about-page"), motion,
+    toggle: (kind) => buttons[kind] && show(kind, !shown[kind]) });
+
+  const hasShapes = layers.visual.length + layers.collision.length > 0;
+  const first = asked.has("show") ? asked.get("show").split(",") : hasShapes ? ["shapes", "mass"] : ["skeleton", "axes", "masses", "mass"];
+  for (const kind of Object.keys(KINDS)) show(kind, first.includes(kind) && possible[kind] !== false);
+  place();
+  look();
+  const bottom = bounds().min.z;
+  scene.ground(reach, robot.isFloating || bottom < -0.15 * reach ? bottom : 0);
+  if (motion) player.seek(asked.has("t") ? Number(asked.get("t")) : motion.t[0]);
+  place();
+  scene.drawNow();
+}
+
+// For the console, and for tests.
+window.mozzi = {
+  robot, motion, overlays, show,
+  ready: start(),
+  seek: (time) => player.seek(time),
+  setTheta: (theta) => setJoints(theta),
+  state: () => state,
+  // The first three rows of a frame's matrix, as the scene has it.
+  framePose(name) {
+    scene.world.updateMatrixWorld(true);
+    const frame = scene.frames[robot.frames.findIndex((known) => known.name === name)];
+    return frame.matrixWorld.clone().transpose().elements.slice(0, 12);
+  },
+  massMatrix: () => massMatrix(robot, state.theta),
+  vectors: () => overlays.vectors(state, poses(robot, state.theta)),
+};

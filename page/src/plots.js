@@ -1,0 +1,182 @@
+// Curves over time, with a cursor that scrubs.
+
+import { colour } from "./theme.js";
+
+const MARGIN = { left: 46, right: 8, top: 6, bottom: 16 };
+
+// Round numbers in a range, about so many.
+export function ticks(low, high, about) {
+  const raw = (high - low) / about;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((size) => size >= raw);
+  const list = [];
+  for (let k = Math.ceil(low / step); k * step <= high; k++) list.push(k * step);
+  return { list, step };
+}
+
+export function short(x, step = Math.abs(x) / 100) {
+  if (x === 0 || step === 0) return "0";
+  if (Math.abs(x) >= 1e5 || step < 1e-4) return x.toExponential(Math.abs(x) > 50 * step ? 2 : 0).replace("e+", "e");
+  return x.toFixed(Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 5));
+}
+
+// Lowest and highest of the curves, with air.
+function range(curves) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const { values } of curves)
+    for (const x of values)
+      if (Number.isFinite(x)) [low, high] = [Math.min(low, x), Math.max(high, x)];
+  if (low > high) return [-1, 1];
+  const air = high > low ? 0.06 * (high - low) : Math.abs(low) * 0.1 || 1;
+  return [low - air, high + air];
+}
+
+export class Plot {
+  // `curves`: { name, colour, values }, one value for each time.
+  constructor(host, { title, unit, t, curves, seek, legend }) {
+    Object.assign(this, { t, curves, legend, hidden: new Set() });
+    const figure = document.createElement("figure");
+    figure.className = "plot";
+    const caption = figure.appendChild(document.createElement("figcaption"));
+    caption.appendChild(document.createElement("b")).textContent = title;
+    caption.appendChild(document.createElement("small")).textContent = unit;
+    this.readout = caption.appendChild(document.createElement("span"));
+    this.readout.className = "values";
+    this.canvas = figure.appendChild(document.createElement("canvas"));
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", `${title} over time`);
+    host.append(figure);
+    this.still = document.createElement("canvas");
+    this.time = t[0];
+    this.scrub(seek);
+    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+  }
+
+  scrub(seek) {
+    const to = (event) => {
+      const { left, width } = this.canvas.getBoundingClientRect();
+      const part = (event.clientX - left - MARGIN.left) / (width - MARGIN.left - MARGIN.right);
+      seek(this.t[0] + part * (this.t.at(-1) - this.t[0]));
+    };
+    this.canvas.addEventListener("pointerdown", (event) => {
+      this.canvas.setPointerCapture(event.pointerId);
+      to(event);
+    });
+    this.canvas.addEventListener("pointermove", (event) => event.buttons && to(event));
+  }
+
+  hide(name, isHidden) {
+    if (isHidden) this.hidden.add(name);
+    else this.hidden.delete(name);
+    this.redraw();
+  }
+
+  get shown() {
+    return this.curves.filter(({ name }) => !this.hidden.has(name));
+  }
+
+  // Axes and curves, drawn once for each size, theme and choice.
+  redraw() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0) return;
+    const scale = Math.min(devicePixelRatio, 2);
+    for (const canvas of [this.canvas, this.still]) [canvas.width, canvas.height] = [width * scale, height * scale];
+    const draw = this.still.getContext("2d");
+    draw.scale(scale, scale);
+    const [low, high] = range(this.shown);
+    const [start, end] = [this.t[0], this.t.at(-1)];
+    const box = { x: MARGIN.left, y: MARGIN.top, w: width - MARGIN.left - MARGIN.right, h: height - MARGIN.top - MARGIN.bottom };
+    this.x = (t) => box.x + (end > start ? (t - start) / (end - start) : 0.5) * box.w;
+    const y = (value) => box.y + (1 - (value - low) / (high - low)) * box.h;
+    draw.font = "10.5px system-ui, sans-serif";
+    draw.lineWidth = 1;
+    const [up, along] = [ticks(low, high, 3), end > start ? ticks(start, end, Math.max(box.w / 90, 2)) : { list: [start], step: 1 }];
+    for (const value of up.list) {
+      draw.strokeStyle = colour(Math.abs(value) < 1e-9 * up.step ? "grid-axis" : "line");
+      draw.beginPath();
+      draw.moveTo(box.x, y(value));
+      draw.lineTo(box.x + box.w, y(value));
+      draw.stroke();
+      draw.fillStyle = colour("muted");
+      draw.textAlign = "right";
+      draw.textBaseline = "middle";
+      draw.fillText(short(value, up.step), box.x - 5, y(value));
+    }
+    draw.textAlign = "center";
+    draw.textBaseline = "alphabetic";
+    for (const t of along.list) draw.fillText(short(t, along.step), this.x(t), height - 3);
+    draw.save();
+    draw.beginPath();
+    draw.rect(box.x, box.y - 1, box.w, box.h + 2);
+    draw.clip();
+    draw.lineJoin = "round";
+    draw.lineWidth = this.shown.length > 12 ? 1 : 1.5;
+    for (const { values, colour: stroke } of this.shown) {
+      draw.strokeStyle = stroke;
+      draw.beginPath();
+      this.line(draw, values, y, box.w);
+      draw.stroke();
+    }
+    draw.restore();
+    this.y = y;
+    this.room = Math.floor(this.readout.clientWidth / (this.legend ? 90 : 50));
+    this.cursor(this.time);
+  }
+
+  // Of many points in one column of pixels, the first, the lowest, the highest and the last.
+  line(draw, values, y, columns) {
+    const [n, bin] = [values.length, Math.ceil(values.length / (2 * columns))];
+    for (let k = 0; k < n; k += bin) {
+      const last = Math.min(k + bin, n) - 1;
+      let picked = [k];
+      if (bin > 2) {
+        let [low, high] = [k, k];
+        for (let i = k; i <= last; i++) {
+          if (values[i] < values[low]) low = i;
+          if (values[i] > values[high]) high = i;
+        }
+        picked = [k, Math.min(low, high), Math.max(low, high)];
+      }
+      if (bin > 1) picked.push(last);
+      for (const i of picked) draw.lineTo(this.x(this.t[i]), y(values[i]));
+    }
+  }
+
+  // `at(values)` is what a curve says at the time.
+  cursor(time, at = this.at) {
+    [this.time, this.at] = [time, at];
+    if (!this.x || !at) return;
+    const draw = this.canvas.getContext("2d");
+    const scale = this.canvas.width / this.canvas.clientWidth;
+    draw.setTransform(1, 0, 0, 1, 0, 0);
+    draw.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    draw.drawImage(this.still, 0, 0);
+    draw.scale(scale, scale);
+    draw.strokeStyle = colour("text");
+    draw.globalAlpha = 0.55;
+    draw.beginPath();
+    draw.moveTo(this.x(time), MARGIN.top);
+    draw.lineTo(this.x(time), this.canvas.clientHeight - MARGIN.bottom);
+    draw.stroke();
+    draw.globalAlpha = 1;
+    const few = this.shown.length <= 12;
+    const said = [];
+    for (const { name, values, colour: fill } of this.shown) {
+      const value = at(values);
+      if (few) {
+        draw.fillStyle = fill;
+        draw.beginPath();
+        draw.arc(this.x(time), this.y(value), 2.8, 0, 2 * Math.PI);
+        draw.fill();
+      }
+      said.push({ name, fill, text: this.legend ? `${name} ${short(value)}` : short(value) });
+    }
+    this.readout.replaceChildren(...(said.length <= Math.min(this.room, 8) ? said : []).map(({ name, fill, text }) => {
+      const span = document.createElement("span");
+      span.style.color = fill;
+      span.title = name;
+      span.textContent = text;
+      return span;
+    }));
+  }
+}

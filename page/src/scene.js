@@ -1,0 +1,158 @@
+// The picture: camera, light, ground, and a group for each body, placed by its pose. Drawn when something changed, not otherwise.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { colour } from "./theme.js";
+
+export const matrixOf = ({ R, p }) =>
+  new THREE.Matrix4().set(R[0], R[1], R[2], p[0], R[3], R[4], R[5], p[1], R[6], R[7], R[8], p[2], 0, 0, 0, 1);
+
+export class Scene {
+  constructor(host, robot) {
+    this.host = host;
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.shadowMap.enabled = true;
+    host.append(this.renderer.domElement);
+    this.renderer.domElement.setAttribute("aria-label", `The robot ${robot.name} in three dimensions`);
+    this.world = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.draw());
+    this.bodies = Array.from({ length: robot.bodies.length + 1 }, () => {
+      const group = new THREE.Group();
+      group.matrixAutoUpdate = false;
+      this.world.add(group);
+      return group;
+    });
+    this.frames = robot.frames.map((frame) => {
+      const group = new THREE.Group();
+      group.matrixAutoUpdate = false;
+      group.matrix.copy(matrixOf(frame.T));
+      group.name = frame.name;
+      this.bodies[frame.body].add(group);
+      return group;
+    });
+    this.light();
+    this.isFollowing = robot.isFloating;
+    this.followed = new THREE.Vector3();
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+  }
+
+  light() {
+    this.sky = new THREE.HemisphereLight(0xffffff, 0x8890a0, 1.7);
+    this.sky.position.set(0, 0, 1);
+    this.sun = new THREE.DirectionalLight(0xffffff, 2.1);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.radius = 5;
+    this.sun.shadow.intensity = 0.6;
+    this.world.add(this.sky, this.sun, this.sun.target);
+  }
+
+  // Grid and shadow.
+  ground(size, height) {
+    [this.groundSize, this.groundHeight] = [size, height];
+    if (this.floor) {
+      this.world.remove(this.floor);
+      this.floor.traverse((part) => part.geometry?.dispose());
+    }
+    const cell = 10 ** Math.floor(Math.log10(size / 2));
+    const cells = 2 * Math.ceil((2.2 * size) / cell);
+    const grid = new THREE.GridHelper(cells * cell, cells, colour("grid-axis"), colour("grid"));
+    grid.rotation.x = Math.PI / 2;
+    grid.material.transparent = true;
+    grid.material.opacity = 0.7;
+    grid.material.depthWrite = false;
+    const shadow = new THREE.Mesh(new THREE.PlaneGeometry(cells * cell, cells * cell), new THREE.ShadowMaterial({ opacity: 0.28 }));
+    shadow.receiveShadow = true;
+    shadow.position.z = -1e-3 * size;
+    this.floor = new THREE.Group().add(grid, shadow);
+    this.floor.position.z = height - 1e-3 * size;
+    this.world.add(this.floor);
+    this.placeSun(size);
+  }
+
+  placeSun(size) {
+    Object.assign(this.sun.shadow.camera, { left: -size, right: size, top: size, bottom: -size, near: 0.1 * size, far: 8 * size });
+    this.sun.shadow.camera.updateProjectionMatrix();
+    this.sun.shadow.normalBias = 0.004 * size;
+    this.size = size;
+  }
+
+  matrixOf = matrixOf;
+
+  place(T) {
+    T.forEach((pose, k) => this.bodies[k].matrix.copy(matrixOf(pose)));
+    const base = new THREE.Vector3(...T[0].p);
+    if (this.isFollowing) {
+      const step = base.clone().sub(this.followed);
+      this.controls.target.add(step);
+      this.camera.position.add(step);
+    }
+    this.followed.copy(base);
+    this.draw();
+  }
+
+  // The camera as near as it can be with all points in sight, from a corner a little above.
+  fit(points) {
+    const center = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());
+    const towards = new THREE.Vector3(1, -0.75, 0.42).normalize();
+    const right = new THREE.Vector3(0, 0, 1).cross(towards).normalize();
+    const up = towards.clone().cross(right);
+    const tall = Math.tan((this.camera.fov * Math.PI) / 360);
+    const wide = tall * this.camera.aspect;
+    let distance = 1e-3;
+    for (const point of points) {
+      const from = point.clone().sub(center);
+      const beside = Math.max(Math.abs(from.dot(right)) / (0.84 * wide), Math.abs(from.dot(up)) / (0.76 * tall));
+      distance = Math.max(distance, beside + from.dot(towards));
+    }
+    this.controls.target.copy(center);
+    this.camera.position.copy(towards.multiplyScalar(distance).add(center));
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 60;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  bounds(parts) {
+    const box = new THREE.Box3();
+    this.world.updateMatrixWorld(true);
+    for (const part of parts) box.expandByObject(part);
+    return box;
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() {
+    if (this.isAsked) return;
+    this.isAsked = true;
+    requestAnimationFrame(() => {
+      this.isAsked = false;
+      this.drawNow();
+    });
+  }
+
+  drawNow() {
+    const size = this.size ?? 1;
+    this.sun.target.position.copy(this.controls.target);
+    this.sun.position.copy(this.controls.target).add(new THREE.Vector3(1.2, -0.7, 2.6).multiplyScalar(1.3 * size));
+    this.renderer.render(this.world, this.camera);
+  }
+
+  picture() {
+    this.drawNow();
+    return this.renderer.domElement.toDataURL("image/png");
+  }
+}

@@ -1,0 +1,75 @@
+// A robot without geometry, or without its skin: bones between joints, a drum or a slide at each joint.
+
+import * as THREE from "three";
+import { angular, cross, dot, linear } from "./lie.js";
+
+const Z = new THREE.Vector3(0, 0, 1);
+
+// The point of a screw axis nearest to the origin of its coordinates, and its direction.
+export function lineOf(A) {
+  const [w, v] = [angular(A), linear(A)];
+  if (dot(w, w) === 0) return { point: [0, 0, 0], direction: v };
+  return { point: cross(w, v), direction: w };
+}
+
+function bone(from, to, thick, thin, material) {
+  const [a, b] = [new THREE.Vector3(...from), new THREE.Vector3(...to)];
+  const length = a.distanceTo(b);
+  if (length < 1e-6) return null;
+  const geometry = new THREE.CylinderGeometry(thin, thick, length, 20).rotateX(Math.PI / 2);
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.position.copy(a).lerp(b, 0.5);
+  mesh.quaternion.setFromUnitVectors(Z, b.sub(a).normalize());
+  return mesh;
+}
+
+// Where a body's bones lead: to the joints that it carries, or, of a tip, to its farthest frame and its centre of mass.
+function ends(robot, k) {
+  const children = robot.bodies.filter((body) => body.parent === k).map((body) => body.M.p);
+  if (children.length > 0) return children;
+  const length = (p) => Math.hypot(...p);
+  const frames = robot.frames.filter((frame) => frame.body === k).map((frame) => frame.T.p);
+  const far = frames.reduce((best, p) => (length(p) > length(best) ? p : best), [0, 0, 0]);
+  const [m, ...h] = k === 0 ? robot.baseInertia : robot.bodies[k - 1].inertia;
+  const center = m > 0 ? h.slice(0, 3).map((x) => x / m) : [0, 0, 0];
+  return length(far) > length(center) ? [far] : [center];
+}
+
+export function addSkeleton(robot, scene, reach, jointColour) {
+  const parts = [];
+  const r = 0.02 * reach;
+  const metal = new THREE.MeshStandardMaterial({ color: 0x9aa7b5, roughness: 0.5, metalness: 0.25 });
+  const add = (k, mesh) => {
+    if (!mesh) return;
+    mesh.castShadow = true;
+    mesh.receiveShadow = true;
+    scene.bodies[k].add(mesh);
+    parts.push(mesh);
+  };
+  for (let k = 0; k <= robot.bodies.length; k++) {
+    if (k === 0) add(0, base(robot, r, metal));
+    for (const end of ends(robot, k)) add(k, bone([0, 0, 0], end, 1.05 * r, 0.7 * r, metal));
+    if (k > 0) add(k, joint(robot.bodies[k - 1], r, jointColour(robot.bodies[k - 1].j)));
+  }
+  return parts;
+}
+
+function base(robot, r, metal) {
+  if (robot.isFloating) return new THREE.Mesh(new THREE.SphereGeometry(1.8 * r, 32, 20), metal);
+  const plate = new THREE.Mesh(new THREE.CylinderGeometry(3.2 * r, 3.6 * r, 0.8 * r, 48).rotateX(Math.PI / 2), metal);
+  plate.position.z = -0.4 * r;
+  return plate;
+}
+
+function joint(body, r, colour) {
+  const paint = new THREE.MeshStandardMaterial({ color: new THREE.Color(colour), roughness: 0.45, metalness: 0.1 });
+  const { point, direction } = lineOf(body.A);
+  const geometry =
+    body.kind === "prismatic"
+      ? new THREE.BoxGeometry(2.2 * r, 2.2 * r, 3.6 * r)
+      : new THREE.CylinderGeometry(1.75 * r, 1.75 * r, 3.4 * r, 40).rotateX(Math.PI / 2);
+  const mesh = new THREE.Mesh(geometry, paint);
+  mesh.position.set(...point);
+  mesh.quaternion.setFromUnitVectors(Z, new THREE.Vector3(...direction).normalize());
+  return mesh;
+}

@@ -1,0 +1,78 @@
+//! The bundle of `page/`, which is committed: built by npm, and held to its sources by a stamp that needs no Node.
+
+use crate::command;
+use crate::report::Outcome;
+use crate::workspace::Workspace;
+use std::path::PathBuf;
+use std::process::Command;
+
+const BUNDLE: &str = "crates/mozzi-report/bundle/page.html";
+const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
+
+/// What browsers that can run the tests are called.
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+
+/// Writes the bundle anew.
+pub fn write(workspace: &Workspace) -> Outcome {
+    match build(workspace, &workspace.path(BUNDLE)) {
+        Ok(()) => Outcome::Passed(BUNDLE.into()),
+        Err(why) => Outcome::Failed(why),
+    }
+}
+
+/// Builds the bundle elsewhere and compares.
+pub fn compare(workspace: &Workspace) -> Outcome {
+    let new = workspace.path("target/page.html");
+    let read = |path: &PathBuf| std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()));
+    let both = build(workspace, &new).and_then(|()| Ok((read(&new)?, read(&workspace.path(BUNDLE))?)));
+    match both {
+        Ok((new, committed)) if new == committed => Outcome::Passed("as npm builds it".into()),
+        Ok(_) => Outcome::Failed(format!("{BUNDLE} is not what npm builds from page/: run cargo xtask page")),
+        Err(why) => Outcome::Failed(why),
+    }
+}
+
+fn build(workspace: &Workspace, file: &std::path::Path) -> Result<(), String> {
+    let page = workspace.path("page");
+    command::run(Command::new(NPM).current_dir(&page).args(["ci", "--no-audit", "--no-fund", "--ignore-scripts"]))?;
+    command::run(Command::new("node").current_dir(&page).arg("build.mjs").arg(file))
+}
+
+/// Does the bundle carry the stamp of today's sources?
+pub fn is_current(workspace: &Workspace) -> Outcome {
+    let bundle = match std::fs::read_to_string(workspace.path(BUNDLE)) {
+        Ok(bundle) => bundle,
+        Err(error) => return Outcome::Failed(format!("{BUNDLE}: {error}")),
+    };
+    match stamp(workspace) {
+        Ok(stamp) if bundle.contains(&format!("stamp {stamp}.")) => Outcome::Passed(format!("stamp {stamp}")),
+        Ok(_) => Outcome::Failed(format!("{BUNDLE} is older than page/: run cargo xtask page (needs npm)")),
+        Err(why) => Outcome::Failed(why),
+    }
+}
+
+/// As `page/build.mjs` has it: 64-bit FNV-1a of names and texts.
+fn stamp(workspace: &Workspace) -> Result<String, String> {
+    let mut files: Vec<String> =
+        ["build.mjs", "index.html", "package-lock.json", "package.json", "style.css"].map(String::from).to_vec();
+    let entries = std::fs::read_dir(workspace.path("page/src")).map_err(|error| format!("page/src: {error}"))?;
+    let names = entries.filter_map(Result::ok).map(|entry| entry.file_name().to_string_lossy().into_owned());
+    files.extend(names.filter(|name| name.ends_with(".js")).map(|name| format!("src/{name}")));
+    files.sort();
+    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+    for file in files {
+        let path = workspace.path("page").join(&file);
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        for byte in format!("{file}\n{}", text.replace("\r\n", "\n")).bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    Ok(format!("{hash:016x}"))
+}
+
+/// A browser for the tests of the page.
+pub fn browser() -> Option<PathBuf> {
+    let folders = std::env::var_os("PATH")?;
+    let paths = std::env::split_paths(&folders).flat_map(|folder| BROWSERS.map(|name| folder.join(name)));
+    paths.into_iter().find(|path| path.is_file())
+}
