@@ -1,6 +1,8 @@
 //! What the examples share: agreement within a tolerance, numbers in print, and a drawing.
 
+pub mod chart;
 pub mod plot;
+pub mod tracking;
 
 use nalgebra::DMatrix;
 

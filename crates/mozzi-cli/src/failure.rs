@@ -11,6 +11,8 @@ pub enum Failure {
     Load(Box<LoadError>),
     /// The answer, on standard output, is that something is wrong.
     Answered(String),
+    /// Ctrl-C ended the computation; what there was until then, for standard output.
+    Stopped(String),
 }
 
 pub type Result<T> = std::result::Result<T, Failure>;
@@ -26,7 +28,7 @@ impl Failure {
             Failure::Wrong(sentence) => write(&format!("error: {sentence}\n")),
             Failure::Load(error) if error.diagnostics().is_empty() => write(&format!("error: {error}\n")),
             Failure::Load(error) => write(&(error.pretty(style()) + "\n")),
-            Failure::Answered(_) => {}
+            Failure::Answered(_) | Failure::Stopped(_) => {}
         }
     }
 }
@@ -54,6 +56,12 @@ pub fn note(text: &str) {
 
 impl From<mozzi::Error> for Failure {
     fn from(error: mozzi::Error) -> Self {
+        Failure::Wrong(error.to_string())
+    }
+}
+
+impl From<mozzi_motion::Error> for Failure {
+    fn from(error: mozzi_motion::Error) -> Self {
         Failure::Wrong(error.to_string())
     }
 }

@@ -5,10 +5,15 @@ mod batch;
 mod columns;
 mod commands;
 mod compare;
+mod controller;
 mod failure;
+mod goals;
+mod interrupt;
 mod json;
 mod log;
+mod motors;
 mod numbers;
+mod progress;
 mod quantities;
 mod random;
 mod report;
@@ -57,8 +62,13 @@ enum Command {
     Batch(commands::batch::BatchArguments),
     /// How long each quantity takes on this machine, at one state and at many
     Bench(commands::bench::BenchArguments),
+    /// Positions at which the end effector is where it is to be: one pose, or a table of poses
+    Ik(commands::ik::IkArguments),
+    /// A motion to be followed: through joints or along lines and screws, within limits of velocity, acceleration and torque
+    #[command(after_help = TRAJECTORIES)]
+    Trajectory(commands::trajectory::TrajectoryArguments),
     /// The motion from a state, under torques and a tip wrench
-    #[command(after_help = TABLES)]
+    #[command(after_help = SIMULATIONS)]
     Simulate(simulate::SimulateArguments),
     /// The robot in a browser: a motion with its plots, or a slider for each joint
     #[command(after_help = TABLES)]
@@ -100,6 +110,7 @@ Examples:
   mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
   mozzi codegen panda --explain                         the work before and after folding
   mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
+  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions that put the tool there
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
   mozzi simulate ur5 --report fall.html                 the motion as a page: 3-D, plots, one file
   mozzi plot energy double_pendulum swing.csv --out energy.svg
@@ -109,7 +120,7 @@ Examples:
 Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
 F_tip is what the robot applies to the environment, in the end effector's frame.
 Results go to standard output, all else to standard error.
-Exit codes: 0 done, 1 wrong input, 2 wrong usage.";
+Exit codes: 0 done, 1 wrong input or no answer, 2 wrong usage, 130 ended by Ctrl-C.";
 
 const TABLES: &str = "\
 CSV files have a header and one row for each state; columns in any order:
@@ -122,6 +133,25 @@ CSV files have a header and one row for each state; columns in any order:
 Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0,
 and so are the six of a free base in tau.
 What one subcommand writes, the others read.";
+
+const TRAJECTORIES: &str = "\
+Examples:
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0                         joints, as fast as a quintic may
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0 --profile fastest --max-acceleration 15 --out way.csv
+  mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --along line --position 0.4,0.2,0.5 --time 2
+  mozzi trajectory ur5 --via points.csv --profile trapezoidal      a spline through points
+  mozzi simulate ur5 --follow way.csv --controller computed.json   see mozzi simulate --help";
+
+const SIMULATIONS: &str = "\
+CSV files are as of `mozzi inverse-dynamics --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
+
+A controller is a JSON object; gains are one number for all, or lists:
+  {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + p e + d ė; N m/rad, N m s/rad
+  {\"controller\": \"computed-torque\", \"p\": 100, \"d\": 20}          ë + d ė + p e = 0; 1/s², 1/s
+  {\"controller\": \"task-space\", \"frame\": \"tool0\", \"p\": 100, \"d\": 20, \"posture_p\": 25, \"posture_d\": 10}
+  {\"controller\": \"impedance\", \"frame\": \"tool0\", \"stiffness\": [20, 20, 20, 500, 500, 500], \"damping\": [1, 1, 1, 50, 50, 50],
+   \"posture_p\": 25, \"posture_d\": 10}
+\"model\": \"FILE or embedded robot\" beside them is what the controller believes the robot to be.";
 
 const BATCHES: &str = "\
 The states, N of them:
@@ -142,7 +172,11 @@ fn main() -> ExitCode {
         Ok(text) => (text, ExitCode::SUCCESS),
         Err(failure) => {
             failure.say();
-            (if let Failure::Answered(text) = failure { text } else { String::new() }, ExitCode::from(1))
+            match failure {
+                Failure::Answered(text) => (text, ExitCode::from(1)),
+                Failure::Stopped(text) => (text, ExitCode::from(interrupt::EXIT_CODE)),
+                _ => (String::new(), ExitCode::from(1)),
+            }
         }
     };
     let mut output = std::io::stdout().lock();
@@ -168,6 +202,8 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Derivatives(arguments)) => commands::derivatives::run(arguments),
         Some(Command::Batch(arguments)) => commands::batch::run(arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
+        Some(Command::Ik(arguments)) => commands::ik::run(arguments),
+        Some(Command::Trajectory(arguments)) => commands::trajectory::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Codegen(arguments)) => commands::codegen::run(arguments),

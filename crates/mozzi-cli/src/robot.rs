@@ -110,12 +110,21 @@ pub struct RobotArguments {
 }
 
 impl RobotArguments {
+    /// Another robot, read by the same policy and under the same gravity.
+    pub fn load_other(&self, name_or_path: &str) -> Result<Model> {
+        self.under_gravity(self.policy.model(name_or_path)?)
+    }
+
+    fn under_gravity(&self, model: Model) -> Result<Model> {
+        match &self.gravity {
+            None => Ok(model),
+            Some(text) => Ok(model.with_gravity(array("--gravity", text, ["x", "y", "z"])?)?),
+        }
+    }
+
     /// Loads the robot, saying what is odd about it.
     pub fn load(&self) -> Result<Model> {
-        let mut model = self.policy.model(&self.model)?;
-        if let Some(text) = &self.gravity {
-            model = model.with_gravity(array("--gravity", text, ["x", "y", "z"])?)?;
-        }
+        let mut model = self.load_other(&self.model)?;
         if let Some(name) = &self.end_effector {
             model = model.with_end_effector(model.frame(name)?)?;
         }

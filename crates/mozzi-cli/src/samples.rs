@@ -187,7 +187,7 @@ fn entries(model: &Model) -> String {
     )
 }
 
-fn csv_failure(file: &str, error: &csv::Error) -> Failure {
+pub fn csv_failure(file: &str, error: &csv::Error) -> Failure {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
             let line = pos.as_ref().map_or(0, csv::Position::line);

@@ -232,8 +232,3 @@ fn finish(mut description: Description, places: &Places, policy: Policy, finding
     problem::findings(&description, places).into_iter().for_each(|finding| findings.add(finding));
     description
 }
-
-/// The README's example, run with the documentation's tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;

@@ -2,7 +2,7 @@
 
 use super::terms::Terms;
 use super::terms_text::{jacobian, pose, state, sum, task, wrench};
-use super::{info, screws, simulate};
+use super::{info, screws, simulate_page};
 use crate::columns::save;
 use crate::failure::{Failure, Result};
 use crate::text::{Page, about, beside, matrix, table};
@@ -98,14 +98,14 @@ fn fall(model: &Model, page: &mut Page) -> Result<()> {
     let mut motions = Vec::new();
     for method in [Method::SemiImplicitEuler, Method::RungeKutta4] {
         let options = options(method);
-        motions.push((method, simulate::simulate(model, &THETA, &[0.0; 6], Zero, &options)?));
+        motions.push((method, model.simulate(&THETA, &[0.0; 6], Zero, &options)?));
     }
     if let Some((method, motion)) = motions.last() {
         page.lines(&[format!(
             "by {}; K kinetic, P potential energy, drift of K + P; the joints' limits stop nothing:",
             method.name()
         )]);
-        page.lines(&simulate::rows(model, motion, 8));
+        page.lines(&simulate_page::rows(model, motion, 8));
     }
     page.blank().lines(&drifts(&motions));
     let file = format!("mozzi-fall-{ROBOT}.csv");
@@ -142,7 +142,7 @@ fn drifts(motions: &[(Method, Trajectory)]) -> Vec<String> {
 fn csv(model: &Model, motions: &[(Method, Trajectory)]) -> String {
     let mut text = String::new();
     for (method, motion) in motions {
-        let table = simulate::columns(model, motion).text();
+        let table = simulate_page::columns(model, motion).text();
         let mut lines = table.lines();
         let header = lines.next().unwrap_or_default();
         if text.is_empty() {

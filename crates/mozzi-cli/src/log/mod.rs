@@ -11,7 +11,7 @@ use crate::batch::quantity::Shape;
 use crate::batch::results::Output;
 use crate::batch::{arrow, npy, npz};
 use crate::columns::{Columns, save};
-use crate::commands::simulate::{columns, energies};
+use crate::commands::simulate_page::{columns, energies};
 use crate::failure::{Failure, Result};
 use crate::samples::ENERGIES;
 use mozzi::{Model, Trajectory};

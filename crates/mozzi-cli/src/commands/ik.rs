@@ -1,0 +1,207 @@
+//! `mozzi ik`: joint positions at which the end effector is where it is to be.
+
+use crate::columns::{Columns, save};
+use crate::failure::{self, Failure, Result};
+use crate::goals::GoalArguments;
+use crate::numbers::number;
+use crate::progress::Progress;
+use crate::robot::{RobotArguments, Units, space_frame};
+use crate::state::positions;
+use crate::text::{Page, about, column, table};
+use crate::{goals, interrupt, json};
+use clap::{Args, ValueEnum};
+use mozzi::Model;
+use mozzi_motion::inverse_kinematics::{self, Options, Secondary, Solution};
+use mozzi_motion::{Goal, InverseKinematics};
+use serde_json::json;
+use std::time::Instant;
+
+/// Of the table beside the positions: 1 or 0, what is left, and what it took.
+const COLUMNS: [&str; 5] = ["reached", "angle", "distance", "starts", "iterations"];
+
+const NO_GOAL: &str = "there is no goal, expected --position, --rpy or --quaternion, or --in FILE.csv";
+
+#[derive(Args, Debug)]
+pub struct IkArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    #[command(flatten)]
+    goal: GoalArguments,
+    /// Poses in a CSV file with columns x y z qw qx qy qz, one in each row ("-": standard input)
+    #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["position", "rpy", "quaternion"])]
+    input: Option<String>,
+    /// Where the table goes: theta_1 …, reached, angle, distance, starts, iterations [default: standard output]
+    #[arg(long = "out", value_name = "FILE.csv", requires = "input")]
+    output: Option<String>,
+    /// Where the search begins [default: joints at 0]; of a table, each row's search
+    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    guess: Option<String>,
+    /// Of all solutions that the spare joints allow, the one nearest to these positions
+    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    near: Option<String>,
+    /// How a step is damped
+    #[arg(long, default_value = "levenberg-marquardt")]
+    method: Way,
+    /// The largest angle to the goal that is called reached, rad
+    #[arg(long, value_name = "RAD", default_value = "1e-8", allow_hyphen_values = true)]
+    angle: String,
+    /// The largest distance, m
+    #[arg(long, value_name = "M", default_value = "1e-8", allow_hyphen_values = true)]
+    distance: String,
+    /// Iterations of one start
+    #[arg(long, value_name = "K", default_value_t = Options::default().iterations)]
+    iterations: usize,
+    /// Starts: the guess, then random positions
+    #[arg(long, value_name = "K", default_value_t = Options::default().starts)]
+    starts: usize,
+    /// Of the random positions
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Let the joints go beyond their limits
+    #[arg(long)]
+    ignore_limits: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Way {
+    /// Damped: cautious far from the goal
+    LevenbergMarquardt,
+    /// The pseudo-inverse
+    Newton,
+}
+
+pub fn run(arguments: &IkArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    let guess = positions("--guess", arguments.guess.as_deref(), &model)?;
+    let near = arguments.near.as_deref().map(|text| positions("--near", Some(text), &model)).transpose()?;
+    let secondary = near.as_deref().map_or(Secondary::None, Secondary::Near);
+    let mut solver = InverseKinematics::with_options(&model, model.end_effector()?, arguments.options()?)?;
+    match &arguments.input {
+        Some(file) => arguments.table(&model, &mut solver, file, &guess, &secondary),
+        None => {
+            let found = solver.solve_with(
+                arguments.goal.read()?.ok_or_else(|| Failure::wrong(NO_GOAL))?,
+                &guess,
+                &secondary,
+            )?;
+            if arguments.robot.json { Ok(json::print(&object(&model, &found)?)) } else { page(&model, &found) }
+        }
+    }
+}
+
+impl IkArguments {
+    fn options(&self) -> Result<Options> {
+        let method = match self.method {
+            Way::LevenbergMarquardt => inverse_kinematics::Method::LevenbergMarquardt,
+            Way::Newton => inverse_kinematics::Method::Newton,
+        };
+        let (angle, distance) = (number("--angle", &self.angle)?, number("--distance", &self.distance)?);
+        let (iterations, starts, seed, limits) = (self.iterations, self.starts, self.seed, !self.ignore_limits);
+        Ok(Options { method, angle, distance, iterations, starts, seed, limits, ..Options::default() })
+    }
+
+    /// A row for each pose, also of those that were not reached: the best there is, with what is left.
+    fn table(
+        &self,
+        model: &Model,
+        solver: &mut InverseKinematics,
+        file: &str,
+        guess: &[f64],
+        secondary: &Secondary,
+    ) -> Result<String> {
+        let poses = goals::read(file)?;
+        interrupt::listen();
+        let (progress, begin) = (Progress::new("inverse kinematics", poses.len(), "poses"), Instant::now());
+        let (mut theta, mut numbers, mut missed) = (Vec::new(), [const { Vec::new() }; 5], Vec::new());
+        for (row, (line, T)) in poses.iter().enumerate() {
+            if interrupt::asked() {
+                break;
+            }
+            let (positions, residual, starts, iterations) = match solver.solve_with(Goal::Pose(*T), guess, secondary) {
+                Ok(Solution { theta, residual, starts, iterations }) => (theta, residual, starts, iterations),
+                Err(mozzi_motion::Error::NotReached { theta, residual, starts, iterations, .. }) => {
+                    missed.push(line);
+                    (theta, residual, starts, iterations)
+                }
+                Err(error) => return Err(error.into()),
+            };
+            theta.push(positions);
+            let [angle, distance] = [residual.angle, residual.distance].map(|x| x.unwrap_or(0.0));
+            let reached = if missed.last() == Some(&line) { 0.0 } else { 1.0 };
+            for (column, x) in numbers.iter_mut().zip([reached, angle, distance, starts as f64, iterations as f64]) {
+                column.push(x);
+            }
+            progress.at(row + 1);
+        }
+        drop(progress);
+        let (count, seconds) = (theta.len(), begin.elapsed().as_secs_f64());
+        let mut columns = Columns::default();
+        columns.add_group(model, "theta", &theta);
+        for (name, values) in COLUMNS.into_iter().zip(numbers) {
+            columns.add(name, values);
+        }
+        let micros = 1e6 * seconds / count.max(1) as f64;
+        failure::note(&format!(
+            "{} of {count} poses reached, {} s, {} µs a pose",
+            count - missed.len(),
+            about(seconds),
+            about(micros)
+        ));
+        let text = match self.output.as_deref().filter(|file| *file != "-") {
+            None => columns.text(),
+            Some(file) => {
+                save(file, &columns.text())?;
+                format!("{count} rows written to {file}\n")
+            }
+        };
+        if count < poses.len() {
+            failure::note(&format!("stopped by Ctrl-C: {count} of {} poses", poses.len()));
+            return Err(Failure::Stopped(text));
+        }
+        match missed.first() {
+            None => Ok(text),
+            Some(line) => {
+                failure::note(&format!("{} poses were not reached, the first in line {line} of {file}", missed.len()));
+                Err(Failure::Answered(text))
+            }
+        }
+    }
+}
+
+fn object(model: &Model, found: &Solution) -> Result<serde_json::Value> {
+    let frame = model.end_effector()?;
+    let T = model.forward_kinematics(&found.theta, frame)?;
+    Ok(json::of_robot(
+        model,
+        json!({
+            "frame": model.frame_name(frame),
+            "theta": json::vector(&found.theta),
+            "T": json::pose(T),
+            "angle": found.residual.angle,
+            "distance": found.residual.distance,
+            "starts": found.starts,
+            "iterations": found.iterations,
+        }),
+    ))
+}
+
+fn page(model: &Model, found: &Solution) -> Result<String> {
+    let frame = model.end_effector()?;
+    let mut page = Page::default();
+    let starts = if found.starts == 1 { "1 start".to_string() } else { format!("{} starts", found.starts) };
+    page.line(format!(
+        "{}: `{}` is at its goal but for {}; {starts}, {} iterations",
+        model.description().name,
+        model.frame_name(frame),
+        found.residual,
+        found.iterations
+    ));
+    let names = model.position_names().map(str::to_string);
+    let rows: Vec<Vec<String>> = names.zip(column(&found.theta)).map(|(name, value)| vec![name, value]).collect();
+    page.blank().line(format!("θ in {}", Units::of(model).position)).lines(&table(&rows, "lr"));
+    let T = model.forward_kinematics(&found.theta, frame)?.to_matrix();
+    page.blank().line(format!("T of it, seen from {}", space_frame(model))).lines(&crate::text::constants(T));
+    let list: Vec<String> = found.theta.iter().map(|x| format!("{x:?}")).collect();
+    page.blank().line(format!("--theta {}", list.join(",")));
+    Ok(page.end())
+}

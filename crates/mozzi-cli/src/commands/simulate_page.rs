@@ -1,0 +1,177 @@
+//! What `mozzi simulate` answers: a table for a file, JSON, or a page.
+
+use super::simulate::Outcome;
+use crate::columns::Columns;
+use crate::json;
+use crate::robot::Units;
+use crate::samples::ENERGIES;
+use crate::text::{Decimals, Page, about, scalar, table};
+use mozzi::{Model, Trajectory, simulation};
+use mozzi_motion::controllers::Overload;
+use mozzi_motion::integrators::Stopped;
+use serde_json::{Value, json};
+
+/// Rows of the table on the screen.
+const SHOWN: usize = 20;
+
+/// The motion by columns, as it goes to a file.
+pub fn columns(model: &Model, motion: &Trajectory) -> Columns {
+    let mut columns = Columns::default();
+    let group = |values: &[f64], n: usize| values.chunks(n.max(1)).map(<[f64]>::to_vec).collect::<Vec<_>>();
+    columns.add("t", motion.t.clone());
+    columns.add_group(model, "theta", &group(&motion.theta, motion.nq));
+    columns.add_group(model, "dtheta", &group(&motion.dtheta, motion.n));
+    columns.add_group(model, "ddtheta", &group(&motion.ddtheta, motion.n));
+    columns.add_group(model, "tau", &group(&motion.tau, motion.n));
+    for (name, values) in ENERGIES.iter().zip(energies(motion)) {
+        columns.add(*name, values);
+    }
+    columns
+}
+
+pub fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
+    let of = |pick: fn(&simulation::Energy) -> f64| motion.energy.iter().map(pick).collect();
+    [of(|e| e.kinetic), of(|e| e.potential), of(|e| e.motor_work), of(|e| e.friction_loss), of(|e| e.applied_work)]
+}
+
+pub fn object(model: &Model, outcome: &Outcome) -> Value {
+    let motion = &outcome.motion;
+    let lists = |values: &[f64], n: usize| values.chunks(n.max(1)).map(json::vector).collect::<Value>();
+    let [kinetic, potential, motor, friction, applied] = energies(motion).map(|list| json::vector(&list));
+    json::of_robot(
+        model,
+        json!({
+            "method": outcome.method,
+            "step": outcome.step,
+            "steps": motion.steps,
+            "t": json::vector(&motion.t),
+            "theta": lists(&motion.theta, motion.nq),
+            "dtheta": lists(&motion.dtheta, motion.n),
+            "ddtheta": lists(&motion.ddtheta, motion.n),
+            "tau": lists(&motion.tau, motion.n),
+            "kinetic_energy": kinetic,
+            "potential_energy": potential,
+            "motor_work": motor,
+            "friction_loss": friction,
+            "applied_work": applied,
+            "largest_drift": motion.largest_drift(),
+            "complete": motion.complete,
+            "tracking_error": outcome.tracking.as_ref().map(|e| json!({
+                "rms": json::vector(&e.rms),
+                "largest": json::vector(&e.largest),
+            })),
+            "effort_limits": outcome.overloads.iter().map(|o| json!({
+                "joint": o.joint, "limit": o.limit, "asked": o.largest, "first": o.first, "last": o.last,
+            })).collect::<Value>(),
+            "joint_limits": outcome.stops.iter().map(|s| json!({
+                "joint": s.joint, "limit": s.limit, "beyond": s.beyond, "first": s.first, "times": s.times,
+            })).collect::<Value>(),
+        }),
+    )
+}
+
+/// Positions that a row has room for: eight, or a free base's seven.
+fn shown_positions(model: &Model) -> usize {
+    match model.base().positions() {
+        0 => 8,
+        base => base,
+    }
+}
+
+/// Some rows of a motion: t, θ, 𝒦, 𝒫, drift.
+pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
+    let (last, n) = (motion.len() - 1, motion.nq.min(shown_positions(model)));
+    let picked: Vec<usize> = (0..=shown).map(|k| k * last / shown.max(1)).collect();
+    let mut picked = picked;
+    picked.dedup();
+    let positions: Vec<String> = match model.is_floating() {
+        true => model.position_names().take(n).map(str::to_string).collect(),
+        false => (1..=n).map(|j| format!("θ_{j}")).collect(),
+    };
+    let heads = positions.into_iter().chain(["K [J]", "P [J]", "drift [J]"].map(str::to_string));
+    let mut cells = vec![std::iter::once("t [s]".to_string()).chain(heads).collect::<Vec<_>>()];
+    let decimals = |pick: &dyn Fn(usize) -> f64| Decimals::of(&picked.iter().map(|&k| pick(k)).collect::<Vec<_>>());
+    let theta = Decimals::of(picked.iter().flat_map(|&k| &motion.sample(k).theta[..n]));
+    let [time, kinetic, potential] = [
+        decimals(&|k| motion.t[k]),
+        decimals(&|k| motion.energy[k].kinetic),
+        decimals(&|k| motion.energy[k].potential),
+    ];
+    for &k in &picked {
+        let sample = motion.sample(k);
+        let mut row = vec![time.show(sample.t)];
+        row.extend(sample.theta.iter().take(n).map(|&x| theta.show(x)));
+        row.extend([kinetic.show(sample.energy.kinetic), potential.show(sample.energy.potential)]);
+        row.push(about(motion.drift(k)));
+        cells.push(row);
+    }
+    table(&cells, "r")
+}
+
+pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
+    let (motion, mut page) = (&outcome.motion, Page::default());
+    let adaptive = outcome.method.starts_with("Dormand");
+    page.line(format!(
+        "{} for {} s by {}, {} steps {} {}{}, motors: {}",
+        model.description().name,
+        scalar(motion.last().t),
+        outcome.method,
+        motion.steps,
+        if adaptive { "to a tolerance of" } else { "of" },
+        if adaptive { format!("{:e}", outcome.step) } else { scalar(outcome.step) },
+        if adaptive { "" } else { " s" },
+        outcome.motors
+    ));
+    page.blank().lines(&rows(model, motion, SHOWN));
+    let shown = shown_positions(model);
+    if model.nq() > shown {
+        let what = if model.is_floating() { "positions" } else { "joints" };
+        page.lines(&[format!("… the first {shown} of {} {what}; --out FILE.csv or --json gives all", model.nq())]);
+    }
+    let end = motion.last().energy;
+    page.blank().line(format!("θ in {}; K kinetic, P potential energy", Units::of(model).position));
+    page.line(format!(
+        "work since the start: motors {} J, lost in friction {} J, given to the environment {} J",
+        scalar(end.motor_work),
+        scalar(end.friction_loss),
+        scalar(end.applied_work)
+    ));
+    page.line(format!(
+        "drift: energy that the method made or lost, at most {} J, against {} J of kinetic energy",
+        about(motion.largest_drift()),
+        scalar(motion.largest_kinetic_energy())
+    ));
+    if let Some(error) = &outcome.tracking {
+        page.line(format!(
+            "tracking error θ_d ⊖ θ: at most {}, root of the mean square at most {} ({})",
+            about(error.worst()),
+            about(error.worst_rms()),
+            Units::of(model).position
+        ));
+    }
+    limits_reached(outcome).iter().for_each(|line| {
+        page.line(line);
+    });
+    if let Some(file) = file {
+        page.line(format!("{} rows written to {file}", motion.len()));
+    }
+    page.end()
+}
+
+/// A sentence for each joint that came to its limit, and each motor that was asked for more than it has.
+pub fn limits_reached(outcome: &Outcome) -> Vec<String> {
+    let stop = |stop: &Stopped| {
+        let (joint, limit, first) = (&stop.joint, scalar(stop.limit), scalar(stop.first));
+        match stop.beyond {
+            0.0 => {
+                format!("joint limit: `{joint}` came to rest at {limit}, first at t = {first} s, {} times", stop.times)
+            }
+            beyond => format!("joint limit: `{joint}` went {} beyond {limit}, first at t = {first} s", about(beyond)),
+        }
+    };
+    let overload = |overload: &Overload| {
+        let (asked, limit, first) = (scalar(overload.largest), scalar(overload.limit), scalar(overload.first));
+        format!("effort limit: `{}` was asked for up to {asked} of its {limit}, first at t = {first} s", overload.joint)
+    };
+    outcome.stops.iter().map(stop).chain(outcome.overloads.iter().map(overload)).collect()
+}

@@ -1,0 +1,269 @@
+//! `mozzi trajectory`: a motion to be followed.
+
+use crate::columns::{Columns, save};
+use crate::failure::{Failure, Result};
+use crate::goals::GoalArguments;
+use crate::json;
+use crate::numbers::number;
+use crate::robot::{RobotArguments, Units};
+use crate::samples::{Samples, first_column};
+use crate::state::positions;
+use crate::text::{Decimals, Page, about, scalar, table};
+use clap::{Args, ValueEnum};
+use mozzi::{Model, SE3};
+use mozzi_motion::Goal;
+use mozzi_motion::trajectories::{
+    Cartesian, Desired, Ends, Limits, Line, Path, Profile, Reference, Shape, Spline, Timed, stretched, time_optimal,
+};
+use serde_json::{Value, json};
+
+#[derive(Args, Debug)]
+pub struct TrajectoryArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    /// Where the motion begins [default: joints at 0, a free base at {s}]
+    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
+    from: Option<String>,
+    /// Where it ends
+    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
+    to: Option<String>,
+    /// Points to pass, in a CSV file with columns theta_1 …; with a column t, at these times, by a spline at rest at both ends
+    #[arg(long, value_name = "FILE.csv")]
+    via: Option<String>,
+    /// The way: of the joints, or of the end effector to --to's pose or to --position and --rpy
+    #[arg(long, value_name = "WAY", default_value = "joints", conflicts_with = "via")]
+    along: Way,
+    #[command(flatten)]
+    goal: GoalArguments,
+    /// How far off its way the end effector may be, ‖(ω, v)‖, rad and m
+    #[arg(long, value_name = "EPS", default_value = "1e-6", allow_hyphen_values = true)]
+    deviation: String,
+    /// How the way is run through
+    #[arg(long, default_value = "quintic")]
+    profile: Shaped,
+    /// How long, s [default: as short as the limits allow]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    time: Option<String>,
+    /// Of a trapezoid: the part of the time in which it rises, and falls
+    #[arg(long, value_name = "PART", default_value = "0.25", allow_hyphen_values = true)]
+    rise: String,
+    /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    max_velocity: Option<String>,
+    /// Acceleration limits, rad/s² or m/s² [default: none]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    max_acceleration: Option<String>,
+    /// Torque limits, N m or N [default: the robot's]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    max_torque: Option<String>,
+    /// Time between two rows, s
+    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
+    step: String,
+    /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n
+    #[arg(long, value_name = "FILE.csv")]
+    out: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Way {
+    /// In proportion to each other
+    Joints,
+    /// A screw motion of the end effector
+    Screw,
+    /// A straight line of its origin
+    Line,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Shaped {
+    /// At rest at both ends
+    Cubic,
+    /// And without acceleration there
+    Quintic,
+    /// Constant acceleration, velocity, deceleration
+    Trapezoidal,
+    /// As fast as the limits of velocity, acceleration and torque allow at each place
+    Fastest,
+}
+
+/// Rows of the table on the screen.
+const SHOWN: usize = 10;
+/// Places at which limits are looked at.
+const PLACES: usize = 500;
+
+pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    let limits = arguments.limits(&model)?;
+    let motion = arguments.motion(&model, &limits)?;
+    let step = number("--step", &arguments.step)?;
+    if !(step > 0.0) || motion.duration() / step > 1e7 {
+        return Err(Failure::wrong(format!(
+            "--step is {step}, expected a positive number of seconds, at most 10⁷ of them"
+        )));
+    }
+    let rows = motion.sampled((motion.duration() / step).ceil().max(1.0) as usize);
+    let torque = |row: &Desired| {
+        model
+            .inverse_dynamics(&row.theta, &row.dtheta, &row.ddtheta, &model.environment())
+            .map(|tau| tau.as_slice().to_vec())
+    };
+    let tau = rows.iter().map(|(_, row)| torque(row)).collect::<std::result::Result<Vec<_>, _>>()?;
+    let text = columns(&model, &rows, &tau).text();
+    if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
+        save(file, &text)?;
+    }
+    match arguments.out.as_deref() {
+        Some("-") => Ok(text),
+        _ if arguments.robot.json => Ok(json::print(&object(&model, &rows, &tau))),
+        file => Ok(page(&model, &rows, &tau, &limits, file)),
+    }
+}
+
+impl TrajectoryArguments {
+    fn limits(&self, model: &Model) -> Result<Limits> {
+        let robots = Limits::of(model);
+        let list = |flag: &str, text: &Option<String>, default: Vec<f64>| match text.as_deref() {
+            None => Ok(default),
+            Some(text) => match crate::numbers::numbers(flag, text)?[..] {
+                [x] => Ok(vec![x; model.n()]),
+                ref all if all.len() == model.n() => Ok(all.to_vec()),
+                ref all => Err(crate::numbers::wrong_count(
+                    flag,
+                    all.len(),
+                    model.n(),
+                    "one for each velocity, or one for all",
+                )),
+            },
+        };
+        Ok(Limits {
+            velocity: list("--max-velocity", &self.max_velocity, robots.velocity)?,
+            acceleration: list("--max-acceleration", &self.max_acceleration, robots.acceleration)?,
+            torque: list("--max-torque", &self.max_torque, robots.torque)?,
+        })
+    }
+
+    fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Timed<Box<dyn Path + 'm>>> {
+        let path: Box<dyn Path + 'm> = match &self.via {
+            Some(file) => {
+                let samples = Samples::read(file, model)?;
+                let points = samples.need(&samples.theta, &first_column(model, "theta"))?;
+                let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
+                match &samples.t {
+                    Some(times) => {
+                        let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
+                        let span = times[times.len() - 1] - times[0];
+                        let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
+                        return Ok(Timed::new(Box::new(spline), Profile::linear(duration)?));
+                    }
+                    None => Box::new(Spline::through(model, points, Ends::Natural).map_err(place)?),
+                }
+            }
+            None => self.path(model)?,
+        };
+        let rise = number("--rise", &self.rise)?;
+        let shape = |duration: f64| match self.profile {
+            Shaped::Cubic => Profile::cubic(duration),
+            Shaped::Quintic => Profile::quintic(duration),
+            Shaped::Trapezoidal | Shaped::Fastest => Profile::trapezoidal_in(duration, rise),
+        };
+        let profile = match (&self.time, self.profile) {
+            (None, Shaped::Fastest) => time_optimal(model, &path, limits, PLACES)?,
+            (Some(text), Shaped::Fastest) => {
+                time_optimal(model, &path, limits, PLACES)?.in_time(number("--time", text)?)?
+            }
+            (None, _) => stretched(model, &path, &shape(1.0)?, limits, PLACES)?,
+            (Some(text), _) => shape(number("--time", text)?)?,
+        };
+        Ok(Timed::new(path, profile))
+    }
+
+    fn path<'m>(&self, model: &'m Model) -> Result<Box<dyn Path + 'm>> {
+        let from = positions("--from", self.from.as_deref(), model)?;
+        let to = self.to.as_deref().map(|text| positions("--to", Some(text), model)).transpose()?;
+        let shape = match (self.along, &to) {
+            (Way::Joints, Some(to)) => return Ok(Box::new(Line::new(model, &from, to)?)),
+            (Way::Joints, None) => return Err(Failure::wrong("there is no end, expected --to or --via")),
+            (Way::Screw, _) => Shape::Screw,
+            (Way::Line, _) => Shape::Straight,
+        };
+        let frame = model.end_effector()?;
+        let start = model.forward_kinematics(&from, frame)?;
+        let goal = match (to, self.goal.read()?) {
+            (Some(to), None) => model.forward_kinematics(&to, frame)?,
+            (None, Some(Goal::Pose(T))) => T,
+            (None, Some(Goal::Position(p))) => SE3::new(start.R, p),
+            (None, Some(Goal::Orientation(R))) => SE3::new(R, start.p),
+            _ => return Err(Failure::wrong("--along expects either --to, or --position, --rpy or --quaternion")),
+        };
+        let deviation = number("--deviation", &self.deviation)?;
+        Ok(Box::new(Cartesian::new(model, frame, &from, goal, shape, deviation)?))
+    }
+}
+
+fn columns(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Columns {
+    let mut columns = Columns::default();
+    let group = |pick: fn(&Desired) -> &Vec<f64>| rows.iter().map(|(_, row)| pick(row).clone()).collect::<Vec<_>>();
+    columns.add("t", rows.iter().map(|(t, _)| *t).collect());
+    columns.add_group(model, "theta", &group(|row| &row.theta));
+    columns.add_group(model, "dtheta", &group(|row| &row.dtheta));
+    columns.add_group(model, "ddtheta", &group(|row| &row.ddtheta));
+    columns.add_group(model, "tau", tau);
+    columns
+}
+
+fn object(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Value {
+    let group =
+        |pick: fn(&Desired) -> &Vec<f64>| rows.iter().map(|(_, row)| json::vector(pick(row))).collect::<Value>();
+    json::of_robot(
+        model,
+        json!({
+            "t": rows.iter().map(|(t, _)| Value::from(*t)).collect::<Value>(),
+            "theta": group(|row| &row.theta),
+            "dtheta": group(|row| &row.dtheta),
+            "ddtheta": group(|row| &row.ddtheta),
+            "tau": tau.iter().map(|tau| json::vector(tau)).collect::<Value>(),
+        }),
+    )
+}
+
+fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits, file: Option<&str>) -> String {
+    let mut page = Page::default();
+    let duration = rows.last().map_or(0.0, |(t, _)| *t);
+    page.line(format!("{}: a motion of {} s", model.description().name, scalar(duration)));
+    let shown = model.nq().min(8);
+    let mut cells =
+        vec![std::iter::once("t [s]".to_string()).chain((1..=shown).map(|j| format!("θ_{j}"))).collect::<Vec<_>>()];
+    let picked: Vec<usize> = (0..=SHOWN).map(|k| k * (rows.len() - 1) / SHOWN).collect();
+    let theta = Decimals::of(rows.iter().flat_map(|(_, row)| &row.theta[..shown]));
+    let time = Decimals::of(rows.iter().map(|(t, _)| t));
+    for &k in &picked {
+        let (t, row) = &rows[k];
+        cells.push(std::iter::once(time.show(*t)).chain(row.theta[..shown].iter().map(|&q| theta.show(q))).collect());
+    }
+    cells.dedup();
+    page.blank().lines(&table(&cells, "r")).blank();
+    // the largest of each joint, and of its limit
+    let largest = |pick: &dyn Fn(usize) -> Vec<f64>| {
+        let all = (0..rows.len()).map(pick);
+        all.fold(vec![0.0_f64; model.n()], |m, row| m.iter().zip(&row).map(|(m, x)| m.max(x.abs())).collect())
+    };
+    let units = Units::of(model);
+    for (what, unit, found, limit) in [
+        ("velocity", units.rate(1), largest(&|k| rows[k].1.dtheta.clone()), &limits.velocity),
+        ("acceleration", units.rate(2), largest(&|k| rows[k].1.ddtheta.clone()), &limits.acceleration),
+        ("torque", units.force.to_string(), largest(&|k| tau[k].clone()), &limits.torque),
+    ] {
+        let share = found.iter().zip(limit).map(|(x, limit)| x / limit).fold(0.0, f64::max);
+        let most = found.iter().fold(0.0_f64, |m, &x| m.max(x));
+        let of = if share > 0.0 {
+            format!(", {} % of its limit where nearest", about(100.0 * share))
+        } else {
+            String::new()
+        };
+        page.line(format!("largest {what}: {} {unit}{of}", scalar(most)));
+    }
+    if let Some(file) = file {
+        page.line(format!("{} rows written to {file}", rows.len()));
+    }
+    page.end()
+}

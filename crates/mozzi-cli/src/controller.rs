@@ -1,0 +1,113 @@
+//! `--controller FILE.json`: which controller, its gains, and what it believes the robot to be.
+
+use crate::failure::{Failure, Result};
+use crate::robot::RobotArguments;
+use mozzi::Model;
+use mozzi::simulation::Input;
+use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
+use mozzi_motion::trajectories::Reference;
+use serde_json::{Map, Value};
+
+/// A file, read; its robot, where it names one, loaded.
+pub struct Controller {
+    file: String,
+    kind: String,
+    entries: Map<String, Value>,
+    /// What the controller believes the robot to be, where that is another.
+    believed: Option<Model>,
+}
+
+/// Kinds and the entries that each needs; `model` may stand in all of them.
+const KINDS: [(&str, &[&str]); 4] = [
+    ("pd-gravity", &["p", "d"]),
+    ("computed-torque", &["p", "d"]),
+    ("task-space", &["frame", "p", "d", "posture_p", "posture_d"]),
+    ("impedance", &["frame", "stiffness", "damping", "posture_p", "posture_d"]),
+];
+
+impl Controller {
+    pub fn read(file: &str, robot: &RobotArguments) -> Result<Self> {
+        let wrong = |sentence: String| Failure::wrong(format!("{file}: {sentence}"));
+        let text =
+            std::fs::read_to_string(file).map_err(|error| Failure::wrong(format!("{file} cannot be read: {error}")))?;
+        let value: Value = serde_json::from_str(&text).map_err(|error| wrong(format!("is no JSON: {error}")))?;
+        let Value::Object(entries) = value else { return Err(wrong("is no JSON object".into())) };
+        let kinds = KINDS.map(|(kind, _)| format!("`{kind}`")).join(", ");
+        let Some(kind) = entries.get("controller").and_then(Value::as_str) else {
+            return Err(wrong(format!("`controller` is missing, expected one of {kinds}")));
+        };
+        let Some((kind, needed)) = KINDS.iter().find(|(known, _)| *known == kind) else {
+            return Err(wrong(format!("controller: is `{kind}`, expected one of {kinds}")));
+        };
+        let known = |key: &str| key == "controller" || key == "model" || needed.contains(&key);
+        if let Some(unknown) = entries.keys().find(|key| !known(key)) {
+            return Err(wrong(format!("`{unknown}` is no entry of `{kind}`, expected {}, model", needed.join(", "))));
+        }
+        if let Some(missing) = needed.iter().find(|key| !entries.contains_key(**key)) {
+            return Err(wrong(format!("`{missing}` is missing, which `{kind}` needs")));
+        }
+        let believed = match entries.get("model") {
+            None => None,
+            Some(Value::String(name)) => Some(robot.load_other(name)?),
+            Some(other) => return Err(wrong(format!("model: is {other}, expected a file or an embedded robot"))),
+        };
+        Ok(Controller { file: file.to_string(), kind: kind.to_string(), believed, entries })
+    }
+
+    /// For the page: "computed-torque of arm.json".
+    pub fn name(&self) -> String {
+        format!("{} of {}", self.kind, self.file)
+    }
+
+    /// Motors that follow a reference, of a robot that the file names, else of this one.
+    pub fn follow<'a>(&'a self, robot: &'a Model, reference: &'a dyn Reference) -> Result<Box<dyn Input + 'a>> {
+        let model = self.believed.as_ref().unwrap_or(robot);
+        if model.n() != robot.n() || model.nq() != robot.nq() {
+            let (found, expected) = (model.n(), robot.n());
+            return Err(Failure::wrong(format!(
+                "{}: model: the robot has {found} velocities, expected {expected}, as the one that is simulated",
+                self.file
+            )));
+        }
+        let n = model.n();
+        let gains = |p: &str, d: &str| Ok::<_, Failure>(Gains { p: self.list(p, n)?, d: self.list(d, n)? });
+        let place = |error: mozzi_motion::Error| Failure::wrong(format!("{}: {error}", self.file));
+        Ok(match self.kind.as_str() {
+            "pd-gravity" => Box::new(PdGravity::new(model, reference, gains("p", "d")?).map_err(place)?),
+            "computed-torque" => Box::new(ComputedTorque::new(model, reference, gains("p", "d")?).map_err(place)?),
+            kind => {
+                let law = match kind {
+                    "task-space" => Law::Acceleration { p: self.six("p")?, d: self.six("d")? },
+                    _ => Law::Impedance { stiffness: self.six("stiffness")?, damping: self.six("damping")? },
+                };
+                let posture = gains("posture_p", "posture_d")?;
+                Box::new(TaskSpace::new(model, reference, self.frame(model)?, law, posture).map_err(place)?)
+            }
+        })
+    }
+
+    fn frame(&self, model: &Model) -> Result<mozzi::FrameId> {
+        match &self.entries["frame"] {
+            Value::String(name) => Ok(model.frame(name)?),
+            other => Err(Failure::wrong(format!("{}: frame: is {other}, expected the name of a frame", self.file))),
+        }
+    }
+
+    /// One number for all, or a list.
+    fn list(&self, key: &str, count: usize) -> Result<Vec<f64>> {
+        let value = &self.entries[key];
+        let wrong = || {
+            let expected = format!("expected a number, or a list of {count}");
+            Failure::wrong(format!("{}: {key}: is {value}, {expected}", self.file))
+        };
+        match value {
+            Value::Array(list) if list.len() == count => list.iter().map(|x| x.as_f64().ok_or_else(wrong)).collect(),
+            other => Ok(vec![other.as_f64().ok_or_else(wrong)?; count]),
+        }
+    }
+
+    fn six(&self, key: &str) -> Result<[f64; 6]> {
+        let list = self.list(key, 6)?;
+        Ok(std::array::from_fn(|k| list[k]))
+    }
+}

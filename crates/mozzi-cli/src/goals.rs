@@ -1,0 +1,95 @@
+//! Where the end effector is to be: by flags, or tables of poses in CSV files with columns x y z of the origin and qw qx qy qz of the orientation, in {s}.
+
+use crate::failure::{Failure, Result};
+use crate::numbers::{array, number};
+use crate::samples::csv_failure;
+use clap::Args;
+use mozzi::{SE3, SO3, Vec3};
+use mozzi_motion::Goal;
+
+const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "x", "y", "z"];
+
+#[derive(Args, Debug, Default)]
+pub struct GoalArguments {
+    /// Where the frame's origin is to be, in {s}, m
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub position: Option<String>,
+    /// How it is to be turned: roll, pitch, yaw about the axes of {s}, as in URDF, rad
+    #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true)]
+    pub rpy: Option<String>,
+    /// How it is to be turned: the unit quaternion
+    #[arg(long, value_name = "W,X,Y,Z", allow_hyphen_values = true, conflicts_with = "rpy")]
+    pub quaternion: Option<String>,
+}
+
+impl GoalArguments {
+    /// A pose, a position or an orientation; nothing where no flag is given.
+    pub fn read(&self) -> Result<Option<Goal>> {
+        let position = self.position.as_deref().map(|text| array("--position", text, ["x", "y", "z"])).transpose()?;
+        let R = match (&self.rpy, &self.quaternion) {
+            (Some(text), _) => {
+                let [roll, pitch, yaw] = array("--rpy", text, ["roll", "pitch", "yaw"])?;
+                Some(SO3::from_rpy(roll, pitch, yaw))
+            }
+            (None, Some(text)) => {
+                let [w, x, y, z] = array("--quaternion", text, ["w", "x", "y", "z"])?;
+                Some(from_pose("--quaternion", [w, x, y, z, 0.0, 0.0, 0.0])?.R)
+            }
+            (None, None) => None,
+        };
+        Ok(match (R, position.map(Vec3)) {
+            (Some(R), Some(p)) => Some(Goal::Pose(SE3::new(R, p))),
+            (None, Some(p)) => Some(Goal::Position(p)),
+            (Some(R), None) => Some(Goal::Orientation(R)),
+            (None, None) => None,
+        })
+    }
+}
+
+/// Poses and the line of each in the file.
+pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
+    let cannot = |error: std::io::Error| Failure::wrong(format!("{file} cannot be read: {error}"));
+    let input: Box<dyn std::io::Read> = match file {
+        "-" => Box::new(std::io::stdin().lock()),
+        path => Box::new(std::fs::File::open(path).map_err(cannot)?),
+    };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
+    let header = reader.headers().map_err(|error| csv_failure(file, &error))?.clone();
+    let mut places = [0; 7];
+    for (place, name) in places.iter_mut().zip(COLUMNS) {
+        *place = header.iter().position(|cell| cell.trim_start_matches('\u{feff}') == name).ok_or_else(|| {
+            Failure::wrong(format!("{file}:1: column `{name}` is missing, expected the columns {}", COLUMNS.join(" ")))
+        })?;
+    }
+    if let Some(unknown) = header.iter().position(|cell| !COLUMNS.contains(&cell.trim_start_matches('\u{feff}'))) {
+        let expected = COLUMNS.join(" ");
+        return Err(Failure::wrong(format!(
+            "{file}:1: column {} is called `{}`, expected {expected}",
+            unknown + 1,
+            &header[unknown]
+        )));
+    }
+    let mut poses = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| csv_failure(file, &error))?;
+        let line = record.position().map_or(0, |position| position.line());
+        let mut pose = [0.0; 7];
+        for ((entry, name), place) in pose.iter_mut().zip(COLUMNS).zip(places) {
+            *entry = number(format!("{file}:{line}: column {} (`{name}`)", place + 1), &record[place])?;
+        }
+        poses.push((line, from_pose(&format!("{file}:{line}: qw qx qy qz"), pose)?));
+    }
+    if poses.is_empty() {
+        return Err(Failure::wrong(format!("{file} has no rows below its header")));
+    }
+    Ok(poses)
+}
+
+/// Of a quaternion that is one: its length may be off 1 by 10⁻³, as a free base's.
+fn from_pose(place: &str, pose: [f64; 7]) -> Result<SE3> {
+    let length = pose[..4].iter().map(|x| x * x).sum::<f64>().sqrt();
+    if (length - 1.0).abs() > 1e-3 {
+        return Err(Failure::wrong(format!("{place}: the quaternion's length is {length}, expected 1")));
+    }
+    Ok(SE3::from_pose(pose))
+}

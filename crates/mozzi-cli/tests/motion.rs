@@ -1,0 +1,170 @@
+//! `mozzi trajectory`, and what `mozzi simulate` makes of it: controllers, methods, limits, Ctrl-C.
+
+mod common;
+
+use common::{assert_close, complaint, file, folder, json, numbers, rows, text};
+
+const WAY: [&str; 6] = ["trajectory", "ur5", "--from", "0,-1.2,1.5,0.3,1.1,0", "--to", "0.8,-0.8,1,0,0.6,0.5"];
+
+#[test]
+fn a_motion_is_made_and_followed() {
+    let folder = folder("follow");
+    let way = folder.join("way.csv");
+    let way = way.to_str().expect("text");
+    let flags = ["--profile", "fastest", "--max-acceleration", "10", "--out", way];
+    assert!(text(&[&WAY[..], &flags].concat()).contains("rows written"));
+    let found = json(&[&WAY[..], &["--profile", "quintic", "--time", "0.5"]].concat());
+    let (theta, dtheta) = (rows(&found["theta"]), rows(&found["dtheta"]));
+    assert_close(&theta[0], &[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], 0.0);
+    assert_close(&theta[25], &[0.4, -1.0, 1.25, 0.15, 0.85, 0.25], 1e-12); // halfway in time, and in space
+    assert_close(&dtheta[25], &[1.875 * 1.6, 1.875 * 0.8, -1.875, -1.875 * 0.6, -1.875, 1.875], 1e-12);
+    // followed by each controller; one that believes in another robot is off
+    let follow = |json_text: &str, more: &[&str]| {
+        let controller = file(&folder, "controller.json", json_text);
+        json(&[&["simulate", "ur5", "--follow", way, "--controller", &controller][..], more].concat())
+    };
+    let worst =
+        |found: &serde_json::Value| numbers(&found["tracking_error"]["largest"]).into_iter().fold(0.0, f64::max);
+    let computed = follow(r#"{"controller": "computed-torque", "p": 100, "d": 20}"#, &[]);
+    assert!(worst(&computed) < 1e-4 && computed["effort_limits"].as_array().expect("a list").is_empty());
+    assert_eq!(computed["complete"], true);
+    let task = r#"{"controller": "task-space", "frame": "tool0", "p": 100, "d": 20, "posture_p": 25, "posture_d": 10}"#;
+    assert!(worst(&follow(task, &[])) < 1e-2);
+    let lagging = follow(r#"{"controller": "pd-gravity", "p": [900, 900, 900, 90, 90, 90], "d": 20}"#, &[]);
+    assert!(worst(&lagging) > 1e-2 && worst(&lagging) < 0.5);
+    let urdf = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/ur5.urdf")).expect("there");
+    assert!(urdf.contains("8.393"));
+    let name = file(&folder, "other.urdf", &urdf.replace("8.393", "6.0")).replace('\\', "/");
+    let wrong = follow(&format!(r#"{{"controller": "computed-torque", "p": 100, "d": 20, "model": "{name}"}}"#), &[]);
+    assert!(worst(&wrong) > 1e-3, "{}", worst(&wrong));
+    // too weak a motor is told of, and held
+    let strong = r#"{"controller": "pd-gravity", "p": [3000, 3000, 3000, 50, 50, 50], "d": [200, 200, 200, 2, 2, 2]}"#;
+    for (policy, held) in [("report", false), ("respect", true)] {
+        let found =
+            follow(strong, &["--effort-limits", policy, "--theta", "0.3,-1.2,1.5,0.3,1.1,0", "--step", "0.0005"]);
+        let asked = &found["effort_limits"][0];
+        assert_eq!((&asked["joint"], &asked["limit"]), (&"shoulder_pan_joint".into(), &150.0.into()));
+        let most = rows(&found["tau"]).iter().fold(0.0_f64, |m, tau| m.max(tau[0].abs()));
+        assert_eq!(most <= 150.0, held, "{most}");
+    }
+}
+
+#[test]
+fn ways_of_the_end_effector_and_through_points() {
+    let start = ["trajectory", "ur5", "--from", "0,-1.2,1.5,0.3,1.1,0"];
+    let line =
+        json(&[&start[..], &["--along", "line", "--position", "0.5,0.1,0.5", "--time", "1", "--step", "0.5"]].concat());
+    let pose = |theta: &[f64]| {
+        let list: Vec<String> = theta.iter().map(|x| format!("{x:?}")).collect();
+        rows(&json(&["terms", "ur5", &format!("--theta={}", list.join(","))])["forward_kinematics"])
+    };
+    let T: Vec<Vec<Vec<f64>>> = rows(&line["theta"]).iter().map(|theta| pose(theta)).collect();
+    for k in 0..3 {
+        assert!((T[1][k][3] - 0.5 * (T[0][k][3] + T[2][k][3])).abs() < 1e-5);
+        assert_close(&T[1][k][..3], &T[0][k][..3], 1e-5);
+    }
+    assert!((T[2][0][3] - 0.5).abs() < 1e-5);
+    let folder = folder("via");
+    let points =
+        "theta_1,theta_2,theta_3,theta_4,theta_5,theta_6\n0,-1.5,1.5,0,0.5,0\n0.5,-1,0.8,0.5,1,0.7\n1,-0.6,0.4,0,0,0\n";
+    let via = file(&folder, "via.csv", points);
+    let page = text(&["trajectory", "ur5", "--via", &via, "--profile", "trapezoidal"]);
+    assert!(page.contains("% of its limit"), "{page}");
+    let timed = file(
+        &folder,
+        "timed.csv",
+        &points
+            .replace("theta_1,", "t,theta_1,")
+            .replace("\n0,", "\n0,0,")
+            .replace("\n0.5,", "\n0.4,0.5,")
+            .replace("\n1,", "\n1,1,"),
+    );
+    let found = json(&["trajectory", "ur5", "--via", &timed, "--step", "0.2"]);
+    assert_close(&rows(&found["theta"])[2], &[0.5, -1.0, 0.8, 0.5, 1.0, 0.7], 1e-12);
+    assert_close(&rows(&found["dtheta"])[5], &[0.0; 6], 1e-12);
+}
+
+#[test]
+fn methods_and_limits() {
+    let swing = ["simulate", "double_pendulum", "--theta", "2,1", "--time", "1"];
+    let end = |method: &str| {
+        let found = json(&[&swing[..], &["--method", method]].concat());
+        assert!(found["largest_drift"].as_f64().expect("a number") < if method == "midpoint" { 1e-3 } else { 1e-6 });
+        rows(&found["theta"]).pop().expect("a row")
+    };
+    let rk4 = end("rk4");
+    assert_close(&end("dopri"), &rk4, 1e-7);
+    assert_close(&end("midpoint"), &rk4, 1e-4);
+    // the slide of a Panda's finger falls onto its stop
+    let start = "--theta=0,0,0,-1.5,0,1.5,0,0.02";
+    for (policy, word) in [("report", "beyond"), ("respect", "came to rest")] {
+        let flags = ["simulate", "panda", start, "--time", "0.8", "--step", "0.002", "--joint-limits", policy];
+        let page = text(&flags);
+        assert!(page.contains("joint limit: `panda_") && page.contains(word), "{page}");
+    }
+    let flags = ["simulate", "panda", start, "--time", "0.8", "--step", "0.002", "--joint-limits", "ignore"];
+    assert!(!text(&flags).contains("joint limit"));
+}
+
+#[test]
+fn wrong_motions() {
+    let folder = folder("wrong_motions");
+    let wrong = |arguments: &[&str], words: &[&str]| {
+        let (code, message) = complaint(arguments);
+        assert!(code == 1 && words.iter().all(|word| message.contains(word)), "{arguments:?}: {message}");
+    };
+    wrong(&["trajectory", "ur5"], &["there is no end, expected --to or --via"]);
+    wrong(&["trajectory", "ur5", "--to", "1,2"], &["2 entries, expected 6"]);
+    wrong(&[&WAY[..], &["--max-torque", "1"]].concat(), &["the motor of", "too weak at s = 0"]);
+    wrong(&[&WAY[..], &["--max-velocity", "1,2"]].concat(), &["--max-velocity has 2 entries, expected 6"]);
+    wrong(&["trajectory", "ur5", "--along", "line", "--position", "3,0,0"], &["`tool0` did not reach its goal"]);
+    for (text, words) in [
+        ("{", "is no JSON"),
+        ("{}", "`controller` is missing"),
+        (r#"{"controller": "pid"}"#, "is `pid`, expected one of `pd-gravity`"),
+        (r#"{"controller": "pd-gravity", "p": 1}"#, "`d` is missing"),
+        (r#"{"controller": "pd-gravity", "p": 1, "d": 1, "i": 1}"#, "`i` is no entry of `pd-gravity`"),
+        (r#"{"controller": "pd-gravity", "p": [1, 2], "d": 1}"#, "expected a number, or a list of 6"),
+        (r#"{"controller": "pd-gravity", "p": -1, "d": 1}"#, "K_p"),
+        (r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "panda"}"#, "8 velocities, expected 6"),
+    ] {
+        let controller = file(&folder, "bad.json", text);
+        wrong(&["simulate", "ur5", "--controller", &controller], &["bad.json", words]);
+    }
+    let way = file(&folder, "way.csv", "t,theta_1\n0,1\n");
+    wrong(
+        &["simulate", "ur5", "--follow", &way, "--controller", &file(&folder, "c.json", "{}")],
+        &["theta_2", "missing"],
+    );
+    wrong(&["simulate", "ur5", "--method", "dopri", "--tolerance", "0"], &["tolerance is 0"]);
+}
+
+/// Ctrl-C ends a long simulation with what there is.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_the_motion_so_far() {
+    use std::process::{Command, Stdio};
+    let folder = folder("interrupt");
+    let out = folder.join("motion.csv");
+    let arguments = ["simulate", "ur5", "--time", "100000", "--record-every", "1000", "--out"];
+    let program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
+        .args(arguments)
+        .arg(&out)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let interrupted = Command::new("kill").args(["-INT", &program.id().to_string()]).status().expect("kill runs");
+    assert!(interrupted.success());
+    let output = program.wait_with_output().expect("it ends");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{said}");
+    assert!(said.contains("stopped by Ctrl-C at t = ") && !said.contains('\u{1b}'), "{said}"); // no bar: no terminal
+    let rows = std::fs::read_to_string(&out).expect("written");
+    assert!(rows.starts_with("t,theta_1") && rows.lines().count() > 2);
+    assert!(
+        rows.lines().all(|row| row.split(',').count() == rows.lines().next().expect("a header").split(',').count())
+    );
+    assert!(String::from_utf8_lossy(&output.stdout).contains("ur5 for "));
+}

@@ -1,0 +1,59 @@
+//! Computed torque control (Modern Robotics 11.37).
+
+use super::{Gains, errors};
+use crate::Error;
+use crate::error::check;
+use crate::trajectories::Reference;
+use mozzi::simulation::Input;
+use mozzi::{Model, native};
+
+/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot that is as modelled,
+/// ë + K_d ė + K_p e = 0.
+pub struct ComputedTorque<'m, R> {
+    model: &'m Model,
+    /// What is followed.
+    pub reference: R,
+    gains: Gains,
+    workspace: native::Workspace,
+    tau: Vec<f64>,
+}
+
+impl<'m, R: Reference> ComputedTorque<'m, R> {
+    /// For a robot that this model describes, rightly or not.
+    ///
+    /// # Errors
+    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or a free base, which no motor
+    /// moves.
+    pub fn new(model: &'m Model, reference: R, gains: Gains) -> Result<Self, Error> {
+        gains.check(model)?;
+        check(
+            !model.is_floating(),
+            "the base of a robot under computed torque",
+            "free",
+            "a bolted base: no motor moves a free one",
+        )?;
+        Ok(ComputedTorque {
+            model,
+            reference,
+            gains,
+            workspace: native::Workspace::new(model),
+            tau: vec![0.0; model.n()],
+        })
+    }
+}
+
+impl<R: Reference> Input for ComputedTorque<'_, R> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+        let desired = self.reference.at(t);
+        let [e, de] = errors(self.model, &desired, theta, dtheta)?;
+        let mut ddtheta = desired.ddtheta;
+        for j in 0..ddtheta.len() {
+            ddtheta[j] += self.gains.d[j] * de[j] + self.gains.p[j] * e[j];
+        }
+        self.model.check_lengths(theta, [("the reference's ddtheta", &ddtheta)])?;
+        let environment = self.model.environment();
+        native::inverse_dynamics(self.model, theta, dtheta, &ddtheta, &environment, &mut self.workspace, &mut self.tau);
+        tau.iter_mut().zip(&self.tau).for_each(|(sum, tau)| *sum += tau);
+        Ok(())
+    }
+}

@@ -1,0 +1,93 @@
+//! Motors that are as strong as they are.
+
+use crate::policy::Policy;
+use mozzi::simulation::Input;
+use mozzi::{Error, FrameId, Model, Wrench};
+
+/// A motor that was asked for more than it has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overload {
+    /// The joint.
+    pub joint: String,
+    /// The largest |τ| that was asked for, N m or N.
+    pub largest: f64,
+    /// What there is.
+    pub limit: f64,
+    /// When it was first asked for more, s.
+    pub first: f64,
+    /// When it was last asked for more, s.
+    pub last: f64,
+}
+
+/// An input whose torques are held to the joints' effort limits, or only compared with them. A joint without a limit has none.
+pub struct Saturated<I> {
+    input: I,
+    policy: Policy,
+    names: Vec<String>,
+    limits: Vec<f64>,
+    overloads: Vec<Option<Overload>>,
+    own: Vec<f64>,
+}
+
+impl<I: Input> Saturated<I> {
+    /// With the effort limits of the robot's description.
+    pub fn new(model: &Model, input: I, policy: Policy) -> Self {
+        let base = model.base().velocities();
+        let mut limits = vec![f64::INFINITY; model.n()];
+        for (limit, joint) in limits[base..].iter_mut().zip(model.joints()) {
+            *limit = joint.limits.effort.unwrap_or(f64::INFINITY);
+        }
+        Saturated {
+            input,
+            policy,
+            names: model.velocity_names().map(str::to_string).collect(),
+            overloads: vec![None; limits.len()],
+            own: vec![0.0; limits.len()],
+            limits,
+        }
+    }
+
+    /// Of each joint that was asked for more than it has, since the start, whatever was made of it; none where limits are ignored.
+    pub fn overloads(&self) -> impl Iterator<Item = &Overload> {
+        self.overloads.iter().flatten()
+    }
+}
+
+impl<I: Input> Input for Saturated<I> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
+        self.own.fill(0.0);
+        if tau.len() != self.own.len() {
+            return Err(Error::WrongLength { what: "tau", found: tau.len(), expected: self.own.len() });
+        }
+        self.input.torque(t, theta, dtheta, &mut self.own)?;
+        for (j, asked) in self.own.iter_mut().enumerate() {
+            let limit = self.limits[j];
+            if self.policy != Policy::Ignore && asked.abs() > limit {
+                let (largest, joint) = (asked.abs(), &self.names[j]);
+                let note = self.overloads[j].get_or_insert_with(|| Overload {
+                    joint: joint.clone(),
+                    largest,
+                    limit,
+                    first: t,
+                    last: t,
+                });
+                (note.largest, note.last) = (note.largest.max(largest), t);
+                if self.policy == Policy::Respect {
+                    *asked = asked.clamp(-limit, limit);
+                }
+            }
+            tau[j] += *asked;
+        }
+        Ok(())
+    }
+
+    fn applied(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        wrenches: &mut Vec<(FrameId, Wrench)>,
+    ) -> Result<(), Error> {
+        self.input.applied(t, theta, dtheta, wrenches)
+    }
+}

@@ -1,0 +1,119 @@
+//! Control of a frame, by the dynamics that it shows (Modern Robotics, sections 11.4.3 and 11.7; Khatib 1987, Hogan 1985).
+
+use super::Gains;
+use crate::Error;
+use crate::error::check;
+use crate::trajectories::Reference;
+use mozzi::nalgebra::{DVector, Vector6};
+use mozzi::simulation::Input;
+use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Twist, forward_kinematics};
+
+/// What the frame's error meets, diagonal in the frame's own coordinates, angular first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// Accelerations K_p X_e + K_d 𝒱_e: the frame follows, whatever its inertia. 1/s², 1/s.
+    Acceleration {
+        /// K_p.
+        p: [f64; 6],
+        /// K_d.
+        d: [f64; 6],
+    },
+    /// A wrench K X_e + B 𝒱_e: the frame yields as a spring and a damper do, with the robot's own inertia Λ. N m/rad, N/m; N m s/rad, N s/m.
+    Impedance {
+        /// K.
+        stiffness: [f64; 6],
+        /// B.
+        damping: [f64; 6],
+    },
+}
+
+/// 𝓕 = Λ(θ)a + η(θ, 𝒱) + the [`Law`]'s, τ = Jᵀ𝓕 and, where the robot has joints to spare, its posture: the reference is a motion of the joints, of
+/// which the frame follows the frame's, and what the frame leaves free follows the rest.
+///
+/// In one formula, whatever the number of joints, with z the acceleration of the posture: τ = Mz + h + f + Jᵀ(Λ(a − J̇θ̇ − Jz) + …), which is
+/// Jᵀ(Λa + η + …) where J is square.
+pub struct TaskSpace<'m, R> {
+    model: &'m Model,
+    /// What is followed.
+    pub reference: R,
+    frame: FrameId,
+    law: Law,
+    posture: Gains,
+}
+
+/// Where the frame is, and where it should be, all in its own coordinates.
+struct FrameError {
+    /// X_e = log(T⁻¹T_d).
+    X: Twist,
+    /// 𝒱_e = `[Ad_T⁻¹T_d]`𝒱_d − 𝒱.
+    V: Twist,
+    /// The acceleration at which 𝒱̇_e = 0.
+    a: Twist,
+}
+
+impl<'m, R: Reference> TaskSpace<'m, R> {
+    /// For a frame of a robot that this model describes, rightly or not; the gains of the posture are of accelerations.
+    ///
+    /// # Errors
+    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, a frame of another model, or a
+    /// free base.
+    pub fn new(model: &'m Model, reference: R, frame: FrameId, law: Law, posture: Gains) -> Result<Self, Error> {
+        model.check_frame(frame)?;
+        posture.check(model)?;
+        let (Law::Acceleration { p, d } | Law::Impedance { stiffness: p, damping: d }) = law;
+        for (what, list) in [("the task's K_p", p), ("the task's K_d", d)] {
+            let fine = list.iter().all(|x| *x >= 0.0 && x.is_finite());
+            check(fine, what, format!("{list:?}"), "finite numbers that are not negative")?;
+        }
+        check(!model.is_floating(), "the base of a robot under task-space control", "free", "a bolted base")?;
+        Ok(TaskSpace { model, reference, frame, law, posture })
+    }
+
+    fn frame_error(
+        &self,
+        desired: &crate::trajectories::Desired,
+        theta: &[f64],
+        dtheta: &[f64],
+    ) -> Result<FrameError, mozzi::Error> {
+        let model = self.model;
+        let T_bd = forward_kinematics(model, theta, self.frame).inverse()
+            * model.forward_kinematics(&desired.theta, self.frame)?;
+        let V = &model.body_jacobian(theta, self.frame)? * dtheta;
+        let J = model.body_jacobian(&desired.theta, self.frame)?;
+        let dJ = model.body_jacobian_rate(&desired.theta, &desired.dtheta, self.frame)?;
+        // seen from the frame: 𝒱_d, and its rate
+        let V_d = T_bd.Ad() * (&J * &desired.dtheta[..]);
+        let dV_d = T_bd.Ad() * (&J * &desired.ddtheta[..] + &dJ * &desired.dtheta[..]);
+        let V_e = V_d - V;
+        Ok(FrameError { X: SE3::log(T_bd), V: V_e, a: dV_d + V_e.ad() * V_d })
+    }
+}
+
+fn six(V: Twist) -> Vector6<f64> {
+    V.to_array().into()
+}
+
+impl<R: Reference> Input for TaskSpace<'_, R> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+        let (model, desired) = (self.model, self.reference.at(t));
+        let [e, de] = super::errors(model, &desired, theta, dtheta)?;
+        let FrameError { X, V, a } = self.frame_error(&desired, theta, dtheta)?;
+        let (X, V, mut a) = (six(X), six(V), six(a));
+        let mut F = Vector6::zeros();
+        let weighted = |p: [f64; 6], d: [f64; 6]| Vector6::from_fn(|r, _| p[r] * X[r] + d[r] * V[r]);
+        match self.law {
+            Law::Acceleration { p, d } => a += weighted(p, d),
+            Law::Impedance { stiffness, damping } => F = weighted(stiffness, damping),
+        }
+        let environment = model.environment();
+        let task = model.task_space_dynamics(theta, dtheta, Task::all(self.frame, TaskFrame::Body), &environment)?;
+        let z: Vec<f64> =
+            (0..model.n()).map(|j| desired.ddtheta[j] + self.posture.d[j] * de[j] + self.posture.p[j] * e[j]).collect();
+        let short =
+            DVector::from_column_slice(a.as_slice()) - &task.dJ_dtheta - &task.J * DVector::from_column_slice(&z);
+        let F = &task.Lambda * short + DVector::from_column_slice(F.as_slice());
+        let sum = model.inverse_dynamics(theta, dtheta, &z, &environment)? + task.J.transpose() * F;
+        tau.iter_mut().zip(sum.iter()).for_each(|(tau, x)| *tau += x);
+        Ok(())
+    }
+}

@@ -1,0 +1,107 @@
+//! What can go wrong with a motion, with the numbers.
+
+use crate::inverse_kinematics::Residual;
+
+/// Why a motion could not be found.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The robot cannot be asked this.
+    #[error(transparent)]
+    Model(#[from] mozzi::Error),
+    /// Inverse kinematics ended before the goal.
+    #[error(
+        "frame `{frame}` did not reach its goal: the best of {starts} starts, {iterations} iterations in all, is {residual} away{}, at θ = {theta:?}",
+        at_limits(limits)
+    )]
+    NotReached {
+        /// The frame that was to be there.
+        frame: String,
+        /// The best positions that were found.
+        theta: Vec<f64>,
+        /// What is left there.
+        residual: Residual,
+        /// The joints that are at a limit there.
+        limits: Vec<String>,
+        /// Starts, the given one included.
+        starts: usize,
+        /// Of all starts.
+        iterations: usize,
+    },
+    /// The joints' path along a frame's cannot be joined.
+    #[error(
+        "the path of frame `{frame}` breaks at s = {s}: however close its solutions, the joints between them are {deviation:.1e} off it, more than \
+         {tolerance:.1e} (a singular position, or a joint at its limit)"
+    )]
+    PathBroken {
+        /// The frame.
+        frame: String,
+        /// Where on the path, 0 to 1.
+        s: f64,
+        /// ‖log(T⁻¹T_d)‖, rad and m.
+        deviation: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// A motor cannot carry the robot along its path.
+    #[error("the motor of `{joint}` is too weak at s = {s}: at rest it needs {needed} of its {limit} N m or N")]
+    TooWeak {
+        /// The joint.
+        joint: String,
+        /// Where on the path, 0 to 1.
+        s: f64,
+        /// |τ| at rest.
+        needed: f64,
+        /// Its limit.
+        limit: f64,
+    },
+    /// The steps that a tolerance asks for are too small for numbers.
+    #[error(
+        "the motion is too stiff, or jumps, at t = {time} s: a tolerance of {tolerance:e} asks for steps below {step:e} s"
+    )]
+    TooStiff {
+        /// Seconds.
+        time: f64,
+        /// Seconds.
+        step: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// An implicit step has no solution that iteration finds.
+    #[error(
+        "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations; a smaller step may help"
+    )]
+    NoConvergence {
+        /// Seconds.
+        time: f64,
+        /// Seconds.
+        step: f64,
+        /// Iterations.
+        iterations: usize,
+    },
+    /// Nothing keeps the robot from being infinitely fast.
+    #[error("nothing limits the speed at s = {s} of the path: expected a limit of velocity, acceleration or torque")]
+    Unlimited {
+        /// Where on the path, 0 to 1.
+        s: f64,
+    },
+}
+
+fn at_limits(joints: &[String]) -> String {
+    match joints {
+        [] => String::new(),
+        list => {
+            format!(", with {} at a limit", list.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
+/// An argument that is not what it should be.
+pub(crate) fn check(
+    fine: bool,
+    what: &'static str,
+    found: impl std::fmt::Display,
+    expected: &'static str,
+) -> Result<(), Error> {
+    if fine { Ok(()) } else { Err(mozzi::Error::BadArgument { what, found: found.to_string(), expected }.into()) }
+}

@@ -1,0 +1,137 @@
+//! The implicit midpoint rule in (θ, p = Mθ̇).
+//!
+//! > θ_m = θ[k] ⊕ ½hv,  M(θ_m)v = p[k] + ½h ṗ(θ_m, v),  θ[k+1] = θ[k] ⊕ hv,  p[k+1] = p[k] + hṗ
+//!
+//! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. The rule is symplectic in (θ, p), so that the energy's error stays bounded; in
+//! (θ, θ̇) it would not be, because M depends on θ. On SE(3), with p_b the base's rows of p and F those of ṗ less `[ad_v]`ᵀp_b, it is the
+//! variational integrator of the Lagrangian at the midpoint (Bou-Rabee and Marsden 2009), which keeps momentum exactly:
+//!
+//! > P = p_b[k] + h`[Ad_e^{−½hv}]`ᵀF,  p_b(θ_m, v) = Σ (`[ad_hv]`ᵀ)ʲP/(j+1)! − ½h Σ (−½`[ad_hv]`ᵀ)ʲF/(j+1)!,  p_b[k+1] = `[Ad_e^{hv}]`ᵀP
+
+use super::State;
+use super::driven::Driven;
+use crate::Error;
+use mozzi::nalgebra::{DMatrix, DVector};
+use mozzi::simulation::Input;
+use mozzi::{SE3, Twist, Workspace, Wrench, integrate, mass_matrix_rate};
+
+/// v is found by iteration, to rounding; more than this many means that the step is too long.
+const ITERATIONS: usize = 60;
+
+#[derive(Clone, Debug)]
+pub(super) struct Midpoint {
+    step: f64,
+    /// p at the end of the last step, and whose.
+    momentum: Option<(f64, DVector<f64>)>,
+    workspace: Workspace,
+    dM: Vec<f64>,
+    ddtheta: Vec<f64>,
+}
+
+impl Midpoint {
+    pub fn new(model: &mozzi::Model, step: f64) -> Self {
+        let n = model.n();
+        Midpoint { step, momentum: None, workspace: Workspace::new(model), dM: vec![0.0; n * n], ddtheta: vec![0.0; n] }
+    }
+
+    /// The state was changed from outside: its p is Mθ̇.
+    pub fn restart(&mut self) {
+        self.momentum = None;
+    }
+
+    pub fn step<I: Input>(&mut self, from: &State, until: f64, driven: &mut Driven<I>) -> Result<State, Error> {
+        let (model, n) = (driven.model, from.dtheta.len());
+        let h = self.step.min(until - from.t);
+        let (middle, half) = (from.t + 0.5 * h, 0.5 * h);
+        let p = match self.momentum.take() {
+            Some((t, p)) if t == from.t => p,
+            _ => driven.mass(&from.theta) * DVector::from_column_slice(&from.dtheta),
+        };
+        let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
+        let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
+        let (mut powers, mut M, mut end) = ([0.0; 3], DMatrix::zeros(0, 0), [0.0; 6]);
+        for _ in 0..ITERATIONS {
+            theta.copy_from_slice(&from.theta);
+            integrate(model, &mut theta, v.as_slice(), half);
+            powers = driven.evaluate(middle, &theta, v.as_slice(), &mut self.ddtheta)?;
+            mass_matrix_rate(model, &theta, v.as_slice(), &mut self.workspace, &mut self.dM);
+            M = driven.mass(&theta);
+            let factors = driven.factored(&theta)?;
+            let dM = DMatrix::from_row_slice(n, n, &self.dM); // symmetric
+            let rate = &M * DVector::from_column_slice(&self.ddtheta) + dM * &v; // ṗ
+            let mut momentum = &p + &rate * half;
+            if model.is_floating() {
+                let base = on_the_group(&p, &rate, &(&M * &v), &v, h);
+                momentum.rows_mut(0, 6).copy_from_slice(&base.middle);
+                end = base.end;
+            }
+            let mut next = factors.solve(&momentum);
+            if !driven.held.is_empty() {
+                driven.bring_to_rest(&factors, next.as_mut_slice());
+            }
+            let change = (&next - &v).amax() / (1.0 + next.amax());
+            v = next;
+            if done || change == 0.0 {
+                done = true;
+                break;
+            }
+            // near rounding once more, and no more
+            done = change < 1e-14 || (change < 1e-11 && change >= last);
+            last = change;
+        }
+        if !done {
+            return Err(Error::NoConvergence { time: from.t, step: h, iterations: ITERATIONS });
+        }
+        let mut p = M * &v * 2.0 - p;
+        if model.is_floating() {
+            p.rows_mut(0, 6).copy_from_slice(&end);
+        }
+        let mut to = State { t: if h < self.step { until } else { from.t + h }, ..from.clone() };
+        to.theta.copy_from_slice(&from.theta);
+        integrate(model, &mut to.theta, v.as_slice(), h);
+        (0..3).for_each(|k| to.works[k] += h * powers[k]);
+        let factors = driven.factored(&to.theta)?;
+        to.dtheta.copy_from_slice(factors.solve(&p).as_slice());
+        if driven.held.is_empty() {
+            self.momentum = Some((to.t, p));
+        } else {
+            driven.bring_to_rest(&factors, &mut to.dtheta);
+        }
+        driven.complete(&mut to)?;
+        Ok(to)
+    }
+}
+
+/// A free base's momentum at the midpoint and at the end of a step.
+struct BaseMomentum {
+    middle: [f64; 6],
+    end: [f64; 6],
+}
+
+/// From p at the step's start, ṗ and Mv at its middle.
+fn on_the_group(p: &DVector<f64>, rate: &DVector<f64>, Mv: &DVector<f64>, v: &DVector<f64>, h: f64) -> BaseMomentum {
+    let six = |x: &DVector<f64>| std::array::from_fn(|k| x[k]);
+    let V = Twist::from_array(six(v));
+    let F = Wrench::from_array(six(rate)) - V.ad().transpose() * Wrench::from_array(six(Mv));
+    let way = V * h;
+    let half_way_back = SE3::exp(way * -0.5).Ad().transpose();
+    let P = Wrench::from_array(six(p)) + half_way_back * F * h;
+    BaseMomentum {
+        middle: (series(way, P) - series(way * -0.5, F) * (0.5 * h)).to_array(),
+        end: (SE3::exp(way).Ad().transpose() * P).to_array(),
+    }
+}
+
+/// Σ (`[ad_X]`ᵀ)ʲF/(j+1)!, to rounding.
+fn series(X: Twist, F: Wrench) -> Wrench {
+    let (mut sum, mut term) = (F, F);
+    for j in 1..40 {
+        term = X.ad().transpose() * term * (1.0 / (j as f64 + 1.0));
+        let next = sum + term;
+        if next == sum {
+            break;
+        }
+        sum = next;
+    }
+    sum
+}

@@ -1,0 +1,76 @@
+//! Where a frame is to be, and how far it is from there.
+
+use mozzi::{SE3, SO3, Twist, Vec3};
+use std::fmt;
+use std::ops::Range;
+
+/// What is asked of a frame {b}, seen from {s}.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// `T_sb`: six rows.
+    Pose(SE3),
+    /// The origin of {b}, however {b} is turned: three rows.
+    Position(Vec3),
+    /// The orientation of {b}, wherever it is: three rows.
+    Orientation(SO3),
+}
+
+impl Goal {
+    /// The body twist that leads from T to the goal in one second, and 0 where nothing is asked: log(T⁻¹T_d) of a pose,
+    /// (0, Rᵀ(p_d − p)) of a position, (log(RᵀR_d), 0) of an orientation. Its derivative along θ is −`J_b`, where it is 0.
+    pub fn error(&self, T: SE3) -> Twist {
+        match *self {
+            Goal::Pose(goal) => (T.inverse() * goal).log(),
+            Goal::Position(p) => Twist::linear(T.R.inverse_mul(p - T.p)),
+            Goal::Orientation(R) => Twist {
+                w: (SE3::new(T.R.inverse(), Vec3::zero()) * SE3::new(R, Vec3::zero())).log().w,
+                v: Vec3::zero(),
+            },
+        }
+    }
+
+    /// The rows of (ω, v) that are asked for.
+    pub fn rows(&self) -> Range<usize> {
+        match self {
+            Goal::Pose(_) => 0..6,
+            Goal::Position(_) => 3..6,
+            Goal::Orientation(_) => 0..3,
+        }
+    }
+
+    /// Angle and distance of a twist of [`error`](Self::error), each `None` where it was not asked for.
+    pub(super) fn residual(&self, error: Twist) -> Residual {
+        let rows = self.rows();
+        let size = |v: Vec3| v.dot(v).sqrt();
+        Residual { angle: rows.contains(&0).then(|| size(error.w)), distance: rows.contains(&3).then(|| size(error.v)) }
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        let [position, rotation] = match self {
+            Goal::Pose(T) => [T.p, T.R.log()],
+            Goal::Position(p) => [*p, Vec3::zero()],
+            Goal::Orientation(R) => [Vec3::zero(), R.log()],
+        };
+        position.0.iter().chain(&rotation.0).all(|x| x.is_finite())
+    }
+}
+
+/// How far a frame is from its goal; `None` of what was not asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// ‖ω‖ of the [error](Goal::error), rad.
+    pub angle: Option<f64>,
+    /// ‖v‖, m.
+    pub distance: Option<f64>,
+}
+
+impl fmt::Display for Residual {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.angle, self.distance) {
+            (Some(angle), Some(distance)) => write!(f, "{angle:.2e} rad and {distance:.2e} m"),
+            (Some(angle), None) => write!(f, "{angle:.2e} rad"),
+            (None, Some(distance)) => write!(f, "{distance:.2e} m"),
+            (None, None) => Ok(()),
+        }
+    }
+}

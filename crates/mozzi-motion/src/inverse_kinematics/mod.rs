@@ -1,0 +1,223 @@
+//! Inverse kinematics: positions θ at which a frame is where it is to be (Modern Robotics, chapter 6).
+//!
+//! > e = log(T_sb(θ)⁻¹T_sd),  δ = Jᵀ(JJᵀ + λI)⁻¹e,  θ ← θ ⊕ δ
+//!
+//! A joint at a bound that δ would take beyond it is held there, and δ computed anew of the others. A start that gets no nearer is
+//! given up for another. Where the robot has joints to spare, a [`Secondary`] goal chooses among the solutions: steps in the null space
+//! of J, each followed by steps back to the goal.
+
+mod bounds;
+mod goal;
+mod options;
+mod secondary;
+mod step;
+
+pub use goal::{Goal, Residual};
+pub use options::Options;
+pub use secondary::Secondary;
+pub use step::Method;
+
+use crate::Error;
+use crate::error::check;
+pub(crate) use bounds::Bounds;
+use mozzi::nalgebra::Vector6;
+use mozzi::testing::Random;
+use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};
+use step::Step;
+
+/// A start is given up when this many iterations have not halved its error.
+const PATIENCE: usize = 6;
+
+/// Positions that reach a goal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// θ.
+    pub theta: Vec<f64>,
+    /// What is left.
+    pub residual: Residual,
+    /// Starts that were needed, at least 1.
+    pub starts: usize,
+    /// Iterations of all starts.
+    pub iterations: usize,
+}
+
+/// A solver for one frame of a robot, with its memory.
+#[derive(Clone, Debug)]
+pub struct InverseKinematics<'m> {
+    model: &'m Model,
+    frame: FrameId,
+    options: Options,
+    bounds: Bounds,
+    step: Step,
+    delta: Vec<f64>,
+    iterations: usize,
+}
+
+impl<'m> InverseKinematics<'m> {
+    /// For this frame, with the default [`Options`].
+    ///
+    /// # Errors
+    /// [`mozzi::Error::BadArgument`] for a frame of another model.
+    pub fn new(model: &'m Model, frame: FrameId) -> Result<Self, Error> {
+        Self::with_options(model, frame, Options::default())
+    }
+
+    /// For this frame.
+    ///
+    /// # Errors
+    /// [`mozzi::Error::BadArgument`] for a frame of another model, or options outside their domain.
+    pub fn with_options(model: &'m Model, frame: FrameId, options: Options) -> Result<Self, Error> {
+        model.check_frame(frame)?;
+        options.check()?;
+        let mut bounds = Bounds::of(model);
+        if !options.limits {
+            bounds.joints.fill([f64::NEG_INFINITY, f64::INFINITY]);
+        }
+        let n = model.n();
+        let step = Step { columns: vec![Twist::zero(); n], held: vec![false; n], rows: 0..6 };
+        Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0 })
+    }
+
+    /// Positions that reach the goal, from a guess and, where it leads nowhere, from random ones. An iteration costs O(n).
+    ///
+    /// # Errors
+    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for a guess or a goal that make no sense.
+    pub fn solve(&mut self, goal: Goal, guess: &[f64]) -> Result<Solution, Error> {
+        self.solve_with(goal, guess, &Secondary::None)
+    }
+
+    /// As [`solve`](Self::solve), and among the solutions one at which a secondary goal has a minimum, as far as the null space leads.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    pub fn solve_with(&mut self, goal: Goal, guess: &[f64], secondary: &Secondary) -> Result<Solution, Error> {
+        self.model.check_configuration(guess)?;
+        check(guess.iter().all(|x| x.is_finite()), "the guess", format!("{guess:?}"), "finite numbers")?;
+        check(goal.is_finite(), "the goal", format!("{goal:?}"), "finite numbers")?;
+        if let Secondary::Near(reference) = secondary {
+            self.model.check_configuration(reference)?;
+        }
+        self.step.rows = goal.rows();
+        self.iterations = 0;
+        let mut random = Random(self.options.seed);
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for start in 1..=self.options.starts {
+            let mut theta = if start == 1 { guess.to_vec() } else { self.bounds.random(guess, &mut random) };
+            let left = self.approach(&goal, &mut theta, self.options.iterations);
+            if self.is_reached(&goal, &theta) {
+                self.descend(&goal, &mut theta, secondary);
+                let residual = goal.residual(self.error(&goal, &theta));
+                return Ok(Solution { theta, residual, starts: start, iterations: self.iterations });
+            }
+            if best.as_ref().is_none_or(|(least, _)| left < *least) {
+                best = Some((left, theta));
+            }
+        }
+        let theta = best.map_or_else(|| guess.to_vec(), |(_, theta)| theta);
+        let names: Vec<&str> = self.model.velocity_names().collect();
+        let at_limit = |&j: &usize| self.bounds.side(&theta, j) != 0.0;
+        Err(Error::NotReached {
+            frame: self.model.frame_name(self.frame).to_string(),
+            residual: goal.residual(self.error(&goal, &theta)),
+            limits: (0..self.model.n()).filter(at_limit).map(|j| names[j].to_string()).collect(),
+            theta,
+            starts: self.options.starts,
+            iterations: self.iterations,
+        })
+    }
+
+    fn error(&self, goal: &Goal, theta: &[f64]) -> Twist {
+        goal.error(forward_kinematics(self.model, theta, self.frame))
+    }
+
+    fn is_reached(&self, goal: &Goal, theta: &[f64]) -> bool {
+        let Residual { angle, distance } = goal.residual(self.error(goal, theta));
+        angle.is_none_or(|x| x <= self.options.angle) && distance.is_none_or(|x| x <= self.options.distance)
+    }
+
+    /// e, its v in lengths.
+    fn scaled(&self, V: Twist) -> Vector6<f64> {
+        Twist { v: V.v * (1.0 / self.options.length), ..V }.to_array().into()
+    }
+
+    /// J at θ, no joint held.
+    fn linearize(&mut self, theta: &[f64]) {
+        body_jacobian(self.model, theta, self.frame, &mut self.step.columns);
+        let one_over = 1.0 / self.options.length;
+        self.step.columns.iter_mut().for_each(|column| column.v = column.v * one_over);
+        self.step.held.fill(false);
+    }
+
+    /// Steps towards the goal until it is reached, or no more is gained; leaves the best θ on the way and returns ‖e‖ there.
+    fn approach(&mut self, goal: &Goal, theta: &mut [f64], iterations: usize) -> f64 {
+        self.bounds.clamp(theta);
+        let (mut best, mut least, mut mark, mut since) = (theta.to_vec(), f64::INFINITY, f64::INFINITY, 0);
+        for _ in 0..=iterations {
+            let e = self.scaled(self.error(goal, theta));
+            let size = e.norm();
+            if size < least {
+                (least, best) = (size, theta.to_vec());
+            }
+            since = if size < 0.5 * mark { 0 } else { since + 1 };
+            mark = if since == 0 { size } else { mark };
+            if self.is_reached(goal, theta) || since > PATIENCE || !size.is_finite() {
+                break;
+            }
+            self.iterations += 1;
+            self.linearize(theta);
+            loop {
+                self.step.towards(&e, self.options.method, &mut self.delta);
+                if !self.step.hold_at_bounds(&self.bounds, theta, &self.delta) {
+                    break;
+                }
+            }
+            integrate(self.model, theta, &self.delta, 1.0);
+            self.bounds.clamp(theta);
+        }
+        theta.copy_from_slice(&best);
+        least
+    }
+
+    /// From a solution to better ones: along −∂H in the null space, then back to the goal, as long as H falls.
+    fn descend(&mut self, goal: &Goal, theta: &mut [f64], secondary: &Secondary) {
+        if matches!(secondary, Secondary::None) {
+            return;
+        }
+        let (mut z, mut along) = (vec![0.0; self.model.n()], 1.0);
+        let mut H = secondary.evaluate(self.model, theta, &mut z);
+        for _ in 0..10 * self.options.iterations {
+            self.linearize(theta);
+            let downhill: Vec<f64> = z.iter().map(|z| -z).collect();
+            let mut way = downhill.clone();
+            loop {
+                way.copy_from_slice(&downhill);
+                self.step.within_null_space(&mut way);
+                if !self.step.hold_at_bounds(&self.bounds, theta, &way) {
+                    break;
+                }
+            }
+            let square: f64 = way.iter().map(|x| x * x).sum();
+            if square.sqrt() < 1e-7 {
+                return;
+            }
+            loop {
+                let mut next = theta.to_vec();
+                integrate(self.model, &mut next, &way, along);
+                self.approach(goal, &mut next, 10);
+                let better = secondary.evaluate(self.model, &next, &mut z);
+                if self.is_reached(goal, &next) && better < H - 1e-4 * along * square {
+                    (H, along) = (better, (2.0 * along).min(1.0));
+                    theta.copy_from_slice(&next);
+                    break;
+                }
+                along *= 0.5;
+                if along < 1e-6 {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,99 @@
+//! One step of a least-squares method under bounds: δ = JᵀA⁻¹e with A = JJᵀ + λI, six equations however many joints there are.
+
+use super::bounds::Bounds;
+use mozzi::Twist;
+use mozzi::nalgebra::{Matrix6, SymmetricEigen, Vector6};
+use std::ops::Range;
+
+/// How a step is damped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Newton and Raphson's, by the pseudo-inverse (Modern Robotics, section 6.2.2): δ = J⁺e. Few iterations from a near guess; it
+    /// wanders from afar and near singular positions.
+    Newton,
+    /// Levenberg and Marquardt's with λ = ‖e‖²/50 (after Chan and Lawrence 1988): δ = Jᵀ(JJᵀ + λI)⁻¹e. Cautious far from the goal, Newton's
+    /// near it.
+    LevenbergMarquardt,
+}
+
+/// Eigenvalues of JJᵀ below this part of the largest are directions that no joint moves.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// The columns of J at a position, those of joints that are held at a bound left out.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    /// J with its v in lengths, one column for each velocity.
+    pub columns: Vec<Twist>,
+    /// Joints that stay.
+    pub held: Vec<bool>,
+    pub rows: Range<usize>,
+}
+
+impl Step {
+    fn column(&self, j: usize) -> Vector6<f64> {
+        let mut column = Vector6::from(self.columns[j].to_array());
+        for row in (0..6).filter(|row| !self.rows.contains(row)) {
+            column[row] = 0.0;
+        }
+        column
+    }
+
+    fn moving(&self) -> impl Iterator<Item = (usize, Vector6<f64>)> {
+        (0..self.columns.len()).filter(|&j| !self.held[j]).map(|j| (j, self.column(j)))
+    }
+
+    /// JJᵀ of the joints that move.
+    fn gram(&self) -> Matrix6<f64> {
+        self.moving().fold(Matrix6::zeros(), |A, (_, column)| A + column * column.transpose())
+    }
+
+    /// Jᵀy, 0 at held joints.
+    fn transpose_mul(&self, y: &Vector6<f64>, delta: &mut [f64]) {
+        delta.fill(0.0);
+        self.moving().for_each(|(j, column)| delta[j] = column.dot(y));
+    }
+
+    /// δ towards the error e.
+    pub fn towards(&self, e: &Vector6<f64>, method: Method, delta: &mut [f64]) {
+        let mut A = self.gram();
+        let damping = match method {
+            Method::Newton => 0.0,
+            Method::LevenbergMarquardt => 0.02 * e.norm_squared(),
+        };
+        let floor = NEGLIGIBLE * A.trace().max(f64::MIN_POSITIVE);
+        (0..6).for_each(|row| A[(row, row)] += damping.max(floor));
+        let cholesky = if method == Method::Newton { None } else { A.cholesky() };
+        let y = cholesky.map_or_else(|| pseudo_inverse(self.gram()) * e, |A| A.solve(e));
+        self.transpose_mul(&y, delta);
+    }
+
+    /// z less what of it would move the frame: (I − J⁺J)z of the joints that move.
+    pub fn within_null_space(&self, z: &mut [f64]) {
+        let moved = self.moving().fold(Vector6::zeros(), |V, (j, column)| V + column * z[j]);
+        let y = pseudo_inverse(self.gram()) * moved;
+        let mut back = vec![0.0; z.len()];
+        self.transpose_mul(&y, &mut back);
+        for ((z, back), held) in z.iter_mut().zip(&back).zip(&self.held) {
+            *z = if *held { 0.0 } else { *z - back };
+        }
+    }
+
+    /// Holds the joints at a bound that δ would take beyond it; were there any?
+    pub fn hold_at_bounds(&mut self, bounds: &Bounds, theta: &[f64], delta: &[f64]) -> bool {
+        let mut found = false;
+        for j in 0..delta.len() {
+            if !self.held[j] && bounds.side(theta, j) * delta[j] > 0.0 {
+                (self.held[j], found) = (true, true);
+            }
+        }
+        found
+    }
+}
+
+/// A⁺ of a symmetric positive semi-definite matrix.
+fn pseudo_inverse(A: Matrix6<f64>) -> Matrix6<f64> {
+    let SymmetricEigen { eigenvalues, eigenvectors } = A.symmetric_eigen();
+    let least = NEGLIGIBLE * eigenvalues.max();
+    let inverse = eigenvalues.map(|x| if x > least { 1.0 / x } else { 0.0 });
+    eigenvectors * Matrix6::from_diagonal(&inverse) * eigenvectors.transpose()
+}

@@ -1,0 +1,205 @@
+//! Against forward kinematics; the embedded robots, and random ones.
+
+use super::*;
+use mozzi::testing::{floating_tree, state, tree, twist};
+use mozzi::{SE3, Vec3, difference};
+
+fn robot(name: &str, frame: &str) -> (Model, FrameId) {
+    let model = mozzi_urdf::open(name).expect("embedded").build().expect("sound");
+    let frame = model.frame(frame).expect("there");
+    (model, frame)
+}
+
+/// θ anywhere within the limits.
+fn within(model: &Model, random: &mut Random) -> Vec<f64> {
+    Bounds::of(model).random(&model.neutral_configuration::<f64>(), random)
+}
+
+fn assert_within(model: &Model, theta: &[f64]) {
+    for (&[low, high], q) in Bounds::of(model).joints.iter().zip(&theta[model.base().positions()..]) {
+        assert!((low..=high).contains(q), "{q} of {low} … {high}");
+    }
+}
+
+const ROBOTS: [(&str, &str); 6] = [
+    ("ur5", "tool0"),
+    ("panda", "panda_hand"),
+    ("anymal", "LF_FOOT"),
+    ("double_pendulum", "tip"),
+    ("furuta_pendulum", "tip"),
+    ("two_link_planar", "tip"),
+];
+
+#[test]
+fn poses_that_the_robots_reach_are_reached() {
+    for (name, frame) in ROBOTS {
+        let (model, frame) = robot(name, frame);
+        let mut solver = InverseKinematics::new(&model, frame).expect("a frame");
+        let mut random = Random(7);
+        let guess = model.neutral_configuration::<f64>();
+        for method in [Method::LevenbergMarquardt, Method::Newton] {
+            solver.options.method = method;
+            let (mut starts, mut iterations) = (0, 0);
+            for _ in 0..20 {
+                let goal = forward_kinematics(&model, &within(&model, &mut random), frame);
+                let found = solver.solve(Goal::Pose(goal), &guess).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let T = forward_kinematics(&model, &found.theta, frame);
+                let left = (SE3::new(T.R.inverse(), Vec3::zero()) * SE3::new(goal.R, Vec3::zero())).log();
+                assert!(left.norm() < 2e-8 && (goal.p - T.p).dot(goal.p - T.p).sqrt() < 2e-8, "{name}: {left:?}");
+                assert_within(&model, &found.theta);
+                (starts, iterations) = (starts + found.starts, iterations + found.iterations);
+            }
+            println!(
+                "{name:16} {method:?}: {:.1} starts, {:.1} iterations",
+                starts as f64 / 20.0,
+                iterations as f64 / 20.0
+            );
+        }
+    }
+}
+
+#[test]
+fn the_error_leads_to_the_goal_and_minus_the_jacobian_is_its_derivative() {
+    let model = tree(3, 8, 1);
+    let [theta, dtheta, _] = state(&model, 1);
+    let frame = model.end_effector().expect("named");
+    let at = |h: f64| {
+        let mut moved = theta.clone();
+        integrate(&model, &mut moved, &dtheta, h);
+        forward_kinematics(&model, &moved, frame)
+    };
+    let T = at(0.0);
+    let V = &model.body_jacobian(&theta, frame).expect("lengths") * &dtheta[..];
+    let apart = T * SE3::exp(twist(5));
+    for (goal, here) in [
+        (Goal::Pose(apart), Goal::Pose(T)),
+        (Goal::Position(apart.p), Goal::Position(T.p)),
+        (Goal::Orientation(apart.R), Goal::Orientation(T.R)),
+    ] {
+        // moved along e the goal is reached
+        let reached = match goal {
+            Goal::Pose(_) => T * SE3::exp(goal.error(T)),
+            // p and R apart
+            _ => SE3::new(
+                (SE3::new(T.R, Vec3::zero()) * SE3::exp(Twist { v: Vec3::zero(), ..goal.error(T) })).R,
+                T * goal.error(T).v,
+            ),
+        };
+        assert!(goal.error(reached).norm() < 1e-13);
+        // at the goal
+        let rate = (here.error(at(1e-5)) - here.error(at(-1e-5))) * (0.5 / 1e-5);
+        for row in 0..6 {
+            let expected = if here.rows().contains(&row) { -V.to_array()[row] } else { 0.0 };
+            assert!((rate.to_array()[row] - expected).abs() < 1e-7 * (1.0 + V.norm()), "{here:?} row {row}");
+        }
+    }
+}
+
+#[test]
+fn positions_and_orientations_alone() {
+    let (model, frame) = robot("panda", "panda_hand");
+    let mut solver = InverseKinematics::new(&model, frame).expect("a frame");
+    let mut random = Random(3);
+    for _ in 0..10 {
+        let T = forward_kinematics(&model, &within(&model, &mut random), frame);
+        let guess = within(&model, &mut random);
+        let found = solver.solve(Goal::Position(T.p), &guess).expect("reached");
+        let apart = forward_kinematics(&model, &found.theta, frame).p - T.p;
+        assert!(apart.dot(apart).sqrt() < 1e-8 && found.residual.angle.is_none());
+        let found = solver.solve(Goal::Orientation(T.R), &guess).expect("reached");
+        let R = forward_kinematics(&model, &found.theta, frame).R;
+        let apart = (R.matrix() - T.R.matrix()).rows().as_flattened().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert!(apart < 1e-8 && found.residual.distance.is_none());
+    }
+}
+
+#[test]
+fn out_of_reach_is_said_with_the_numbers() {
+    let (model, frame) = robot("ur5", "tool0");
+    let mut solver =
+        InverseKinematics::with_options(&model, frame, Options { starts: 3, ..Options::default() }).expect("fine");
+    let error = solver.solve(Goal::Position(Vec3([3.0, 0.0, 0.0])), &[0.0; 6]).expect_err("too far");
+    let Error::NotReached { residual, theta, starts: 3, .. } = &error else { panic!("{error:?}") };
+    // stretched out towards it
+    let p = forward_kinematics(&model, theta, frame).p;
+    let distance = residual.distance.expect("asked for");
+    assert!((distance - (Vec3([3.0, 0.0, 0.0]) - p).dot(Vec3([3.0, 0.0, 0.0]) - p).sqrt()).abs() < 1e-12);
+    assert!(distance > 1.9 && distance < 2.2, "{distance}");
+    assert!(error.to_string().starts_with("frame `tool0` did not reach its goal: the best of 3 starts"), "{error}");
+
+    // within reach, but not within the limits: the slide of a Panda's finger
+    let (panda, finger) = robot("panda", "panda_leftfinger");
+    let locked: Vec<(&str, f64)> = panda.joint_names().take(7).map(|name| (name, 0.1)).collect();
+    let slide = panda.with_locked_joints(&locked).expect("sound");
+    let finger = slide.frame(panda.frame_name(finger)).expect("there");
+    let goal = Goal::Position(forward_kinematics(&slide, &[0.06], finger).p);
+    let error =
+        InverseKinematics::new(&slide, finger).expect("fine").solve(goal, &[0.0]).expect_err("at 0.04 m it ends");
+    let Error::NotReached { limits, residual, .. } = &error else { panic!("{error:?}") };
+    assert!(limits == &["panda_finger_joint1"] && (residual.distance.expect("asked for") - 0.02).abs() < 1e-9);
+    let free = Options { limits: false, ..Options::default() };
+    let found =
+        InverseKinematics::with_options(&slide, finger, free).expect("fine").solve(goal, &[0.0]).expect("unlimited");
+    assert!((found.theta[0] - 0.06).abs() < 1e-8);
+}
+
+#[test]
+fn a_secondary_goal_chooses_among_the_solutions() {
+    let (model, frame) = robot("panda", "panda_hand");
+    let model = model.with_locked_joints(&[("panda_finger_joint1", 0.02)]).expect("sound");
+    let frame = model.frame(robot("panda", "panda_hand").0.frame_name(frame)).expect("there");
+    let posture = [0.3, -0.5, 0.2, -2.0, 0.4, 1.8, 0.7];
+    let goal = Goal::Pose(forward_kinematics(&model, &[0.5, -0.3, -0.4, -1.7, 0.1, 1.5, 1.0], frame));
+    let mut solver = InverseKinematics::new(&model, frame).expect("fine");
+    let plain = solver.solve(goal, &[0.1, 0.2, 0.1, -1.0, 0.0, 1.0, 0.0]).expect("reached");
+    let near =
+        solver.solve_with(goal, &[0.1, 0.2, 0.1, -1.0, 0.0, 1.0, 0.0], &Secondary::Near(&posture)).expect("reached");
+    let away = |theta: &[f64]| theta.iter().zip(&posture).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+    assert!(away(&near.theta) < away(&plain.theta));
+    // stationary: θ − θ_r has no part in the null space, which is found here by the singular vectors of J
+    let J = model.body_jacobian(&near.theta, frame).expect("lengths").matrix();
+    let null = J.clone().resize(7, 7, 0.0).svd(false, true).v_t.expect("asked for").row(6).transpose();
+    assert!((J * &null).amax() < 1e-12);
+    let mut apart = vec![0.0; 7];
+    difference(&model, &posture, &near.theta, &mut apart);
+    let along: f64 = null.iter().zip(&apart).map(|(a, b)| a * b).sum();
+    assert!(along.abs() < 1e-6, "{along:e}");
+    // the same by a function
+    let H = |theta: &[f64], gradient: &mut [f64]| {
+        for j in 0..7 {
+            gradient[j] = theta[j] - posture[j];
+        }
+        0.5 * away(theta)
+    };
+    let again =
+        solver.solve_with(goal, &[0.1, 0.2, 0.1, -1.0, 0.0, 1.0, 0.0], &Secondary::Minimize(&H)).expect("reached");
+    assert!(again.theta.iter().zip(&near.theta).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn a_free_base_moves_along() {
+    let model = floating_tree(5, 6, 1);
+    let frame = model.end_effector().expect("named");
+    let [theta, ..] = state(&model, 2);
+    let goal = SE3::exp(twist(9) * 2.0);
+    let found = InverseKinematics::new(&model, frame).expect("fine").solve(Goal::Pose(goal), &theta).expect("reached");
+    assert!((forward_kinematics(&model, &found.theta, frame).inverse() * goal).log().norm() < 1e-7);
+    assert!((found.theta[..4].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let (model, frame) = robot("ur5", "tool0");
+    let mut solver = InverseKinematics::new(&model, frame).expect("fine");
+    let goal = Goal::Pose(SE3::identity());
+    let message = |error: Error| error.to_string();
+    assert!(message(solver.solve(goal, &[0.0; 5]).expect_err("five")).contains("5 entries, expected 6"));
+    assert!(message(solver.solve(goal, &[f64::NAN; 6]).expect_err("NaN")).contains("the guess"));
+    let nowhere = Goal::Position(Vec3([0.0, f64::INFINITY, 0.0]));
+    assert!(message(solver.solve(nowhere, &[0.0; 6]).expect_err("infinite")).contains("the goal"));
+    let bad = |options| message(InverseKinematics::with_options(&model, frame, options).expect_err("bad"));
+    assert!(bad(Options { starts: 0, ..Options::default() }).contains("starts is 0"));
+    assert!(bad(Options { angle: 0.0, ..Options::default() }).contains("angle is 0"));
+    let other = robot("panda", "panda_rightfinger").1;
+    assert!(InverseKinematics::new(&robot("two_link_planar", "tip").0, other).is_err());
+}

@@ -1,0 +1,54 @@
+//! What a path asks of the motors: τ = a s̈ + b ṡ² + c + d ṡ, linear in s̈ and ṡ² but for viscous friction.
+
+use super::path::Path;
+use mozzi::{Environment, Model, Workspace, inverse_dynamics};
+
+/// The coefficients of each of the n velocities at one s.
+#[derive(Clone, Debug)]
+pub(super) struct Demand {
+    pub s: f64,
+    /// θ′.
+    pub slope: Vec<f64>,
+    /// θ″.
+    pub curvature: Vec<f64>,
+    /// Mθ′.
+    pub a: Vec<f64>,
+    /// Mθ″ + c(θ, θ′).
+    pub b: Vec<f64>,
+    /// g + μ sgn θ′.
+    pub c: Vec<f64>,
+    /// The viscous friction of θ′.
+    pub d: Vec<f64>,
+}
+
+/// At these s, by three inverse dynamics each.
+pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand> {
+    let (n, mut workspace) = (model.n(), Workspace::new(model));
+    let still = vec![0.0; n];
+    let weightless = Environment::with_gravity(mozzi::Vec3::zero());
+    let damping: Vec<f64> = damping(model);
+    let mut at = |s: f64| {
+        let point = path.at(s);
+        let mut tau = |environment: &Environment, dtheta: &[f64], ddtheta: &[f64]| {
+            let mut tau = vec![0.0; n];
+            inverse_dynamics(model, &point.theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
+            tau
+        };
+        let mut c = tau(&model.environment(), &still, &still);
+        let a = tau(&weightless, &still, &point.slope);
+        let mut b = tau(&weightless, &point.slope, &point.curvature);
+        let d: Vec<f64> = damping.iter().zip(&point.slope).map(|(d, x)| d * x).collect();
+        for j in 0..n {
+            let f = mozzi::joint_friction(model, j, point.slope[j]); // at ṡ = 1
+            b[j] -= f;
+            c[j] += f - d[j];
+        }
+        Demand { s, slope: point.slope, curvature: point.curvature, a, b, c, d }
+    };
+    s.iter().map(|&s| at(s)).collect()
+}
+
+/// d of each velocity: what friction grows by from 1 to 2 rad/s.
+fn damping(model: &Model) -> Vec<f64> {
+    (0..model.n()).map(|j| mozzi::joint_friction(model, j, 2.0) - mozzi::joint_friction(model, j, 1.0)).collect()
+}

@@ -1,0 +1,51 @@
+//! How fast, how suddenly and how strongly the joints may move along a path.
+
+use crate::Error;
+use crate::error::check;
+use mozzi::Model;
+
+/// Limits of each of the n velocities, ∞ where there is none. They hold either way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// |θ̇|, rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// |θ̈|, rad/s² or m/s².
+    pub acceleration: Vec<f64>,
+    /// |τ|, N m or N.
+    pub torque: Vec<f64>,
+}
+
+impl Limits {
+    /// None.
+    pub fn none(model: &Model) -> Self {
+        let none = vec![f64::INFINITY; model.n()];
+        Limits { velocity: none.clone(), acceleration: none.clone(), torque: none }
+    }
+
+    /// The velocity and effort limits of the robot's description; it has none of accelerations.
+    pub fn of(model: &Model) -> Self {
+        let mut limits = Limits::none(model);
+        for (j, joint) in (model.base().velocities()..).zip(model.joints()) {
+            limits.velocity[j] = joint.limits.velocity.unwrap_or(f64::INFINITY);
+            limits.torque[j] = joint.limits.effort.unwrap_or(f64::INFINITY);
+        }
+        limits
+    }
+
+    pub(super) fn check(&self, model: &Model) -> Result<(), Error> {
+        for (what, list) in [
+            ("a velocity limit", &self.velocity),
+            ("an acceleration limit", &self.acceleration),
+            ("a torque limit", &self.torque),
+        ] {
+            if list.len() != model.n() {
+                let (found, expected) = (list.len(), model.n());
+                return Err(mozzi::Error::WrongLength { what: "a list of limits", found, expected }.into());
+            }
+            for (x, joint) in list.iter().zip(model.velocity_names()) {
+                check(*x > 0.0, what, format!("{x} of `{joint}`"), "a positive number, or infinity")?;
+            }
+        }
+        Ok(())
+    }
+}

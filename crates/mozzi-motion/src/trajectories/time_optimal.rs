@@ -1,0 +1,136 @@
+//! The fastest way through a path under limits of velocity, acceleration and torque, by reachability (Pham and Pham 2018).
+//!
+//! With u = s̈ and x = ṡ², of which u is constant between grid points, x[i+1] = x[i] + 2Δu and every limit is linear:
+//!
+//! > |θ′u + θ″x| ≤ θ̈_max,  |a u + b x + c| ≤ τ_max,  x ≤ (θ̇_max/θ′)²
+//!
+//! Backwards, each point gets the largest x from which the next one's can be kept; forwards, each step takes the largest u.
+//! Limits are asked for at both ends of each interval.
+
+use super::demands::{Demand, demands};
+use super::limits::Limits;
+use super::linear_program::{HalfPlane, maximize};
+use super::path::Path;
+use super::profile::Profile;
+use crate::Error;
+use crate::error::check;
+use mozzi::Model;
+
+/// What no limit bounds: ṡ² and |s̈| of a path between 0 and 1.
+const UNBOUNDED: f64 = 1e12;
+/// Linearisations of viscous friction.
+const ROUNDS: usize = 4;
+
+/// s(t) as fast as the limits allow, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques are those of the model's own gravity and
+/// friction; of viscous friction √x is replaced by a tangent, which is never below it.
+///
+/// # Errors
+/// [`Error::TooWeak`] where a torque limit cannot hold the robot, or carry it along; [`Error::Unlimited`] where some part of the path is
+/// limited by nothing; [`mozzi::Error::BadArgument`].
+pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
+    limits.check(model)?;
+    check(intervals >= 2, "the number of intervals", intervals, "at least 2")?;
+    check(
+        !model.is_floating(),
+        "the base of a robot on a timed path",
+        "free",
+        "a bolted base: torques are its motors'",
+    )?;
+    let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
+    let demands = demands(model, path, &s);
+    for demand in &demands {
+        let weak = (0..model.n()).find(|&j| demand.c[j].abs() > limits.torque[j]);
+        if let Some(j) = weak {
+            return Err(too_weak(model, demand, limits, j));
+        }
+    }
+    let damped =
+        demands.iter().any(|demand| demand.d.iter().any(|&d| d != 0.0)) && limits.torque.iter().any(|x| x.is_finite());
+    // where √x is touched by its tangent: 0 for no friction at first, so that a solution exists to start from
+    let mut speeds = vec![f64::INFINITY; s.len()];
+    for round in 0..if damped { ROUNDS } else { 1 } {
+        let planes: Vec<Vec<HalfPlane>> =
+            demands.iter().zip(&speeds).map(|(demand, &speed)| planes(demand, limits, speed)).collect();
+        let found = fastest(model, &demands, limits, &planes)?;
+        if round == 0 && damped {
+            // the first round has none of the friction: half its speed is a place to touch
+            speeds = found.iter().map(|x| 0.5 * x.sqrt()).collect();
+        } else {
+            speeds = found.iter().map(|x| x.sqrt()).collect();
+        }
+    }
+    Ok(Profile::of_speeds(&s, &speeds))
+}
+
+/// The limits at a point, as half-planes of (u, x); √x touched at a speed, viscous friction left out where that is infinite.
+fn planes(demand: &Demand, limits: &Limits, speed: f64) -> Vec<HalfPlane> {
+    let mut planes = Vec::new();
+    for j in 0..demand.a.len() {
+        let (dq, ddq) = (demand.slope[j], demand.curvature[j]);
+        if limits.velocity[j].is_finite() && dq != 0.0 {
+            planes.push(HalfPlane { a: 0.0, b: 1.0, c: (limits.velocity[j] / dq).powi(2) });
+        }
+        if limits.acceleration[j].is_finite() {
+            let c = limits.acceleration[j];
+            planes.extend([HalfPlane { a: dq, b: ddq, c }, HalfPlane { a: -dq, b: -ddq, c }]);
+        }
+        if limits.torque[j].is_finite() {
+            for sign in [1.0, -1.0] {
+                // a u + b x + c + d √x ≤ τ, where √x ≤ (x/y + y)/2 for every y; where d helps it is left out
+                let d = (sign * demand.d[j]).max(0.0);
+                let (slope, offset) = match speed {
+                    y if d == 0.0 || y.is_infinite() => (0.0, 0.0),
+                    y => (0.5 * d / y.max(1e-6), 0.5 * d * y.max(1e-6)),
+                };
+                let [a, b, c] = [demand.a[j], demand.b[j], demand.c[j]].map(|x| sign * x);
+                planes.push(HalfPlane { a, b: b + slope, c: limits.torque[j] - c - offset });
+            }
+        }
+    }
+    planes
+}
+
+/// x at each grid point.
+fn fastest(model: &Model, demands: &[Demand], limits: &Limits, planes: &[Vec<HalfPlane>]) -> Result<Vec<f64>, Error> {
+    let (last, step) = (planes.len() - 1, 1.0 / (planes.len() - 1) as f64);
+    let bounds = [[-UNBOUNDED, UNBOUNDED], [0.0, UNBOUNDED]];
+    // what an interval asks of (u, x) at its beginning, where x at its end must be between 0 and `next`
+    let interval = |i: usize, next: f64| {
+        let mut all = planes[i].clone();
+        all.extend(planes[i + 1].iter().map(|p| HalfPlane { a: p.a + 2.0 * step * p.b, ..*p }));
+        all.extend([HalfPlane { a: 2.0 * step, b: 1.0, c: next }, HalfPlane { a: -2.0 * step, b: -1.0, c: 0.0 }]);
+        all
+    };
+    let stuck = |i: usize| {
+        // name the joint with the least room at rest
+        let room = |j: &usize| limits.torque[*j] - demands[i].c[*j].abs();
+        let j = (0..model.n()).min_by(|a, b| room(a).total_cmp(&room(b))).unwrap_or(0);
+        too_weak(model, &demands[i], limits, j)
+    };
+    let mut largest = vec![0.0; last + 1];
+    for i in (0..last).rev() {
+        let [_, x] = maximize([0.0, 1.0], bounds, &interval(i, largest[i + 1])).ok_or_else(|| stuck(i))?;
+        if x > 0.5 * UNBOUNDED {
+            return Err(Error::Unlimited { s: demands[i].s });
+        }
+        largest[i] = if i == 0 { 0.0 } else { x };
+    }
+    let mut x = vec![0.0; last + 1];
+    for i in 0..last {
+        let mut all = interval(i, largest[i + 1]);
+        // x is given but for rounding
+        let room = 1e-12 * x[i];
+        all.extend([HalfPlane { a: 0.0, b: 1.0, c: x[i] + room }, HalfPlane { a: 0.0, b: -1.0, c: room - x[i] }]);
+        let [u, _] = maximize([1.0, 0.0], bounds, &all).ok_or_else(|| stuck(i))?;
+        x[i + 1] = if i + 1 == last { 0.0 } else { (x[i] + 2.0 * step * u).clamp(0.0, largest[i + 1]) };
+        if x[i + 1] <= 0.0 && i + 1 < last {
+            return Err(stuck(i + 1));
+        }
+    }
+    Ok(x)
+}
+
+fn too_weak(model: &Model, demand: &Demand, limits: &Limits, j: usize) -> Error {
+    let joint = model.velocity_names().nth(j).unwrap_or_default().to_string();
+    Error::TooWeak { joint, s: demand.s, needed: demand.c[j].abs(), limit: limits.torque[j] }
+}
