@@ -60,7 +60,7 @@ export function stateAt(motion, time) {
     if (t[middle] <= time) low = middle;
     else high = middle;
   }
-  const part = high > low ? Math.min(Math.max((time - t[low]) / (t[high] - t[low]), 0), 1) : 0;
+  const part = t[high] > t[low] ? Math.min(Math.max((time - t[low]) / (t[high] - t[low]), 0), 1) : 0;
   const between = (rows) => rows && rows[low].map((x, k) => x + part * (rows[high][k] - x));
   const [theta, dtheta, ddtheta, tau, tip] = [motion.theta, motion.dtheta, motion.ddtheta, motion.tau, motion.tip].map(between);
   return { theta, dtheta, ddtheta, tau, tip, low, part };

@@ -44,7 +44,8 @@ function reachOf() {
   const T = poses(robot, neutral);
   const far = robot.bodies.map((_, k) => Math.hypot(...T[k + 1].p.map((x, i) => x - T[0].p[i])));
   const frames = robot.frames.map(({ body, T: at }) => Math.hypot(...T[body].p.map((x, i) => x - T[0].p[i])) + Math.hypot(...at.p));
-  return Math.max(...far, ...frames, 0.05);
+  const solids = robot.shapes.filter(({ kind }) => kind !== "mesh").map(({ T: at, size }) => Math.hypot(...at.p) + 0.6 * Math.max(...size));
+  return Math.max(...far, ...frames, ...solids, 0.05);
 }
 
 function place() {

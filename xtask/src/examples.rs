@@ -1,14 +1,14 @@
-//! The numbered examples: each `examples/NN_name.rs`, and its `.py` twin where the Python package is built.
+//! The numbered examples: each `examples/NN_name.rs`, and its `.py` twin.
 
 use crate::command;
 use crate::oracles;
+use crate::package;
 use crate::report::Outcome;
-use crate::venv;
 use crate::workspace::{FEATURES, Workspace};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// The Rust examples' programs, by name.
 pub type Programs = BTreeMap<String, PathBuf>;
@@ -80,15 +80,7 @@ impl Example {
                 }
                 None => Outcome::Failed(format!("cargo build made no program of examples/{name}.rs")),
             },
-            Self::Python(_) if !has_mozzi(workspace) => Outcome::Skipped("the Python package is not built yet".into()),
-            Self::Python(file) => command::outcome(Command::new(venv::python(workspace)).arg(file).current_dir(folder)),
+            Self::Python(file) => command::outcome(package::python(workspace).arg(file).current_dir(folder)),
         }
     }
-}
-
-fn has_mozzi(workspace: &Workspace) -> bool {
-    let mut python = Command::new(venv::python(workspace));
-    // Away from the root, so that no folder there is taken for the package.
-    python.args(["-c", "import mozzi; mozzi.__file__[0]"]).current_dir(workspace.path("target"));
-    python.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
 }

@@ -5,12 +5,13 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Where `unsafe` may stand: instruction sets and their dispatch, and machine code. A file that starts so.
-const UNSAFE_ALLOWED: [&str; 4] = [
+/// Where `unsafe` may stand: instruction sets and their dispatch, machine code, and NumPy's arrays. A file that starts so.
+const UNSAFE_ALLOWED: [&str; 5] = [
     "crates/mozzi/src/native",
     "crates/mozzi-batch/src/instruction_set",
     "crates/mozzi-batch/src/lanes/",
     "crates/mozzi-codegen/src/jit/executable",
+    "crates/mozzi-py/src/numpy",
 ];
 
 /// A file longer than this is asking to be two.

@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | page | bench`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | page | bench | wheel`: what CI runs, anyone can run.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -15,6 +15,7 @@ mod main_job;
 mod metadata;
 mod no_std;
 mod oracles;
+mod package;
 mod page;
 mod report;
 mod source_text;
@@ -22,6 +23,7 @@ mod spdx;
 mod stamp;
 mod tests;
 mod venv;
+mod wheel;
 mod workspace;
 
 use report::Report;
@@ -32,7 +34,7 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
-          a while of fuzzing, the no_std check, every example, the main job
+          the Python package, a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   docs    write the pages of docs/ anew; `test` holds them current
   page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` sees whether that was done
@@ -42,7 +44,9 @@ usage: cargo xtask COMMAND
           --peers pinocchio,mujoco,kdl,dynibo,casadi  these alone, likewise
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first
-          --criterion                                 each kernel alone, without peers";
+          --criterion                                 each kernel alone, without peers
+          --python                                    Python's calls beside Pinocchio's and the Modern Robotics package's
+  wheel   the Python package for Linux, into target/wheels; installed into an empty environment, where its README runs";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -53,6 +57,8 @@ fn main() -> ExitCode {
         ["docs"] => docs(&workspace),
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
+        ["wheel"] => wheel(&workspace),
+        ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
             Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),
@@ -79,6 +85,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     report.step("reference numbers", || oracles::make(workspace));
     report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
+    report.step("Python package", || package::test(workspace, &mut count));
     report.step("fuzzing", || fuzz::run(workspace));
     report.step("no_std", || no_std::check(workspace));
     let mut programs = examples::Programs::new();
@@ -90,6 +97,13 @@ fn test(workspace: &Workspace) -> ExitCode {
     let exit = report.finish();
     println!("{count}"); // CI reads this line
     exit
+}
+
+fn wheel(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("Python environment", || venv::prepare(workspace));
+    report.step("wheel", || wheel::build(workspace));
+    report.finish()
 }
 
 fn docs(workspace: &Workspace) -> ExitCode {

@@ -1,5 +1,6 @@
 //! `cargo test --workspace`, doc tests included, with the tests counted.
 
+use crate::command;
 use crate::oracles;
 use crate::page;
 use crate::report::Outcome;
@@ -33,6 +34,30 @@ impl Count {
     }
 }
 
+impl Count {
+    /// Something did not come to the point where its tests are counted.
+    pub fn fail(&mut self) {
+        self.failed = self.failed.max(1);
+    }
+
+    /// Add pytest's last line, such as `1 failed, 41 passed, 2 skipped in 3.10s`.
+    pub fn add_pytest(&mut self, line: &str) {
+        let Some((counts, time)) = line.trim_matches(['=', ' ']).rsplit_once(" in ") else { return };
+        let seconds = time.split_whitespace().next().and_then(|time| time.strip_suffix('s'));
+        if seconds.and_then(|seconds| seconds.parse::<f64>().ok()).is_none() {
+            return;
+        }
+        for part in counts.split(',') {
+            match part.trim().split_once(' ').and_then(|(n, word)| Some((n.parse::<usize>().ok()?, word))) {
+                Some((n, "passed")) => self.passed += n,
+                Some((n, "failed" | "error" | "errors")) => self.failed += n,
+                Some((n, "skipped")) => self.ignored += n,
+                _ => {}
+            }
+        }
+    }
+}
+
 impl fmt::Display for Count {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} passed, {} failed", self.passed, self.failed)
@@ -48,16 +73,25 @@ pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     let python = venv::python(workspace);
     give(&mut cargo, "MOZZI_PYTHON", python.is_file().then_some(python));
     give(&mut cargo, "MOZZI_BROWSER", page::browser());
-    println!("$ cargo test --workspace --no-fail-fast {}", FEATURES.join(" "));
-    match stream(&mut cargo, |line| count.add(line)) {
-        Err(error) => Outcome::Failed(format!("cargo test did not run: {error}")),
-        Ok(true) => Outcome::Passed(format!("{count}, {} ignored", count.ignored)),
+    run_counted(&mut cargo, count, Count::add)
+}
+
+/// Runs tests whose output tells how many there were.
+pub fn run_counted(command: &mut Command, count: &mut Count, add: impl Fn(&mut Count, &str)) -> Outcome {
+    let (program, mut here) = (command::shown(command), Count::default());
+    println!("$ {program}");
+    let outcome = match stream(command, |line| add(&mut here, line)) {
+        Err(error) => Outcome::Failed(format!("`{program}` did not start: {error}")),
+        Ok(true) => Outcome::Passed(format!("{here}, {} ignored", here.ignored)),
         Ok(false) => {
-            // A program that did not build, or died, has no line of results of its own.
-            count.failed = count.failed.max(1);
-            Outcome::Failed(count.to_string())
+            here.fail(); // a program that did not build, or died, has no line of results of its own
+            Outcome::Failed(here.to_string())
         }
-    }
+    };
+    count.passed += here.passed;
+    count.failed += here.failed;
+    count.ignored += here.ignored;
+    outcome
 }
 
 /// Names a path to the tests, where it is there.
@@ -97,5 +131,14 @@ mod unit {
         count.add("test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 1.5s");
         assert_eq!(count, Count { passed: 5, failed: 1, ignored: 1 });
         assert_eq!(count.to_string(), "5 passed, 1 failed");
+    }
+
+    #[test]
+    fn the_last_line_of_pytest_is_counted() {
+        let mut count = Count::default();
+        count.add_pytest("....F.. [100%]");
+        count.add_pytest("FAILED crates/a.py::test_b - AssertionError: 3 passed in the wrong way");
+        count.add_pytest("1 failed, 41 passed, 2 skipped, 1 error in 63.10s (0:01:03)");
+        assert_eq!(count, Count { passed: 41, failed: 2, ignored: 2 });
     }
 }

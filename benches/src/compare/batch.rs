@@ -1,10 +1,10 @@
-//! mozzi at many states at once, on one thread: tables in rows, as a caller has them.
+//! mozzi at many states at once, on one thread: tables in rows, as a caller has them, or in blocks.
 
 use crate::compiled;
 use crate::contestant::Contestant;
 use crate::quantity::Quantity;
 use mozzi::Model;
-use mozzi_batch::{Batch, Error, InstructionSet, Surroundings};
+use mozzi_batch::{Batch, Error, InstructionSet, Layout, Surroundings};
 use mozzi_benches::States;
 use mozzi_codegen::{Compiled, Engine, Kernel, LeftOpen, Shape};
 use std::hint::black_box;
@@ -13,6 +13,15 @@ use std::hint::black_box;
 enum Means {
     Kernels(Batch, Surroundings<'static>),
     MachineCode(Compiled),
+}
+
+impl Means {
+    fn batch(&self) -> &Batch {
+        match self {
+            Means::Kernels(batch, _) => batch,
+            Means::MachineCode(robot) => robot.batch(),
+        }
+    }
 }
 
 /// All states in one call.
@@ -29,8 +38,9 @@ pub struct Batched<'a> {
 
 impl<'a> Batched<'a> {
     /// By the kernels; none where the machine has no such registers, as in [`by_machine_code`](Self::by_machine_code).
-    pub fn by_kernels(model: &'a Model, states: &States, set: InstructionSet) -> Option<Self> {
+    pub fn by_kernels(model: &'a Model, states: &States, set: InstructionSet, layout: Layout) -> Option<Self> {
         let batch = Batch::new(model).with_instruction_set(set).and_then(|batch| batch.with_threads(1)).ok()?;
+        let batch = batch.with_layout(layout);
         let quantities = Quantity::ALL.map(|quantity| (quantity, None)).to_vec();
         Some(Self::new(model, states, Means::Kernels(batch, model.environment().into()), quantities))
     }
@@ -54,6 +64,11 @@ impl<'a> Batched<'a> {
             for (table, row) in tables.iter_mut().zip(state) {
                 table.extend(row);
             }
+        }
+        let batch = means.batch();
+        if batch.layout() == Layout::Blocks {
+            let widths = [model.nq(), model.n(), model.n(), model.n()];
+            tables.iter_mut().zip(widths).for_each(|(table, width)| *table = batch.to_blocks(table, width));
         }
         let (n, count) = (model.n(), states.count());
         let matrices = [(); 3].map(|()| vec![0.0; count * n * n]);
@@ -119,7 +134,15 @@ impl Contestant for Batched<'_> {
             self.evaluate(quantity).map_err(|error| error.to_string())?; // of all states
         }
         let n = self.model.n();
-        let part = |table: &[f64], width: usize| table[state * width..][..width].to_vec();
+        let batch = self.means.batch();
+        let part = |table: &[f64], width: usize| match batch.layout() {
+            Layout::Rows => table[state * width..][..width].to_vec(),
+            Layout::Blocks => {
+                batch.to_rows(&table[state / batch.lanes() * batch.lanes() * width..], width, batch.lanes())
+                    [state % batch.lanes() * width..][..width]
+                    .to_vec()
+            }
+        };
         let matrices = self.matrices[..quantity.matrices()].iter().map(|matrix| part(matrix, n * n));
         Ok(if quantity.matrices() > 0 { matrices.flatten().collect() } else { part(&self.vectors, n) })
     }

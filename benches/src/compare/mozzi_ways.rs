@@ -7,7 +7,7 @@ use crate::peak::Width;
 use crate::quantity::Quantity;
 use mozzi::native::{self, Workspace};
 use mozzi::{Environment, Model};
-use mozzi_batch::InstructionSet;
+use mozzi_batch::{InstructionSet, Layout};
 use mozzi_benches::{State, States};
 use std::hint::black_box;
 
@@ -24,7 +24,10 @@ pub fn all<'a>(model: &'a Model, states: &'a States) -> Result<Vec<Entry<'a>>, S
         entries.extend(batched.map(|batched| Entry { name, width: Some(width), contestant: Box::new(batched) }));
     };
     for (set, width) in registers {
-        many("batch", set, width, Batched::by_kernels(model, states, set));
+        many("batch", set, width, Batched::by_kernels(model, states, set, Layout::Rows));
+    }
+    for (set, width) in registers {
+        many("blocks", set, width, Batched::by_kernels(model, states, set, Layout::Blocks));
     }
     for (set, width) in registers {
         many("compiled", set, width, Batched::by_machine_code(model, states, set));

@@ -14,6 +14,10 @@ use std::time::{Duration, Instant};
 /// is so badly conditioned that accelerations keep ten digits.
 const LARGEST_DIFFERENCE: f64 = 1e-8;
 
+/// What ran before leaves its own caches and branch history, and the units of wide registers asleep: these wake for the first hundreds of
+/// microseconds of their use, during which they are several times slower.
+const WARMING: Duration = Duration::from_micros(500);
+
 /// The times of one algorithm, in nanoseconds for one evaluation.
 #[derive(Clone, Debug)]
 pub struct Time {
@@ -81,7 +85,10 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
         rounds += 1;
         for Runner { entry, algorithm, times, .. } in &mut runners {
             let contestant = &mut entries[*entry].contestant;
-            contestant.run(*algorithm); // what ran before leaves its own caches, branch history and, without AVX, half the unit asleep
+            let warm = Instant::now();
+            while warm.elapsed() < WARMING {
+                contestant.run(*algorithm);
+            }
             let start = Instant::now();
             contestant.run(*algorithm);
             times.push(start.elapsed().as_secs_f64() * 1e9 / states.count() as f64);

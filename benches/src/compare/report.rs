@@ -58,11 +58,12 @@ fn how() -> String {
 
 - Every library gets the robot by numbers, fixed links merged, no friction, no armature, gravity 9.80665 m/s², and the same random states.
   Every result at every state was compared with mozzi's before anything was timed.
-- One process on one processor; in each round everything runs over all states, in turn, once untimed and once timed.
+- One process on one processor; in each round everything runs over all states, in turn, for half a millisecond untimed, then once timed.
   Where a library has several algorithms for a quantity, the fastest is quoted.
 - Nanoseconds for one state: least of all rounds / median. In bold the time over mozzi's, least over least; behind it median over median.
 - mozzi: {rustc}, release profile, no flags: `mozzi::native` finds FMA when it runs; portable is the same source
-  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows; compiled is `mozzi_codegen`, machine code
+  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows; blocks
+  the same with tables in blocks; compiled is `mozzi_codegen`, machine code
   made for the one robot when the program runs, where it is not longer than the instruction cache.
 "
     )

@@ -3,6 +3,7 @@
 use crate::jit::{Kernel, Refusal, Shape};
 use crate::quantity::{LeftOpen, Quantity};
 use mozzi::nalgebra::{DMatrix, DVector};
+use mozzi::scalar::Float;
 use mozzi::{
     Error, ForwardDynamicsDerivatives, FrameId, InverseDynamicsDerivatives, Jacobian, Mat3, Model, SE3, SO3, Twist,
     Vec3,
@@ -310,6 +311,6 @@ fn are_regular(pivots: &[f64]) -> bool {
 }
 
 /// The same of the least pivot and their sum.
-pub(crate) fn is_regular(least: f64, sum: f64) -> bool {
-    least > 1e-8 * sum && sum.is_finite()
+pub(crate) fn is_regular<T: Float>(least: T, sum: T) -> bool {
+    least > T::from_f64(1e-8) * sum && sum * T::zero() == T::zero()
 }

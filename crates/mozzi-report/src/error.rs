@@ -18,8 +18,8 @@ pub enum Error {
         /// Numbers a row.
         width: usize,
     },
-    /// The times of the motion do not increase, or there are none.
-    #[error("the motion's time is {t} s in row {row}, expected times that increase")]
+    /// The times of the motion decrease, or one is no number.
+    #[error("the motion's time is {t} s in row {row}, expected times that do not decrease")]
     Time {
         /// The row, from 1.
         row: usize,

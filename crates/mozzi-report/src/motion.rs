@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 pub struct Motion {
     /// What it is, in a few words.
     pub title: String,
-    /// Seconds, increasing.
+    /// Seconds, none before the one above it; two of one time are a jump.
     pub t: Vec<f64>,
     /// θ, rows of nq.
     pub theta: Vec<f64>,
@@ -65,8 +65,8 @@ impl Motion {
 
     pub(crate) fn check(&self, model: &Model) -> Result<(), Error> {
         let rows = self.t.len();
-        let increases = |k: usize| self.t[k].is_finite() && (k == 0 || self.t[k] > self.t[k - 1]);
-        if let Some(k) = (0..rows).find(|&k| !increases(k)) {
+        let goes_on = |k: usize| self.t[k].is_finite() && (k == 0 || self.t[k] >= self.t[k - 1]);
+        if let Some(k) = (0..rows).find(|&k| !goes_on(k)) {
             return Err(Error::Time { row: k + 1, t: self.t[k] });
         }
         let (nq, n) = (model.nq(), model.n());
@@ -142,9 +142,9 @@ mod tests {
         let motion = Motion { t: vec![0.0, 1.0], theta: vec![0.0; 4], ..Motion::default() };
         let message = motion.to_json(&model).expect_err("too short").to_string();
         assert_eq!(message, "the motion's theta has 4 numbers, expected 12: 2 rows of 6");
-        let motion = Motion { t: vec![0.0, 0.0], theta: vec![0.0; 12], ..Motion::default() };
-        let message = motion.to_json(&model).expect_err("no time between").to_string();
-        assert_eq!(message, "the motion's time is 0 s in row 2, expected times that increase");
+        let motion = Motion { t: vec![0.0, -1.0], theta: vec![0.0; 12], ..Motion::default() };
+        let message = motion.to_json(&model).expect_err("backwards").to_string();
+        assert_eq!(message, "the motion's time is -1 s in row 2, expected times that do not decrease");
         assert!(Motion::default().to_json(&model).is_err());
     }
 }

@@ -106,7 +106,9 @@ impl Model<f64> {
         );
         self.check_pivots(theta, &mut workspace)?;
         let J = DMatrix::from_row_slice(k, n, &memory.J);
-        let mut singular_values: Vec<f64> = J.singular_values().iter().copied().collect();
+        // nothing can be decomposed where no joint moves
+        let mut singular_values: Vec<f64> =
+            if n == 0 { Vec::new() } else { J.singular_values().iter().copied().collect() };
         singular_values.resize(k, 0.0); // more rows than joints
         let tolerance = 1e-12 * singular_values[0];
         if singular_values.iter().any(|&s| s <= tolerance) || memory.pivots.iter().any(|&pivot| pivot <= 0.0) {

@@ -2,9 +2,11 @@
 
 mod options;
 mod peers;
+mod python;
 mod workshop;
 
 pub use options::Options;
+pub use python::run as python;
 
 use crate::command;
 use crate::oracles;

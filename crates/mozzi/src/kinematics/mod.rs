@@ -2,6 +2,7 @@
 
 mod base;
 mod configuration;
+mod exponentials;
 mod forward;
 mod jacobian;
 mod jacobian_derivative;
@@ -19,6 +20,9 @@ pub(crate) use joint_transforms::{joint_sines, joint_transforms};
 pub(crate) use link_twists::link_twists;
 
 pub use configuration::{difference, integrate, moving_along, rate_of_logarithm};
+pub use exponentials::{
+    body_jacobian_of_screws, body_product_of_exponentials, product_of_exponentials, space_jacobian_of_screws,
+};
 pub use forward::{forward_kinematics, frame_poses};
 pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
 pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};

@@ -1,5 +1,6 @@
 //! The book's lists: home frames, screw axes and inertias, in and out.
 
+use super::build::normal_form;
 use super::description::{Joint, JointKind, NamedFrame};
 use super::{Description, Error, Model};
 use crate::lie::SE3;
@@ -75,6 +76,39 @@ impl Description {
         robot.frames.push(NamedFrame { name: "end_effector".into(), link: parent, T });
         robot.end_effector = Some("end_effector".into());
         Ok(robot)
+    }
+}
+
+impl Model {
+    /// The model of [`Description::from_screws`] at once, without judging whether such bodies can exist: for programs that make a
+    /// model of lists at every call. Names and tree are sound by construction.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] as there; [`Error::BadArgument`] for numbers that are not finite.
+    pub fn from_screws(
+        name: impl Into<String>,
+        frames: HomeFrames,
+        inertias: &[SpatialInertia],
+        screws: Screws,
+    ) -> Result<Self, Error> {
+        let robot = Description::from_screws(name, frames, inertias, screws)?;
+        let refused = |what, of: usize| Error::BadArgument {
+            what,
+            found: format!("not finite in number {of}"),
+            expected: "finite numbers",
+        };
+        let origins = robot.joints.iter().map(|joint| joint.origin).chain(robot.frames.iter().map(|frame| frame.T));
+        for (i, T) in origins.enumerate() {
+            if !T.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
+                return Err(refused("the list of home frames", i + 1));
+            }
+        }
+        for (i, G) in inertias.iter().enumerate() {
+            if !G.to_parameters().iter().all(|x| x.is_finite()) {
+                return Err(refused("the list of spatial inertias", i + 1));
+            }
+        }
+        Ok(normal_form(robot))
     }
 }
 

@@ -1,0 +1,39 @@
+"""Dynamics of open-chain robots, in the screw notation of Lynch and Park, *Modern Robotics*.
+
+Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
+"""
+
+from . import conventions, models, modern_robotics
+from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
+from ._results import (
+    BaseParameters,
+    ClosedForm,
+    EnergyRegressors,
+    ForwardDynamicsDerivatives,
+    InverseDynamicsDerivatives,
+    NewtonEuler,
+    ScrewLists,
+    TaskSpaceDynamics,
+    Trajectory,
+)
+
+__all__ = [
+    "BaseParameters",
+    "ClosedForm",
+    "DivergedError",
+    "EnergyRegressors",
+    "ForwardDynamicsDerivatives",
+    "InverseDynamicsDerivatives",
+    "LoadError",
+    "LoadWarning",
+    "Model",
+    "NewtonEuler",
+    "ScrewLists",
+    "SingularError",
+    "TaskSpaceDynamics",
+    "Trajectory",
+    "__version__",
+    "conventions",
+    "models",
+    "modern_robotics",
+]

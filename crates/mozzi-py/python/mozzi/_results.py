@@ -1,0 +1,123 @@
+"""Results of several parts. The compiled methods make them by position."""
+
+import importlib
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+
+class InverseDynamicsDerivatives(NamedTuple):
+    """∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M, each (..., n, n)."""
+
+    by_theta: Array
+    by_dtheta: Array
+    by_ddtheta: Array
+
+
+class ForwardDynamicsDerivatives(NamedTuple):
+    """θ̈ (..., n); ∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹, each (..., n, n)."""
+
+    ddtheta: Array
+    by_theta: Array
+    by_dtheta: Array
+    by_tau: Array
+
+
+class TaskSpaceDynamics(NamedTuple):
+    """Λ (..., k, k) and η (..., k) of 𝓕 = Λ𝒱̇ + η."""
+
+    Lambda: Array
+    eta: Array
+
+
+class EnergyRegressors(NamedTuple):
+    """The rows of the kinetic and the potential energy, each (..., parameters)."""
+
+    kinetic: Array
+    potential: Array
+
+
+class ClosedForm(NamedTuple):
+    """The book's stacked matrices over N bodies, and what they give: see ``Model.closed_form``."""
+
+    A: Array
+    G: Array
+    W: Array
+    L: Array
+    ad_V: Array
+    ad_Adtheta: Array
+    V: Array
+    V_base: Array
+    dV_base: Array
+    F_tip: Array
+    M: Array
+    c: Array
+    g: Array
+    tip_forces: Array
+    friction: Array
+    armature: Array
+
+
+class NewtonEuler(NamedTuple):
+    """The recursion's twists, accelerations and wrenches (N, 6), the base's reaction (6,), τ (n,): see ``Model.newton_euler``."""
+
+    twists: Array
+    accelerations: Array
+    wrenches: Array
+    base_reaction: Array
+    tau: Array
+
+
+class BaseParameters(NamedTuple):
+    """Independent columns of the regressor, K of π_b = K π, and their names: see ``Model.base_parameters``."""
+
+    columns: list[int]
+    combination: Array
+    names: list[str]
+
+
+class ScrewLists(NamedTuple):
+    """The book's lists, over the moving links: see ``Model.screws``."""
+
+    joints: list[str]
+    links: list[str]
+    parents: list[int]
+    M: Array
+    M_relative: Array
+    S: Array
+    A: Array
+    B: Array
+    G: Array
+    end_effector: tuple[str, Array] | None
+
+
+class Trajectory(NamedTuple):
+    """A simulated motion: one row for each recorded time; works in J since the start."""
+
+    t: Array
+    theta: Array
+    dtheta: Array
+    ddtheta: Array
+    tau: Array
+    kinetic_energy: Array
+    potential_energy: Array
+    motor_work: Array
+    friction_loss: Array
+    applied_work: Array
+    position_names: list[str]
+    velocity_names: list[str]
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic and potential, J."""
+        return self.kinetic_energy + self.potential_energy
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame over t, with the columns theta.<joint>, dtheta.<joint>, ddtheta.<joint>, tau.<joint>."""
+        pandas: Any = importlib.import_module("pandas")
+        columns = {f"theta.{name}": self.theta[:, k] for k, name in enumerate(self.position_names)}
+        for what in ("dtheta", "ddtheta", "tau"):
+            columns |= {f"{what}.{name}": getattr(self, what)[:, k] for k, name in enumerate(self.velocity_names)}
+        return pandas.DataFrame(columns, index=pandas.Index(self.t, name="t"))

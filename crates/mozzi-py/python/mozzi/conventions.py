@@ -1,0 +1,95 @@
+"""The same states, forces and matrices as Pinocchio and MuJoCo have them, there and back.
+
+>>> import mozzi
+>>> from mozzi.conventions import Pinocchio
+>>> anymal = mozzi.models.anymal()
+>>> bridge = Pinocchio(anymal)
+>>> q = bridge.configuration(anymal.neutral_configuration)
+>>> q[:7].tolist() # the origin first, the quaternion's real part last
+[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+>>> bool((bridge.from_configuration(q) == anymal.neutral_configuration).all())
+True
+
+So results compare in a line: ``bridge.force(robot.inverse_dynamics(θ, θ̇, θ̈))`` beside ``pin.rnea(model, data, bridge.configuration(θ),
+bridge.velocity(θ̇), bridge.acceleration(θ̈))``. All methods take leading axes. Six-vectors are angular first in mozzi, (ω, v) and (m, f);
+`linear_first` and `angular_first` exchange the halves. Wrenches are what the robot applies to the environment in mozzi, and what the
+environment applies to the robot in both others: `external` exchanges halves and sign.
+"""
+
+from typing import Any, Optional, cast
+
+import numpy as np
+
+from ._mozzi import Model
+from ._mozzi import MuJoCo as _MuJoCo
+from ._mozzi import Pinocchio as _Pinocchio
+
+__all__ = ["MuJoCo", "Pinocchio", "angular_first", "external", "from_external", "linear_first"]
+
+
+def linear_first(six: Any) -> Any:
+    """(v, ω) of (ω, v), or (f, m) of (m, f), along the last axis."""
+    six = np.asarray(six)
+    if six.shape[-1:] != (6,):
+        raise ValueError(f"the six-vector has shape {six.shape}, expected (..., 6)")
+    return np.concatenate([six[..., 3:], six[..., :3]], -1)
+
+
+angular_first = linear_first
+
+
+def external(wrench: Any) -> Any:
+    """A wrench (m, f) that a frame applies to the environment as the force (f, m) that the environment applies to it: `pin.Force`'s
+    vector, in the frame's coordinates."""
+    return -linear_first(wrench)
+
+
+from_external = external
+
+
+def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
+    """The bridge to Pinocchio, as its reader of URDF orders the joints; or as a `pin.Model` of the same robot has them.
+
+    Parameters
+    ----------
+    robot : Model
+    model : pinocchio.Model, optional
+
+    Returns
+    -------
+    bridge
+        `configuration(theta)`, `velocity(dtheta)`, `acceleration(ddtheta)`, `force(tau)`, `mass_matrix(M)`, `jacobian(J)` to
+        Pinocchio; `from_configuration(q)`, `from_velocity(v)`, `from_acceleration(a)`, `from_force(tau)`, `from_mass_matrix(M)` back.
+    """
+    if model is None:
+        return _Pinocchio(robot, None)
+    # the universe is number 0, then a free flyer; followers have no positions
+    moving = [
+        (str(name), int(nq))
+        for name, nq, nv in zip(model.names, model.nqs, model.nvs)
+        if nv == 1 or (nv > 1 and nq != 7)
+    ]
+    return _Pinocchio(robot, ([name for name, _ in moving], [nq for _, nq in moving]))
+
+
+def MuJoCo(robot: Model, model: Optional[Any] = None) -> _MuJoCo:
+    """The bridge to MuJoCo, its joints in mozzi's own order; or as an `mujoco.MjModel` of the same robot has them.
+
+    Parameters
+    ----------
+    robot : Model
+    model : mujoco.MjModel, optional
+
+    Returns
+    -------
+    bridge
+        `configuration(theta)`, `velocity(theta, dtheta)`, `acceleration(theta, dtheta, ddtheta)`, `force(theta, tau)`,
+        `mass_matrix(theta, M)`, `bias_forces(theta, dtheta, M, h)` to MuJoCo; `from_configuration(qpos)`,
+        `from_velocity(qpos, qvel)`, `from_acceleration(qpos, qvel, qacc)`, `from_force(qpos, qfrc)`, `from_mass_matrix(qpos, M)`,
+        `from_bias_forces(qpos, qvel, M, qfrc_bias)` back, with M always mozzi's in the last.
+    """
+    if model is None:
+        return _MuJoCo(robot, None)
+    free = 0  # mjJNT_FREE
+    names = [cast(str, model.joint(j).name) for j in range(model.njnt) if model.jnt_type[j] != free]
+    return _MuJoCo(robot, names)

@@ -1,0 +1,183 @@
+//! `mozzi.conventions`: states, forces and matrices in the order, frames and signs of Pinocchio and MuJoCo, there and back.
+#![allow(clippy::wrong_self_convention)] // `from_` another library's convention, of the robot that self is
+
+use crate::array::{Numbers, common_leading, wrong_shape};
+use crate::failure::{of_model, of_state};
+use crate::model::PyModel;
+use crate::numpy::Fresh;
+use crate::quantity::rows;
+use mozzi::conventions;
+use mozzi::nalgebra::{DMatrix, DVector};
+use mozzi::{Error, Jacobian, Twist};
+use pyo3::prelude::*;
+
+type Given<'a, 'py> = (&'static str, &'a Bound<'py, PyAny>);
+type Found<'py> = PyResult<Bound<'py, PyAny>>;
+
+/// f of each state: of vectors, and perhaps last a matrix; it is a matrix or a column.
+fn each<'py, const K: usize>(
+    py: Python<'py>,
+    vectors: [Given<'_, 'py>; K],
+    table: Option<Given<'_, 'py>>,
+    is_matrix: bool,
+    f: impl Fn([&[f64]; K], Option<DMatrix<f64>>) -> Result<DMatrix<f64>, Error>,
+) -> Found<'py> {
+    let mut given =
+        vectors.into_iter().chain(table).map(|(name, x)| Numbers::new(name, x)).collect::<PyResult<Vec<_>>>()?;
+    let axes = |k: usize| if k < K { 1 } else { 2 };
+    for (k, numbers) in given.iter().enumerate() {
+        if numbers.shape.len() < axes(k) {
+            return Err(wrong_shape(numbers.name, &numbers.shape, ["(..., n)", "(..., rows, columns)"][axes(k) - 1]));
+        }
+    }
+    let leadings: Vec<_> = given.iter().enumerate().map(|(k, x)| (x.name, x.leading(axes(k)))).collect();
+    let leading = common_leading(&leadings)?;
+    for (k, numbers) in given.iter_mut().enumerate() {
+        numbers.spread::<f64>(&leading, axes(k))?;
+    }
+    let slices = given.iter().map(Numbers::slice::<f64>).collect::<PyResult<Vec<_>>>()?;
+    let tail = |k: usize| &given[k].shape[leading.len()..];
+    let states: usize = leading.iter().product();
+    let mut out: Option<Fresh<f64>> = None;
+    for index in 0..states {
+        let part = |k: usize| {
+            let length: usize = tail(k).iter().product();
+            &slices[k][index * length..][..length]
+        };
+        let matrix = table.map(|_| DMatrix::from_row_slice(tail(K)[0], tail(K)[1], part(K)));
+        let result = f(std::array::from_fn(part), matrix).map_err(|error| of_state(error, index, &leading))?;
+        let shape = if is_matrix { vec![result.nrows(), result.ncols()] } else { vec![result.nrows()] };
+        if out.is_none() {
+            out = Some(Fresh::new(py, &[&leading[..], &shape].concat())?);
+        }
+        let length = result.len();
+        if let Some(out) = &mut out {
+            rows(&result, &mut out.numbers()[index * length..][..length]);
+        }
+    }
+    match out {
+        Some(out) => Ok(out.into_array()),
+        None => Ok(given.swap_remove(given.len() - 1).array), // no state: as empty
+    }
+}
+
+fn column(x: Result<DVector<f64>, Error>) -> Result<DMatrix<f64>, Error> {
+    x.map(|x| DMatrix::from_column_slice(x.len(), 1, x.as_slice()))
+}
+
+fn wanted(matrix: Option<DMatrix<f64>>) -> DMatrix<f64> {
+    matrix.unwrap_or_else(|| DMatrix::zeros(0, 0))
+}
+
+#[pyclass(frozen, module = "mozzi._mozzi")]
+pub struct Pinocchio(conventions::Pinocchio);
+
+macro_rules! vectors {
+    ($of:ty: $($name:ident($($argument:ident),*))*) => { #[pymethods] impl $of { $(
+        fn $name<'py>(&self, py: Python<'py>, $($argument: &Bound<'py, PyAny>),*) -> Found<'py> {
+            each(py, [$((stringify!($argument), $argument)),*], None, false, |[$($argument),*], _| column(self.0.$name($($argument),*)))
+        }
+    )* } };
+}
+
+macro_rules! matrices {
+    ($of:ty: $($name:ident($($argument:ident),*))*) => { #[pymethods] impl $of { $(
+        #[allow(non_snake_case)]
+        fn $name<'py>(&self, py: Python<'py>, $($argument: &Bound<'py, PyAny>,)* M: &Bound<'py, PyAny>) -> Found<'py> {
+            each(py, [$((stringify!($argument), $argument)),*], Some(("M", M)), true, |[$($argument),*], M| self.0.$name($($argument,)* &wanted(M)))
+        }
+    )* } };
+}
+
+vectors! { Pinocchio:
+    configuration(theta) from_configuration(q) velocity(dtheta) from_velocity(v) acceleration(ddtheta) from_acceleration(a)
+    force(tau) from_force(tau)
+}
+matrices! { Pinocchio: mass_matrix() from_mass_matrix() }
+
+#[pymethods]
+impl Pinocchio {
+    #[new]
+    fn new(model: &PyModel, joints: Option<(Vec<String>, Vec<usize>)>) -> PyResult<Self> {
+        let model = &model.robot().model;
+        let Some((names, nqs)) = joints else { return Ok(Pinocchio(conventions::Pinocchio::new(model))) };
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        conventions::Pinocchio::with_joints(model, &names, &nqs).map(Pinocchio).map_err(of_model)
+    }
+
+    #[getter]
+    fn joints(&self) -> Vec<usize> {
+        self.0.joints().to_vec()
+    }
+
+    #[getter]
+    fn nq(&self) -> usize {
+        self.0.nq()
+    }
+
+    fn jacobian<'py>(&self, py: Python<'py>, J: &Bound<'py, PyAny>) -> Found<'py> {
+        each(py, [], Some(("J", J)), true, |[], J| {
+            let J = wanted(J);
+            if J.nrows() != 6 {
+                return Err(Error::WrongLength { what: "a column of J", found: J.nrows(), expected: 6 });
+            }
+            let columns = J.column_iter().map(|c| Twist::from_array(std::array::from_fn(|row| c[row])));
+            self.0.jacobian(&Jacobian(columns.collect()))
+        })
+    }
+}
+
+#[pyclass(frozen, module = "mozzi._mozzi")]
+pub struct MuJoCo(conventions::MuJoCo);
+
+vectors! { MuJoCo:
+    configuration(theta) from_configuration(qpos) velocity(theta, dtheta) from_velocity(qpos, qvel)
+    acceleration(theta, dtheta, ddtheta) from_acceleration(qpos, qvel, qacc) force(theta, tau) from_force(qpos, qfrc)
+}
+matrices! { MuJoCo: mass_matrix(theta) from_mass_matrix(qpos) }
+
+#[pymethods]
+impl MuJoCo {
+    #[new]
+    fn new(model: &PyModel, joints: Option<Vec<String>>) -> PyResult<Self> {
+        let model = &model.robot().model;
+        let Some(names) = joints else { return Ok(MuJoCo(conventions::MuJoCo::new(model))) };
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        conventions::MuJoCo::with_joints(model, &names).map(MuJoCo).map_err(of_model)
+    }
+
+    #[getter]
+    fn joints(&self) -> Vec<usize> {
+        self.0.joints().to_vec()
+    }
+
+    #[allow(non_snake_case)]
+    fn bias_forces<'py>(
+        &self,
+        py: Python<'py>,
+        theta: &Bound<'py, PyAny>,
+        dtheta: &Bound<'py, PyAny>,
+        M: &Bound<'py, PyAny>,
+        h: &Bound<'py, PyAny>,
+    ) -> Found<'py> {
+        let vectors = [("theta", theta), ("dtheta", dtheta), ("h", h)];
+        each(py, vectors, Some(("M", M)), false, |[theta, dtheta, h], M| {
+            column(self.0.bias_forces(theta, dtheta, &wanted(M), h))
+        })
+    }
+
+    #[allow(non_snake_case)]
+    fn from_bias_forces<'py>(
+        &self,
+        py: Python<'py>,
+        qpos: &Bound<'py, PyAny>,
+        qvel: &Bound<'py, PyAny>,
+        M: &Bound<'py, PyAny>,
+        qfrc_bias: &Bound<'py, PyAny>,
+    ) -> Found<'py> {
+        let vectors = [("qpos", qpos), ("qvel", qvel), ("qfrc_bias", qfrc_bias)];
+        each(py, vectors, Some(("M", M)), false, |[qpos, qvel, bias], M| {
+            column(self.0.from_bias_forces(qpos, qvel, &wanted(M), bias))
+        })
+    }
+}

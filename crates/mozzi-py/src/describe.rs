@@ -1,0 +1,92 @@
+//! A robot's description as plain tuples, which Python can pickle, and back.
+
+use mozzi::model::Base;
+use mozzi::model::description::{Description, FreeJoint, Joint, JointKind, Limits, Link, Mimic, NamedFrame};
+use mozzi::{SE3, ScrewAxis, SpatialInertia};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+type Pose = [[f64; 4]; 4];
+type LinkState = (String, [f64; 10]);
+type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>);
+type MimicState = Option<(String, f64, f64)>;
+type JointState = (String, String, String, Pose, Option<[f64; 6]>, LimitState, [f64; 3], MimicState);
+type FrameState = (String, String, Pose);
+
+/// Everything of a [`Description`].
+pub type State =
+    (String, Vec<LinkState>, Vec<JointState>, Vec<FrameState>, Option<String>, [f64; 3], Option<(String, String)>);
+
+pub fn to_state(robot: &Description) -> State {
+    let link = |link: &Link| (link.name.clone(), link.inertia.to_parameters());
+    let joint = |joint: &Joint| {
+        let axis = match joint.kind {
+            JointKind::Fixed => None,
+            JointKind::Screw(axis) => Some(axis.twist().to_array()),
+        };
+        let Limits { position, velocity, effort } = joint.limits;
+        let mimic = joint.mimic.as_ref().map(|mimic| (mimic.joint.clone(), mimic.ratio, mimic.offset));
+        (
+            joint.name.clone(),
+            joint.parent.clone(),
+            joint.child.clone(),
+            joint.origin.to_matrix(),
+            axis,
+            (position, velocity, effort),
+            [joint.damping, joint.friction, joint.armature],
+            mimic,
+        )
+    };
+    let frame = |frame: &NamedFrame| (frame.name.clone(), frame.link.clone(), frame.T.to_matrix());
+    let free = (robot.base == Base::Floating).then(|| (robot.free_joint.name.clone(), robot.free_joint.parent.clone()));
+    (
+        robot.name.clone(),
+        robot.links.iter().map(link).collect(),
+        robot.joints.iter().map(joint).collect(),
+        robot.frames.iter().map(frame).collect(),
+        robot.end_effector.clone(),
+        robot.gravity,
+        free,
+    )
+}
+
+/// # Errors
+/// `ValueError` for matrices that are no configurations, and axes that are no screws.
+pub fn from_state((name, links, joints, frames, end_effector, gravity, free): State) -> PyResult<Description> {
+    let mut robot = Description::new(name).with_gravity(gravity);
+    for (name, parameters) in links {
+        robot = robot.link(name, SpatialInertia::from_parameters(parameters));
+    }
+    for (name, parent, child, origin, axis, (position, velocity, effort), [damping, friction, armature], mimic) in
+        joints
+    {
+        let kind = match axis {
+            None => JointKind::Fixed,
+            Some(axis) => JointKind::Screw(ScrewAxis::from_array(axis).map_err(refused)?),
+        };
+        let mut joint = Joint::new(name, parent, child, pose(origin)?, kind);
+        joint.limits = Limits { position, velocity, effort };
+        (joint.damping, joint.friction, joint.armature) = (damping, friction, armature);
+        joint.mimic = mimic.map(|(joint, ratio, offset)| Mimic { joint, ratio, offset });
+        robot = robot.joint(joint);
+    }
+    for (name, link, T) in frames {
+        robot = robot.frame(name, link, pose(T)?);
+    }
+    robot.end_effector = end_effector;
+    if let Some((name, parent)) = free {
+        robot = robot.floating();
+        robot.free_joint = FreeJoint { name, parent };
+    }
+    Ok(robot)
+}
+
+/// # Errors
+/// `ValueError` for a matrix that is no configuration.
+pub fn pose(T: Pose) -> PyResult<SE3> {
+    SE3::from_matrix(T).map_err(refused)
+}
+
+pub fn refused(error: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}

@@ -1,0 +1,88 @@
+//! Errors of Rust as errors of Python: the same words.
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyArithmeticError, PyOSError, PyRuntimeError, PyUserWarning, PyValueError};
+use pyo3::prelude::*;
+
+create_exception!(
+    mozzi,
+    LoadError,
+    PyValueError,
+    "A robot's file is wrong. `diagnostics` has one line for each finding, errors and warnings, in the order of the file."
+);
+create_exception!(mozzi, LoadWarning, PyUserWarning, "What is odd about a robot's file, and computed as it stands.");
+create_exception!(
+    mozzi,
+    SingularError,
+    PyArithmeticError,
+    "The mass matrix, or a task, is singular at a state: no acceleration or wrench answers."
+);
+create_exception!(mozzi, DivergedError, PyArithmeticError, "A simulated state left the numbers.");
+
+/// An error of the library.
+pub fn of_model(error: mozzi::Error) -> PyErr {
+    let text = error.to_string();
+    match error {
+        mozzi::Error::SingularMassMatrix { .. } | mozzi::Error::SingularTask { .. } => SingularError::new_err(text),
+        mozzi::Error::Diverged { .. } => DivergedError::new_err(text),
+        _ => PyValueError::new_err(text),
+    }
+}
+
+/// An error of a batch; of a state with its place among the leading axes.
+pub fn of_batch(error: mozzi_batch::Error, leading: &[usize]) -> PyErr {
+    match error {
+        mozzi_batch::Error::State { index, source } => of_state(source, index, leading),
+        mozzi_batch::Error::Model(error) => of_model(error),
+        error @ mozzi_batch::Error::Threads { .. } => PyRuntimeError::new_err(error.to_string()),
+        error => PyValueError::new_err(error.to_string()),
+    }
+}
+
+/// The error of one of many states.
+pub fn of_state(error: mozzi::Error, index: usize, leading: &[usize]) -> PyErr {
+    if leading.is_empty() {
+        return of_model(error);
+    }
+    let mut rest = index;
+    let mut place: Vec<usize> = leading
+        .iter()
+        .rev()
+        .map(|&length| {
+            let at = rest % length.max(1);
+            rest /= length.max(1);
+            at
+        })
+        .collect();
+    place.reverse();
+    let place = place.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+    let error_type = of_model(error);
+    Python::attach(|py| {
+        let text = format!("state [{place}]: {}", error_type.value(py));
+        PyErr::from_type(error_type.get_type(py), text)
+    })
+}
+
+/// An error of the loader, with its lines as `diagnostics`.
+pub fn of_loader(py: Python<'_>, error: mozzi_urdf::LoadError) -> PyErr {
+    let text = error.to_string();
+    match error {
+        mozzi_urdf::LoadError::File { path, source } => match source.raw_os_error() {
+            Some(number) => {
+                let words = source.to_string();
+                let words = words.split(" (os error").next().unwrap_or_default().to_string();
+                PyOSError::new_err((number, words, path.to_string_lossy().into_owned())) // of the class that goes with the number
+            }
+            None => PyOSError::new_err(text),
+        },
+        mozzi_urdf::LoadError::Refused { diagnostics, .. } => {
+            let error = LoadError::new_err(text);
+            let lines: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+            match error.value(py).setattr("diagnostics", lines) {
+                Ok(()) => error,
+                Err(other) => other,
+            }
+        }
+        _ => PyValueError::new_err(text),
+    }
+}

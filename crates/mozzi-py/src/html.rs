@@ -1,0 +1,37 @@
+//! A model in a notebook: a table of its joints.
+
+use mozzi::Model;
+use std::fmt::Write;
+
+pub fn table(model: &Model) -> String {
+    let (robot, mut text) = (model.description(), String::new());
+    let base = if model.is_floating() { ", floating base" } else { "" };
+    let mass = model.mass();
+    // writing to a String cannot fail
+    let _ = write!(
+        text,
+        "<table><caption>{}: {} joints, {mass} kg{base}</caption>",
+        escaped(&robot.name),
+        model.joint_names().len()
+    );
+    text.push_str(
+        "<tr><th>joint</th><th>kind</th><th>moves</th><th>position</th><th>velocity</th><th>effort</th></tr>",
+    );
+    for joint in model.joints() {
+        let limits = joint.limits;
+        let position = limits.position.map_or_else(|| "free".to_string(), |[low, high]| format!("{low} … {high}"));
+        let most = |limit: Option<f64>| limit.map_or_else(String::new, |x| x.to_string());
+        let cells =
+            [&joint.name, joint.kind.name(), &joint.child, &position, &most(limits.velocity), &most(limits.effort)];
+        text.push_str("<tr>");
+        cells.iter().for_each(|cell| {
+            let _ = write!(text, "<td>{}</td>", escaped(cell));
+        });
+        text.push_str("</tr>");
+    }
+    text + "</table>"
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,40 @@
+//! mozzi in Python: arguments are converted and checked, the library is called, errors are named. No mathematics.
+
+mod array;
+mod call;
+mod compiled;
+mod conventions;
+mod describe;
+mod failure;
+mod html;
+mod load;
+mod methods;
+mod model;
+mod modern_robotics;
+mod numpy;
+mod quantity;
+mod robot;
+mod simulate;
+mod surroundings;
+mod threads;
+
+use pyo3::prelude::*;
+
+/// The compiled part of mozzi.
+#[pymodule(name = "_mozzi")]
+fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    numpy::prepare(py)?;
+    robot::remember_process();
+    module.add_class::<model::PyModel>()?;
+    module.add_class::<conventions::Pinocchio>()?;
+    module.add_class::<conventions::MuJoCo>()?;
+    modern_robotics::add_to(module)?;
+    module.add("LoadError", py.get_type::<failure::LoadError>())?;
+    module.add("LoadWarning", py.get_type::<failure::LoadWarning>())?;
+    module.add("SingularError", py.get_type::<failure::SingularError>())?;
+    module.add("DivergedError", py.get_type::<failure::DivergedError>())?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    let embedded: Vec<&str> = mozzi_urdf::embedded::names().collect();
+    module.add("_embedded_names", embedded)
+}

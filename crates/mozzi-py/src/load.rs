@@ -1,0 +1,132 @@
+//! Robots from files, texts, names and the book's lists.
+
+use crate::array::{Numbers, wrong_shape};
+use crate::describe::{pose, refused};
+use crate::failure::{LoadWarning, of_loader, of_model};
+use mozzi::model::Base;
+use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
+use mozzi_urdf::{LoadError, Loaded, Policy};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyString};
+use std::ffi::CString;
+use std::path::PathBuf;
+
+fn policy(name: &str) -> PyResult<Policy> {
+    match name {
+        "default" => Ok(Policy::Default),
+        "strict" => Ok(Policy::Strict),
+        "lenient" => Ok(Policy::Lenient),
+        other => Err(PyValueError::new_err(format!("policy is '{other}', expected 'default', 'strict' or 'lenient'"))),
+    }
+}
+
+/// The model, its warnings said as Python's.
+fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) -> PyResult<Model> {
+    let loaded = loaded.map_err(|error| of_loader(py, error))?;
+    for warning in &loaded.warnings {
+        let text = CString::new(warning.to_string().replace('\0', "\\0")).map_err(refused)?;
+        PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
+    }
+    let model = loaded.build().map_err(|error| of_loader(py, error))?;
+    if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }
+}
+
+/// A path, or an object with `read`.
+pub fn file(given: &Bound<'_, PyAny>, how: &str, floating: bool) -> PyResult<Model> {
+    let (py, policy) = (given.py(), policy(how)?);
+    if let Ok(read) = given.getattr("read") {
+        let name = given.getattr("name").and_then(|name| name.extract::<String>());
+        return self::text(&read.call0()?, &name.unwrap_or_else(|_| "robot".into()), how, floating);
+    }
+    let path: PathBuf = given.extract().map_err(|_| {
+        let kind = given.get_type();
+        PyTypeError::new_err(format!("the file is a {kind}, expected a path, or a file to read"))
+    })?;
+    let loaded = py.detach(|| mozzi_urdf::load_with(path, policy));
+    build(py, loaded, floating)
+}
+
+/// A str or bytes.
+pub fn text(given: &Bound<'_, PyAny>, name: &str, how: &str, floating: bool) -> PyResult<Model> {
+    let (py, policy) = (given.py(), policy(how)?);
+    let loaded = if let Ok(text) = given.cast::<PyString>() {
+        mozzi_urdf::parse_with(name, text.to_cow()?.as_bytes(), policy)
+    } else if let Ok(bytes) = given.cast::<PyBytes>() {
+        mozzi_urdf::parse_with(name, bytes.as_bytes(), policy)
+    } else {
+        return Err(PyTypeError::new_err(format!("the text is a {}, expected str or bytes", given.get_type())));
+    };
+    build(py, loaded, floating)
+}
+
+/// One of the robots that mozzi brings along.
+pub fn embedded(py: Python<'_>, name: &str, floating: bool) -> PyResult<Model> {
+    match mozzi_urdf::embedded::text(name) {
+        Some(text) => build(py, mozzi_urdf::parse(&format!("{name}.urdf"), text), floating),
+        None => Err(of_loader(py, LoadError::NoSuchRobot { name: name.into() })),
+    }
+}
+
+/// A serial chain of the book's lists.
+pub fn screws(
+    name: &str,
+    [M_list, G_list, S_list]: [&Bound<'_, PyAny>; 3],
+    frames: &str,
+    axes: &str,
+) -> PyResult<Model> {
+    let mut S = Numbers::new("S_list", S_list)?;
+    let [6, n] = S.shape[..] else {
+        return Err(wrong_shape("S_list", &S.shape, "(6, n): a screw axis (ω, v) in each column"));
+    };
+    S.spread::<f64>(&[], 2)?;
+    let S = S.slice::<f64>()?;
+    let screws = (0..n)
+        .map(|j| {
+            ScrewAxis::from_array(std::array::from_fn(|row| S[row * n + j]))
+                .map_err(|error| PyValueError::new_err(format!("S_list, column {j}: {error}")))
+        })
+        .collect::<PyResult<Vec<_>>>()?;
+    let home =
+        matrices::<4>("M_list", M_list, n + 1, "(n + 1, 4, 4): a home frame for each link, and the end effector's")?;
+    let home = home
+        .into_iter()
+        .enumerate()
+        .map(|(k, M)| pose(M).map_err(|error| PyValueError::new_err(format!("M_list[{k}]: {error}"))))
+        .collect::<PyResult<Vec<SE3>>>()?;
+    let inertias = matrices::<6>("G_list", G_list, n, "(n, 6, 6): a spatial inertia for each link")?;
+    let inertias = inertias
+        .into_iter()
+        .enumerate()
+        .map(|(k, G)| {
+            SpatialInertia::from_matrix(G).map_err(|error| PyValueError::new_err(format!("G_list[{k}]: {error}")))
+        })
+        .collect::<PyResult<Vec<SpatialInertia>>>()?;
+    let home = match frames {
+        "relative" => HomeFrames::Relative(&home),
+        "base" => HomeFrames::Base(&home),
+        other => return Err(PyValueError::new_err(format!("frames is '{other}', expected 'relative' or 'base'"))),
+    };
+    let screws = match axes {
+        "space" => Screws::Space(&screws),
+        "body" => Screws::Body(&screws),
+        "link" => Screws::Link(&screws),
+        other => return Err(PyValueError::new_err(format!("axes is '{other}', expected 'space', 'body' or 'link'"))),
+    };
+    Description::from_screws(name, home, &inertias, screws).and_then(Description::build).map_err(of_model)
+}
+
+fn matrices<const K: usize>(
+    name: &'static str,
+    given: &Bound<'_, PyAny>,
+    count: usize,
+    expected: &'static str,
+) -> PyResult<Vec<[[f64; K]; K]>> {
+    let mut table = Numbers::new(name, given)?;
+    if table.shape != [count, K, K] {
+        return Err(wrong_shape(name, &table.shape, expected));
+    }
+    table.spread::<f64>(&[], 3)?;
+    let (rows, _) = table.slice::<f64>()?.as_chunks::<K>();
+    Ok(rows.as_chunks::<K>().0.to_vec())
+}

@@ -1,0 +1,6 @@
+//! The quantities, as methods of Python's `Model`.
+
+mod derivatives;
+mod dynamics;
+mod kinematics;
+mod to_look_at;

@@ -1,0 +1,410 @@
+//! Python's `Model`: where it comes from, what it is, what it is turned into.
+
+use crate::array::Numbers;
+use crate::call::named;
+use crate::describe::{State, from_state, pose, refused, to_state};
+use crate::failure::{of_batch, of_model};
+use crate::numpy::Fresh;
+use crate::robot::{Asked, Machine, Robot};
+use crate::threads::Threads;
+use crate::{compiled, html, load};
+use mozzi::model::Base;
+use mozzi::{FrameId, SpatialInertia};
+use mozzi_codegen::{Engine, Refusal};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by threads.
+///
+/// Its methods compute one quantity each. Arguments are anything NumPy makes an array of; the last axis is a state, leading axes are
+/// many states, computed on all cores, broadcast by NumPy's rule. Results are float32 where all arrays given are, else float64.
+///
+/// Examples
+/// --------
+/// >>> import mozzi
+/// >>> panda = mozzi.models.panda()
+/// >>> panda.n, panda.joint_names[0]
+/// (8, 'panda_joint1')
+/// >>> panda.gravity_forces([0.0] * 6)
+/// Traceback (most recent call last):
+///     ...
+/// ValueError: theta has shape (6,), expected (..., 8): one value per joint of 'panda' (panda_joint1, …)
+#[pyclass(frozen, name = "Model", module = "mozzi")]
+pub struct PyModel(Robot);
+
+impl PyModel {
+    pub fn of(model: mozzi::Model) -> Self {
+        PyModel(Robot::new(model))
+    }
+
+    #[inline(always)]
+    pub fn robot(&self) -> &Robot {
+        &self.0
+    }
+
+    pub fn frame(&self, name: Option<&str>) -> PyResult<FrameId> {
+        self.0.frame(name).map_err(of_model)
+    }
+
+    fn compiled(&self, names: Vec<Asked>, threads: Option<usize>) -> PyResult<Self> {
+        let model = &self.0.model;
+        let quantity = |(name, frame): &Asked| compiled::named(model, name, self.0.frame(frame.as_deref()));
+        let quantities = names.iter().map(quantity).collect::<PyResult<Vec<_>>>()?;
+        let code = mozzi_codegen::compile(model, &quantities).map_err(of_model)?;
+        let mut robot = Robot::new(model.clone());
+        let code = match threads {
+            Some(count) => code.with_threads(count).map_err(|error| of_batch(error, &[]))?,
+            None => code,
+        };
+        robot.compiled = Some(Machine { code, names, threads });
+        Ok(PyModel(robot))
+    }
+
+    fn built(model: Result<mozzi::Model, mozzi::Error>) -> PyResult<Self> {
+        model.map(Self::of).map_err(of_model)
+    }
+}
+
+/// A new array of these numbers.
+pub fn array<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    numbers: impl IntoIterator<Item = f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut fresh = Fresh::<f64>::new(py, shape)?;
+    fresh.numbers().iter_mut().zip(numbers).for_each(|(place, x)| *place = x);
+    Ok(fresh.into_array())
+}
+
+#[pymethods]
+impl PyModel {
+    /// The robot of a URDF or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd, 'lenient' repairs
+    /// inertias and says so; `floating` frees the base.
+    #[staticmethod]
+    #[pyo3(signature = (path_or_file, *, policy="default", floating=false))]
+    fn from_urdf(path_or_file: &Bound<'_, PyAny>, policy: &str, floating: bool) -> PyResult<Self> {
+        load::file(path_or_file, policy, floating).map(Self::of)
+    }
+
+    /// As `from_urdf`: the language is told by the file's first element.
+    #[staticmethod]
+    #[pyo3(signature = (path_or_file, *, policy="default", floating=false))]
+    fn from_mjcf(path_or_file: &Bound<'_, PyAny>, policy: &str, floating: bool) -> PyResult<Self> {
+        load::file(path_or_file, policy, floating).map(Self::of)
+    }
+
+    /// The robot of a text of URDF or MJCF, str or bytes.
+    #[staticmethod]
+    #[pyo3(signature = (text, *, name="robot.urdf", policy="default", floating=false))]
+    fn from_urdf_string(text: &Bound<'_, PyAny>, name: &str, policy: &str, floating: bool) -> PyResult<Self> {
+        load::text(text, name, policy, floating).map(Self::of)
+    }
+
+    /// A serial chain of the book's lists: n + 1 home frames (4, 4), each seen from the one before ('relative', as of the Modern
+    /// Robotics package) or from the base ('base'); n spatial inertias (6, 6), each in its link's frame; and the screw axes, the
+    /// columns of a matrix (6, n), in the 'space', 'body' or 'link' frame.
+    #[staticmethod]
+    #[pyo3(signature = (M_list, G_list, S_list, *, name="robot", frames="relative", axes="space"))]
+    fn from_screws(
+        M_list: &Bound<'_, PyAny>,
+        G_list: &Bound<'_, PyAny>,
+        S_list: &Bound<'_, PyAny>,
+        name: &str,
+        frames: &str,
+        axes: &str,
+    ) -> PyResult<Self> {
+        load::screws(name, [M_list, G_list, S_list], frames, axes).map(Self::of)
+    }
+
+    #[staticmethod]
+    fn _embedded(py: Python<'_>, name: &str, floating: bool) -> PyResult<Self> {
+        load::embedded(py, name, floating).map(Self::of)
+    }
+
+    #[staticmethod]
+    fn _from_state(state: State, compiled: Vec<Asked>, threads: Option<usize>) -> PyResult<Self> {
+        let model = Self::built(from_state(state)?.build())?;
+        if compiled.is_empty() { Ok(model) } else { model.compiled(compiled, threads) }
+    }
+
+    #[allow(clippy::type_complexity)] // what pickle wants
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State, Vec<Asked>, Option<usize>))> {
+        let rebuild = py.get_type::<PyModel>().getattr("_from_state")?;
+        let (names, threads) = match &self.0.compiled {
+            Some(machine) => (machine.names.clone(), machine.threads),
+            None => (Vec::new(), None),
+        };
+        Ok((rebuild, (to_state(self.0.model.description()), names, threads)))
+    }
+
+    /// The same robot, these quantities of it made machine code: its methods are faster, on one state and on many, as long as
+    /// float64 is computed in the robot's own gravity, its base at rest, touching nothing. All else is computed as before.
+    ///
+    /// Parameters
+    /// ----------
+    /// *quantities : str
+    ///     Names of methods: 'inverse_dynamics', 'forward_dynamics', 'mass_matrix', 'bias_forces', 'velocity_product',
+    ///     'gravity_forces', 'forward_kinematics', 'space_jacobian', 'body_jacobian' and the derivatives of both dynamics.
+    /// frame : str, optional
+    ///     Of poses and Jacobians; by default the end effector.
+    /// threads : int, optional
+    ///     As many at most share many states; by default all cores. A method's own `threads` other than that is for the kernels.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///     Equal to this one. `engine(name)` says what computes a quantity.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> ur5 = mozzi.models.ur5()
+    /// >>> fast = ur5.compile("inverse_dynamics", "mass_matrix")
+    /// >>> theta = [0, -1.2, 1.5, 0.3, 1.1, 0]
+    /// >>> bool(abs(fast.mass_matrix(theta) - ur5.mass_matrix(theta)).max() < 1e-12)
+    /// True
+    #[pyo3(signature = (*quantities, frame=None, threads=None))]
+    fn compile(&self, quantities: Vec<String>, frame: Option<String>, threads: Option<Threads>) -> PyResult<Self> {
+        let asked = quantities.into_iter().map(|name| {
+            let of_frame = matches!(name.as_str(), "forward_kinematics" | "space_jacobian" | "body_jacobian");
+            (name, frame.clone().filter(|_| of_frame))
+        });
+        let before = self.0.compiled.iter().flat_map(|machine| machine.names.clone());
+        self.compiled(before.chain(asked).collect(), threads.map(|Threads(count)| count))
+    }
+
+    /// What computes a quantity at one state, of a frame where it has one, of the end effector by default.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     Such as 'machine code (AVX2), 5210 bytes', or 'kernels: ' and why.
+    #[pyo3(signature = (quantity, frame=None))]
+    fn engine(&self, quantity: &str, frame: Option<&str>) -> PyResult<String> {
+        let quantity = compiled::named(&self.0.model, quantity, self.0.frame(frame))?;
+        let compiled = self.0.compiled.as_ref().map(|machine| machine.code.engine(quantity));
+        Ok(compiled.unwrap_or(Engine::Kernels(Refusal::NotAsked)).to_string())
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<PyModel>().is_ok_and(|other| other.get().0.model.description() == self.0.model.description())
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (&self.0.model.description().name, self.0.model.n(), self.0.model.frames().len()).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __repr__(&self) -> String {
+        let model = &self.0.model;
+        let base = if model.is_floating() { ", floating" } else { "" };
+        let (robot, links) = (model.description(), model.description().links.len());
+        format!(
+            "<mozzi.Model '{}': {} joints, {links} links, {} kg{base}>",
+            robot.name,
+            model.joint_names().len(),
+            model.mass()
+        )
+    }
+
+    fn _repr_html_(&self) -> String {
+        html::table(&self.0.model)
+    }
+
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.model.description().name
+    }
+
+    /// Velocities: independent joints, and the six of a free base.
+    #[getter]
+    fn n(&self) -> usize {
+        self.0.model.n()
+    }
+
+    /// Positions: n, and one more where the base is free.
+    #[getter]
+    fn nq(&self) -> usize {
+        self.0.model.nq()
+    }
+
+    /// The independent joints, in the order of θ.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.0.model.joint_names().collect()
+    }
+
+    /// The links, in the order of the file.
+    #[getter]
+    fn link_names(&self) -> Vec<&str> {
+        self.0.model.description().links.iter().map(|link| link.name.as_str()).collect()
+    }
+
+    /// The names of all frames: links, and frames that were added.
+    #[getter]
+    fn frames(&self) -> Vec<&str> {
+        self.0.model.frames().map(|(_, name)| name).collect()
+    }
+
+    /// The end effector's name; None where it is not obvious.
+    #[getter]
+    fn end_effector(&self) -> Option<&str> {
+        self.0.model.end_effector().ok().map(|frame| self.0.model.frame_name(frame))
+    }
+
+    /// Is the base free?
+    #[getter]
+    fn is_floating(&self) -> bool {
+        self.0.model.is_floating()
+    }
+
+    /// The mass of all that moves, kg.
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.0.model.mass()
+    }
+
+    /// Gravity in {s}, shape (3,), m/s².
+    #[getter]
+    fn gravity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, &[3], self.0.model.gravity().0)
+    }
+
+    /// Lowest and highest position of each joint, shape (joints, 2), infinite where there is none; rad or m.
+    #[getter]
+    fn position_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let none = [f64::NEG_INFINITY, f64::INFINITY];
+        let limits = self.0.model.joints().flat_map(|joint| joint.limits.position.unwrap_or(none));
+        array(py, &[self.0.model.joint_names().len(), 2], limits)
+    }
+
+    /// Highest speed of each joint, shape (joints,), infinite where there is none; rad/s or m/s.
+    #[getter]
+    fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let limits = self.0.model.joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY));
+        array(py, &[self.0.model.joint_names().len()], limits)
+    }
+
+    /// Highest torque or force of each joint, shape (joints,), infinite where there is none; N m or N.
+    #[getter]
+    fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let limits = self.0.model.joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY));
+        array(py, &[self.0.model.joint_names().len()], limits)
+    }
+
+    /// π: ten numbers a body, three a joint. See `regressor`.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let parameters = self.0.model.parameters();
+        array(py, &[parameters.len()], parameters)
+    }
+
+    /// The names of `parameters`.
+    #[getter]
+    fn parameter_names(&self) -> Vec<String> {
+        self.0.model.parameter_names()
+    }
+
+    /// All joints at 0, a free base at {s}.
+    #[getter]
+    fn neutral_configuration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let theta: Vec<f64> = self.0.model.neutral_configuration();
+        array(py, &[theta.len()], theta)
+    }
+
+    /// The book's lists of this robot, over its N moving links, base to tips: `joints`, `links`, `parents`, `M` (N, 4, 4) and
+    /// `M_relative`, `S`, `A` and `B` (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
+    fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lists = self.0.model.screws();
+        let (poses, axes) = (
+            |list: &[mozzi::SE3]| {
+                array(py, &[list.len(), 4, 4], list.iter().flat_map(|M| M.to_matrix().into_iter().flatten()))
+            },
+            |list: &[mozzi::ScrewAxis]| {
+                let columns: Vec<[f64; 6]> = list.iter().map(|axis| axis.twist().to_array()).collect();
+                array(py, &[6, list.len()], (0..6).flat_map(|row| columns.iter().map(move |column| column[row])))
+            },
+        );
+        let G = lists.G.iter().flat_map(|G| G.to_matrix().into_iter().flatten());
+        let end_effector = match &lists.end_effector {
+            Some((name, M)) => {
+                (name, array(py, &[4, 4], M.to_matrix().into_iter().flatten())?).into_pyobject(py)?.into_any()
+            }
+            None => py.None().into_bound(py),
+        };
+        let fields = vec![
+            lists.joints.clone().into_pyobject(py)?,
+            lists.links.clone().into_pyobject(py)?,
+            lists.parents.clone().into_pyobject(py)?,
+            poses(&lists.M)?,
+            poses(&lists.M_relative)?,
+            axes(&lists.S)?,
+            axes(&lists.A)?,
+            axes(&lists.B)?,
+            array(py, &[lists.G.len(), 6, 6], G)?,
+            end_effector,
+        ];
+        named(py, "ScrewLists", fields)
+    }
+
+    /// With a body of this spatial inertia (6, 6) or mass fixed to a frame.
+    fn with_payload(&self, frame: &str, inertia: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let inertia = match inertia.extract::<f64>() {
+            Ok(mass) => SpatialInertia::point_mass(mass, mozzi::Vec3([0.0; 3])),
+            Err(_) => {
+                let G = Numbers::matrix::<6, 6>("inertia", inertia, "(6, 6), or a mass in kg")?;
+                SpatialInertia::from_matrix(G).map_err(refused)?
+            }
+        };
+        Self::built(self.0.model.with_payload(self.frame(Some(frame))?, inertia))
+    }
+
+    /// With a further frame, at T (4, 4) seen from one that is there.
+    fn with_frame(&self, name: &str, on: &str, T: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let T = pose(Numbers::matrix("T", T, "(4, 4)")?)?;
+        Self::built(self.0.model.with_frame(name, self.frame(Some(on))?, T))
+    }
+
+    /// With this frame as its end effector.
+    fn with_end_effector(&self, frame: &str) -> PyResult<Self> {
+        Self::built(self.0.model.with_end_effector(self.frame(Some(frame))?))
+    }
+
+    /// With this gravity (3,), m/s².
+    fn with_gravity(&self, gravity: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Self::built(self.0.model.with_gravity(Numbers::fixed("gravity", gravity, "(3,): m/s²")?))
+    }
+
+    /// With its base free, or bolted.
+    #[pyo3(signature = (floating=true))]
+    fn with_floating_base(&self, floating: bool) -> PyResult<Self> {
+        let base = if floating { Base::Floating } else { Base::Fixed };
+        Self::built(self.0.model.with_base(base))
+    }
+
+    /// With these joints held at these positions, `{name: position}`.
+    fn with_locked_joints(&self, positions: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let positions = positions
+            .iter()
+            .map(|(k, x)| Ok((k.extract()?, x.extract()?)))
+            .collect::<PyResult<Vec<(String, f64)>>>()?;
+        let positions: Vec<(&str, f64)> = positions.iter().map(|(name, x)| (name.as_str(), *x)).collect();
+        Self::built(self.0.model.with_locked_joints(&positions))
+    }
+
+    /// The chain between two frames as a robot of its own.
+    fn sub_chain(&self, start: &str, end: &str) -> PyResult<Self> {
+        Self::built(self.0.model.sub_chain(self.frame(Some(start))?, self.frame(Some(end))?))
+    }
+}

@@ -1,0 +1,134 @@
+"""A model as Python's objects are: pickled, copied, compared, shown, sent to other processes."""
+
+import concurrent.futures
+import copy
+import doctest
+import html.parser
+import inspect
+import multiprocessing
+import os
+import pickle
+
+import mozzi
+import numpy as np
+import pytest
+from conftest import assert_close, robots, state
+
+
+def test_pickle_copy_and_equality(robot, random):
+    theta, dtheta, ddtheta = state(robot, random)
+    expected = robot.inverse_dynamics(theta, dtheta, ddtheta)
+    for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+        again = pickle.loads(pickle.dumps(robot, protocol))
+        assert again == robot and hash(again) == hash(robot) and again is not robot
+        assert np.array_equal(again.inverse_dynamics(theta, dtheta, ddtheta), expected)
+    assert copy.copy(robot) == copy.deepcopy(robot) == robot
+    others = [other for other in robots().values() if other == robot]
+    assert len(others) == 1
+    assert robot != robot.with_gravity([0, 0, 1]) and robot != 1 and robot is not None
+
+
+def test_edited_models_pickle(random):
+    robot = mozzi.models.panda()
+    edited = robot.with_payload("panda_hand", 2.0).with_locked_joints({"panda_joint3": 0.3}).with_gravity([1, 2, 3])
+    edited = edited.with_frame("camera", "panda_hand", np.diag([1.0, -1, -1, 1])).with_end_effector("camera")
+    again = pickle.loads(pickle.dumps(edited))
+    assert again == edited and again.end_effector == "camera" and again.n == robot.n - 1
+    theta, dtheta, ddtheta = state(edited, random)
+    assert np.array_equal(again.inverse_dynamics(theta, dtheta, ddtheta), edited.inverse_dynamics(theta, dtheta, ddtheta))
+    assert edited.mass == pytest.approx(robot.mass + 2.0)
+
+
+def test_edits(ur5, random):
+    theta, dtheta, _ = state(ur5, random)
+    G = np.zeros((6, 6))
+    G[3:, 3:] = 1.5 * np.eye(3)
+    assert_close(ur5.with_payload("tool0", G).mass_matrix(theta), ur5.with_payload("tool0", 1.5).mass_matrix(theta))
+    J = ur5.body_jacobian(theta)
+    assert_close(ur5.with_payload("tool0", 1.5).mass_matrix(theta), ur5.mass_matrix(theta) + J.T @ G @ J)
+    free = ur5.with_floating_base()
+    assert free.is_floating and (free.n, free.nq) == (12, 13) and free.with_floating_base(False) == ur5
+    base = ur5.neutral_configuration
+    assert_close(free.mass_matrix([1, 0, 0, 0, 0, 0, 0, *theta])[6:, 6:], ur5.mass_matrix(theta))
+    part = ur5.sub_chain("base_link", "forearm_link")
+    assert part.n == 3 and part.end_effector == "forearm_link"
+    assert_close(part.forward_kinematics(theta[:3]), ur5.forward_kinematics(theta, "forearm_link"))
+    assert np.array_equal(base, np.zeros(6))
+
+
+def test_properties(ur5):
+    assert ur5.name == "ur5" and (ur5.n, ur5.nq) == (6, 6) and ur5.joint_names[0] == "shoulder_pan_joint"
+    assert "tool0" in ur5.frames and ur5.end_effector == "tool0" and "forearm_link" in ur5.link_names
+    assert np.array_equal(ur5.gravity, [0, 0, -9.81]) and not ur5.is_floating
+    assert ur5.position_limits.shape == (6, 2) and (ur5.position_limits[:, 0] < ur5.position_limits[:, 1]).all()
+    assert ur5.velocity_limits.shape == ur5.effort_limits.shape == (6,) and (ur5.effort_limits > 0).all()
+    assert mozzi.models.anymal().end_effector is None
+    lists = ur5.screws()
+    assert lists.S.shape == (6, 6) and lists.joints == ur5.joint_names and lists.end_effector[0] == "tool0"
+
+
+def test_words_about_a_model(robot):
+    text = repr(robot)
+    assert robot.name in text and ("floating" in text) == robot.is_floating
+
+    class Cells(html.parser.HTMLParser):
+        rows, cells = 0, []
+
+        def handle_starttag(self, tag, attributes):
+            self.rows += tag == "tr"
+
+        def handle_data(self, data):
+            self.cells.append(data)
+
+    cells = Cells()
+    cells.feed(robot._repr_html_())
+    assert cells.rows == 1 + len(robot.joint_names)
+    assert set(robot.joint_names) <= set(cells.cells)
+
+
+def test_html_is_escaped():
+    robot = mozzi.Model.from_screws([np.eye(4)] * 2, [np.eye(6)], np.eye(6)[:, [2]], name="<b>&")
+    assert "<b>" not in robot._repr_html_() and "&lt;b&gt;&amp;" in robot._repr_html_()
+
+
+def work(task):
+    robot, given = task
+    return os.getpid(), robot.inverse_dynamics(*given), robot.gravity_forces(given[0][0])
+
+
+@pytest.mark.parametrize("start", ["fork", "spawn"])
+def test_other_processes(start, ur5, random):
+    if start not in multiprocessing.get_all_start_methods():
+        pytest.skip(f"no {start} here")
+    given = state(ur5, random, 500)
+    expected = ur5.inverse_dynamics(*given)  # threads run before the fork
+    with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context(start)) as pool:
+        for process, many, one in pool.map(work, [(ur5, given)] * 4, timeout=120):
+            assert process != os.getpid() and np.array_equal(many, expected)
+            assert_close(one, ur5.gravity_forces(given[0][0]))
+
+
+def documented():
+    yield "Model", mozzi.Model
+    for name, member in vars(mozzi.Model).items():
+        if not name.startswith("_"):
+            yield name, member
+
+
+def test_examples_in_the_documentation_of_the_model():
+    finder, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
+    for name, member in documented():
+        text = inspect.getdoc(member)
+        assert text, f"{name} has no documentation"
+        runner.run(finder.get_doctest(text, {}, name, None, 0))
+    assert runner.tries >= 29 and runner.failures == 0
+
+
+def test_documentation_names_every_argument():
+    for name, member in documented():
+        if not callable(member) or name in ("Model", "screws") or name.startswith(("from_", "with_", "sub_")):
+            continue
+        text = inspect.getdoc(member)
+        for argument in inspect.signature(member).parameters:
+            assert argument == "self" or argument in text, f"{name}: {argument}"
+        assert "Returns" in text, name

@@ -1,0 +1,61 @@
+"""The stubs are the compiled part's, and the type checkers pass them, strictly, with the examples."""
+
+import ast
+import inspect
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import mozzi
+import pytest
+from mozzi import _mozzi
+
+PACKAGE = Path(mozzi.__file__).parent
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.py"))
+
+
+def stubs():
+    tree = ast.parse((PACKAGE / "_mozzi.pyi").read_text())
+    return {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+
+
+@pytest.mark.parametrize("name", ["Model", "Pinocchio", "MuJoCo"])
+def test_stubs_say_what_is_compiled(name):
+    class_, stub = getattr(_mozzi, name), stubs()[name]
+    said = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+    assert {member for member in vars(class_) if not member.startswith("_")} == {m for m in said if not m.startswith("_")}
+    for member, node in said.items():
+        if member.startswith("_") or any(getattr(d, "id", "") == "property" for d in node.decorator_list):
+            continue
+        given = [a.arg for a in [*node.args.args, *filter(None, [node.args.vararg]), *node.args.kwonlyargs]]
+        assert given == list(inspect.signature(getattr(class_, member)).parameters), member
+        defaults = [ast.literal_eval(d) for d in [*node.args.defaults, *node.args.kw_defaults] if d is not None]
+        real = inspect.signature(getattr(class_, member)).parameters.values()
+        assert defaults == [p.default for p in real if p.default is not p.empty], member
+
+
+def run(tmp_path, *command):
+    # in a folder of its own: the package is found as installed, not as files to be checked for style
+    environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent), "PYTHONPATH": str(PACKAGE.parent)}
+    found = subprocess.run(
+        [sys.executable, "-m", *command], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
+    )
+    return found
+
+
+def test_mypy(tmp_path):
+    found = run(tmp_path, "mypy", "--strict", "--cache-dir", str(tmp_path), "-p", "mozzi")
+    assert found.returncode == 0, found.stdout + found.stderr
+    for example in EXAMPLES:
+        found = run(tmp_path, "mypy", "--strict", "--cache-dir", str(tmp_path), str(example))
+        assert found.returncode == 0, found.stdout + found.stderr
+
+
+def test_pyright(tmp_path):
+    started = run(tmp_path, "pyright", "--version")
+    if started.returncode != 0:
+        pytest.skip("pyright does not start: it fetches its own program once")
+    (tmp_path / "pyrightconfig.json").write_text('{"extraPaths": ["%s"]}' % PACKAGE.parent)
+    found = run(tmp_path, "pyright", "--pythonpath", sys.executable, str(PACKAGE), *map(str, EXAMPLES))
+    assert found.returncode == 0, found.stdout + found.stderr
