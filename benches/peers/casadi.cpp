@@ -18,7 +18,7 @@ struct Robot {
 std::string version() {
     return "C that CasADi " CASADI_VERSION " generates for the one robot, of "
            "up to 40 bodies (derivatives of up to 8 velocities), "
-           "compiled by " __VERSION__;
+           "compiled by " __VERSION__ "; from the model to its first inverse dynamics: " CASADI_FIRST;
 }
 const char* const CONVENTION = "mozzi";
 

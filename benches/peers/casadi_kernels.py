@@ -1,14 +1,17 @@
 """C by CasADi, as the field's code generators write it: one function a robot and quantity, unrolled, every constant folded.
 
-usage: casadi_kernels.py ROBOTS OUT
+usage: casadi_kernels.py ROBOTS OUT COMPILER [WORD …]
 
-ROBOTS holds what `compare --describe` writes. OUT gets ROBOT.c and robots.inc, for casadi.cpp. The kernels are written here on
+ROBOTS holds what `compare --describe` writes. OUT gets ROBOT.c and robots.inc, for casadi.cpp. The C compiler is called for the time
+to a first result alone. The kernels are written here on
 CasADi's symbols in 3-vectors, the cheapest form: inverse dynamics by Newton-Euler with classical accelerations, the mass matrix by
 composite bodies, forward dynamics by articulated bodies; on short arms also by M = LDLᵀ, and derivatives by CasADi's own.
 """
 
 import pathlib
+import subprocess
 import sys
+import time
 
 import casadi as ca
 import numpy as np
@@ -247,15 +250,33 @@ def write(name, robot, out, table):
     code.generate(f"{out}/")
 
 
+def seconds_to_first_result(robot, out, compiler):
+    """From the robot's numbers to its first inverse dynamics: expressions, C, machine code, one call."""
+    start = time.perf_counter()
+    inputs = [ca.SX.sym(x, size) for x, size in (("q", robot.nq), ("v", robot.n), ("a", robot.n))]
+    function = ca.Function("first", inputs, [ca.cse(ca.densify(robot.inverse_dynamics(*inputs)))])
+    code = ca.CodeGenerator("first.c")
+    code.add(function)
+    code.generate(f"{out}/")
+    library = out / "first.so"
+    subprocess.run([*compiler, "-fPIC", "-shared", out / "first.c", "-o", library], check=True)
+    ca.external("first", str(library))(*(ca.DM(x.shape[0], 1) + 0.1 for x in inputs))
+    seconds = time.perf_counter() - start
+    (out / "first.c").unlink()  # no part of what is timed
+    return seconds
+
+
 def main():
-    robots, out = map(pathlib.Path, sys.argv[1:])
-    table = []
+    robots, out = map(pathlib.Path, sys.argv[1:3])
+    compiler = sys.argv[3:]
+    table, first = [], []
     for path in sorted(robots.glob("*.txt")):
         robot = Robot(path)
         if len(robot.bodies) <= MOST_BODIES:
             write(path.stem, robot, out, table)
-    head = f'#define CASADI_VERSION "{ca.__version__}"'
-    (out / "robots.inc").write_text("\n".join([head, *table]) + "\n")
+            first.append(f"{path.stem} {seconds_to_first_result(robot, out, compiler):.2f} s")
+    head = [f'#define CASADI_VERSION "{ca.__version__}"', f'#define CASADI_FIRST "{", ".join(first)}"']
+    (out / "robots.inc").write_text("\n".join([*head, *table]) + "\n")
 
 
 main()

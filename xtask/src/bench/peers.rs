@@ -101,7 +101,8 @@ fn casadi(workshop: &Workshop) -> Result<PathBuf, String> {
         workshop.pip(REQUIREMENTS)?;
         let folder = workshop.workspace.fresh_folder("target/bench/casadi")?;
         let mut python = Command::new(venv::python(workshop.workspace));
-        command::run(python.current_dir(&workshop.workspace.root).arg(SCRIPT).arg(&robots).arg(&folder))?;
+        python.current_dir(&workshop.workspace.root).arg(SCRIPT).arg(&robots).arg(&folder);
+        command::run(python.arg(workshop.c_compiler()).args(WORDS.split(' ')))?;
         for source in files(&folder, "c") {
             let mut compile = Command::new(workshop.c_compiler());
             compile.args(WORDS.split(' ')).args(["-fPIC", "-c"]);
