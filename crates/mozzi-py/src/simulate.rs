@@ -127,7 +127,7 @@ impl PyModel {
     #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="rk4", record_every=1, gravity=None, slip_speed=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn simulate<'py>(
-        &self,
+        slf: &Bound<'py, Self>,
         py: Python<'py>,
         theta: &Bound<'py, PyAny>,
         dtheta: &Bound<'py, PyAny>,
@@ -139,10 +139,11 @@ impl PyModel {
         gravity: Given<'_, 'py>,
         slip_speed: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let model = &self.robot().model;
+        let this = slf.get();
+        let model = &this.robot().model;
         let vector = |name, given| -> PyResult<Vec<f64>> {
             let mut numbers = Numbers::new(name, given)?;
-            self.robot().check_shape(&numbers)?;
+            this.robot().check_shape(&numbers)?;
             if numbers.shape.len() != 1 {
                 let expected = format!("({},): one start", numbers.shape[numbers.shape.len() - 1]);
                 return Err(crate::array::wrong_shape(name, &numbers.shape, expected));
@@ -163,7 +164,7 @@ impl PyModel {
         let found = match torque {
             None => run(py, model, start, Zero, &options, &raised)?,
             Some(function) if function.is_callable() => {
-                run(py, model, start, Function { model: self, function, raised: &raised }, &options, &raised)?
+                run(py, model, start, Function { model: this, function, raised: &raised }, &options, &raised)?
             }
             Some(word) if word.is_instance_of::<pyo3::types::PyString>() => match word.extract::<String>()?.as_str() {
                 "gravity_compensation" => run(py, model, start, compensation(), &options, &raised)?,
@@ -174,15 +175,15 @@ impl PyModel {
             },
             Some(tau) => run(py, model, start, Constant(vector("tau", tau)?), &options, &raised)?,
         };
-        trajectory(py, self, found)
+        trajectory(py, slf, found)
     }
 }
 
-fn trajectory<'py>(py: Python<'py>, model: &PyModel, found: Trajectory) -> PyResult<Bound<'py, PyAny>> {
+fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, found: Trajectory) -> PyResult<Bound<'py, PyAny>> {
     let rows = found.len();
     let names = |names: Vec<&str>| names.into_pyobject(py);
     let energies = |part: fn(&Energy) -> f64| array(py, &[rows], found.energy.iter().map(part));
-    let model = &model.robot().model;
+    let model = &robot.get().robot().model;
     let fields = vec![
         array(py, &[rows], found.t.iter().copied())?,
         array(py, &[rows, found.nq], found.theta.iter().copied())?,
@@ -196,6 +197,7 @@ fn trajectory<'py>(py: Python<'py>, model: &PyModel, found: Trajectory) -> PyRes
         energies(|energy| energy.applied_work)?,
         names(model.position_names().collect())?,
         names(model.velocity_names().collect())?,
+        robot.clone().into_any(),
     ];
     named(py, "Trajectory", fields)
 }

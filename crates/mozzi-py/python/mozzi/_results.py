@@ -1,9 +1,13 @@
 """Results of several parts. The compiled methods make them by position."""
 
 import importlib
-from typing import Any, NamedTuple
+import os
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ._mozzi import Model
 
 Array = NDArray[Any]
 
@@ -108,6 +112,7 @@ class Trajectory(NamedTuple):
     applied_work: Array
     position_names: list[str]
     velocity_names: list[str]
+    model: "Model"
 
     @property
     def energy(self) -> Array:
@@ -121,3 +126,37 @@ class Trajectory(NamedTuple):
         for what in ("dtheta", "ddtheta", "tau"):
             columns |= {f"{what}.{name}": getattr(self, what)[:, k] for k, name in enumerate(self.velocity_names)}
         return pandas.DataFrame(columns, index=pandas.Index(self.t, name="t"))
+
+    def report(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        shapes: str | os.PathLike[str] | None = None,
+        meshes: Literal["visual", "collision", "none"] = "visual",
+        title: str = "simulated",
+    ) -> None:
+        """The motion as one HTML file that needs nothing but a browser: see ``Model.report``."""
+        self.model.report(path, self, shapes=shapes, meshes=meshes, title=title)
+
+    def plot(self) -> Any:
+        """A matplotlib figure of θ, θ̇, τ and the energies over t."""
+        pyplot: Any = importlib.import_module("matplotlib.pyplot")
+        figure, axes = pyplot.subplots(4, 1, sharex=True, layout="constrained", figsize=(7, 9))
+        for axis, what, rows, names in zip(
+            axes,
+            ("θ (rad, m)", "dθ/dt (rad/s, m/s)", "τ (N m, N)"),
+            (self.theta, self.dtheta, self.tau),
+            (self.position_names, self.velocity_names, self.velocity_names),
+            strict=False,
+        ):
+            for k, name in enumerate(names):
+                axis.plot(self.t, rows[:, k], label=name)
+            axis.set_ylabel(what)
+        axes[0].legend(fontsize="small", ncols=2)
+        energies = {"kinetic": self.kinetic_energy, "potential": self.potential_energy, "total": self.energy}
+        for name, energy in energies.items():
+            axes[3].plot(self.t, energy, label=name)
+        axes[3].set_ylabel("energy (J)")
+        axes[3].set_xlabel("t (s)")
+        axes[3].legend(fontsize="small")
+        return figure

@@ -3,4 +3,5 @@
 mod derivatives;
 mod dynamics;
 mod kinematics;
+mod report;
 mod to_look_at;

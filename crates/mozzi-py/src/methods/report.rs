@@ -1,0 +1,112 @@
+//! A robot and its motion as a page.
+
+use crate::array::{Numbers, shown, wrong_shape};
+use crate::failure::{LoadWarning, of_loader};
+use crate::model::PyModel;
+use mozzi::Trajectory;
+use mozzi::simulation::{Energy, Sample};
+use mozzi_report::{Drawing, Meshes, Motion};
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use std::ffi::CString;
+use std::path::PathBuf;
+
+fn meshes(name: &str) -> PyResult<Meshes> {
+    match name {
+        "visual" => Ok(Meshes::Visual),
+        "collision" => Ok(Meshes::Collision),
+        "none" => Ok(Meshes::None),
+        other => Err(PyValueError::new_err(format!("meshes is '{other}', expected 'visual', 'collision' or 'none'"))),
+    }
+}
+
+/// The numbers of an attribute.
+fn column(of: &Bound<'_, PyAny>, name: &'static str, shape: &[usize]) -> PyResult<Vec<f64>> {
+    let mut numbers = Numbers::new(name, &of.getattr(name)?)?;
+    if numbers.shape != shape {
+        return Err(wrong_shape(name, &numbers.shape, shown(shape)));
+    }
+    numbers.spread::<f64>(&[], shape.len())?;
+    Ok(numbers.slice::<f64>()?.to_vec())
+}
+
+/// Python's `Trajectory` as the library's.
+fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajectory> {
+    let (n, nq, rows) = (model.n(), model.nq(), given.getattr("t")?.len()?);
+    let t = column(given, "t", &[rows])?;
+    let theta = column(given, "theta", &[rows, nq])?;
+    let [dtheta, ddtheta, tau] = ["dtheta", "ddtheta", "tau"].map(|name| column(given, name, &[rows, n]));
+    let (dtheta, ddtheta, tau) = (dtheta?, ddtheta?, tau?);
+    let energy = |name| column(given, name, &[rows]);
+    let (kinetic, potential) = (energy("kinetic_energy")?, energy("potential_energy")?);
+    let (motor, friction, applied) = (energy("motor_work")?, energy("friction_loss")?, energy("applied_work")?);
+    let mut trajectory = Trajectory::new(model);
+    for k in 0..rows {
+        let energy = Energy {
+            kinetic: kinetic[k],
+            potential: potential[k],
+            motor_work: motor[k],
+            friction_loss: friction[k],
+            applied_work: applied[k],
+        };
+        let of = |list: &'_ [f64], width: usize| list[k * width..][..width].to_vec();
+        trajectory.record(Sample {
+            t: t[k],
+            theta: &of(&theta, nq),
+            dtheta: &of(&dtheta, n),
+            ddtheta: &of(&ddtheta, n),
+            tau: &of(&tau, n),
+            energy,
+        });
+    }
+    Ok(trajectory)
+}
+
+#[pymethods]
+impl PyModel {
+    /// The robot, and a motion of it, as one HTML file that needs nothing but a browser.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file that is written.
+    /// trajectory : Trajectory, optional
+    ///     What `simulate` gave; without it the page has a slider for each joint.
+    /// shapes : path or str, optional
+    ///     The robot's file, or the name of a robot that mozzi brings along, for its shapes; without it there is a skeleton.
+    /// meshes : {'visual', 'collision', 'none'}
+    ///     Which meshes of that file go into the page.
+    /// title : str
+    ///     What the motion is, in a few words.
+    ///
+    /// Warns
+    /// -----
+    /// LoadWarning
+    ///     For each shape that is left out.
+    #[pyo3(signature = (path, trajectory=None, *, shapes=None, meshes="visual", title="simulated"))]
+    fn report(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        trajectory: Option<&Bound<'_, PyAny>>,
+        shapes: Option<PathBuf>,
+        meshes: &str,
+        title: &str,
+    ) -> PyResult<()> {
+        let (model, meshes) = (&self.robot().model, self::meshes(meshes)?);
+        let drawing = match shapes {
+            Some(file) => Drawing::of_file(&file.to_string_lossy(), meshes).map_err(|error| of_loader(py, error))?,
+            None => Drawing::default(),
+        };
+        for note in &drawing.notes {
+            let text =
+                CString::new(note.replace('\0', "\\0")).map_err(|error| PyValueError::new_err(error.to_string()))?;
+            PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
+        }
+        let motion = trajectory.map(|given| self::trajectory(model, given)).transpose()?;
+        let motion = motion.map(|motion| Motion::simulated(title, &motion));
+        let page = mozzi_report::html(model, &drawing, motion.as_ref());
+        let page = page.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        std::fs::write(&path, page).map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))
+    }
+}
