@@ -1,6 +1,6 @@
 //! How long a simulation takes: 10 s of the Panda's seven joints at 1 ms, let go where it stands with a brake of 0.5 N m s/rad, by each integrator; the least of some runs.
 //!
-//! `cargo run --release -p mozzi-motion --example speed [RUNS]`
+//! `cargo run --release -p mozzi-motion --example integration_speed [RUNS]`
 
 use mozzi::simulation::{Method, Options, torque};
 use mozzi_motion::Policy;
