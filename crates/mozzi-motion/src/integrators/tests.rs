@@ -253,7 +253,7 @@ fn the_midpoint_rules_energy_is_bounded_over_a_million_steps() {
         Simulation { integrator: Integrator::Midpoint { step }, record: 0.01, ..Simulation::new(1e6 * step) };
     let [early, late] = early_and_late(&robot("double_pendulum"), &[2.0, 1.0], &[0.0; 2], &simulation);
     println!("drift over the largest kinetic energy: {early:.2e} in the first half, {late:.2e} in the last");
-    assert!(late < 1.5 * early && late < 1e-4, "{early:e} {late:e}");
+    assert!(late < 1.2 * early && late < 1e-3, "{early:e} {late:e}");
 }
 
 #[test]
