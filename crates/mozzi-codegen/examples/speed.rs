@@ -1,11 +1,11 @@
-//! Machine code beside `mozzi::native` at one state and `mozzi-batch` at many, in one interleaved run on one thread: the least of
-//! many rounds, in nanoseconds a state.
+//! Machine code beside `mozzi::native` at one state and `mozzi-batch` at many, and beside the emitted C by `gcc -O3 -march=native -std=gnu99`
+//! where there is a gcc, in one interleaved run on one thread: the least of many rounds, in nanoseconds a state.
 //!
 //! `cargo run --release -p mozzi-codegen --example speed [ROBOT …]`
 
 use mozzi::{Model, native};
 use mozzi_batch::Batch;
-use mozzi_codegen::{Compiled, Kernel, LeftOpen, Quantity, Shape, compile};
+use mozzi_codegen::{Compiled, Kernel, Language, LeftOpen, Precision, Quantity, Shape, compile, emit_into};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -104,6 +104,70 @@ fn at_many_states<'r>(
     [Box::new(kernels), Box::new(machine)]
 }
 
+/// The emitted C's function as gcc compiles it; none without a gcc.
+fn emitted(model: &Model, quantity: Quantity) -> Option<(libloading::Library, String)> {
+    let folder = std::env::temp_dir().join(format!("mozzi_speed_{}", std::process::id()));
+    emit_into(&folder, model, &[quantity], LeftOpen::default(), Language::C, Precision::F64).ok()?;
+    let name = &model.description().name;
+    let mut gcc = std::process::Command::new("gcc");
+    gcc.args(["-O3", "-march=native", "-std=gnu99", "-shared", "-fPIC", "-o"]).arg(folder.join("robot.so"));
+    let made = gcc.arg(folder.join(format!("{name}.c"))).arg("-lm").status().is_ok_and(|status| status.success());
+    // SAFETY: the library is what was emitted, and does nothing when it is loaded.
+    let library = made.then(|| unsafe { libloading::Library::new(folder.join("robot.so")) }.ok());
+    let _ = std::fs::remove_dir_all(&folder); // it stays loaded
+    Some((library??, format!("{name}_{}", quantity.name())))
+}
+
+/// It at all states, one a call.
+fn at_one_state_in_c<'r>(
+    model: &'r Model,
+    (library, name): &'r (libloading::Library, String),
+    quantity: Quantity,
+    [theta, dtheta, x]: [&'r [f64]; 3],
+) -> Option<Run<'r>> {
+    type Array = *const f64;
+    type Out = *mut f64;
+    let (n, nq) = (model.n(), model.nq());
+    let [mut a, mut b, mut c] = [(); 3].map(|()| vec![0.0; n * n]);
+    macro_rules! run {
+        ($f:ty, |$g:ident, $q:ident, $v:ident, $w:ident| $call:expr) => {{
+            // SAFETY: the header says so of the function of this name.
+            let $g = *unsafe { library.get::<$f>(name.as_bytes()) }.ok()?;
+            Box::new(move || {
+                for k in 0..STATES {
+                    let state = black_box([&theta[nq * k..][..nq], &dtheta[n * k..][..n], &x[n * k..][..n]]);
+                    let [$q, $v, $w] = state.map(<[f64]>::as_ptr);
+                    let _ = ($v, $w);
+                    // SAFETY: arrays are as long as the robot's.
+                    unsafe { $call };
+                    black_box((&mut a, &mut b, &mut c));
+                }
+            }) as Run
+        }};
+    }
+    Some(match quantity {
+        Quantity::InverseDynamics => {
+            run!(unsafe extern "C" fn(Array, Array, Array, Out), |g, q, v, w| g(q, v, w, a.as_mut_ptr()))
+        }
+        Quantity::MassMatrix => run!(unsafe extern "C" fn(Array, Out), |g, q, v, w| g(q, a.as_mut_ptr())),
+        Quantity::ForwardDynamics => run!(unsafe extern "C" fn(Array, Array, Array, Out, Out), |g, q, v, w| g(
+            q,
+            v,
+            w,
+            a.as_mut_ptr(),
+            b.as_mut_ptr()
+        )),
+        _ => run!(unsafe extern "C" fn(Array, Array, Array, Out, Out, Out), |g, q, v, w| g(
+            q,
+            v,
+            w,
+            a.as_mut_ptr(),
+            b.as_mut_ptr(),
+            c.as_mut_ptr()
+        )),
+    })
+}
+
 /// Machine code alone, on one block that is already in its place.
 fn block<'r>(kernel: &'r Kernel, inputs: &'r [Vec<f64>], outputs: &'r mut [Vec<f64>]) -> Run<'r> {
     let lanes = kernel.shape().lanes();
@@ -122,7 +186,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         names = ["panda", "ur5", "anymal"].map(String::from).to_vec();
     }
     println!(
-        "robot, quantity: native | machine code 1 | batch, rows | machine code, rows | machine code, block (ns a state); record + compile"
+        "robot, quantity: native | machine code 1 | emitted C by gcc | batch, rows | machine code, rows | machine code, block (ns a state); record + compile"
     );
     for name in names {
         let model = robot(&name)?;
@@ -154,13 +218,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let inputs: Vec<_> = program.inputs().iter().map(|input| numbers(input.length * l, 2.0, 4)).collect();
             let mut outputs: Vec<_> =
                 program.outputs().iter().map(|output| vec![0.0; output.values.len() * l]).collect();
+            let in_c = emitted(&model, quantity);
             let [a, b] = at_one_state(&model, &robot, quantity, states);
             let [c, d] = at_many_states(&batch, &robot, quantity, states);
             let mut runs = vec![a, b, c, d];
             if let Ok(kernel) = &kernel {
                 runs.push(block(kernel, &inputs, &mut outputs));
             }
-            let mut least = [f64::INFINITY; 5];
+            let c = in_c.as_ref().and_then(|function| at_one_state_in_c(&model, function, quantity, states));
+            let is_in_c = c.is_some();
+            runs.insert(2, c.unwrap_or_else(|| Box::new(|| ())));
+            let mut least = [f64::INFINITY; 6];
             for _ in 0..ROUNDS {
                 for (run, least) in runs.iter_mut().zip(&mut least) {
                     let start = Instant::now();
@@ -168,9 +236,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     *least = least.min(start.elapsed().as_secs_f64() * 1e9 / STATES as f64);
                 }
             }
-            let [native, one, rows, machine_rows, block] = least;
+            let [native, one, in_c, rows, machine_rows, block] = least;
+            let in_c = if is_in_c { format!("{in_c:.0}") } else { "–".into() };
             println!(
-                "{name}, {}: {native:.0} | {one:.0} ({:.1} x) | {rows:.1} | {machine_rows:.1} ({:.1} x) | {block:.1}; {:.2} ms; {}; {}",
+                "{name}, {}: {native:.0} | {one:.0} ({:.1} x) | {in_c} | {rows:.1} | {machine_rows:.1} ({:.1} x) | {block:.1}; {:.2} ms; {}; {}",
                 quantity.name(),
                 native / one,
                 rows / machine_rows,
