@@ -79,6 +79,11 @@ impl PyModel {
     /// title : str
     ///     What the motion is, in a few words.
     ///
+    /// Returns
+    /// -------
+    /// None
+    ///     The file is written.
+    ///
     /// Warns
     /// -----
     /// LoadWarning
