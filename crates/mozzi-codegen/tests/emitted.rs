@@ -4,7 +4,7 @@
 mod common;
 mod harness;
 
-use common::{error, state, tree};
+use common::{error, published, state, tree};
 use harness::{Call, Module, build, exists, rounded, run};
 use mozzi::{Base, Environment, Model, Scalar};
 use mozzi_codegen::{EmitError, Language, LeftOpen, Precision, Program, Quantity, Traced, emit, emit_programs, record};
@@ -73,12 +73,24 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
     let fixed = LeftOpen::default();
     let rubbing = tree(3, 9, 0).build().expect("sound");
     let turning = rubbing.joint_names().position(|name| name == "joint2").expect("a joint that only turns");
-    let robots = [
+    let mut robots = vec![
         (panda, vec![InverseDynamics, MassMatrix, ForwardDynamics, ForwardKinematics(hand)], fixed, 3),
         (anymal, vec![InverseDynamics, ForwardDynamics], fixed, 9),
         (rubbing, vec![InverseDynamics], fixed, turning),
         (ur5, vec![InverseDynamics], open, 3),
     ];
+    if precision == Precision::F64 {
+        let loaded = embedded("ur5").with_payload(tool, mozzi::Solid::Sphere { radius: 0.05 }.inertia(1.0));
+        let mut loaded = loaded.expect("a load").description().clone();
+        loaded.name = "loaded".into();
+        let all = vec![MassMatrix, InverseDynamicsDerivatives, BodyJacobian(tool), SpaceJacobian(tool), GravityForces];
+        robots.push((loaded.build().expect("sound"), all, fixed, 1));
+        let dynamics = || vec![InverseDynamics, MassMatrix, ForwardDynamics];
+        let pendulums = ["double_pendulum", "furuta_pendulum", "two_link_planar"].map(embedded);
+        robots.extend(pendulums.into_iter().map(|robot| (robot, dynamics(), fixed, 1)));
+        let arms = published().into_iter().map(|(_, robot)| robot).filter(|robot| (6..8).contains(&robot.n()));
+        robots.extend(arms.map(|robot| (robot, dynamics(), fixed, 1)));
+    }
     let of_robot = |(model, quantities, open, angle): (Model, Vec<Quantity>, LeftOpen, usize)| {
         let call = |quantity: &Quantity| {
             let program = quantity.record(&model, open);

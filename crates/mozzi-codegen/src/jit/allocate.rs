@@ -1,5 +1,6 @@
 //! Registers for a straight line: what is needed last gives way first (Belady 1966), which for equal costs is the best that can be done.
 
+use super::Refusal;
 use super::assembler::{Assembler, Memory, Operand, Register};
 use super::instruction::{Node, Operation, SINES, Value};
 use super::lower::{Lowered, SHAPE_TOGETHER};
@@ -17,9 +18,9 @@ pub(crate) struct Code {
     pub frame: usize,
 }
 
-/// The code of a lowered program; arrays are inputs, outputs, constants, in this order. None where it needs more arrays or more memory of
-/// its own than there is.
-pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Option<Code> {
+/// The code of a lowered program; arrays are inputs, outputs, constants, in this order. Refused where it needs more
+/// arrays, or more memory of its own, than there are.
+pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Result<Code, Refusal> {
     let mut pool = Vec::new();
     let before = lowered.before.as_deref().map(|before| (before, put_constants(SHAPE_TOGETHER, before, &mut pool)));
     let constants = put_constants(shape, lowered, &mut pool);
@@ -27,7 +28,7 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Opt
     let mut sizes: Vec<usize> = lengths.map(|length| length * shape.width()).collect();
     sizes.push(pool.len());
     if sizes.len() >= super::assembler::MOST_ARRAYS {
-        return None;
+        return Err(Refusal::Program);
     }
     let memory = sizes.len() - 1;
     let mut assembler = Assembler::new(shape, &sizes);
@@ -43,8 +44,10 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Opt
     let places = Places { constants, pool: memory, first_output: inputs.len(), stride: shape.width(), used };
     let assembler = Line::new(shape, lowered, places, assembler).code();
     let (instructions, frame) = (assembler.instructions(), assembler.frame_bytes());
-    let is_small = frame <= super::assembler::LARGEST_FRAME;
-    is_small.then(|| Code { bytes: assembler.finish(), pool, instructions, frame })
+    if frame > super::assembler::LARGEST_FRAME {
+        return Err(Refusal::Long);
+    }
+    Ok(Code { bytes: assembler.finish(), pool, instructions, frame })
 }
 
 /// Of each node that is a constant the byte where it stands now.

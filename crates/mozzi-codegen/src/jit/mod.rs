@@ -77,7 +77,7 @@ impl Kernel {
         let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
         let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
         let flops = lowered.flops();
-        let code = allocate::allocate(shape, &lowered, &inputs).ok_or(Refusal::Program)?;
+        let code = allocate::allocate(shape, &lowered, &inputs)?;
         if code.bytes.len() > LONGEST_CODE {
             return Err(Refusal::Long);
         }

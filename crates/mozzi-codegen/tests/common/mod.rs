@@ -66,7 +66,28 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Description {
     robot
 }
 
-/// The embedded robots, random trees, and both on free bases.
+/// Arms, quadrupeds and a humanoid of `example-robot-data`, where `MOZZI_ROBOTS` names its folder.
+pub fn published() -> Vec<(String, Model)> {
+    const FILES: [&str; 6] = [
+        "kinova_description/robots/kinova.urdf",
+        "xarm_description/urdf/xarm7.urdf",
+        "z1_description/urdf/z1.urdf",
+        "hyq_description/robots/hyq_no_sensors.urdf",
+        "double_pendulum_description/urdf/double_pendulum.urdf",
+        "talos_data/robots/talos_reduced.urdf",
+    ];
+    let Some(folder) = std::env::var_os("MOZZI_ROBOTS").map(std::path::PathBuf::from) else {
+        eprintln!("published robots are skipped: MOZZI_ROBOTS does not name the folder of example-robot-data");
+        return Vec::new();
+    };
+    let load = |file: &str| {
+        let model = mozzi_urdf::load(folder.join(file)).and_then(mozzi_urdf::Loaded::build);
+        (file.to_string(), model.unwrap_or_else(|error| panic!("{file}: {error}")))
+    };
+    FILES.into_iter().map(load).collect()
+}
+
+/// The embedded robots, random trees, both on free bases, and [`published`] ones.
 pub fn robots() -> Vec<(String, Model)> {
     let mut robots: Vec<_> = mozzi_urdf::embedded::names()
         .map(|name| {
@@ -81,6 +102,7 @@ pub fn robots() -> Vec<(String, Model)> {
     }
     let free = mozzi_urdf::open("panda").expect("an embedded robot").build().expect("sound").with_base(Base::Floating);
     robots.push(("panda free".to_string(), free.expect("sound")));
+    robots.extend(published());
     robots
 }
 

@@ -18,7 +18,8 @@ pub fn build(folder: &Path, precision: Precision, modules: &[Module], compiler: 
     );
     for module in modules {
         let name = module.name();
-        library += &format!("pub mod {name} {{ include!(\"{name}.rs\"); }}\n");
+        // a file is named as its robot is
+        library += &format!("#[allow(non_snake_case)]\npub mod {name} {{ include!(\"{name}.rs\"); }}\n");
         for call in &module.calls {
             let (inputs, outputs) = call.lengths();
             main += &format!("    for _ in 0..{} {{\n", call.states.len());
