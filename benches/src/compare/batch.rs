@@ -6,7 +6,7 @@ use crate::quantity::Quantity;
 use mozzi::Model;
 use mozzi_batch::{Batch, Error, InstructionSet, Layout, Surroundings};
 use mozzi_benches::States;
-use mozzi_codegen::{Compiled, Engine, Kernel, LeftOpen, Shape};
+use mozzi_codegen::{Compiled, Engine, Shape};
 use std::hint::black_box;
 
 /// What computes them.
@@ -51,8 +51,7 @@ impl<'a> Batched<'a> {
         let quantity = |quantity| {
             let code = compiled::code(quantity)?;
             let Engine::MachineCode(..) = robot.batch_engine(code) else { return None };
-            let kernel = Kernel::new(&code.record(model, LeftOpen::default()), shape).ok()?;
-            Some((quantity, Some(kernel.flops())))
+            Some((quantity, Some(compiled::flops(model, code, shape)?)))
         };
         let quantities = Quantity::ALL.into_iter().filter_map(quantity).collect();
         Some(Self::new(model, states, Means::MachineCode(robot), quantities))

@@ -5,7 +5,7 @@ use crate::quantity::Quantity;
 use mozzi::Model;
 use mozzi_batch::{Batch, InstructionSet};
 use mozzi_benches::{State, States};
-use mozzi_codegen::{Compiled, Engine, Kernel, LeftOpen, Quantity as Code, Shape, compile};
+use mozzi_codegen::{Compiled, Kernel, LeftOpen, Quantity as Code, Shape, compile};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -20,6 +20,11 @@ pub fn code(quantity: Quantity) -> Option<Code> {
         Quantity::ForwardDynamicsDerivatives => Code::ForwardDynamicsDerivatives,
         Quantity::CoriolisMatrix => return None,
     })
+}
+
+/// Of its machine code of this shape, where there is one.
+pub fn flops(model: &Model, code: Code, shape: Shape) -> Option<usize> {
+    Some(Kernel::new(&code.record(model, LeftOpen::default()), shape).ok()?.flops())
 }
 
 /// One state a call.
@@ -38,14 +43,9 @@ impl<'a> OneState<'a> {
         let n = model.n();
         let codes: Vec<Code> = Quantity::ALL.into_iter().filter_map(code).collect();
         let robot = compile(model, &codes).map_err(|error| error.to_string())?;
-        let flops = |code: Code| {
-            let kernel = Kernel::new(&code.record(model, LeftOpen::default()), Shape::OneF64);
-            kernel.map_or(0, |kernel| kernel.flops())
-        };
-        let is_machine_code = |code: Code| matches!(robot.engine(code), Engine::MachineCode(..));
         let quantities = Quantity::ALL.into_iter().filter_map(|quantity| {
-            let code = code(quantity).filter(|&code| is_machine_code(code))?;
-            Some((quantity, code, flops(code)))
+            let code = code(quantity)?;
+            Some((quantity, code, flops(model, code, Shape::OneF64)?))
         });
         Ok(OneState {
             quantities: quantities.collect(),

@@ -30,6 +30,11 @@ fn column(of: &Bound<'_, PyAny>, name: &'static str, shape: &[usize]) -> PyResul
     Ok(numbers.slice::<f64>()?.to_vec())
 }
 
+/// Row k of a table.
+fn row(table: &[f64], k: usize, width: usize) -> &[f64] {
+    &table[k * width..][..width]
+}
+
 /// Python's `Trajectory` as the library's.
 fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajectory> {
     let (n, nq, rows) = (model.n(), model.nq(), given.getattr("t")?.len()?);
@@ -49,13 +54,12 @@ fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajec
             friction_loss: friction[k],
             applied_work: applied[k],
         };
-        let of = |list: &'_ [f64], width: usize| list[k * width..][..width].to_vec();
         trajectory.record(Sample {
             t: t[k],
-            theta: &of(&theta, nq),
-            dtheta: &of(&dtheta, n),
-            ddtheta: &of(&ddtheta, n),
-            tau: &of(&tau, n),
+            theta: row(&theta, k, nq),
+            dtheta: row(&dtheta, k, n),
+            ddtheta: row(&ddtheta, k, n),
+            tau: row(&tau, k, n),
             energy,
         });
     }
