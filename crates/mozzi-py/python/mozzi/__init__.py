@@ -4,6 +4,7 @@ Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What t
 """
 
 from . import conventions, models, modern_robotics
+from ._compare import Comparison, compare
 from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
 from ._results import (
     BaseParameters,
@@ -20,6 +21,7 @@ from ._results import (
 __all__ = [
     "BaseParameters",
     "ClosedForm",
+    "Comparison",
     "DivergedError",
     "EnergyRegressors",
     "ForwardDynamicsDerivatives",
@@ -33,6 +35,7 @@ __all__ = [
     "TaskSpaceDynamics",
     "Trajectory",
     "__version__",
+    "compare",
     "conventions",
     "models",
     "modern_robotics",

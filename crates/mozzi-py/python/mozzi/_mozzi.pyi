@@ -24,6 +24,8 @@ __version__: str
 _embedded_names: list[str]
 _modern_robotics: ModuleType
 
+def _compare(robot: Model | str | os.PathLike[str], states: int, seed: int, python: str | os.PathLike[str], policy: str) -> tuple[str, str, bool, bool]: ...
+
 class SupportsRead(Protocol):
     def read(self) -> str | bytes: ...
 

@@ -103,7 +103,7 @@ impl<S: Copy + Into<f64>> Workspace<S> {
 
 /// Are these pivots of a mass matrix far from rounding of the largest?
 pub fn are_regular<S: Copy + Into<f64>>(pivots: &[S]) -> bool {
-    let mut pivots = pivots.iter().map(|&pivot| pivot.into());
+    let pivots = pivots.iter().map(|&pivot| pivot.into());
     let largest = pivots.clone().fold(0.0_f64, f64::max);
-    pivots.all(|d| d > 1e-8 * largest && d.is_finite())
+    pivots.fold(true, |fine, d| fine & (d > 1e-8 * largest) & (d < f64::INFINITY))
 }
