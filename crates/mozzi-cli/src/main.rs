@@ -4,6 +4,7 @@
 mod batch;
 mod columns;
 mod commands;
+mod conditions;
 mod controller;
 mod failure;
 mod goals;
@@ -141,6 +142,14 @@ Examples:
   mozzi simulate ur5 --follow way.csv --controller computed.json   see mozzi simulate --help";
 
 const SIMULATIONS: &str = "\
+Examples:
+  mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
+  mozzi simulate double_pendulum --theta 2,1 --method dopri --event 'joint1 = 0' --until 'tip.z > 0.4'
+  mozzi simulate panda --method dopri --until joint-limit
+  mozzi simulate ur5 --follow way.csv --controller computed.json
+A condition counts where it becomes true, at the zero of the polynomial between two steps: as exact as the method. One that is
+true for less than a quarter of a step may be overlooked.
+
 CSV files are as of `mozzi inverse-dynamics --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
 
 A controller is a JSON object; gains are one number for all, or lists:

@@ -1,6 +1,7 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
-use super::simulate_page::{columns, limits_reached, object, page};
+use super::simulate_page::{columns, object, page, told};
+use crate::conditions::{EventArguments, happened};
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::motors::{Limit, MotorArguments, or_hold};
@@ -16,7 +17,7 @@ use mozzi::simulation::{Friction, Input, Method, Options};
 use mozzi::{Model, Trajectory};
 use mozzi_codegen::{Compiled, Engine, Quantity, compile};
 use mozzi_motion::controllers::{Overload, Saturated, TrackingError, tracking_error};
-use mozzi_motion::integrators::{Integrator, Simulation, Stopped};
+use mozzi_motion::integrators::{Event, Integrator, Occurrence, Run, Simulation, Stopped};
 use mozzi_motion::trajectories::{Hold, Reference};
 use std::ops::ControlFlow;
 
@@ -43,6 +44,8 @@ pub struct SimulateArguments {
     /// What is made of the joints' position limits; where they are respected a joint comes to rest at its limit
     #[arg(long, value_name = "WHAT", default_value = "report")]
     joint_limits: Limit,
+    #[command(flatten)]
+    events: EventArguments,
     /// Make Coulomb friction smooth: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
     #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
     slip_speed: Option<String>,
@@ -87,7 +90,18 @@ pub struct Outcome {
     pub motors: String,
     pub overloads: Vec<Overload>,
     pub stops: Vec<Stopped>,
+    /// What `--until` and `--event` found, in the order of time.
+    pub events: Vec<Occurrence>,
+    /// The conditions that were looked for and not found.
+    pub missed: Vec<String>,
     pub tracking: Option<TrackingError>,
+}
+
+impl Outcome {
+    /// Did a condition end it?
+    pub fn is_ended(&self) -> bool {
+        self.events.last().is_some_and(|event| event.stop)
+    }
 }
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
@@ -100,7 +114,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
         Some("-") => {
-            limits_reached(&outcome).iter().for_each(|line| failure::note(line));
+            told(&outcome).iter().for_each(|line| failure::note(line));
             columns(&model, &outcome.motion).text()
         }
         _ if arguments.robot.json => json::print(&object(&model, &outcome)),
@@ -109,7 +123,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
             page(&model, &outcome, file) + &said
         }
     };
-    if outcome.motion.complete {
+    if outcome.motion.complete || outcome.is_ended() {
         return Ok(text);
     }
     let last = outcome.motion.last().t;
@@ -141,7 +155,9 @@ impl SimulateArguments {
         let motors = self.motors.motors(model, controller.as_ref(), or_hold(reference.as_ref(), &hold), end)?;
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
         let input = (&mut motors, self.motors.wrench(model, end)?);
-        let (motion, method, step, stops) = self.integrate(model, [&theta, &dtheta], input, end)?;
+        let events = self.events.events(model, [&theta, &dtheta])?;
+        let (Run { motion, events, stops }, method, step) =
+            self.integrate(model, [&theta, &dtheta], input, end, events)?;
         Ok(Outcome {
             method,
             step,
@@ -149,6 +165,8 @@ impl SimulateArguments {
             motors: controller.as_ref().map_or_else(|| self.motors.torque.clone(), Controller::name),
             overloads: motors.overloads().cloned().collect(),
             stops,
+            missed: self.events.missed(&events),
+            events,
             tracking: reference.as_ref().map(|reference| tracking_error(model, &motion, reference)),
             motion,
         })
@@ -169,8 +187,10 @@ impl SimulateArguments {
     }
 
     fn write_report(&self, file: &str, model: &Model, outcome: &Outcome) -> Result<String> {
-        let (motion, time) = (&outcome.motion, scalar(outcome.duration));
-        let title = format!("{}, {time} s in {} steps, motors: {}", outcome.method, motion.steps, outcome.motors);
+        let (motion, method, motors) = (&outcome.motion, outcome.method, &outcome.motors);
+        let happened: Vec<String> = std::iter::once(String::new()).chain(happened(&outcome.events)).collect();
+        let (time, happened) = (scalar(motion.last().t), happened.join("; "));
+        let title = format!("{method}, {time} s in {} steps, motors: {motors}{happened}", motion.steps);
         let motion = report::simulated(title, motion, self.motors.wrench(model, outcome.duration)?)?;
         self.meshes.write(file, &self.robot.model, model, Some(&motion))
     }
@@ -181,7 +201,8 @@ impl SimulateArguments {
         [theta, dtheta]: [&[f64]; 2],
         input: impl Input,
         end: f64,
-    ) -> Result<(Trajectory, &'static str, f64, Vec<Stopped>)> {
+        events: Vec<Event>,
+    ) -> Result<(Run, &'static str, f64)> {
         let step = number("--step", &self.step)?;
         let friction = match &self.slip_speed {
             None => Friction::Coulomb,
@@ -202,6 +223,7 @@ impl SimulateArguments {
             friction,
             stops: self.joint_limits.into(),
             record: options.step() * self.record_every as f64,
+            events,
             ..Simulation::new(end)
         };
         interrupt::listen();
@@ -214,6 +236,6 @@ impl SimulateArguments {
             Integrator::DormandPrince { tolerance } => tolerance,
             _ => options.step(),
         };
-        Ok((run.motion, integrator.name(), shown, run.stops))
+        Ok((run, integrator.name(), shown))
     }
 }

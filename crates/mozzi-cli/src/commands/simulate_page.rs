@@ -2,6 +2,7 @@
 
 use super::simulate::Outcome;
 use crate::columns::Columns;
+use crate::conditions::happened;
 use crate::json;
 use crate::robot::Units;
 use crate::samples::ENERGIES;
@@ -56,6 +57,10 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
             "applied_work": applied,
             "largest_drift": motion.largest_drift(),
             "complete": motion.complete,
+            "events": outcome.events.iter().map(|e| json!({
+                "condition": e.name, "t": e.t, "theta": json::vector(&e.theta), "dtheta": json::vector(&e.dtheta), "end": e.stop,
+            })).collect::<Value>(),
+            "missed": outcome.missed,
             "tracking_error": outcome.tracking.as_ref().map(|e| json!({
                 "rms": json::vector(&e.rms),
                 "largest": json::vector(&e.largest),
@@ -149,7 +154,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
             Units::of(model).position
         ));
     }
-    limits_reached(outcome).iter().for_each(|line| {
+    told(outcome).iter().for_each(|line| {
         page.line(line);
     });
     if let Some(file) = file {
@@ -158,13 +163,18 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
     page.end()
 }
 
-/// A sentence for each joint that came to its limit, and each motor that was asked for more than it has.
-pub fn limits_reached(outcome: &Outcome) -> Vec<String> {
+/// A sentence for each event that happened or did not, each joint that came to its limit, and each motor that was asked for more than it has.
+pub fn told(outcome: &Outcome) -> Vec<String> {
+    let missed = |condition: &String| {
+        format!("event: `{condition}` did not happen until t = {} s", scalar(outcome.motion.last().t))
+    };
+    let events = happened(&outcome.events).into_iter().chain(outcome.missed.iter().map(missed));
     let stop = |stop: &Stopped| {
         let (joint, limit, first) = (&stop.joint, scalar(stop.limit), scalar(stop.first));
         match stop.beyond {
             0.0 => {
-                format!("joint limit: `{joint}` came to rest at {limit}, first at t = {first} s, {} times", stop.times)
+                let times = if stop.times == 1 { String::new() } else { format!("first of {} times ", stop.times) };
+                format!("joint limit: `{joint}` came to rest at {limit}, {times}at t = {first} s")
             }
             beyond => format!("joint limit: `{joint}` went {} beyond {limit}, first at t = {first} s", about(beyond)),
         }
@@ -173,5 +183,5 @@ pub fn limits_reached(outcome: &Outcome) -> Vec<String> {
         let (asked, limit, first) = (scalar(overload.largest), scalar(overload.limit), scalar(overload.first));
         format!("effort limit: `{}` was asked for up to {asked} of its {limit}, first at t = {first} s", overload.joint)
     };
-    outcome.stops.iter().map(stop).chain(outcome.overloads.iter().map(overload)).collect()
+    events.chain(outcome.stops.iter().map(stop)).chain(outcome.overloads.iter().map(overload)).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::State;
 use super::dense::Dense;
+use crate::inverse_kinematics::Bounds;
 use mozzi::Model;
 
 /// Which zeros of an event's function count.
@@ -35,6 +36,21 @@ impl<'a> Event<'a> {
     pub fn new(name: impl Into<String>, function: impl Fn(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
         Event { name: name.into(), direction: Direction::Any, stop: false, function: Box::new(function) }
     }
+
+    /// A joint that reaches an end of its way, from within: an event for each limit of position that there is, called
+    /// `lower limit of shoulder`. A follower's limits are its master's.
+    pub fn joint_limits(model: &Model) -> Vec<Self> {
+        let Bounds { positions, joints, .. } = Bounds::of(model);
+        let mut events = Vec::new();
+        for (k, (bounds, joint)) in joints.into_iter().zip(model.joint_names()).enumerate() {
+            for (limit, side, sign) in [(bounds[0], "lower", -1.0), (bounds[1], "upper", 1.0)] {
+                let beyond = move |_: f64, theta: &[f64], _: &[f64]| sign * (theta[positions + k] - limit);
+                let event = Event::new(format!("{side} limit of {joint}"), beyond);
+                events.extend(limit.is_finite().then_some(Event { direction: Direction::Rising, ..event }));
+            }
+        }
+        events
+    }
 }
 
 /// An event that happened.
@@ -46,8 +62,10 @@ pub struct Occurrence {
     pub t: f64,
     /// θ there.
     pub theta: Vec<f64>,
-    /// θ̇ there.
+    /// θ̇ there; where the joint comes to rest at its limit there, that before it.
     pub dtheta: Vec<f64>,
+    /// Did the simulation end there?
+    pub stop: bool,
 }
 
 /// Parts of a step at whose ends signs are compared.

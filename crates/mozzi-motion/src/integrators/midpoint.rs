@@ -8,8 +8,8 @@
 //!
 //! > P = p_b[k] + h`[Ad_e^{−½hv}]`ᵀF,  p_b(θ_m, v) = Σ (`[ad_hv]`ᵀ)ʲP/(j+1)! − ½h Σ (−½`[ad_hv]`ᵀ)ʲF/(j+1)!,  p_b[k+1] = `[Ad_e^{hv}]`ᵀP
 
-use super::State;
 use super::driven::Driven;
+use super::{State, step_to};
 use crate::Error;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::simulation::Input;
@@ -41,7 +41,7 @@ impl Midpoint {
 
     pub fn step<I: Input>(&mut self, from: &State, until: f64, driven: &mut Driven<I>) -> Result<State, Error> {
         let (model, n) = (driven.model, from.dtheta.len());
-        let h = self.step.min(until - from.t);
+        let (h, end) = step_to(self.step, from.t, until);
         let (middle, half) = (from.t + 0.5 * h, 0.5 * h);
         let p = match self.momentum.take() {
             Some((t, p)) if t == from.t => p,
@@ -49,7 +49,7 @@ impl Midpoint {
         };
         let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
         let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
-        let (mut powers, mut M, mut end) = ([0.0; 3], DMatrix::zeros(0, 0), [0.0; 6]);
+        let (mut powers, mut M, mut after) = ([0.0; 3], DMatrix::zeros(0, 0), [0.0; 6]);
         for _ in 0..ITERATIONS {
             theta.copy_from_slice(&from.theta);
             integrate(model, &mut theta, v.as_slice(), half);
@@ -63,7 +63,7 @@ impl Midpoint {
             if model.is_floating() {
                 let base = on_the_group(&p, &rate, &(&M * &v), &v, h);
                 momentum.rows_mut(0, 6).copy_from_slice(&base.middle);
-                end = base.end;
+                after = base.end;
             }
             let mut next = factors.solve(&momentum);
             if !driven.held.is_empty() {
@@ -84,9 +84,9 @@ impl Midpoint {
         }
         let mut p = M * &v * 2.0 - p;
         if model.is_floating() {
-            p.rows_mut(0, 6).copy_from_slice(&end);
+            p.rows_mut(0, 6).copy_from_slice(&after);
         }
-        let mut to = State { t: if h < self.step { until } else { from.t + h }, ..from.clone() };
+        let mut to = State { t: end, ..from.clone() };
         to.theta.copy_from_slice(&from.theta);
         integrate(model, &mut to.theta, v.as_slice(), h);
         (0..3).for_each(|k| to.works[k] += h * powers[k]);

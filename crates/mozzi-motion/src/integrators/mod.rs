@@ -82,5 +82,10 @@ struct State {
     works: Powers,
 }
 
+/// A step from t, and where it ends: of its own length, or to `until`, where rounding leaves no crumb for a last one.
+fn step_to(step: f64, t: f64, until: f64) -> (f64, f64) {
+    if t + 1.001 * step >= until { (until - t, until) } else { (step, t + step) }
+}
+
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use super::driven::Driven;
 use super::events::{Event, Occurrence, first_zero};
 use super::midpoint::Midpoint;
 use super::stops::{Stopped, Stops};
-use super::{Integrator, State};
+use super::{Integrator, State, step_to};
 use crate::error::check;
 use crate::{Error, Policy};
 use mozzi::simulation::{Equation, ForwardDynamics, Friction, Input, Method, Motion, Options, Sample};
@@ -59,8 +59,7 @@ impl Stepper {
             Stepper::DormandPrince(method) => return method.step(from, until, driven),
             Stepper::Midpoint(method) => method.step(from, until, driven)?,
             Stepper::Fixed(method, step) => {
-                let (h, next) =
-                    if from.t + 1.001 * *step >= until { (until - from.t, until) } else { (*step, from.t + *step) };
+                let (h, next) = step_to(*step, from.t, until);
                 let known = from.ddtheta.clone();
                 let State { t, theta, dtheta, powers, .. } = from;
                 let mut motion: Motion<f64, 3> = Motion::start(model.base(), *t, theta, dtheta, |_, _, _, ddtheta| {
@@ -252,8 +251,9 @@ impl<'a> Simulation<'a> {
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (t, k) in found {
             let State { theta, dtheta, .. } = dense.at(model, t);
-            events.push(Occurrence { name: self.events[k].name.clone(), t, theta, dtheta });
-            if self.events[k].stop {
+            let Event { name, stop, .. } = &self.events[k];
+            events.push(Occurrence { name: name.clone(), t, theta, dtheta, stop: *stop });
+            if *stop {
                 *end = t;
                 return true;
             }
