@@ -91,6 +91,9 @@ impl Robot {
         around: &Arguments<'_, 'py>,
         options: Options<'_, 'py>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        if let Quantity::TaskSpaceDynamics(task) = quantity {
+            task.check(&self.model).map_err(of_model)?;
+        }
         let around = Around::new(&self.model, around)?;
         let state = state.iter().map(|&(name, given)| Numbers::new(name, given)).collect::<PyResult<Vec<_>>>()?;
         state.iter().try_for_each(|numbers| self.check_shape(numbers))?;

@@ -14,6 +14,7 @@ from ._results import (
     NewtonEuler,
     ScrewLists,
     TaskSpaceDynamics,
+    Trajectories,
     Trajectory,
 )
 
@@ -31,6 +32,7 @@ __all__ = [
     "ScrewLists",
     "SingularError",
     "TaskSpaceDynamics",
+    "Trajectories",
     "Trajectory",
     "__version__",
     "conventions",

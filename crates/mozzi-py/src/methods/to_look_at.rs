@@ -1,13 +1,12 @@
 //! What is there to look at, at one state: the book's matrices, the recursion's parts, base parameters.
 
 use crate::array::{Numbers, wrong_shape};
-use crate::call::{Options, named};
+use crate::call::named;
 use crate::describe::refused;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
-use crate::quantity::{Quantity, rows};
+use crate::quantity::rows;
 use crate::surroundings::{Arguments, Around, Given};
-use crate::threads::Threads;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{BodyFrame, Twist, Wrench};
 use pyo3::prelude::*;
@@ -50,58 +49,15 @@ fn around<'py>(model: &mozzi::Model, given: &Arguments<'_, 'py>) -> PyResult<Aro
 
 #[pymethods]
 impl PyModel {
-    /// The poses of all frames.
-    ///
-    /// Parameters
-    /// ----------
-    /// theta : array_like, shape (..., nq)
-    ///     Positions: rad (revolute, helical) or m (prismatic); of a free base first its quaternion (w, x, y, z) and origin.
-    /// out : numpy.ndarray, optional
-    ///     Where the result is written.
-    /// threads : int, optional
-    ///     As many at most; by default all cores. Many states only.
-    ///
-    /// Returns
-    /// -------
-    /// T : numpy.ndarray, shape (..., frames, 4, 4)
-    ///     T_sb of each frame {b}, in the order of `frames`; positions in m.
-    ///
-    /// Examples
-    /// --------
-    /// >>> import mozzi
-    /// >>> ur5 = mozzi.models.ur5()
-    /// >>> T = ur5.frame_poses([0, -1.2, 1.5, 0.3, 1.1, 0])
-    /// >>> T[ur5.frames.index("forearm_link"), :3, 3].round(3).tolist()
-    /// [0.154, 0.016, 0.485]
-    #[pyo3(signature = (theta, *, out=None, threads=None))]
-    fn frame_poses<'py>(
-        &self,
-        py: Python<'py>,
-        theta: &Bound<'py, PyAny>,
-        out: Given<'_, 'py>,
-        threads: Option<Threads>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let options = Options { out, threads };
-        self.robot().ask(py, Quantity::FramePoses, [("theta", theta)], Arguments::default(), options)
-    }
-
     /// The book's stacked matrices at one state (Modern Robotics, section 8.4), dense and by another way than all other methods: to
     /// read and to compare.
     ///
     /// Parameters
     /// ----------
-    /// theta : array_like, shape (nq,)
-    ///     Positions: rad or m.
-    /// dtheta : array_like, shape (n,)
-    ///     Velocities: rad/s or m/s.
-    /// tip_wrench : array_like, shape (6,), optional
-    ///     (m, f) that the end effector applies to the environment, in its own coordinates: N m, N.
-    /// gravity : array_like, shape (3,), optional
-    ///     In place of the model's own, in the axes of {s}: m/s².
-    /// applied_wrenches : dict of str to array_like of shape (6,), optional
-    ///     (m, f) that each frame applies to the environment, in its own coordinates.
-    /// base_twist, base_acceleration : array_like, shape (6,), optional
-    ///     The motion of {s} itself, (ω, v) and (ω̇, v̇).
+    #[doc = said!(one theta, dtheta, tip_wrench)]
+    #[doc = said!(gravity)]
+    #[doc = said!(one applied_wrenches)]
+    #[doc = said!(base_twist, base_acceleration)]
     ///
     /// Returns
     /// -------
@@ -159,22 +115,12 @@ impl PyModel {
     ///
     /// Parameters
     /// ----------
-    /// theta : array_like, shape (nq,)
-    ///     Positions: rad or m.
-    /// dtheta : array_like, shape (n,)
-    ///     Velocities: rad/s or m/s.
-    /// ddtheta : array_like, shape (n,)
-    ///     Accelerations: rad/s² or m/s².
-    /// tip_wrench : array_like, shape (6,), optional
-    ///     (m, f) that the end effector applies to the environment, in its own coordinates: N m, N.
+    #[doc = said!(one theta, dtheta, ddtheta, tip_wrench)]
     /// frame : {'center_of_mass', 'link'}
     ///     In the book's frames {i}, at the centres of mass, or in the links' own.
-    /// gravity : array_like, shape (3,), optional
-    ///     In place of the model's own, in the axes of {s}: m/s².
-    /// applied_wrenches : dict of str to array_like of shape (6,), optional
-    ///     (m, f) that each frame applies to the environment, in its own coordinates.
-    /// base_twist, base_acceleration : array_like, shape (6,), optional
-    ///     The motion of {s} itself, (ω, v) and (ω̇, v̇).
+    #[doc = said!(gravity)]
+    #[doc = said!(one applied_wrenches)]
+    #[doc = said!(base_twist, base_acceleration)]
     ///
     /// Returns
     /// -------

@@ -2,7 +2,7 @@
 //!
 //! Forward dynamics is asked with the machine's fused multiply-add, where there is `std` to find it.
 
-use super::options::check;
+use super::options::{LARGEST, check};
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
 #[cfg(not(feature = "std"))]
@@ -164,9 +164,8 @@ impl<'m, I: Input> Equation<'m, I> {
         self.wrenches.iter().map(power).sum()
     }
 
-    /// Beyond 10¹⁵⁰ squares, and so energies, leave the numbers: that is called a blow-up too.
     fn bounded(&self, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
-        let Some(j) = values.iter().position(|x| !(x.abs() < 1e150)) else { return Ok(()) };
+        let Some(j) = values.iter().position(|x| !(x.abs() < LARGEST)) else { return Ok(()) };
         let (joint, value) = (self.joint(j), values[j]);
         Err(Error::Diverged { quantity, joint, value, step: self.step, time, step_size: self.step_size })
     }
