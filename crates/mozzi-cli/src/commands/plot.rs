@@ -1,5 +1,6 @@
 //! `mozzi plot`: figures for papers.
 
+use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::numbers::number;
 use crate::report;
@@ -161,7 +162,7 @@ fn save(figure: Figure, out: &OutArguments) -> Result<String> {
         Some("png") => png(&svg)?,
         _ => return Err(Failure::wrong(format!("--out is {file}, expected a file that ends in .svg or .png"))),
     };
-    std::fs::write(file, bytes).map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))?;
+    columns::save(file, bytes)?;
     Ok(format!("a figure written to {file}\n"))
 }
 

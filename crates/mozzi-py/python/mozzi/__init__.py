@@ -15,6 +15,7 @@ from ._results import (
     NewtonEuler,
     ScrewLists,
     TaskSpaceDynamics,
+    Trajectories,
     Trajectory,
 )
 
@@ -33,6 +34,7 @@ __all__ = [
     "ScrewLists",
     "SingularError",
     "TaskSpaceDynamics",
+    "Trajectories",
     "Trajectory",
     "__version__",
     "compare",

@@ -97,6 +97,43 @@ class ScrewLists(NamedTuple):
     end_effector: tuple[str, Array] | None
 
 
+def _columns(motion: "Trajectory | Trajectories") -> dict[str, Array]:
+    """The numbers of each joint, by what they are and the joint's name; many motions one after the other."""
+    columns = {f"theta.{name}": motion.theta[..., k].ravel() for k, name in enumerate(motion.position_names)}
+    for what in ("dtheta", "ddtheta", "tau"):
+        numbers = getattr(motion, what)
+        columns |= {f"{what}.{name}": numbers[..., k].ravel() for k, name in enumerate(motion.velocity_names)}
+    return columns
+
+
+class Trajectories(NamedTuple):
+    """Simulated motions from many starts, at the same times: the starts' axes come first, then the rows, one for each time."""
+
+    t: Array
+    theta: Array
+    dtheta: Array
+    ddtheta: Array
+    tau: Array
+    kinetic_energy: Array
+    potential_energy: Array
+    position_names: list[str]
+    velocity_names: list[str]
+    model: "Model"
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic and potential, J: shape (..., rows)."""
+        return self.kinetic_energy + self.potential_energy
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame over the starts' axes (start, or start0, start1, …) and t, with the columns of ``Trajectory.to_pandas``."""
+        pandas: Any = importlib.import_module("pandas")
+        axes = self.kinetic_energy.shape[:-1]
+        names = ["start"] if len(axes) == 1 else [f"start{k}" for k in range(len(axes))]
+        index = pandas.MultiIndex.from_product([*map(range, axes), self.t], names=[*names, "t"])
+        return pandas.DataFrame(_columns(self), index=index)
+
+
 class Trajectory(NamedTuple):
     """A simulated motion: one row for each recorded time; works in J since the start."""
 
@@ -122,10 +159,7 @@ class Trajectory(NamedTuple):
     def to_pandas(self) -> Any:
         """A pandas.DataFrame over t, with the columns theta.<joint>, dtheta.<joint>, ddtheta.<joint>, tau.<joint>."""
         pandas: Any = importlib.import_module("pandas")
-        columns = {f"theta.{name}": self.theta[:, k] for k, name in enumerate(self.position_names)}
-        for what in ("dtheta", "ddtheta", "tau"):
-            columns |= {f"{what}.{name}": getattr(self, what)[:, k] for k, name in enumerate(self.velocity_names)}
-        return pandas.DataFrame(columns, index=pandas.Index(self.t, name="t"))
+        return pandas.DataFrame(_columns(self), index=pandas.Index(self.t, name="t"))
 
     def report(
         self,

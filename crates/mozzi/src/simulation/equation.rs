@@ -2,7 +2,7 @@
 //!
 //! Forward dynamics is asked with the machine's fused multiply-add, where there is `std` to find it, or [by another](ForwardDynamics).
 
-use super::options::check;
+use super::options::{LARGEST, check};
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
 #[cfg(not(feature = "std"))]
@@ -214,12 +214,11 @@ impl<'m, I: Input> Equation<'m, I> {
         self.wrenches.iter().map(power).sum()
     }
 
-    /// Beyond 10¹⁵⁰ squares, and so energies, leave the numbers: that is called a blow-up too.
     fn bounded(&self, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
-        if are_below(values, 1e150) {
+        if are_below(values, LARGEST) {
             return Ok(());
         }
-        let j = values.iter().position(|x| !(x.abs() < 1e150)).unwrap_or_default();
+        let j = values.iter().position(|x| !(x.abs() < LARGEST)).unwrap_or_default();
         let (joint, value) = (self.joint(j), values[j]);
         Err(Error::Diverged { quantity, joint, value, step: self.step, time, step_size: self.step_size })
     }

@@ -22,7 +22,7 @@ mod robots;
 pub use equation::{Equation, ForwardDynamics, Powers};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
 pub use method::{Method, Motion};
-pub use options::{Friction, Options};
+pub use options::{Friction, LARGEST, Options};
 pub use sensitivity::{EndSensitivity, StepSensitivity};
 pub use table::{Outside, Table, TorqueTable, WrenchTable};
 pub use trajectory::{Energy, Sample, Trajectory};

@@ -5,6 +5,9 @@ use crate::linalg::Vec3;
 use crate::model::Error;
 use alloc::format;
 
+/// A state that grows beyond has diverged: squares, and so energies, would leave the numbers.
+pub const LARGEST: f64 = 1e150;
+
 /// How a simulation runs. Start from [`new`](Self::new) or [`with_step`](Self::with_step), and change what differs:
 /// `Options { method: Method::Euler, ..Options::new(2.0, 2000) }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,11 +75,15 @@ impl Options {
     }
 
     /// The time of step k: k δt, and t_f itself at the end.
-    pub(super) fn time(&self, k: usize) -> f64 {
+    pub fn time(&self, k: usize) -> f64 {
         if k == self.steps { self.duration } else { k as f64 * self.step() }
     }
 
-    pub(super) fn check(&self) -> Result<(), Error> {
+    /// Does it make sense?
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for what makes none.
+    pub fn check(&self) -> Result<(), Error> {
         check_duration(self.duration)?;
         check(self.steps > 0, "steps", self.steps, "at least 1")?;
         check(self.record_every > 0, "record_every", self.record_every, "at least 1")?;

@@ -1,0 +1,281 @@
+//! Many starts at once: the batch's forward dynamics, and motions as arrays.
+
+use super::Torque;
+use crate::array::{Numbers, shown, wrong_shape};
+use crate::call::{self, named};
+use crate::failure::{of_batch, of_model, of_state};
+use crate::model::{PyModel, array};
+use crate::numpy::Fresh;
+use crate::quantity::Quantity;
+use crate::robot::batch;
+use crate::surroundings::{Arguments, Given};
+use crate::threads::Threads;
+use mozzi::simulation::{LARGEST, Motion, Options};
+use mozzi::{Environment, Error, Model};
+use mozzi_batch::{Batch, Surroundings};
+use pyo3::prelude::*;
+
+/// Steps of all robots together between two looks at whether Python was interrupted: a part of a second. Not by the clock: how steps are cut
+/// into pieces may change a last bit.
+const BETWEEN_LOOKS: usize = 5_000;
+/// Fewer steps in a row would spend too much on the state that each piece begins with.
+const FEWEST_STEPS: usize = 8;
+
+/// Rows of one quantity, robot after robot.
+struct Table<'py> {
+    array: Fresh<'py, f64>,
+    rows: usize,
+    width: usize,
+}
+
+impl<'py> Table<'py> {
+    fn new(py: Python<'py>, leading: &[usize], rows: usize, width: usize) -> PyResult<Self> {
+        Ok(Table { array: Fresh::new(py, &[leading, &[rows, width]].concat())?, rows, width })
+    }
+
+    fn write(&mut self, row: usize, states: &[f64]) {
+        let (rows, width) = (self.rows, self.width);
+        for (robot, state) in states.chunks_exact(width.max(1)).enumerate() {
+            self.array.numbers()[(robot * rows + row) * width..][..width].copy_from_slice(state);
+        }
+    }
+}
+
+/// What is recorded while robots move.
+struct Record<'py> {
+    t: Vec<f64>,
+    theta: Table<'py>,
+    dtheta: Table<'py>,
+    tau: Table<'py>,
+}
+
+impl Record<'_> {
+    fn write(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &[f64]) {
+        let row = self.t.len();
+        self.t.push(t);
+        self.theta.write(row, theta);
+        self.dtheta.write(row, dtheta);
+        self.tau.write(row, tau);
+    }
+}
+
+/// The robots, and how they move.
+struct Robots<'a> {
+    model: &'a Model,
+    batch: Batch<f64>,
+    surroundings: Surroundings<'a, f64>,
+    leading: &'a [usize],
+    options: &'a Options,
+}
+
+impl Robots<'_> {
+    /// The error of one of them.
+    fn wrong(&self, index: usize, error: Error) -> PyErr {
+        of_state(error, index, self.leading)
+    }
+
+    fn check_finite(&self, what: &'static str, numbers: &[f64], at: impl Fn(usize) -> String) -> PyResult<()> {
+        let Some(k) = numbers.iter().position(|x| !x.is_finite()) else { return Ok(()) };
+        let width = if what == "theta" { self.model.nq() } else { self.model.n() };
+        let found = format!("{}{}", numbers[k], at(k % width));
+        Err(self.wrong(k / width, Error::BadArgument { what, found, expected: "a finite number" }))
+    }
+
+    /// Has a robot left the numbers? `place` tells of each state's number its robot and its step.
+    fn check_bounded(
+        &self,
+        quantity: &'static str,
+        numbers: &[f64],
+        place: impl Fn(usize) -> (usize, usize),
+    ) -> PyResult<()> {
+        let Some(k) = numbers.iter().position(|x| !(x.abs() < LARGEST)) else { return Ok(()) };
+        let (model, value) = (self.model, numbers[k]);
+        let (state, joint) = match quantity {
+            "theta" => (k / model.nq(), model.position_names().nth(k % model.nq())),
+            _ => (k / model.n(), model.velocity_names().nth(k % model.n())),
+        };
+        let (robot, step) = place(state);
+        let (joint, time) = (joint.unwrap_or_default().to_string(), self.options.time(step));
+        let step_size = self.options.step();
+        Err(self.wrong(robot, Error::Diverged { quantity, joint, value, step, time, step_size }))
+    }
+
+    /// Is this step recorded?
+    fn is_recorded(&self, step: usize) -> bool {
+        step.is_multiple_of(self.options.record_every) || step == self.options.steps
+    }
+
+    /// Under torques that stay as they are: the batch takes many steps at once.
+    fn move_steadily(&self, py: Python, start: [&[f64]; 2], tau: &[f64], record: &mut Record) -> PyResult<()> {
+        let [mut theta, mut dtheta] = start.map(<[f64]>::to_vec);
+        let Options { method, steps, record_every, .. } = *self.options;
+        let piece = (BETWEEN_LOOKS / (dtheta.len() / self.model.n())).max(FEWEST_STEPS);
+        record.write(0.0, &theta, &dtheta, tau);
+        let mut done = 0;
+        while done < steps {
+            let some = piece.min(record_every - done % record_every).min(steps - done);
+            let duration = some as f64 * self.options.step();
+            let (theta, dtheta) = (&mut theta, &mut dtheta);
+            py.detach(|| self.batch.simulate(theta, dtheta, tau, &self.surroundings, method, duration, some))
+                .map_err(|error| self.later(error, done))?;
+            done += some;
+            self.check_bounded("theta", theta, |robot| (robot, done))?;
+            self.check_bounded("dtheta", dtheta, |robot| (robot, done))?;
+            py.check_signals()?;
+            if self.is_recorded(done) {
+                record.write(self.options.time(done), theta, dtheta, tau);
+            }
+        }
+        Ok(())
+    }
+
+    /// The error of steps that were counted from this one on.
+    fn later(&self, error: mozzi_batch::Error, done: usize) -> PyErr {
+        match error {
+            mozzi_batch::Error::State {
+                index,
+                source: Error::Diverged { quantity, joint, value, step, step_size, .. },
+            } => {
+                let (step, time) = (done + step, self.options.time(done + step));
+                self.wrong(index, Error::Diverged { quantity, joint, value, step, time, step_size })
+            }
+            error => of_batch(error, self.leading),
+        }
+    }
+
+    /// Under torques that are asked for at each stage of each step.
+    fn move_driven(
+        &self,
+        py: Python,
+        [theta, dtheta]: [&[f64]; 2],
+        mut torque: impl FnMut(f64, &[f64], &[f64], &mut [f64]) -> PyResult<()>,
+        record: &mut Record,
+    ) -> PyResult<()> {
+        let mut tau = vec![0.0; dtheta.len()];
+        let mut accelerations = |tau: &mut [f64], t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]| {
+            torque(t, theta, dtheta, tau)?;
+            py.detach(|| self.batch.forward_dynamics(theta, dtheta, tau, &self.surroundings, ddtheta))
+                .map_err(|error| of_batch(error, self.leading))?;
+            Ok::<[f64; 0], PyErr>([])
+        };
+        let (base, robots) = (self.model.base(), dtheta.len() / self.model.n());
+        let mut motion =
+            Motion::start_many(base, robots, 0.0, theta, dtheta, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
+        record.write(0.0, &motion.theta, &motion.dtheta, &tau);
+        for step in 1..=self.options.steps {
+            let (h, t) = (self.options.step(), self.options.time(step));
+            motion.step(self.options.method, h, t, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
+            for (quantity, numbers) in
+                [("theta", &motion.theta), ("dtheta", &motion.dtheta), ("ddtheta", &motion.ddtheta)]
+            {
+                self.check_bounded(quantity, numbers, |robot| (robot, step))?;
+            }
+            py.check_signals()?;
+            if self.is_recorded(step) {
+                record.write(t, &motion.theta, &motion.dtheta, &tau);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the function answers for all robots.
+    fn ask(
+        &self,
+        robot: &PyModel,
+        function: &Bound<'_, PyAny>,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &mut [f64],
+    ) -> PyResult<()> {
+        let py = function.py();
+        let table = |x: &[f64], width: usize| array(py, &[self.leading, &[width]].concat(), x.iter().copied());
+        let answer = function.call1((t, table(theta, self.model.nq())?, table(dtheta, self.model.n())?))?;
+        let mut answer = Numbers::new("tau", &answer)?;
+        robot.robot().check_shape(&answer)?;
+        if answer.leading(1) != self.leading {
+            let expected = shown(&[self.leading, &[self.model.n()]].concat());
+            let expected = format!("{expected}: the torque's function is asked for all starts at once");
+            return Err(wrong_shape("tau", &answer.shape, expected));
+        }
+        answer.spread::<f64>(self.leading, 1)?;
+        tau.copy_from_slice(answer.slice::<f64>()?);
+        let joint = |j| self.model.velocity_names().nth(j).unwrap_or_default().to_string();
+        self.check_finite("the input's torque", tau, |j| format!(" at joint `{}`, t = {t} s", joint(j)))
+    }
+}
+
+/// The motions of robots that start at these states.
+pub fn simulate<'py>(
+    robot: &Bound<'py, PyModel>,
+    leading: &[usize],
+    start: [&[f64]; 2],
+    torque: Torque<'_, 'py>,
+    options: &Options,
+    gravity: Given<'_, 'py>,
+    threads: Option<Threads>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (py, this) = (robot.py(), robot.get());
+    let model = &this.robot().model;
+    options.check().map_err(of_model)?;
+    let environment = Environment::with_gravity(options.gravity.unwrap_or(model.gravity()));
+    let surroundings = Surroundings::from(environment);
+    let robots = Robots { model, batch: batch(this.robot(), threads)?, surroundings, leading, options };
+    let everywhere = |_| String::new();
+    robots.check_finite("theta", start[0], everywhere)?;
+    robots.check_finite("dtheta", start[1], everywhere)?;
+
+    let (n, rows) = (model.n(), 1 + options.steps.div_ceil(options.record_every));
+    let table = |width| Table::new(py, leading, rows, width);
+    let mut record =
+        Record { t: Vec::with_capacity(rows), theta: table(model.nq())?, dtheta: table(n)?, tau: table(n)? };
+    match torque {
+        _ if start[1].is_empty() => {
+            record.t.extend((0..=options.steps).filter(|&k| robots.is_recorded(k)).map(|k| options.time(k)))
+        }
+        Torque::None => robots.move_steadily(py, start, &vec![0.0; start[1].len()], &mut record)?,
+        Torque::Constant(tau) => {
+            robots.check_finite("tau", tau.slice()?, everywhere)?;
+            robots.move_steadily(py, start, tau.slice()?, &mut record)?;
+        }
+        Torque::GravityCompensation => {
+            let base = model.base().velocities(); // without motors
+            let compensation = |_, theta: &[f64], _: &[f64], tau: &mut [f64]| {
+                py.detach(|| robots.batch.gravity_forces(theta, &surroundings, tau))
+                    .map_err(|error| of_batch(error, leading))?;
+                tau.chunks_exact_mut(n).for_each(|tau| tau[..base].fill(0.0));
+                Ok(())
+            };
+            robots.move_driven(py, start, compensation, &mut record)?;
+        }
+        Torque::Function(function) => {
+            let motors =
+                |t, theta: &[f64], dtheta: &[f64], tau: &mut [f64]| robots.ask(this, function, t, theta, dtheta, tau);
+            robots.move_driven(py, start, motors, &mut record)?;
+        }
+    }
+
+    let t = array(py, &[rows], record.t)?;
+    let [theta, dtheta, tau] = [record.theta, record.dtheta, record.tau].map(|table| table.array.into_array());
+    let ask = |quantity, state: &[call::Named<'_, 'py>], gravity| -> PyResult<Bound<'py, PyAny>> {
+        let around = Arguments { gravity, ..Arguments::default() };
+        let options = call::Options { threads, ..call::Options::default() };
+        Ok(this.robot().ask_all(py, quantity, state, &around, options)?.swap_remove(0))
+    };
+    let ddtheta = ask(Quantity::ForwardDynamics, &[("theta", &theta), ("dtheta", &dtheta), ("tau", &tau)], gravity)?;
+    let recorded = |state: usize| (state / rows, (state % rows * options.record_every).min(options.steps));
+    robots.check_bounded("ddtheta", Numbers::new("ddtheta", &ddtheta)?.slice()?, recorded)?;
+    let fields = vec![
+        t,
+        theta.clone(),
+        dtheta.clone(),
+        ddtheta,
+        tau,
+        ask(Quantity::KineticEnergy, &[("theta", &theta), ("dtheta", &dtheta)], None)?,
+        ask(Quantity::PotentialEnergy, &[("theta", &theta)], gravity)?,
+        model.position_names().collect::<Vec<_>>().into_pyobject(py)?,
+        model.velocity_names().collect::<Vec<_>>().into_pyobject(py)?,
+        robot.clone().into_any(),
+    ];
+    named(py, "Trajectories", fields)
+}
