@@ -1,6 +1,8 @@
 //! CSV out: every digit, so that what is read back is the same number.
 
 use crate::failure::{Failure, Result};
+use crate::interrupt::Writing;
+use crate::progress::Progress;
 use mozzi::Model;
 use std::fmt::Write;
 
@@ -46,18 +48,21 @@ impl Columns {
 
     pub fn text(&self) -> String {
         let mut text = self.names.join(",") + "\n";
+        let progress = Progress::new("CSV", self.rows(), "rows");
         for row in 0..self.rows() {
             for (c, column) in self.values.iter().enumerate() {
                 // writing to a String cannot fail; {:?} is the shortest text that reads back as the same number
                 let _ = write!(text, "{}{:?}", if c == 0 { "" } else { "," }, column[row]);
             }
             text.push('\n');
+            progress.at(row + 1);
         }
         text
     }
 }
 
-/// Writes a text to a file.
-pub fn save(file: &str, text: &str) -> Result<()> {
-    std::fs::write(file, text).map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))
+/// Writes a text, or bytes, to a file.
+pub fn save(file: &str, content: impl AsRef<[u8]>) -> Result<()> {
+    let _writing = Writing::to(file);
+    std::fs::write(file, content).map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))
 }

@@ -1,6 +1,7 @@
 //! How far a long computation is, on standard error: from the first second on, where that is a terminal.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// What takes less is not announced.
@@ -10,23 +11,29 @@ const QUIET: Duration = Duration::from_secs(1);
 pub struct Progress {
     bar: ProgressBar,
     begin: Instant,
+    is_quiet: Cell<bool>,
 }
 
 impl Progress {
     /// "Runge-Kutta 4", of so many "steps".
     pub fn new(message: impl Into<String>, total: usize, unit: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::hidden());
-        let template = format!("{{msg:22}} {{bar:30}} {{pos}}/{{len}} {unit}, {{per_sec}}, {{eta}} left");
+        let template = format!("{{msg:22}} {{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{rate}}/s, {{eta}} left");
         if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
+            // as many digits as help
+            bar.set_style(style.with_key("rate", |state: &ProgressState, to: &mut dyn std::fmt::Write| {
+                let rate = state.per_sec();
+                let _ = if rate < 10.0 { write!(to, "{rate:.1}") } else { write!(to, "{}", HumanCount(rate as u64)) };
+            }));
         }
         bar.set_message(message.into());
-        Progress { bar, begin: Instant::now() }
+        Progress { bar, begin: Instant::now(), is_quiet: Cell::new(true) }
     }
 
     /// So many are done.
     pub fn at(&self, done: usize) {
-        if self.bar.is_hidden() && self.begin.elapsed() >= QUIET {
+        if self.is_quiet.get() && self.begin.elapsed() >= QUIET {
+            self.is_quiet.set(false);
             self.bar.set_draw_target(ProgressDrawTarget::stderr()); // stays hidden where that is no terminal
         }
         self.bar.set_position(done as u64);

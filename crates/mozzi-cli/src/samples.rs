@@ -7,6 +7,7 @@
 use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, number};
+use crate::progress::Progress;
 use mozzi::{Model, Wrench};
 use std::io::Read;
 
@@ -47,9 +48,12 @@ impl Samples {
         let places = Places::find(&format!("{name}:1"), &header, model)?;
         let mut samples = Samples { file: name.to_string(), ..Samples::default() };
         let mut rows: Vec<Vec<f64>> = Vec::new();
+        let kilobytes = std::fs::metadata(file).map_or(0, |found| found.len() / 1000) as usize;
+        let progress = Progress::new("reading", kilobytes, "kB");
         for record in reader.records() {
             let record = record.map_err(|error| csv_failure(name, &error))?;
             let line = record.position().map_or(0, |position| position.line());
+            progress.at(record.position().map_or(0, |position| position.byte() / 1000) as usize);
             let mut row = vec![0.0; header.len()];
             for column in places.all() {
                 let place = format!("{name}:{line}: column {} (`{}`)", column + 1, header[column]);

@@ -31,7 +31,11 @@ fn every_kind_of_figure_is_written() {
         "--halvings",
         "3",
     ]);
-    assert!(said.contains("Euler: order 1, measured 1.0") && svg.contains("10⁻"), "{said}");
+    assert!(
+        said.contains("Euler: order 1, measured 1.0") && said.contains("Dormand-Prince 5(4): order 5, measured "),
+        "{said}"
+    );
+    assert!(svg.contains("step h [s]") && svg.contains("evaluations of θ̈"), "{svg:.400}");
     let (_, svg) =
         drawn(&["ellipsoids", "ur5", "--theta", "0,-1.2,1.5,0.3,1.1,0", "--theta=0,-2,1,0,1,0", "--plane", "xz"]);
     assert!(svg.contains("velocities at") && svg.contains("forces at"));

@@ -3,6 +3,7 @@
 use super::quantity::Precision;
 use super::states::Groups;
 use crate::failure::{Failure, Result};
+use crate::interrupt::Writing;
 use crate::samples::{GROUPS, Places};
 use arrow_array::{Array, Float32Array, Float64Array, Int64Array, RecordBatch};
 use arrow_ipc::reader::FileReader;
@@ -80,6 +81,7 @@ pub fn batch<T: Precision>(columns: Vec<(String, Vec<T>)>) -> std::result::Resul
 pub fn write<T: Precision>(file: &str, columns: Vec<(String, Vec<T>)>) -> Result<()> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
     let batch = batch(columns).map_err(|error| cannot(&error))?;
+    let _writing = Writing::to(file);
     let to = File::create(file).map_err(|error| cannot(&error))?;
     let mut writer = FileWriter::try_new_buffered(to, &batch.schema()).map_err(|error| cannot(&error))?;
     writer.write(&batch).and_then(|()| writer.finish()).map_err(|error| cannot(&error))

@@ -4,46 +4,18 @@ use super::quantity::{Precision, Quantity};
 use super::results::Output;
 use super::states::{States, width};
 use crate::failure::{Failure, Result};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use crate::interrupt;
+use crate::progress::Progress;
 use mozzi::{Environment, FrameId};
 use mozzi_batch::{Batch, Error, Surroundings};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// About as many numbers are computed at a time, between two looks at the clock.
-const PIECE: usize = 1 << 22;
+/// So many states are computed first, between two looks at the clock; then twice or half as many, until a piece takes about as long.
+const FIRST: usize = 256;
+const PIECE: [Duration; 2] = [Duration::from_millis(40), Duration::from_millis(160)];
 
-/// The progress of what may be long: shown after a second, where standard error is a terminal.
-pub struct Progress {
-    bar: ProgressBar,
-    since: Instant,
-}
-
-impl Progress {
-    pub fn new(count: u64, what: &str) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
-        let template = format!("{{bar:40}} {{human_pos}}/{{human_len}} {what}, {{per_sec}}, {{eta}} left");
-        if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
-        }
-        Progress { bar, since: Instant::now() }
-    }
-
-    pub fn set(&self, done: u64) {
-        if self.bar.is_hidden() && self.since.elapsed() > Duration::from_secs(1) {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        self.bar.set_position(done);
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-/// The results, and the seconds that they took.
+/// The results, and the seconds that they took: of all states, or, after Ctrl-C, of as many as the results' shapes say.
 pub fn compute<T: Precision>(
     batch: &Batch<T>,
     quantity: Quantity,
@@ -56,13 +28,11 @@ pub fn compute<T: Precision>(
     let tip: Option<FrameId> = tables.get("wrench").map(|_| model.end_effector()).transpose()?;
     let mut outputs: Vec<Output<T>> =
         quantity.outputs().iter().map(|&output| Output::new(model, output, count)).collect();
-    let widths = tables.keys().map(|name| width(model, name)).chain(outputs.iter().map(Output::width));
-    let piece = (PIECE / widths.sum::<usize>().max(1)).max(1);
-
-    let progress = Progress::new(count as u64, "states");
-    let start = Instant::now();
-    for first in (0..count).step_by(piece) {
-        let these = piece.min(count - first);
+    interrupt::listen();
+    let (progress, start) = (Progress::new(quantity.name(), count, "states"), Instant::now());
+    let (mut first, mut piece) = (0, FIRST);
+    while first < count && !interrupt::asked() {
+        let (begin, these) = (Instant::now(), piece.min(count - first));
         let input = |name: &'static str| {
             let (table, width) = (tables.get(name).map_or(&[][..], |table| table), width(model, name));
             &table[first * width..][..these * width]
@@ -79,7 +49,15 @@ pub fn compute<T: Precision>(
             }
             other => Failure::wrong(format!("{file}: {other}")),
         })?;
-        progress.set((first + these) as u64);
+        first += these;
+        progress.at(first);
+        piece = match begin.elapsed() {
+            short if short < PIECE[0] => piece.saturating_mul(2),
+            long if long > PIECE[1] => (piece / 2).max(1),
+            _ => piece,
+        };
     }
-    Ok((outputs, start.elapsed().as_secs_f64()))
+    let seconds = start.elapsed().as_secs_f64();
+    outputs.iter_mut().for_each(|output| output.truncate(first));
+    Ok((outputs, seconds))
 }

@@ -4,6 +4,7 @@ use super::npy::{self, Array};
 use super::quantity::Precision;
 use super::results::Output;
 use crate::failure::{Failure, Result};
+use crate::interrupt::Writing;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Write};
 use zip::write::SimpleFileOptions;
@@ -29,6 +30,7 @@ pub fn read(file: &str) -> Result<Vec<(String, Array)>> {
 /// As `numpy.savez` writes it: not compressed.
 pub fn write<T: Precision>(file: &str, outputs: &[Output<T>]) -> Result<()> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
+    let _writing = Writing::to(file);
     let writer = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
     let mut archive = ZipWriter::new(writer);
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored).large_file(true);

@@ -4,7 +4,7 @@ use super::format::Format;
 use super::quantity::{Precision, Shape};
 use super::{arrow, npy, npz};
 use crate::columns::{self, Columns, save};
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use mozzi::Model;
 
 /// An array by rows, of every state.
@@ -21,6 +21,12 @@ impl<T: Precision> Output<T> {
         let shape = [vec![states], at_one.of(model.n())].concat();
         let values = vec![T::zero(); shape.iter().product()];
         Output { name, at_one, shape, values }
+    }
+
+    /// The first states alone.
+    pub fn truncate(&mut self, states: usize) {
+        self.values.truncate(states * self.width());
+        self.shape[0] = states;
     }
 
     /// Numbers of one state.
@@ -65,8 +71,7 @@ pub fn write<T: Precision>(file: &str, format: Format, model: &Model, outputs: &
         Format::Arrow => arrow::write(file, columns())?,
         Format::Npy => {
             for output in outputs {
-                std::fs::write(file, npy::bytes(&output.shape, &output.values))
-                    .map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))?;
+                save(file, npy::bytes(&output.shape, &output.values))?;
             }
         }
         Format::Csv => {
@@ -77,7 +82,7 @@ pub fn write<T: Precision>(file: &str, format: Format, model: &Model, outputs: &
             if file == "-" {
                 return Ok(table.text());
             }
-            save(file, &table.text())?;
+            save(file, table.text())?;
         }
     }
     Ok(String::new())

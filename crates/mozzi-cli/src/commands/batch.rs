@@ -78,8 +78,9 @@ fn run_in<T: Precision>(arguments: &BatchArguments, model: &Model) -> Result<Str
         model.end_effector()?; // before all states are read
     }
     let states = States::read(input, model, quantity)?;
-    let count = states.count;
+    let all = states.count;
     let (outputs, seconds) = compute(&batch, quantity, states, model.environment())?;
+    let count = outputs.first().map_or(0, |output| output.shape[0]);
     let text = results::write(output, format, model, &outputs)?;
 
     let (registers, rate) = (batch.instruction_set().name(), count as f64 / seconds.max(1e-9));
@@ -88,6 +89,13 @@ fn run_in<T: Precision>(arguments: &BatchArguments, model: &Model) -> Result<Str
     if nan > 0 {
         failure::note(&format!("{nan} of {count} states gave NaN"));
     }
+    let answer = |text: String| {
+        if count == all {
+            return Ok(text);
+        }
+        failure::note(&format!("stopped by Ctrl-C: these are the first {count} of {all} states"));
+        Err(Failure::Stopped(text))
+    };
     if !arguments.robot.json {
         let of_threads = if threads == 1 { "1 thread".to_string() } else { format!("{threads} threads") };
         failure::write(&format!(
@@ -95,13 +103,13 @@ fn run_in<T: Precision>(arguments: &BatchArguments, model: &Model) -> Result<Str
             T::NAME,
             arrays.join(", "),
         ));
-        return Ok(text);
+        return answer(text);
     }
     let shapes = outputs.iter().map(|o| json!({ "name": o.name, "shape": o.shape })).collect::<Value>();
-    Ok(json::print(&json::of_robot(
+    answer(json::print(&json::of_robot(
         model,
         json!({
-            "quantity": quantity.name(), "in": input, "out": output, "arrays": shapes, "states": count,
+            "quantity": quantity.name(), "in": input, "out": output, "arrays": shapes, "states": count, "complete": count == all,
             "states_with_nan": nan, "seconds": seconds, "states_per_second": rate, "precision": T::NAME,
             "instruction_set": registers, "threads": threads,
         }),

@@ -1,19 +1,19 @@
 //! `mozzi bench`: this machine's times, of one state and of many.
 
 use super::batch::{all_threads, wrong};
-use crate::batch::compute::Progress;
 use crate::batch::one_state::OneState;
 use crate::batch::quantity::{Precision, Quantity, Shape};
 use crate::batch::results::Output;
 use crate::batch::states::width;
-use crate::failure::{Failure, Result};
-use crate::json;
-use crate::random::Random;
+use crate::failure::{self, Failure, Result};
+use crate::progress::Progress;
 use crate::robot::{RobotArguments, end_effector};
 use crate::text::{Page, about, table};
+use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use mozzi::{Environment, FrameId, Model, Wrench};
 use mozzi_batch::{Batch, InstructionSet, Surroundings};
+use mozzi_compare::Random;
 use serde_json::{Value, json};
 use std::hint::black_box;
 use std::time::Instant;
@@ -180,20 +180,28 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     let data = Data::new(&model, arguments.states as usize);
     let single = data.to_f32();
 
-    let progress = Progress::new(quantities.len() as u64, "quantities");
-    let mut timings = Vec::new();
-    for (k, &quantity) in quantities.iter().enumerate() {
+    interrupt::listen();
+    let progress = Progress::new("timing", quantities.len(), "quantities");
+    let (mut timings, mut done) = (Vec::new(), 0);
+    for &quantity in &quantities {
         let tip = tip.filter(|_| quantity == Quantity::TipForces);
         let mut runs = runs(&model, quantity, tip, threads, &data, &single)?;
-        timings.extend(measure(quantity, &mut runs, arguments.rounds.into())?);
-        progress.set(k as u64 + 1);
+        let Some(found) = measure(quantity, &mut runs, arguments.rounds.into())? else { break };
+        timings.extend(found);
+        done += 1;
+        progress.at(done);
     }
     drop(progress);
     let processor = processor();
-    if arguments.robot.json {
-        return Ok(object(&model, &timings, &processor, arguments));
+    let text = match arguments.robot.json {
+        true => object(&model, &timings, &processor, arguments, done == quantities.len()),
+        false => page(&model, &timings, &processor, arguments, threads),
+    };
+    if done == quantities.len() {
+        return Ok(text);
     }
-    Ok(page(&model, &timings, &processor, arguments, threads))
+    failure::note(&format!("stopped by Ctrl-C: these are {done} of {} quantities", quantities.len()));
+    Err(Failure::Stopped(text))
 }
 
 type Runs<'a> = Vec<(Way, Box<dyn Run + 'a>)>;
@@ -237,11 +245,14 @@ fn many<'a, T: Precision>(
     Ok(Box::new(Many { batch: batch.map_err(wrong)?, quantity, data, tip, outputs }))
 }
 
-/// Compares with one state, then times all in turn.
-fn measure(quantity: Quantity, runs: &mut Runs, rounds: usize) -> Result<Vec<Timing>> {
+/// Compares with one state, then times all in turn; nothing, where Ctrl-C asked to end.
+fn measure(quantity: Quantity, runs: &mut Runs, rounds: usize) -> Result<Option<Vec<Timing>>> {
     let mut differences = Vec::new();
     let mut reference = Vec::new();
     for (way, run) in runs.iter_mut() {
+        if interrupt::asked() {
+            return Ok(None);
+        }
         run.run()?;
         let results = run.results();
         if way.set.is_none() {
@@ -260,18 +271,20 @@ fn measure(quantity: Quantity, runs: &mut Runs, rounds: usize) -> Result<Vec<Tim
     let mut times = vec![Vec::with_capacity(rounds); runs.len()];
     for _ in 0..rounds {
         for ((_, run), times) in runs.iter_mut().zip(&mut times) {
+            if interrupt::asked() {
+                return Ok(None);
+            }
             let start = Instant::now();
             run.run()?;
             times.push(start.elapsed().as_secs_f64() * 1e9 / run.states() as f64);
         }
     }
     let all = runs.iter().zip(times).zip(differences);
-    Ok(all
-        .map(|(((way, _), mut times), difference)| {
-            times.sort_by(f64::total_cmp);
-            Timing { quantity, way: *way, least: times[0], median: times[times.len() / 2], difference }
-        })
-        .collect())
+    let timings = all.map(|(((way, _), mut times), difference)| {
+        times.sort_by(f64::total_cmp);
+        Timing { quantity, way: *way, least: times[0], median: times[times.len() / 2], difference }
+    });
+    Ok(Some(timings.collect()))
 }
 
 /// Of the first states, as many as are in both.
@@ -293,7 +306,7 @@ fn sets() -> Vec<&'static str> {
     InstructionSet::available().into_iter().map(InstructionSet::name).collect()
 }
 
-fn object(model: &Model, timings: &[Timing], processor: &str, arguments: &BenchArguments) -> String {
+fn object(model: &Model, timings: &[Timing], processor: &str, arguments: &BenchArguments, complete: bool) -> String {
     let entry = |timing: &Timing| {
         json!({
             "quantity": timing.quantity.name(),
@@ -311,7 +324,7 @@ fn object(model: &Model, timings: &[Timing], processor: &str, arguments: &BenchA
         model,
         json!({
             "processor": processor, "instruction_sets": sets(), "states": arguments.states,
-            "rounds": arguments.rounds, "timings": timings.iter().map(entry).collect::<Value>(),
+            "rounds": arguments.rounds, "complete": complete, "timings": timings.iter().map(entry).collect::<Value>(),
         }),
     ))
 }

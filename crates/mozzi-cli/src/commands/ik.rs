@@ -150,7 +150,7 @@ impl IkArguments {
         let text = match self.output.as_deref().filter(|file| *file != "-") {
             None => columns.text(),
             Some(file) => {
-                save(file, &columns.text())?;
+                save(file, columns.text())?;
                 format!("{count} rows written to {file}\n")
             }
         };

@@ -1,14 +1,16 @@
 //! `mozzi plot`: figures for papers.
 
+use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::numbers::number;
+use crate::progress::Progress;
 use crate::report;
 use crate::robot::RobotArguments;
 use crate::state::{StartArguments, positions};
 use crate::text::scalar;
 use clap::{Args, Subcommand, ValueEnum};
 use mozzi::Model;
-use mozzi::simulation::Zero;
+use mozzi_motion::integrators::{self, Measured};
 use mozzi_report::Motion;
 use mozzi_report::figure::Figure;
 use mozzi_report::pictures::{self, Convergence, Plane};
@@ -27,7 +29,7 @@ enum What {
     Energy(MotionArguments),
     /// θ̇ over θ, joint by joint
     Phase(MotionArguments),
-    /// How the error of each method falls with its step, the motors being off
+    /// How the error of each method falls with its step and with the work, the motors being off; of Dormand-Prince by tolerances from 1e-3 on
     Convergence(ConvergenceArguments),
     /// Manipulability and force ellipses at the end effector, at one configuration or more
     Ellipsoids(EllipsoidArguments),
@@ -122,15 +124,26 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let (theta, dtheta) = arguments.start.read(&model)?;
     let (time, step) = (number("--time", &arguments.time)?, number("--step", &arguments.step)?);
     let coarsest = mozzi::simulation::Options::with_step(time, step)?.steps;
-    let found = pictures::convergence(&model, time, coarsest, arguments.halvings.into(), |options| {
-        model.simulate(&theta, &dtheta, Zero, options)
-    })?;
+    let mut progress = None;
+    let found =
+        integrators::convergence(&model, [&theta, &dtheta], time, coarsest, arguments.halvings.into(), |done, all| {
+            progress.get_or_insert_with(|| Progress::new("convergence", all, "evaluations")).at(done);
+        })?;
+    drop(progress);
+    let curve = |each: &integrators::Convergence| {
+        let points = |x: fn(&Measured) -> f64| each.measured.iter().map(|of| [x(of), of.error]).collect::<Vec<_>>();
+        let by_step = if each.is_adaptive() { Vec::new() } else { points(|of| of.step) };
+        let by_work = points(|of| of.evaluations as f64);
+        Convergence { name: each.name.into(), order: each.order, by_step, by_work }
+    };
     let title = format!("{}, {} s", model.description().name, scalar(time));
-    let mut text = save(Convergence::figure(title, &found), &arguments.out)?;
+    let figure = Convergence::figure(title, &found.iter().map(curve).collect::<Vec<_>>());
+    let mut text = save(figure, &arguments.out)?;
     for each in &found {
         let order =
-            each.measured_order().map_or("unknown: too few steps went well".into(), |order| format!("{order:.2}"));
-        text += &format!("{}: order {}, measured {order}\n", each.method.name(), each.method.order());
+            each.measured_order().map_or("unknown: too few motions went well".into(), |order| format!("{order:.2}"));
+        let by = if each.is_adaptive() { " by its evaluations" } else { "" };
+        text += &format!("{}: order {}, measured {order}{by}\n", each.name, each.order);
     }
     Ok(text)
 }
@@ -161,7 +174,7 @@ fn save(figure: Figure, out: &OutArguments) -> Result<String> {
         Some("png") => png(&svg)?,
         _ => return Err(Failure::wrong(format!("--out is {file}, expected a file that ends in .svg or .png"))),
     };
-    std::fs::write(file, bytes).map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))?;
+    columns::save(file, bytes)?;
     Ok(format!("a figure written to {file}\n"))
 }
 

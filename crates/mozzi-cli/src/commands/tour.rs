@@ -109,7 +109,7 @@ fn fall(model: &Model, page: &mut Page) -> Result<()> {
     }
     page.blank().lines(&drifts(&motions));
     let file = format!("mozzi-fall-{ROBOT}.csv");
-    save(&file, &csv(model, &motions))?;
+    save(&file, csv(model, &motions))?;
     let path = std::path::absolute(&file).map_err(|error| Failure::wrong(format!("{file}: {error}")))?;
     let rows: usize = motions.iter().map(|(_, motion)| motion.len()).sum();
     page.lines(&[format!("The table, {rows} rows with t, θ, θ̇, θ̈, τ, energies: {}", path.display())]);

@@ -1,10 +1,11 @@
 //! Tables in, tables out: what inverse and forward dynamics share.
 
 use crate::columns::{Columns, save};
-use crate::failure::{Failure, Result};
-use crate::json;
+use crate::failure::{self, Failure, Result};
 use crate::numbers::WRENCH;
+use crate::progress::Progress;
 use crate::samples::{Samples, first_column};
+use crate::{interrupt, json};
 use clap::Args;
 use mozzi::{FrameId, Model, Wrench};
 use serde_json::{Map, Value};
@@ -51,7 +52,12 @@ pub fn run(
         None => None,
     };
     let mut results = Vec::new();
+    interrupt::listen();
+    let progress = Progress::new(quantity.replace('_', " "), count, "states");
     for row in 0..count {
+        if interrupt::asked() {
+            break;
+        }
         let applied = tip.zip(samples.tip_wrench.as_ref()).map(|(tip, list)| (tip, list[row]));
         let state = Row {
             theta: &theta[row],
@@ -61,47 +67,57 @@ pub fn run(
         };
         let place = |error| Failure::wrong(format!("{}: {error}", samples.place(row)));
         results.push(compute(&state).map_err(place)?);
+        progress.at(row + 1);
     }
+    drop(progress);
+    // all, but after Ctrl-C
+    let done = results.len();
+    let (theta, dtheta, given_rows) = (&theta[..done], &dtheta[..done], &given_rows[..done]);
 
     if as_json {
         let lists = |rows: &[Vec<f64>]| rows.iter().map(|row| json::vector(row)).collect::<Value>();
         let mut object = Map::new();
         if let Some(t) = &samples.t {
-            object.insert("t".into(), json::vector(t));
+            object.insert("t".into(), json::vector(&t[..done]));
         }
         object.insert("theta".into(), lists(theta));
-        object.insert("dtheta".into(), lists(&dtheta));
-        object.insert(given.into(), lists(&given_rows));
+        object.insert("dtheta".into(), lists(dtheta));
+        object.insert(given.into(), lists(given_rows));
         if let Some(list) = &samples.tip_wrench {
-            object.insert("F_tip".into(), list.iter().map(|F| json::vector(&F.to_array())).collect());
+            object.insert("F_tip".into(), list[..done].iter().map(|F| json::vector(&F.to_array())).collect());
         }
         object.insert(quantity.into(), lists(&results));
         let text = json::print(&json::of_robot(model, Value::Object(object)));
-        return finish(arguments.output.as_deref(), text, count);
+        return finish(arguments.output.as_deref(), text, [done, count]);
     }
     let mut table = Columns::default();
     if let Some(t) = &samples.t {
-        table.add("t", t.clone());
+        table.add("t", t[..done].to_vec());
     }
     table.add_group(model, "theta", theta);
-    table.add_group(model, "dtheta", &dtheta);
-    table.add_group(model, given, &given_rows);
+    table.add_group(model, "dtheta", dtheta);
+    table.add_group(model, given, given_rows);
     if let Some(list) = &samples.tip_wrench {
         for (k, name) in WRENCH.iter().enumerate() {
-            table.add(*name, list.iter().map(|F| F.to_array()[k]).collect());
+            table.add(*name, list[..done].iter().map(|F| F.to_array()[k]).collect());
         }
     }
     table.add_group(model, result, &results);
-    finish(arguments.output.as_deref(), table.text(), count)
+    finish(arguments.output.as_deref(), table.text(), [done, count])
 }
 
-/// To the file, saying so, or to standard output.
-fn finish(output: Option<&str>, text: String, rows: usize) -> Result<String> {
-    match output {
-        None | Some("-") => Ok(text),
+/// To the file, saying so, or to standard output; so many rows of all.
+fn finish(output: Option<&str>, text: String, [rows, all]: [usize; 2]) -> Result<String> {
+    let said = match output {
+        None | Some("-") => text,
         Some(file) => {
             save(file, &text)?;
-            Ok(format!("{rows} states written to {file}\n"))
+            format!("{rows} states written to {file}\n")
         }
+    };
+    if rows == all {
+        return Ok(said);
     }
+    failure::note(&format!("stopped by Ctrl-C: these are the first {rows} of {all} states"));
+    Err(Failure::Stopped(said))
 }

@@ -5,6 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
 use crate::numbers::number;
+use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
 use crate::samples::{Samples, first_column};
 use crate::state::positions;
@@ -107,7 +108,10 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
             .inverse_dynamics(&row.theta, &row.dtheta, &row.ddtheta, &model.environment())
             .map(|tau| tau.as_slice().to_vec())
     };
-    let tau = rows.iter().map(|(_, row)| torque(row)).collect::<std::result::Result<Vec<_>, _>>()?;
+    let progress = Progress::new("torques", rows.len(), "rows");
+    let told = rows.iter().enumerate().map(|(k, (_, row))| torque(row).inspect(|_| progress.at(k + 1)));
+    let tau = told.collect::<std::result::Result<Vec<_>, _>>()?;
+    drop(progress);
     let text = columns(&model, &rows, &tau).text();
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
         save(file, &text)?;

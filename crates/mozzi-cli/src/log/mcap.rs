@@ -2,6 +2,7 @@
 
 use super::ros::{self, FLOAT64, JOINT_STATE, Message, TRANSFORMS};
 use crate::failure::{Failure, Result};
+use crate::interrupt::Writing;
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapResult, WriteOptions, Writer};
 use mozzi::{Model, Trajectory};
@@ -11,6 +12,7 @@ use std::io::BufWriter;
 
 pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
+    let _writing = Writing::to(file);
     let to = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
     let mut log = Log::new(to).map_err(|error| cannot(&error))?;
     let names: Vec<&str> = model.joint_names().collect();

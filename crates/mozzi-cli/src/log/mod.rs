@@ -13,6 +13,8 @@ use crate::batch::{arrow, npy, npz};
 use crate::columns::{Columns, save};
 use crate::commands::simulate_page::{columns, energies};
 use crate::failure::{Failure, Result};
+#[cfg(feature = "parquet")]
+use crate::interrupt::Writing;
 use crate::samples::ENERGIES;
 use mozzi::{Model, Trajectory};
 use std::path::Path;
@@ -63,17 +65,13 @@ impl Format {
 pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
     let table = || columns(model, motion);
     match Format::of(file)? {
-        Format::Csv => save(file, &table().text()),
-        Format::Npy => bytes(file, &matrix(table())),
+        Format::Csv => save(file, table().text()),
+        Format::Npy => save(file, matrix(table())),
         Format::Npz => npz::write(file, &arrays(motion)),
         Format::Arrow => arrow::write(file, table().into_pairs()),
         Format::Parquet => parquet(file, table()),
         Format::Mcap => mcap(file, model, motion),
     }
-}
-
-fn bytes(file: &str, bytes: &[u8]) -> Result<()> {
-    std::fs::write(file, bytes).map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))
 }
 
 fn matrix(table: Columns) -> Vec<u8> {
@@ -106,6 +104,7 @@ fn arrays(motion: &Trajectory) -> Vec<Output<f64>> {
 fn parquet(file: &str, table: Columns) -> Result<()> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
     let rows = arrow::batch(table.into_pairs()).map_err(|error| cannot(&error))?;
+    let _writing = Writing::to(file);
     let to = std::fs::File::create(file).map_err(|error| cannot(&error))?;
     let mut writer = ::parquet::arrow::ArrowWriter::try_new(to, rows.schema(), None).map_err(|error| cannot(&error))?;
     writer.write(&rows).map_err(|error| cannot(&error))?;

@@ -27,6 +27,7 @@
 //! # Ok(()) }
 //! ```
 
+mod convergence;
 mod dense;
 mod dormand_prince;
 mod driven;
@@ -35,6 +36,7 @@ mod midpoint;
 mod run;
 mod stops;
 
+pub use convergence::{Convergence, Measured, convergence};
 pub use events::{Direction, Event, EventFunction, Occurrence};
 pub use run::{Run, Simulation};
 pub use stops::Stopped;

@@ -1,103 +1,62 @@
-//! How the error of each method falls with its step.
+//! How the error of each method falls with its step, and with the work.
 
 use crate::figure::{Curve, Figure, Panel, Scale, Stroke};
-use mozzi::simulation::{Method, Options};
-use mozzi::{Error, Model, Trajectory, difference};
-
-const METHODS: [Method; 3] = [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4];
-
-/// The reference takes so many times as many steps as the finest that is compared with it, by the method of highest order.
-const FINER: usize = 4;
 
 /// Errors of one method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
-    /// The method.
-    pub method: Method,
-    /// (h, error): step in seconds, and the largest entry of θ(t_f) ⊖ θ_reference(t_f).
-    pub errors: Vec<[f64; 2]>,
-}
-
-/// Errors at the end of a motion, for steps halved from the given number of them: `simulate` runs it under options. The reference is
-/// Runge-Kutta 4 with a quarter of the shortest step.
-///
-/// # Errors
-/// What `simulate` answers.
-pub fn convergence(
-    model: &Model,
-    duration: f64,
-    coarsest: usize,
-    halvings: usize,
-    mut simulate: impl FnMut(&Options) -> Result<Trajectory, Error>,
-) -> Result<Vec<Convergence>, Error> {
-    let mut end = |method, steps: usize| {
-        let options = Options { method, record_every: steps, ..Options::new(duration, steps) };
-        Ok(simulate(&options)?.last().theta.to_vec())
-    };
-    let reference = end(Method::RungeKutta4, (FINER * coarsest) << halvings)?;
-    let mut found = Vec::new();
-    for method in METHODS {
-        let mut errors = Vec::new();
-        for halving in 0..=halvings {
-            let steps = coarsest << halving;
-            let mut apart = vec![0.0; model.n()];
-            match end(method, steps) {
-                Ok(theta) => difference(model, &reference, &theta, &mut apart),
-                Err(Error::Diverged { .. }) => continue, // too long a step for this method: no point of the curve
-                Err(other) => return Err(other),
-            }
-            errors.push([duration / steps as f64, apart.iter().fold(0.0, |most: f64, x| most.max(x.abs()))]);
-        }
-        found.push(Convergence { method, errors });
-    }
-    Ok(found)
+    /// The method's name.
+    pub name: String,
+    /// Its order.
+    pub order: u32,
+    /// (h, error): step in seconds, and the largest entry of θ(t_f) ⊖ θ_reference(t_f); none where steps are found by a tolerance.
+    pub by_step: Vec<[f64; 2]>,
+    /// (evaluations of θ̈, error).
+    pub by_work: Vec<[f64; 2]>,
 }
 
 impl Convergence {
-    /// The order that the last two errors show, log₂ of their ratio.
-    pub fn measured_order(&self) -> Option<f64> {
-        let [.., coarse, fine] = self.errors[..] else { return None };
-        Some((coarse[1] / fine[1]).log2())
-    }
-
-    /// All methods in one panel, with the slopes that their orders promise as dashed lines.
+    /// All methods in two panels: over the step, with the slopes that their orders promise as dashed lines, and over the evaluations.
     pub fn figure(title: impl Into<String>, found: &[Convergence]) -> Figure {
-        let mut curves = Vec::new();
-        for (color, Convergence { method, errors }) in found.iter().enumerate() {
-            let name = format!("{} (order {})", method.name(), method.order());
-            if let [first, .., last] = errors[..] {
-                let promised = |h: f64| last[1] * (h / last[0]).powi(method.order() as i32);
+        let (mut by_step, mut by_work) = (Vec::new(), Vec::new());
+        for (color, Convergence { name, order, by_step: steps, by_work: work }) in found.iter().enumerate() {
+            let named = format!("{name} (order {order})");
+            if let [first, .., last] = steps[..] {
+                let promised = |h: f64| last[1] * (h / last[0]).powi(*order as i32);
                 let slope = vec![[first[0], promised(first[0])], last];
-                curves.push(Curve { name: String::new(), color, stroke: Stroke::Dashed, points: slope });
+                by_step.push(Curve { name: String::new(), color, stroke: Stroke::Dashed, points: slope });
+                by_step.push(Curve { name: named.clone(), color, stroke: Stroke::Marked, points: steps.clone() });
             }
-            curves.push(Curve { name, color, stroke: Stroke::Marked, points: errors.clone() });
+            by_work.push(Curve { name: named, color, stroke: Stroke::Marked, points: work.clone() });
         }
-        let panel = Panel {
-            x_label: "step h [s]".into(),
+        let panel = |x_label: &str, curves| Panel {
+            x_label: x_label.into(),
             y_label: "error of θ at the end [rad, m]".into(),
             scale: Scale::Logarithmic,
             curves,
             equal: false,
         };
-        Figure { title: title.into(), panels: vec![panel], columns: 1 }
+        let panels = vec![panel("step h [s]", by_step), panel("evaluations of θ̈", by_work)];
+        Figure { title: title.into(), panels, columns: 2 }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mozzi::simulation::Zero;
 
     #[test]
-    fn methods_have_their_orders() {
-        let model = mozzi_urdf::open("double_pendulum").and_then(mozzi_urdf::Loaded::build).expect("embedded");
-        let run = |options: &Options| model.simulate(&[1.0, 0.3], &[0.0; 2], Zero, options);
-        let found = convergence(&model, 0.5, 64, 3, run).expect("errors");
-        for each in &found {
-            let order = each.measured_order().expect("four errors");
-            assert!((order - f64::from(each.method.order())).abs() < 0.5, "{:?}", each);
-        }
-        let svg = Convergence::figure("", &found).svg();
-        assert!(svg.contains("Runge-Kutta 4 (order 4)") && svg.contains("10⁻"));
+    fn steps_and_work_have_a_panel_each() {
+        let points = |order: i32| (1..5).map(|k| [f64::from(k) * 0.01, (f64::from(k) * 0.01).powi(order)]).collect();
+        let fixed = Convergence { name: "Runge-Kutta 4".into(), order: 4, by_step: points(4), by_work: points(-4) };
+        let adaptive = Convergence { name: "Dormand-Prince".into(), order: 5, by_step: vec![], by_work: points(-5) };
+        let figure = Convergence::figure("", &[fixed, adaptive]);
+        let names = |k: usize| figure.panels[k].curves.iter().map(|curve| curve.name.as_str()).collect::<Vec<_>>();
+        assert_eq!(names(0), ["", "Runge-Kutta 4 (order 4)"]); // its slope, and itself
+        assert_eq!(names(1), ["Runge-Kutta 4 (order 4)", "Dormand-Prince (order 5)"]);
+        let slope = &figure.panels[0].curves[0].points;
+        assert!((slope[0][1] - 1e-8).abs() < 1e-20, "{slope:?}");
+        let svg = figure.svg();
+        assert!(svg.contains("Runge-Kutta 4 (order 4)") && svg.contains("evaluations of θ̈") && svg.contains("10⁻"));
     }
 }

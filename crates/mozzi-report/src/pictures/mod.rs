@@ -4,6 +4,6 @@ mod convergence;
 mod ellipsoids;
 mod motion;
 
-pub use convergence::{Convergence, convergence};
+pub use convergence::Convergence;
 pub use ellipsoids::{Plane, ellipsoids};
 pub use motion::{energy, phase, trajectories};

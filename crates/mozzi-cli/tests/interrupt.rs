@@ -1,0 +1,123 @@
+//! Ctrl-C in what takes long, and progress on a terminal and nowhere else. Where the program is too fast to be interrupted, a test says so.
+#![cfg(unix)]
+
+mod common;
+
+use common::folder;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+/// When it is interrupted: after the first second, from which on progress is shown.
+const WAIT: Duration = Duration::from_millis(1700);
+/// Coriolis matrices in portable registers by a program that is not optimised: 15 s.
+const STATES: usize = 20_000;
+
+/// θ and θ̇ of a UR5, `count` states.
+fn states(folder: &Path, count: usize) -> String {
+    let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({count}, 12), }}\n");
+    let mut bytes = [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat();
+    (0..count * 12).for_each(|k| bytes.extend((k as f64 * 0.7).sin().to_le_bytes()));
+    let path = folder.join("states.npy");
+    std::fs::write(&path, bytes).expect("a file");
+    path.to_string_lossy().into_owned()
+}
+
+fn batch<'a>(input: &'a str, output: &'a str) -> Vec<&'a str> {
+    let flags = ["--threads", "1", "--instruction-set", "portable"];
+    [&["batch", "ur5", "--quantity", "coriolis-matrix", "--in", input, "--out", output][..], &flags].concat()
+}
+
+/// What it leaves after a SIGINT; nothing where it was done before.
+fn interrupted(arguments: &[&str]) -> Option<Output> {
+    let program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    std::thread::sleep(WAIT);
+    let id = program.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill runs").success());
+    let output = program.wait_with_output().expect("it ends");
+    if output.status.success() {
+        println!("skipped: done before it was interrupted: {arguments:?}");
+        return None;
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(130) && !said.contains('\u{1b}'), "{said}"); // no bar: no terminal
+    Some(output)
+}
+
+/// The number before " of 20000 states" and the like.
+fn count(said: &str, after: &str) -> usize {
+    let (before, _) = said.split_once(after).unwrap_or_else(|| panic!("{after}: {said}"));
+    before.rsplit(' ').next().and_then(|word| word.parse().ok()).unwrap_or_else(|| panic!("{said}"))
+}
+
+#[test]
+fn a_batch_leaves_the_states_so_far() {
+    let folder = folder("interrupt_batch");
+    let input = states(&folder, STATES);
+    for name in ["C.csv", "C.npz"] {
+        let out = folder.join(name).to_string_lossy().into_owned();
+        let Some(output) = interrupted(&batch(&input, &out)) else { continue };
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let done = count(&said, &format!(" of {STATES} states"));
+        assert!(done > 0 && said.contains("note: stopped by Ctrl-C: these are the first"), "{said}");
+        if name == "C.csv" {
+            let rows = std::fs::read_to_string(&out).expect("written");
+            assert_eq!(rows.lines().count(), done + 1);
+            assert!(rows.lines().all(|row| row.split(',').count() == 36));
+        } else {
+            let mut archive =
+                zip::ZipArchive::new(std::fs::File::open(&out).expect("written")).expect("a whole archive");
+            let bytes = archive.by_name("C.npy").expect("the matrices").size() as usize;
+            assert!((done * 36 * 8..done * 36 * 8 + 200).contains(&bytes), "{bytes} bytes of {done} states");
+        }
+    }
+}
+
+#[test]
+fn a_benchmark_leaves_the_quantities_so_far() {
+    let quantities = ["--quantity", "inverse-dynamics", "--quantity", "coriolis-matrix"];
+    let size = ["--states", "300", "--threads", "1", "--rounds", "200"];
+    let Some(output) = interrupted(&[&["bench", "ur5", "--json"], &quantities[..], &size].concat()) else { return };
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(found["complete"] == false && said.contains("stopped by Ctrl-C: these are "), "{said}");
+    let timed = found["timings"].as_array().expect("a list").iter().filter(|timing| timing["one_state"] == true);
+    assert_eq!(timed.count(), count(&said, " of 2 quantities"));
+}
+
+#[test]
+fn progress_is_shown_on_a_terminal() {
+    let folder = folder("interrupt_terminal");
+    let (input, out) = (states(&folder, STATES), folder.join("C.npy").to_string_lossy().into_owned());
+    let command: Vec<String> = std::iter::once(env!("CARGO_BIN_EXE_mozzi"))
+        .chain(batch(&input, &out))
+        .map(|word| format!("'{word}'"))
+        .collect();
+    // util-linux's: runs a command on a terminal of its own, and types there what it reads
+    let script = Command::new("script")
+        .args(["--quiet", "--return", "--flush", "--command", &command.join(" "), "/dev/null"])
+        .env("TERM", "xterm")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
+    let Ok(mut script) = script else { return println!("skipped: there is no `script` here, which makes a terminal") };
+    std::thread::sleep(WAIT + WAIT);
+    let mut keys = script.stdin.take().expect("piped");
+    let typed = keys.write_all(b"\x03"); // Ctrl-C
+    let output = script.wait_with_output().expect("it ends");
+    drop(keys);
+    let shown = String::from_utf8_lossy(&output.stdout);
+    if typed.is_err() || !matches!(output.status.code(), Some(130)) {
+        return println!("skipped: another `script`, or done before it was interrupted: {shown:.300}");
+    }
+    let bar = shown.split('\u{1b}').find(|part| part.contains("/20,000 states, ")).unwrap_or_else(|| panic!("{shown}"));
+    assert!(bar.contains("coriolis-matrix") && bar.contains("/s, ") && bar.contains(" left"), "{bar}");
+    assert!(shown.contains("stopped by Ctrl-C: these are the first"), "{shown}");
+}
