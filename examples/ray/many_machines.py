@@ -38,7 +38,7 @@ class Study:
         falls: mozzi.Trajectories = self.robot.simulate(
             theta, dtheta, 0.5, 50, torque=lambda t, theta, dtheta: -dtheta, record_every=50, threads=1
         )
-        return {"row": rows["row"], "tau": tau, "later": falls.theta[:, -1]}
+        return {**rows, "tau": tau, "later": falls.theta[:, -1]}
 
 
 def write_states(folder: Path, robot: mozzi.Model, count: int, files: int) -> None:
@@ -49,28 +49,21 @@ def write_states(folder: Path, robot: mozzi.Model, count: int, files: int) -> No
         pyarrow.parquet.write_table(pyarrow.table({"row": some, **columns}), folder / f"states{part}.parquet")
 
 
-def read(folder: str) -> Any:
-    """The rows of all files, in pieces enough that all workers have some."""
-    return ray.data.read_parquet(folder, override_num_blocks=8 * WORKERS)
-
-
-def compute(states: Any, study: type, robot: mozzi.Model, batch_size: int = 256) -> Any:
-    """The study of all rows, by workers that have the model. A worker that is lost is replaced; its batch is computed again."""
-    return states.map_batches(
-        study, fn_constructor_args=(robot,), batch_size=batch_size, compute=ray.data.ActorPoolStrategy(size=WORKERS)
-    )
-
-
-def main() -> None:
-    local = {} if "RAY_ADDRESS" in os.environ else {"num_cpus": WORKERS + 1, "include_dashboard": False}  # one reads the files
+def main() -> list[dict[str, Any]]:
+    # without a cluster this machine: one core reads the files, the others compute
+    local: dict[str, Any] = {} if "RAY_ADDRESS" in os.environ else {"num_cpus": WORKERS + 1, "include_dashboard": False}
     ray.init(log_to_driver=False, **local)
-    robot, count = mozzi.models.two_link_planar(), 4000
+    robot, count = mozzi.models.two_link_planar(), 2000
     with tempfile.TemporaryDirectory() as folder:
-        write_states(Path(folder), robot, count, files=8)
-        rows = sorted(compute(read(folder), Study, robot).take_all(), key=lambda row: row["row"])
-    assert [row["row"] for row in rows] == list(range(count))
-    print(f"{len(rows)} rows, the first: {rows[0]}")
+        write_states(Path(folder), robot, count, files=16)
+        states = ray.data.read_parquet(folder, override_num_blocks=8 * WORKERS)  # pieces enough for all workers
+        workers = ray.data.ActorPoolStrategy(size=WORKERS)
+        found = states.map_batches(Study, fn_constructor_args=(robot,), batch_size=64, compute=workers)
+        rows = sorted(found.take_all(), key=lambda row: row["row"])
     ray.shutdown()
+    assert [row["row"] for row in rows] == list(range(count))
+    print(f"{count} rows, the first: {rows[0]}")
+    return rows
 
 
 if __name__ == "__main__":
