@@ -99,6 +99,48 @@ void peer_run(Loaded* loaded, int algorithm) {
     for (const auto& state : loaded->states) run(*loaded->robot, state);
 }
 
+// A robot on a bolted base, its motors braking by -brake θ̇, for `steps` steps of h seconds from (θ, θ̇) in place, by an algorithm of forward
+// dynamics and what a user writes around it: Euler's method, or Runge and Kutta's where `is_runge_kutta`.
+void peer_simulate(Loaded* loaded, int algorithm, int is_runge_kutta, int steps, double h, double brake, double* theta, double* dtheta) {
+    const auto& a = loaded->list[algorithm];
+    int n = loaded->description.velocities();
+    std::vector<double> tau(n), zeros(n), q(n), v(n), sum_v(n), sum_a(n), acceleration(n);
+    auto accelerate = [&](const double* theta, const double* dtheta) {
+        for (int i = 0; i < n; ++i) tau[i] = -brake * dtheta[i];
+        a.run(*loaded->robot, {theta, dtheta, zeros.data(), tau.data()});
+        a.write(*loaded->robot, acceleration.data());
+    };
+    for (int k = 0; k < steps; ++k) {
+        accelerate(theta, dtheta);
+        if (!is_runge_kutta) {
+            for (int i = 0; i < n; ++i) {
+                theta[i] += h * dtheta[i];
+                dtheta[i] += h * acceleration[i];
+            }
+            continue;
+        }
+        std::copy_n(dtheta, n, v.begin());
+        std::copy_n(dtheta, n, sum_v.begin());
+        sum_a = acceleration;
+        for (int stage = 1; stage < 4; ++stage) {
+            double step = stage < 3 ? h / 2 : h, weight = stage < 3 ? 2 : 1;
+            for (int i = 0; i < n; ++i) {
+                q[i] = theta[i] + step * v[i];
+                v[i] = dtheta[i] + step * acceleration[i];
+            }
+            accelerate(q.data(), v.data());
+            for (int i = 0; i < n; ++i) {
+                sum_v[i] += weight * v[i];
+                sum_a[i] += weight * acceleration[i];
+            }
+        }
+        for (int i = 0; i < n; ++i) {
+            theta[i] += h / 6 * sum_v[i];
+            dtheta[i] += h / 6 * sum_a[i];
+        }
+    }
+}
+
 void peer_result(Loaded* loaded, int algorithm, int state, double* out) {
     loaded->list[algorithm].run(*loaded->robot, loaded->states[state]);
     loaded->list[algorithm].write(*loaded->robot, out);

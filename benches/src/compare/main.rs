@@ -16,6 +16,7 @@ mod peer;
 mod quantity;
 mod race;
 mod report;
+mod simulation;
 
 use arguments::Arguments;
 use mozzi::Model;
@@ -73,12 +74,15 @@ fn compare(arguments: &Arguments) -> Result<(), String> {
     let peers = arguments.peers.iter().map(|(name, path)| Peer::load(name, path)).collect::<Result<Vec<_>, _>>()?;
     let time = Duration::from_secs_f64(arguments.seconds.unwrap_or(15.0));
     let peaks = peak::Width::ALL.map(|width| (width, peak::measure(width)));
-    let mut tables = Vec::new();
+    let (mut tables, mut simulated) = (Vec::new(), Vec::new());
     for (title, slug, model) in chosen(arguments)? {
         tables.push(race::race(title, slug, &model, &peers, time)?);
         println!("{title}: {} rounds", tables.last().map_or(0, |table| table.rounds));
+        if ["ur5", "panda"].contains(&slug) {
+            simulated.push(simulation::simulate(title, slug, &model, &peers, time)?);
+        }
     }
-    let text = report::text(&tables, &peers, &arguments.missing, &peaks)?;
+    let text = report::text(&tables, &simulated, &peers, &arguments.missing, &peaks)?;
     println!("{text}");
     let Some(folder) = &arguments.write else { return Ok(()) };
     for (name, text) in [("RESULTS.md", text), ("results.svg", chart::svg(&tables))] {

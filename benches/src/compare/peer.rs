@@ -3,8 +3,10 @@
 use crate::contestant::Contestant;
 use crate::convention::Convention;
 use crate::quantity::Quantity;
+use crate::simulation::{BRAKE, STEP, STEPS};
 use libloading::{Library, Symbol};
 use mozzi::model::description::JointKind;
+use mozzi::simulation::Method;
 use mozzi::{Description, Model, SE3};
 use mozzi_benches::States;
 use std::ffi::{CStr, CString, c_char, c_int};
@@ -41,6 +43,7 @@ type NewRobot =
 type Free = unsafe extern "C" fn(*mut Opaque);
 type SetStates = unsafe extern "C" fn(*mut Opaque, *const f64, c_int);
 type Run = unsafe extern "C" fn(*mut Opaque, c_int);
+type Simulate = unsafe extern "C" fn(*mut Opaque, c_int, c_int, c_int, f64, f64, *mut f64, *mut f64);
 type GetResult = unsafe extern "C" fn(*mut Opaque, c_int, c_int, *mut f64);
 
 /// A function of the library.
@@ -119,6 +122,24 @@ impl Peer {
             let run = *function::<Run>(library, "peer_run")?;
             Ok(Some(Robot { library, this, run, model, states, convention, algorithms: algorithms(library, this)? }))
         }
+    }
+}
+
+impl Robot<'_> {
+    /// The state after 1 s from this one by an algorithm of forward dynamics, where the library can.
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    pub fn simulate(&mut self, algorithm: usize, method: Method, [theta, dtheta]: [&mut [f64]; 2]) -> Option<()> {
+        assert!(theta.len() == self.model.n() && dtheta.len() == self.model.n() && algorithm < self.algorithms.len());
+        let is_runge_kutta = (method == Method::RungeKutta4).into();
+        // SAFETY: the type is that of peer.hpp; the robot is alive, the algorithm one of its own, and both arrays are of n numbers.
+        unsafe {
+            let simulate = function::<Simulate>(self.library, "peer_simulate").ok()?;
+            let (theta, dtheta) = (theta.as_mut_ptr(), dtheta.as_mut_ptr());
+            simulate(self.this, algorithm as c_int, is_runge_kutta, STEPS as c_int, STEP, BRAKE, theta, dtheta);
+        }
+        Some(())
     }
 }
 

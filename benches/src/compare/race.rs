@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 /// Further apart than this, over the largest entry, two libraries do not compute the same. The longest chain needs it: its M
 /// is so badly conditioned that accelerations keep ten digits.
-const LARGEST_DIFFERENCE: f64 = 1e-8;
+pub const LARGEST_DIFFERENCE: f64 = 1e-8;
 
 /// What ran before leaves its own caches and branch history, and the units of wide registers asleep: these wake for the first hundreds of
 /// microseconds of their use, during which they are several times slower.
@@ -143,11 +143,12 @@ fn of(entry: &Entry, quantity: Quantity) -> Vec<usize> {
 
 fn fastest(runners: &[Runner], entry: usize, quantity: Quantity) -> Option<Time> {
     let mine = runners.iter().filter(|runner| runner.entry == entry && runner.quantity == quantity);
-    let times = mine.map(|runner| {
-        let mut sorted = runner.times.clone();
-        sorted.sort_by(f64::total_cmp);
-        let (algorithm, flops) = (runner.name.clone(), runner.flops);
-        Time { algorithm, least: sorted[0], median: sorted[sorted.len() / 2], flops }
-    });
+    let times = mine.filter_map(|runner| of_runs(&runner.name, runner.flops, runner.times.clone()));
     times.min_by(|a, b| a.least.total_cmp(&b.least))
+}
+
+/// Of all rounds; none where it did not run.
+pub fn of_runs(algorithm: &str, flops: Option<usize>, mut times: Vec<f64>) -> Option<Time> {
+    times.sort_by(f64::total_cmp);
+    Some(Time { algorithm: algorithm.into(), least: *times.first()?, median: times[times.len() / 2], flops })
 }

@@ -4,11 +4,13 @@ use crate::machine;
 use crate::peak::Width;
 use crate::peer::Peer;
 use crate::race::{Row, Table, Time};
+use crate::simulation::{BRAKE, METHODS, STEP, STEPS, Simulated};
 use std::fmt::Write;
 
 /// Everything, with where and how it was measured.
 pub fn text(
     tables: &[Table],
+    simulated: &[Simulated],
     peers: &[Peer],
     missing: &[(String, String)],
     peaks: &[(Width, Option<f64>)],
@@ -37,6 +39,7 @@ pub fn text(
         }
     }
     first_results(&mut text, tables);
+    simulations(&mut text, simulated);
     for table in tables {
         robot(&mut text, table, peaks);
     }
@@ -117,6 +120,39 @@ fn first_results(text: &mut String, tables: &[Table]) {
     line(text, &format!("{}.", tables.iter().filter_map(of).collect::<Vec<_>>().join(", ")));
 }
 
+/// A step of a simulation, of each library.
+fn simulations(text: &mut String, simulated: &[Simulated]) {
+    let _ = writeln!(
+        text,
+        "
+## Simulation
+
+A step of {STEP} s, motors braking by {BRAKE} N m s, of {STEPS} steps from rest: mozzi's and its machine code's `simulate`; of the others
+forward dynamics in a loop of C++ (benches/peers/peer.hpp). Every step waits for the one before it. All end in the same state. Nanoseconds,
+and their ratio to mozzi's, as above.
+"
+    );
+    for Simulated { robot, columns } in simulated {
+        let names = columns.iter().filter(|(_, times)| times[0].is_some()).map(|(name, _)| name.as_str());
+        let names: Vec<&str> = names.collect();
+        line(text, &format!("| {robot} | {} |\n|---|{}", names.join(" | "), "---|".repeat(names.len())));
+        for (k, method) in METHODS.iter().enumerate() {
+            let times: Vec<&Time> = columns.iter().filter_map(|(_, times)| times[k].as_ref()).collect();
+            let cells = times.iter().enumerate().map(|(column, time)| match column {
+                0 => of_rounds(time),
+                _ => format!("{}, {}", of_rounds(time), ratio(time, times[0])),
+            });
+            line(text, &format!("| {} | {} |", method.name(), cells.collect::<Vec<_>>().join(" | ")));
+        }
+        text.push('\n');
+    }
+}
+
+/// The least / the median.
+fn of_rounds(time: &Time) -> String {
+    format!("{} / {}", nanoseconds(time.least), nanoseconds(time.median))
+}
+
 fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
     let (n, states, rounds) = (table.n, table.states, table.rounds);
     line(text, &format!("\n## {}, n = {n}\n\n{rounds} rounds of {states} states.", table.robot));
@@ -134,15 +170,9 @@ fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
             let _ = match (time, &row.times[0]) {
                 (None, _) => write!(cells, " – |"),
                 (Some(time), Some(unit)) if k > 0 => {
-                    write!(
-                        cells,
-                        " {} / {}, {} |",
-                        nanoseconds(time.least),
-                        nanoseconds(time.median),
-                        ratio(time, unit)
-                    )
+                    write!(cells, " {}, {} |", of_rounds(time), ratio(time, unit))
                 }
-                (Some(time), _) => write!(cells, " {} / {} |", nanoseconds(time.least), nanoseconds(time.median)),
+                (Some(time), _) => write!(cells, " {} |", of_rounds(time)),
             };
         }
         let flops = row.count.flops();

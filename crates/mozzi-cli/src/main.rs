@@ -4,7 +4,6 @@
 mod batch;
 mod columns;
 mod commands;
-mod compare;
 mod conditions;
 mod controller;
 mod failure;
@@ -16,18 +15,17 @@ mod motors;
 mod numbers;
 mod progress;
 mod quantities;
-mod random;
 mod report;
 mod robot;
 mod robot_json;
 mod samples;
 mod serve;
 mod state;
-mod text;
 
 use clap::{Parser, Subcommand};
 use commands::{check, convert, explain, forward_dynamics, info, inverse_dynamics, screws, simulate, terms, tour};
 use failure::{Failure, Result};
+use mozzi_text as text;
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -6,8 +6,7 @@ use crate::robot_json;
 use clap::Args;
 use mozzi::model::Problem;
 use mozzi::{Description, FrameId, Model};
-use mozzi_urdf::{LoadError, Loaded, Policy, Severity, embedded};
-use std::path::Path;
+use mozzi_urdf::{LoadError, Loaded, Policy, Severity};
 
 /// More are counted: `mozzi check` shows them, each with its place.
 const WARNINGS: usize = 3;
@@ -39,11 +38,7 @@ impl PolicyArguments {
             (_, true) => Policy::Lenient,
             _ => Policy::Default,
         };
-        let loaded = match embedded::text(name_or_path) {
-            Some(text) => mozzi_urdf::parse_with(&format!("{name_or_path}.urdf"), text, policy),
-            None if Path::new(name_or_path).exists() => mozzi_urdf::load_with(name_or_path, policy),
-            None => mozzi_urdf::open(name_or_path), // says what there is
-        }?;
+        let loaded = mozzi_urdf::open_with(name_or_path, policy)?;
         Ok(Loaded { description: self.freed(loaded.description), ..loaded })
     }
 

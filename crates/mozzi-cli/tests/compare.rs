@@ -6,7 +6,7 @@ mod common;
 use common::{complaint, file, folder, mozzi};
 use serde_json::Value;
 
-const PEERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers");
+const PEERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-compare/tests/peers");
 
 /// A program that takes Python's place.
 #[cfg(unix)]

@@ -218,3 +218,15 @@ fn an_interrupt_leaves_the_motion_so_far() {
     );
     assert!(String::from_utf8_lossy(&output.stdout).contains("ur5 for "));
 }
+
+#[test]
+fn machine_code_makes_the_same_motion() {
+    let simulate = |more: &[&str]| {
+        json(&[&["simulate", "ur5", "--theta", "0,-1.2,1.5,0.3,1.1,0", "--time", "0.2"][..], more].concat())
+    };
+    for method in ["euler", "rk4", "dopri", "midpoint"] {
+        let (plain, compiled) = (simulate(&["--method", method]), simulate(&["--method", method, "--compiled"]));
+        let end = |motion: &serde_json::Value| rows(&motion["theta"]).pop().expect("rows");
+        assert_close(&end(&compiled), &end(&plain), 1e-9);
+    }
+}

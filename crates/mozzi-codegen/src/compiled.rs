@@ -2,6 +2,7 @@
 
 use crate::jit::{Kernel, Refusal, Shape};
 use crate::quantity::{LeftOpen, Quantity};
+use mozzi::model::are_regular;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::scalar::Float;
 use mozzi::{
@@ -305,12 +306,7 @@ impl Compiled {
     }
 }
 
-/// Far from a singular matrix; nearer, the model's method looks again.
-fn are_regular(pivots: &[f64]) -> bool {
-    is_regular(pivots.iter().fold(f64::INFINITY, |m, &d| m.min(d)), pivots.iter().sum())
-}
-
-/// The same of the least pivot and their sum.
+/// Of their least and their sum alone: are pivots of M far from rounding? Nearer, the model's method looks again.
 pub(crate) fn is_regular<T: Float>(least: T, sum: T) -> bool {
     least > T::from_f64(1e-8) * sum && sum * T::zero() == T::zero()
 }

@@ -36,6 +36,8 @@ mod jit;
 mod program;
 mod quantity;
 mod record;
+#[cfg(feature = "batch")]
+mod simulate;
 mod tape;
 mod text;
 mod traced;

@@ -2,6 +2,7 @@
 
 mod array;
 mod call;
+mod compare;
 mod compiled;
 mod conventions;
 mod describe;
@@ -29,6 +30,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model::PyModel>()?;
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
+    module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;
     modern_robotics::add_to(module)?;
     module.add("LoadError", py.get_type::<failure::LoadError>())?;
     module.add("LoadWarning", py.get_type::<failure::LoadWarning>())?;

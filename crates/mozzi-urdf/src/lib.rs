@@ -206,9 +206,17 @@ pub fn model(path: impl AsRef<Path>) -> Result<Model, LoadError> {
 /// # Errors
 /// As [`load`]; [`LoadError::NoSuchRobot`] when there is neither.
 pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
+    open_with(name_or_path, Policy::Default)
+}
+
+/// As [`open`].
+///
+/// # Errors
+/// As there; under [`Policy::Strict`] warnings too.
+pub fn open_with(name_or_path: &str, policy: Policy) -> Result<Loaded, LoadError> {
     match embedded::text(name_or_path) {
-        Some(text) => parse(&format!("{name_or_path}.urdf"), text),
-        None if Path::new(name_or_path).exists() => load(name_or_path),
+        Some(text) => parse_with(&format!("{name_or_path}.urdf"), text, policy),
+        None if Path::new(name_or_path).exists() => load_with(name_or_path, policy),
         None => Err(LoadError::NoSuchRobot { name: name_or_path.to_string() }),
     }
 }

@@ -15,6 +15,7 @@ use crate::{interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::{Friction, Input, Method, Options};
 use mozzi::{Model, Trajectory};
+use mozzi_codegen::{Compiled, Engine, Quantity, compile};
 use mozzi_motion::controllers::{Overload, Saturated, TrackingError, tracking_error};
 use mozzi_motion::integrators::{Event, Integrator, Occurrence, Run, Simulation, Stopped};
 use mozzi_motion::trajectories::Hold;
@@ -48,6 +49,9 @@ pub struct SimulateArguments {
     /// Make Coulomb friction smooth: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
     #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
     slip_speed: Option<String>,
+    /// Forward dynamics by machine code, made for the robot before it moves: the same motion to rounding, in a fraction of the time
+    #[arg(long)]
+    compiled: bool,
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1)]
     record_every: usize,
@@ -167,6 +171,20 @@ impl SimulateArguments {
         })
     }
 
+    /// Where it was asked for; what it will not compute is said.
+    fn machine_code(&self, model: &Model) -> Result<Option<Compiled>> {
+        if !self.compiled {
+            return Ok(None);
+        }
+        let robot = compile(model, &[Quantity::ForwardDynamics])?;
+        if let Engine::Kernels(refusal) = robot.engine(Quantity::ForwardDynamics) {
+            failure::note(&format!("--compiled: not by machine code: {refusal}"));
+        } else if self.motors.tip_wrench.is_some() {
+            failure::note("--compiled: machine code knows no tip wrench; where there is one, the kernels compute");
+        }
+        Ok(Some(robot))
+    }
+
     fn write_report(&self, file: &str, model: &Model, outcome: &Outcome) -> Result<String> {
         let (motion, method, motors) = (&outcome.motion, outcome.method, &outcome.motors);
         let happened: Vec<String> = std::iter::once(String::new()).chain(happened(&outcome.events)).collect();
@@ -197,8 +215,10 @@ impl SimulateArguments {
             Way::Dopri => Integrator::DormandPrince { tolerance: number("--tolerance", &self.tolerance)? },
             Way::Midpoint => Integrator::Midpoint { step: options.step() },
         };
+        let robot = self.machine_code(model)?;
         let simulation = Simulation {
             integrator,
+            forward_dynamics: robot.as_ref().and_then(Compiled::simulator),
             friction,
             stops: self.joint_limits.into(),
             record: options.step() * self.record_every as f64,

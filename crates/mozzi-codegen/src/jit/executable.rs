@@ -60,12 +60,12 @@ impl Executable {
         }
         assert!(lengths.all(|&length| last.len() >= length * lanes), "the last output has {} entries", last.len());
         addresses[arrays - 1] = last.as_mut_ptr().cast();
-        self.run(addresses);
+        self.run(&mut addresses);
     }
 
     #[cfg(all(unix, target_arch = "x86_64"))]
     #[inline(always)]
-    fn run(&self, mut addresses: [*mut u8; MOST_ARRAYS]) {
+    fn run(&self, addresses: &mut [*mut u8; MOST_ARRAYS]) {
         addresses[self.lengths.len()] = self.pages.start.wrapping_add(self.pool);
         // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has its instructions
         // (`new`). It reads and writes the arrays whose addresses it finds, each as long as the assembler was told (`call`; of the
@@ -77,7 +77,7 @@ impl Executable {
     }
 
     #[cfg(not(all(unix, target_arch = "x86_64")))]
-    fn run(&self, _: [*mut u8; MOST_ARRAYS]) {
+    fn run(&self, _: &mut [*mut u8; MOST_ARRAYS]) {
         unreachable!("no code was made");
     }
 }

@@ -3,7 +3,7 @@
 use super::State;
 use crate::Error;
 use mozzi::nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use mozzi::simulation::{Energy, Equation, Input, Options, Powers};
+use mozzi::simulation::{Energy, Equation, Input, Powers};
 use mozzi::{Model, Workspace, mass_matrix};
 
 /// A robot, its input, and the joints that are held at a stop: of those θ̈ = 0.
@@ -19,11 +19,12 @@ pub(super) struct Driven<'m, I> {
 }
 
 impl<'m, I: Input> Driven<'m, I> {
-    pub fn new(model: &'m Model, input: I, options: &Options) -> Self {
+    pub fn new(equation: Equation<'m, I>) -> Self {
+        let model = equation.model();
         let n = model.n();
         Driven {
             model,
-            equation: Equation::new(model, input, options),
+            equation,
             held: Vec::new(),
             reactions: Vec::new(),
             workspace: Workspace::new(model),

@@ -170,7 +170,7 @@ fn the_midpoint_rule_is_of_second_order_and_turns_back() {
 
 fn clone(simulation: &Simulation) -> Simulation<'static> {
     let &Simulation { integrator, duration, record, gravity, friction, stops, .. } = simulation;
-    Simulation { integrator, duration, record, gravity, friction, stops, events: Vec::new() }
+    Simulation { integrator, record, gravity, friction, stops, ..Simulation::new(duration) }
 }
 
 #[test]

@@ -4,6 +4,7 @@ Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What t
 """
 
 from . import conventions, models, modern_robotics
+from ._compare import Comparison, compare
 from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
 from ._results import (
     BaseParameters,
@@ -21,6 +22,7 @@ from ._results import (
 __all__ = [
     "BaseParameters",
     "ClosedForm",
+    "Comparison",
     "DivergedError",
     "EnergyRegressors",
     "ForwardDynamicsDerivatives",
@@ -35,6 +37,7 @@ __all__ = [
     "Trajectories",
     "Trajectory",
     "__version__",
+    "compare",
     "conventions",
     "models",
     "modern_robotics",

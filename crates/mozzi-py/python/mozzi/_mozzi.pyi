@@ -28,6 +28,8 @@ _modern_robotics: ModuleType
 # One state. Of what may have leading axes the type of the answer is not known: Trajectories, where it has.
 _Row: TypeAlias = Sequence[float] | np.ndarray[tuple[int], np.dtype[Any]]
 
+def _compare(robot: Model | str | os.PathLike[str], states: int, seed: int, python: str | os.PathLike[str], policy: str) -> tuple[str, str, bool, bool]: ...
+
 class SupportsRead(Protocol):
     def read(self) -> str | bytes: ...
 

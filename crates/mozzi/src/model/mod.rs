@@ -34,7 +34,7 @@ pub(crate) use link::{Lifted, Link};
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub use variation::Variation;
-pub use workspace::Workspace;
+pub use workspace::{Workspace, are_regular};
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
 /// fixed joints are folded away, and every frame of the file survives as a [`Frame`].

@@ -97,8 +97,13 @@ impl<S: Copy + Into<f64>> Workspace<S> {
     /// Was all that the last forward dynamics, or its derivatives, divided by far from rounding of the largest? Where not,
     /// [`Model::forward_dynamics`] looks closer, and says which joint's inertia is too small.
     pub fn is_regular(&self) -> bool {
-        let mut pivots = self.pivots.iter().map(|&pivot| pivot.into());
-        let largest = pivots.clone().fold(0.0_f64, f64::max);
-        pivots.all(|d| d > 1e-8 * largest && d.is_finite())
+        are_regular(&self.pivots)
     }
+}
+
+/// Are these pivots of a mass matrix far from rounding of the largest?
+pub fn are_regular<S: Copy + Into<f64>>(pivots: &[S]) -> bool {
+    let pivots = pivots.iter().map(|&pivot| pivot.into());
+    let largest = pivots.clone().fold(0.0_f64, f64::max);
+    pivots.fold(true, |fine, d| fine & (d > 1e-8 * largest) & (d < f64::INFINITY))
 }

@@ -1,6 +1,6 @@
 //! The differential equation of a driven robot: θ̈ = FD(θ, θ̇, τ, F), and the powers beside it.
 //!
-//! Forward dynamics is asked with the machine's fused multiply-add, where there is `std` to find it.
+//! Forward dynamics is asked with the machine's fused multiply-add, where there is `std` to find it, or [by another](ForwardDynamics).
 
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
@@ -12,7 +12,7 @@ use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
 #[cfg(not(feature = "std"))]
 use crate::model::Workspace as Fast;
-use crate::model::{Environment, Error, FrameId, Model, Workspace};
+use crate::model::{Environment, Error, FrameId, Model, Workspace, are_regular};
 #[cfg(feature = "std")]
 use crate::native::{Workspace as Fast, forward_dynamics};
 use crate::scalar::Scalar;
@@ -25,16 +25,32 @@ use alloc::vec::Vec;
 /// Powers in watts: of the motors, of friction, and what the environment takes.
 pub type Powers = [f64; 3];
 
-/// A robot, its input, and memory: what a method of integration asks, [`Method`](super::Method)'s or one's own. Gravity and friction are
-/// those of the [`Options`]; nothing else of them is used.
+/// Another way to θ̈ than the kernels: a program for the one robot, in its own gravity, touching nothing, such as `mozzi_codegen::Compiled`.
+/// Elsewhere the kernels are asked.
+pub trait ForwardDynamics {
+    /// The robot.
+    fn model(&self) -> &Model;
+
+    /// Writes θ̈, and the pivots of M that it was divided by, n numbers each, as [`Workspace::pivots`] has them.
+    ///
+    /// # Panics
+    /// On slices of a wrong length.
+    fn write(&self, theta: &[f64], dtheta: &[f64], tau: &[f64], ddtheta: &mut [f64], pivots: &mut [f64]);
+}
+
+/// A robot, its input, and memory: what a method of integration asks, [`Method`](super::Method)'s or one's own.
 pub struct Equation<'m, I> {
     model: &'m Model,
+    pub(super) options: Options,
     input: I,
     gravity: Vec3,
-    friction: Friction,
+    /// Neither damping nor Coulomb friction at any joint.
+    is_frictionless: bool,
     /// δt and the step that is being taken, for errors.
     step_size: f64,
     step: usize,
+    /// Asked in place of the kernels, with memory for its pivots.
+    other: Option<(&'m dyn ForwardDynamics, Vec<f64>)>,
     /// The motors' τ of the last evaluation.
     tau: Vec<f64>,
     /// τ as forward dynamics gets it.
@@ -46,15 +62,17 @@ pub struct Equation<'m, I> {
 }
 
 impl<'m, I: Input> Equation<'m, I> {
-    /// At step 0.
+    /// At step 0. Of the options, gravity and friction belong to the equation; the rest is for [`simulate`](Self::simulate).
     pub fn new(model: &'m Model, input: I, options: &Options) -> Self {
         Equation {
             model,
+            options: *options,
             input,
             gravity: options.gravity.unwrap_or(model.gravity()),
-            friction: options.friction,
+            is_frictionless: model.damping.iter().chain(&model.friction).all(|&x| x == 0.0),
             step_size: options.step(),
             step: 0,
+            other: None,
             tau: vec![0.0; model.n()],
             force: vec![0.0; model.n()],
             wrenches: Vec::new(),
@@ -62,6 +80,24 @@ impl<'m, I: Input> Equation<'m, I> {
             fast: Fast::new(model),
             workspace: Workspace::new(model),
         }
+    }
+
+    /// θ̈ by another way, where nothing is touched and gravity is the robot's own.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] where it is another robot's.
+    pub fn by(mut self, other: &'m dyn ForwardDynamics) -> Result<Self, Error> {
+        let (mine, its) = (self.model.description(), other.model().description());
+        check(mine == its, "the forward dynamics", format!("that of another robot, `{}`", its.name), "this robot's")?;
+        if self.gravity == self.model.gravity() {
+            self.other = Some((other, vec![0.0; self.model.n()]));
+        }
+        Ok(self)
+    }
+
+    /// The robot.
+    pub fn model(&self) -> &'m Model {
+        self.model
     }
 
     /// Which step is being taken, from 1, and how long it is in seconds: for errors.
@@ -88,8 +124,17 @@ impl<'m, I: Input> Equation<'m, I> {
         self.ask_input(t, theta, dtheta)?;
         let friction_power = self.friction(dtheta);
         let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
-        forward_dynamics(self.model, theta, dtheta, &self.force, &environment, &mut self.fast, ddtheta);
-        if !self.fast.is_regular() {
+        let is_regular = match &mut self.other {
+            Some((other, pivots)) if self.wrenches.is_empty() => {
+                other.write(theta, dtheta, &self.force, ddtheta, pivots);
+                are_regular(pivots)
+            }
+            _ => {
+                forward_dynamics(self.model, theta, dtheta, &self.force, &environment, &mut self.fast, ddtheta);
+                self.fast.is_regular()
+            }
+        };
+        if !is_regular {
             self.model.forward_dynamics(theta, dtheta, &self.force, &environment)?; // looks closer
         }
         let applied_power = self.applied_power(theta, dtheta);
@@ -123,7 +168,8 @@ impl<'m, I: Input> Equation<'m, I> {
         self.wrenches.clear();
         self.input.torque(t, theta, dtheta, &mut self.tau)?;
         self.input.applied(t, theta, dtheta, &mut self.wrenches)?;
-        if let Some(j) = self.tau.iter().position(|x| !x.is_finite()) {
+        if !are_below(&self.tau, f64::INFINITY) {
+            let j = self.tau.iter().position(|x| !x.is_finite()).unwrap_or_default();
             let found = format!("{} at joint `{}`, t = {t} s", self.tau[j], self.joint(j));
             return check(false, "the input's torque", found, "a finite number");
         }
@@ -141,11 +187,15 @@ impl<'m, I: Input> Equation<'m, I> {
     /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ with the
     /// difference of the two laws. Returns θ̇ᵀf(θ̇).
     fn friction(&mut self, dtheta: &[f64]) -> f64 {
+        if self.is_frictionless {
+            self.force.copy_from_slice(&self.tau);
+            return 0.0;
+        }
         let mut power = 0.0;
         for (j, &rate) in dtheta.iter().enumerate() {
             let (damping, mu) = (self.model.damping[j], self.model.friction[j]);
             let coulomb = mu * rate.sgn();
-            let law = match self.friction {
+            let law = match self.options.friction {
                 Friction::Coulomb => coulomb,
                 Friction::Smooth { slip_speed } => mu * Scalar::tanh(rate / slip_speed),
             };
@@ -165,7 +215,10 @@ impl<'m, I: Input> Equation<'m, I> {
     }
 
     fn bounded(&self, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
-        let Some(j) = values.iter().position(|x| !(x.abs() < LARGEST)) else { return Ok(()) };
+        if are_below(values, LARGEST) {
+            return Ok(());
+        }
+        let j = values.iter().position(|x| !(x.abs() < LARGEST)).unwrap_or_default();
         let (joint, value) = (self.joint(j), values[j]);
         Err(Error::Diverged { quantity, joint, value, step: self.step, time, step_size: self.step_size })
     }
@@ -173,4 +226,9 @@ impl<'m, I: Input> Equation<'m, I> {
     fn joint(&self, j: usize) -> String {
         self.model.velocity_names().nth(j).unwrap_or_default().to_string()
     }
+}
+
+/// All of them, NaN is not; without a branch for each.
+fn are_below(values: &[f64], bound: f64) -> bool {
+    values.iter().fold(true, |fine, x| fine & (x.abs() < bound))
 }

@@ -19,7 +19,7 @@ mod trajectory;
 #[cfg(test)]
 mod robots;
 
-pub use equation::{Equation, Powers};
+pub use equation::{Equation, ForwardDynamics, Powers};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
 pub use method::{Method, Motion};
 pub use options::{Friction, LARGEST, Options};
@@ -83,9 +83,25 @@ impl Model<f64> {
         dtheta: &[f64],
         input: impl Input,
         options: &Options,
+        progress: impl FnMut(usize, usize) -> ControlFlow<()>,
+    ) -> Result<Trajectory, Error> {
+        Equation::new(self, input, options).simulate(theta, dtheta, progress)
+    }
+}
+
+impl<I: Input> Equation<'_, I> {
+    /// [`Model::simulate_with_progress`] of this equation.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn simulate(
+        mut self,
+        theta: &[f64],
+        dtheta: &[f64],
         mut progress: impl FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Result<Trajectory, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
+        let (model, options, equation) = (self.model(), self.options, &mut self);
+        model.check_lengths(theta, [("dtheta", dtheta)])?;
         for (what, values) in [("theta", theta), ("dtheta", dtheta)] {
             let finite = values.iter().all(|x| x.is_finite());
             options::check(finite, what, format!("{values:?}"), "finite numbers")?;
@@ -93,11 +109,10 @@ impl Model<f64> {
         options.check()?;
 
         let steps = options.steps;
-        let mut equation = Equation::new(self, input, options);
         let mut motion =
-            Motion::start(self.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
-        let mut trajectory = Trajectory::new(self);
-        trajectory.record(motion.sample(&mut equation));
+            Motion::start(model.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
+        let mut trajectory = Trajectory::new(model);
+        trajectory.record(motion.sample(equation));
         for k in 1..=steps {
             equation.at_step(k, options.step());
             motion.step(options.method, options.step(), options.time(k), |t, q, dq, ddq| {
@@ -107,7 +122,7 @@ impl Model<f64> {
             let told = k == steps || k % steps.div_ceil(100) == 0;
             let stop = told && progress(k, steps).is_break();
             if k % options.record_every == 0 || k == steps || stop {
-                trajectory.record(motion.sample(&mut equation));
+                trajectory.record(motion.sample(equation));
             }
             if stop {
                 break;

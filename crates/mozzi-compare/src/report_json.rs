@@ -1,17 +1,16 @@
 //! The doctor's report for machines.
 
-use super::answer::Silence;
-use super::bodies::BodyChange;
-use super::cause::{Cause, Change};
-use super::numbers::Errors;
-use super::report_text::Finding;
-use super::verdict::Verdict;
-use super::words;
-use crate::json;
+use crate::answer::Silence;
+use crate::bodies::BodyChange;
+use crate::cause::{Cause, Change};
+use crate::numbers::Errors;
+use crate::report_text::Finding;
+use crate::verdict::Verdict;
+use crate::words;
 use serde_json::{Value, json};
 
 pub fn object(finding: &Finding) -> Value {
-    let answer = finding.answer;
+    let answer = &finding.answer;
     let mut object = json!({
         "library": answer.library,
         "version": answer.version,
@@ -72,7 +71,7 @@ fn comparison(verdict: &Verdict, finding: &Finding) -> Value {
         "errors_explained": errors(verdict.after),
         "causes": verdict.causes.iter().map(|found| {
             let mut object = cause(&found.cause);
-            object["message"] = words::cause(&found.cause, finding.answer).into();
+            object["message"] = words::cause(&found.cause, &finding.answer).into();
             object["errors_without"] = errors(found.without);
             object
         }).collect::<Value>(),
@@ -97,7 +96,7 @@ fn cause(cause: &Cause) -> Value {
         }),
         Cause::Held(list) => json!({ "kind": "held_joints", "joints": list }),
         Cause::Gravity { mozzi, theirs } => {
-            json!({ "kind": "gravity", "mozzi": json::vector(mozzi), "theirs": json::vector(theirs) })
+            json!({ "kind": "gravity", "mozzi": mozzi, "theirs": theirs })
         }
         Cause::Armature(list) => changes("armature", list),
         Cause::Damping(list) => changes("damping", list),
@@ -111,7 +110,7 @@ fn cause(cause: &Cause) -> Value {
         }),
         Cause::Axes(list) => json!({
             "kind": "screw_axes",
-            "joints": list.iter().map(|(name, axis)| json!({ "joint": name, "theirs": json::vector(axis) })).collect::<Value>(),
+            "joints": list.iter().map(|(name, axis)| json!({ "joint": name, "theirs": axis })).collect::<Value>(),
         }),
     }
 }
@@ -120,8 +119,8 @@ fn body(change: &BodyChange) -> Value {
     let side = |inertia: &mozzi::SpatialInertia| {
         json!({
             "mass": inertia.mass,
-            "center_of_mass": json::vector(&inertia.center_of_mass().0),
-            "principal_moments": json::vector(&inertia.verdict().principal_moments),
+            "center_of_mass": inertia.center_of_mass().0,
+            "principal_moments": inertia.verdict().principal_moments,
         })
     };
     json!({ "joint": change.joint, "links": change.links, "mozzi": side(&change.mozzi), "theirs": side(&change.theirs) })

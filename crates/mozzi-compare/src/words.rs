@@ -1,9 +1,9 @@
 //! Causes in words.
 
-use super::answer::{Answer, Remedy, Silence};
-use super::bodies::{BodyChange, Reason};
-use super::cause::{Cause, Change};
-use crate::text::{about, scalar, tuple};
+use crate::answer::{Answer, Remedy, Silence};
+use crate::bodies::{BodyChange, Reason};
+use crate::cause::{Cause, Change};
+use mozzi_text::{about, scalar, tuple};
 
 /// More are counted.
 const LISTED: usize = 4;

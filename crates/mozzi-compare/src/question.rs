@@ -1,23 +1,12 @@
 //! What a library is asked: the file, and states of every joint by name.
 
-use super::constants::Constants;
-use crate::failure::Result;
+use crate::constants::Constants;
 use crate::random::Random;
+use crate::{Result, Source};
 use mozzi::{Base, Description};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-
-/// How the robot is handed over.
-#[derive(Clone, Debug)]
-pub struct Source {
-    /// "urdf" or "mjcf".
-    pub language: &'static str,
-    /// The file, where the library can read it itself.
-    pub path: Option<String>,
-    /// Its text, where it cannot.
-    pub text: Option<String>,
-}
 
 /// One number for each joint that moves, followers included, which are where they follow to.
 #[derive(Clone, Debug)]

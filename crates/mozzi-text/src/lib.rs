@@ -20,8 +20,7 @@ pub fn pad(text: &str, to: usize, align: char) -> String {
     if align == 'r' { space + text } else { text.to_string() + &space }
 }
 
-/// How the numbers of a table are written: one number of decimals for all, so that their points stand below each other.
-/// What is below 10⁻¹² of the largest is rounding and shown as 0.
+/// How the numbers of a table are written: one number of decimals for all, so that their points stand below each other. What is below 10⁻¹² of the largest is rounding and shown as 0.
 #[derive(Clone, Copy)]
 pub struct Decimals {
     places: usize,
@@ -59,6 +58,7 @@ impl Decimals {
         Decimals { places, scientific: false, rounding }
     }
 
+    /// A number of the table.
     pub fn show(self, x: f64) -> String {
         let places = self.places;
         if !x.is_finite() {
@@ -127,6 +127,7 @@ pub fn sixes(rows: &[[f64; 6]]) -> Vec<Vec<String>> {
     rows.iter().map(|row| row.iter().map(|&x| decimals.show(x)).collect()).collect()
 }
 
+/// The largest magnitude; 0 of none.
 pub fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |m, x| m.max(x.abs()))
 }
@@ -233,12 +234,14 @@ fn widest(lines: &[String]) -> usize {
 pub struct Page(String);
 
 impl Page {
+    /// One more line.
     pub fn line(&mut self, line: impl AsRef<str>) -> &mut Self {
         self.0.push_str(line.as_ref().trim_end());
         self.0.push('\n');
         self
     }
 
+    /// An empty line.
     pub fn blank(&mut self) -> &mut Self {
         self.line("")
     }
@@ -249,6 +252,7 @@ impl Page {
         self.blank().line(format!("── {title} {rule}"))
     }
 
+    /// Lines, two spaces in.
     pub fn lines(&mut self, lines: &[String]) -> &mut Self {
         lines.iter().for_each(|line| {
             self.line(format!("  {line}"));
@@ -256,6 +260,7 @@ impl Page {
         self
     }
 
+    /// The text.
     pub fn end(&mut self) -> String {
         std::mem::take(&mut self.0)
     }

@@ -1,8 +1,8 @@
 //! Asking the libraries: the script in a Python, a question in, an answer out.
 
-use super::answer::{Answer, Silence, name_of};
-use super::question::Question;
-use crate::failure::{Failure, Result};
+use crate::answer::{Answer, Silence, name_of};
+use crate::question::Question;
+use crate::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -51,12 +51,7 @@ pub fn ask(python: &Path, question: &Question, peers: &[Peer]) -> Result<Vec<Ans
 fn start(python: &Path) -> Result<Child> {
     let mut command = Command::new(python);
     command.arg("-c").arg(SCRIPT).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.spawn().map_err(|error| {
-        Failure::wrong(format!(
-            "Python `{}` did not start: {error}; name one that has pin or mujoco with --python",
-            python.display()
-        ))
-    })
+    command.spawn().map_err(|error| Error::Python { python: python.to_path_buf(), error })
 }
 
 fn answer(child: Child, question: &Question, peer: Peer) -> Answer {
@@ -71,7 +66,7 @@ fn answer(child: Child, question: &Question, peer: Peer) -> Answer {
 /// One answer as JSON, to be kept.
 #[cfg(test)]
 pub fn raw(python: &Path, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
-    value(start(python).map_err(|failure| format!("{failure:?}"))?, question, peer)
+    value(start(python).map_err(|error| error.to_string())?, question, peer)
 }
 
 fn not_written(text: &str) -> String {

@@ -1,7 +1,7 @@
 //! What a library answered.
 
-use super::constants::{Constants, JointConstants, body};
-use super::numbers::{Numbers, Side};
+use crate::constants::{Constants, JointConstants, body};
+use crate::numbers::{Numbers, Side};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

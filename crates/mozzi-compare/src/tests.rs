@@ -1,12 +1,13 @@
 //! Each explanation is reached from what the real libraries answered, recorded in `tests/peers/` by [`record`].
 #![allow(clippy::unwrap_used)]
 
-use super::answer::{Answer, Remedy, Robot};
-use super::bodies::Reason;
-use super::cause::Cause;
-use super::python::{self, Peer};
-use super::question::{Question, Source};
-use super::verdict::{Verdict, judge};
+use crate::Source;
+use crate::answer::{Answer, Remedy, Robot};
+use crate::bodies::Reason;
+use crate::cause::Cause;
+use crate::python::{self, Peer};
+use crate::question::Question;
+use crate::verdict::{Verdict, judge};
 use mozzi::Description;
 use mozzi::model::description::JointKind;
 use std::path::{Path, PathBuf};
@@ -35,7 +36,7 @@ fn robot(file: &str) -> Description {
 fn question(file: &str) -> Question {
     let language = if file.ends_with(".xml") { "mjcf" } else { "urdf" };
     let path = folder().join(file).to_str().unwrap().to_string();
-    Question::new(Source { language, path: Some(path), text: None }, &robot(file), 3, 1).unwrap()
+    Question::new(Source { name: file.into(), language, path: Some(path), text: None }, &robot(file), 3, 1).unwrap()
 }
 
 fn answer(record: &str) -> Answer {
@@ -100,7 +101,7 @@ fn every_record_is_explained_by_its_causes() {
         assert!(verdict.is_explained() && verdict.after.worst() < 100.0 && verdict.first.is_none(), "{verdict:?}");
         assert_eq!(verdict.agrees(), expected.is_empty());
         for found in &verdict.causes {
-            assert!(super::words::cause(&found.cause, &answer).contains(answer.library), "{:?}", found.cause);
+            assert!(crate::words::cause(&found.cause, &answer).contains(answer.library), "{:?}", found.cause);
         }
     }
     let remedies: Vec<Remedy> = answer("massless_mujoco.json").attempts.iter().map(|(_, remedy)| *remedy).collect();
@@ -132,7 +133,7 @@ fn numbers_of_joints_and_of_the_world() {
     });
     assert_eq!(kinds(&verdict), ["gravity", "armature"]);
     assert!(verdict.is_explained());
-    let words = super::words::cause(&verdict.causes[1].cause, &answer);
+    let words = crate::words::cause(&verdict.causes[1].cause, &answer);
     assert_eq!(words, "armature (rotor inertia), here and in Pinocchio: `tilt` 0.25 / 0");
 }
 
@@ -147,8 +148,8 @@ fn joints_that_move_on_one_side_only() {
         let question = Question::new(source, here, 3, 1).unwrap();
         let mut answer = answer("massless_pinocchio.json");
         let from = answer.robot.as_mut().unwrap();
-        from.side = super::numbers::Side::of(there, &question).unwrap();
-        from.constants = super::constants::Constants::of(there).unwrap();
+        from.side = crate::numbers::Side::of(there, &question).unwrap();
+        from.constants = crate::constants::Constants::of(there).unwrap();
         let verdict = judge(here, &question, &answer, answer.robot.as_ref().unwrap(), false).unwrap();
         assert!(verdict.is_explained() && !verdict.agrees(), "{verdict:?}");
         if here.joints[1].kind == JointKind::Fixed {
@@ -165,7 +166,7 @@ fn a_place_without_a_reason_is_no_explanation() {
     let (verdict, answer) = judged(3, |robot| robot.links[3].inertia = robot.links[3].inertia.map(|x| 1.01 * x));
     assert_eq!(kinds(&verdict), ["unknown"]);
     assert!(verdict.after.agree() && !verdict.is_explained());
-    let words = super::words::cause(&verdict.causes[0].cause, &answer);
+    let words = crate::words::cause(&verdict.causes[0].cause, &answer);
     assert!(words.contains("`arm` 2.02 / 2 kg"), "{words}");
     let (verdict, _) = judged(3, |robot| robot.joints[2].origin.p.0[0] += 0.1);
     assert!(kinds(&verdict).contains(&"axes") && !verdict.is_explained(), "{verdict:?}");
@@ -217,7 +218,7 @@ fn answers_that_are_none() {
     assert!(!broken("/states/0/g", serde_json::json!([null, 0.0])), "NaN is a number that differs");
 }
 
-/// `MOZZI_PYTHON=… cargo test -p mozzi-cli -- --ignored record` asks the libraries anew.
+/// `MOZZI_PYTHON=… cargo test -p mozzi-compare -- --ignored record` asks the libraries anew.
 #[test]
 #[ignore = "writes the records; needs Python with pin and mujoco"]
 fn record() {

@@ -1,10 +1,10 @@
 //! What may make two libraries differ, and the same difference made in mozzi.
 
-use super::answer::{Answer, Robot};
-use super::bodies::{BodyChange, Reason};
-use super::constants::{Constants, JointConstants, home};
-use super::numbers::Side;
-use crate::failure::Result;
+use crate::Result;
+use crate::answer::{Answer, Robot};
+use crate::bodies::{BodyChange, Reason};
+use crate::constants::{Constants, JointConstants, home};
+use crate::numbers::Side;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, ScrewAxis, SpatialInertia};
 
@@ -187,6 +187,6 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     if !axes.is_empty() {
         causes.push(Cause::Axes(axes));
     }
-    causes.extend(super::bodies::suspects(&robot, answer, from)?);
+    causes.extend(crate::bodies::suspects(&robot, answer, from)?);
     Ok(causes)
 }

@@ -1,22 +1,23 @@
 //! The doctor's report for people.
 
-use super::answer::{Answer, Robot};
-use super::numbers::{Entry, Errors, QUANTITIES};
-use super::question::Question;
-use super::verdict::Verdict;
-use super::words;
-use crate::text::{Page, about, table};
+use crate::answer::{Answer, Robot};
+use crate::numbers::{Entry, Errors, QUANTITIES};
+use crate::question::Question;
+use crate::verdict::Verdict;
+use crate::words;
+use mozzi_text::{Page, about, table};
 
 /// What was found of one library.
-pub struct Finding<'a> {
-    pub answer: &'a Answer,
+#[derive(Debug)]
+pub struct Finding {
+    pub answer: Answer,
     pub verdict: Option<Verdict>,
     /// What Pinocchio says when it is asked to couple followers, where it has been asked.
-    pub coupled: Option<(&'a Answer, Option<Verdict>)>,
+    pub coupled: Option<(Answer, Option<Verdict>)>,
 }
 
 pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
-    let answer = finding.answer;
+    let answer = &finding.answer;
     let name = title(answer);
     match (&answer.robot, &finding.verdict) {
         (Ok(robot), Some(verdict)) => {

@@ -1,7 +1,7 @@
 //! A robot's constants in the base frame at home, where all joints are at 0: what two libraries can compare, whatever
 //! frames each of them keeps.
 
-use crate::failure::Result;
+use crate::Result;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, SE3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;

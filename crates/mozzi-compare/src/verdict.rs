@@ -1,10 +1,10 @@
 //! Does a library agree; if not, which causes make the difference vanish?
 
-use super::answer::{Answer, Robot};
-use super::cause::{Cause, suspects};
-use super::numbers::{Entry, Errors, Pair, Side};
-use super::question::Question;
-use crate::failure::Result;
+use crate::Result;
+use crate::answer::{Answer, Robot};
+use crate::cause::{Cause, suspects};
+use crate::numbers::{Entry, Errors, Pair, Side};
+use crate::question::Question;
 use mozzi::Description;
 
 /// A cause, and the errors where all others are accounted for and this is not.

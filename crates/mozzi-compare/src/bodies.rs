@@ -1,9 +1,9 @@
 //! Bodies that weigh differently on the two sides, and why.
 
-use super::answer::{Answer, Remedy, Robot};
-use super::cause::Cause;
-use super::constants::{Constants, freed, home, same_body};
-use crate::failure::Result;
+use crate::Result;
+use crate::answer::{Answer, Remedy, Robot};
+use crate::cause::Cause;
+use crate::constants::{Constants, freed, home, same_body};
 use mozzi::{Description, SpatialInertia, Sym3};
 
 /// Why a body differs.

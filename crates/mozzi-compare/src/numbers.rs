@@ -1,7 +1,7 @@
 //! M, g, h and τ at the states, and how far two sides are apart.
 
-use super::question::Question;
-use crate::failure::Result;
+use crate::Result;
+use crate::question::{Question, State};
 use mozzi::Description;
 use mozzi::accuracy::{TermSizes, normalized_error};
 use nalgebra::{DMatrix, DVector};
@@ -65,7 +65,7 @@ impl Side {
             names.iter().map(value).collect() // a free base is at rest
         };
         let base = model.base();
-        let numbers = |state: &super::question::State| {
+        let numbers = |state: &State| {
             let (dtheta, ddtheta) = (at(&state.dtheta), at(&state.ddtheta));
             let mut theta = model.neutral_configuration::<f64>();
             theta[base.positions()..].copy_from_slice(&at(&state.theta)[base.velocities()..]);

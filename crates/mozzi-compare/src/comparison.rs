@@ -1,0 +1,140 @@
+//! Asking, judging, and what came of it.
+
+use crate::answer::{Answer, Robot, Silence};
+use crate::python::{self, Peer};
+use crate::question::Question;
+use crate::report_text::Finding;
+use crate::verdict::{Verdict, judge};
+use crate::{BOUND, Error, Result, Source, report_json, report_text, words};
+use mozzi::Description;
+use mozzi_text::Page;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// How a robot is compared.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The Python that has pin or mujoco; that of the active virtual environment, else `python3`.
+    pub python: PathBuf,
+    /// How many random states, within the joints' limits; 10.
+    pub states: usize,
+    /// Of the random numbers; 1.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { python: python::find(None), states: 10, seed: 1 }
+    }
+}
+
+/// What the libraries made of a robot.
+#[derive(Debug)]
+pub struct Comparison {
+    question: Question,
+    seed: u64,
+    /// None where mozzi refuses the robot.
+    joints: Option<Vec<String>>,
+    findings: Vec<Finding>,
+}
+
+/// Compares a robot with what Pinocchio and MuJoCo make of its source.
+///
+/// # Errors
+/// See [`Error`].
+pub fn compare(robot: &Description, source: Source, options: &Options) -> Result<Comparison> {
+    let model = robot.clone().build()?;
+    let question = Question::new(source, robot, options.states, options.seed)?;
+    let mut peers = vec![Peer::Pinocchio, Peer::MuJoCo];
+    if model.is_coupled() && question.source.language != "mjcf" {
+        peers.push(Peer::PinocchioMimic);
+    }
+    let mut answers = python::ask(&options.python, &question, &peers)?;
+    let coupled = answers.drain(2..).next();
+    somebody(&options.python, &answers)?;
+    let verdict = |answer: &Answer, coupled: bool| -> Result<Option<Verdict>> {
+        let judge = |from: &Robot| judge(robot, &question, answer, from, coupled);
+        answer.robot.as_ref().ok().map(judge).transpose()
+    };
+    let mut coupled = match coupled {
+        Some(answer) => Some((verdict(&answer, true)?, answer)),
+        None => None,
+    };
+    let findings = answers.into_iter().map(|answer| {
+        let coupled = coupled.take().map(|(verdict, answer)| (answer, verdict)); // Pinocchio, the first
+        Ok(Finding { verdict: verdict(&answer, false)?, answer, coupled })
+    });
+    let findings = findings.collect::<Result<_>>()?;
+    let joints = Some(model.joint_names().map(str::to_string).collect());
+    Ok(Comparison { seed: options.seed, joints, findings, question })
+}
+
+/// What the libraries make of a file that mozzi refuses: whether they load it.
+///
+/// # Errors
+/// See [`Error`].
+pub fn ask(source: Source, options: &Options) -> Result<Comparison> {
+    let question = Question { source, names: Vec::new(), axes: Vec::new(), states: Vec::new(), floating: false };
+    let answers = python::ask(&options.python, &question, &[Peer::Pinocchio, Peer::MuJoCo])?;
+    somebody(&options.python, &answers)?;
+    let findings = answers.into_iter().map(|answer| Finding { answer, verdict: None, coupled: None }).collect();
+    Ok(Comparison { question, seed: options.seed, joints: None, findings })
+}
+
+fn somebody(python: &Path, answers: &[Answer]) -> Result<()> {
+    let silent = |answer: &Answer| matches!(answer.robot, Err(Silence::NotInstalled(_) | Silence::Died(_)));
+    if !answers.iter().all(silent) {
+        return Ok(());
+    }
+    let reason = |answer: &Answer| match &answer.robot {
+        Err(silence) => format!("{} {}", answer.library, words::silence(silence, answer.library)),
+        Ok(_) => String::new(),
+    };
+    let reasons = answers.iter().map(reason).collect::<Vec<_>>().join("; ");
+    Err(Error::NoLibrary { python: python.to_path_buf(), reasons })
+}
+
+impl Comparison {
+    fn verdicts_are(&self, fine: fn(&Verdict) -> bool) -> bool {
+        let mut verdicts = self.findings.iter().filter_map(|finding| finding.verdict.as_ref()).peekable();
+        verdicts.peek().is_some() && verdicts.all(fine)
+    }
+
+    /// Did somebody compute, and everybody who did the same?
+    pub fn agrees(&self) -> bool {
+        self.verdicts_are(Verdict::agrees)
+    }
+
+    /// Did somebody compute, and is every difference explained?
+    pub fn is_explained(&self) -> bool {
+        self.verdicts_are(Verdict::is_explained)
+    }
+
+    /// For people: for each library what it says, and why.
+    pub fn text(&self) -> String {
+        let mut page = Page::default();
+        match &self.joints {
+            Some(_) => page.line(format!(
+                "random states of seed {}; errors over ε times the size of the terms: about 1 is rounding, above {BOUND:.0e} a difference",
+                self.seed
+            )),
+            None => page.line(format!("{}: mozzi refuses it, so nothing is compared", self.question.source.name)),
+        };
+        self.findings.iter().for_each(|finding| report_text::write(&mut page, &self.question, finding));
+        page.end()
+    }
+
+    /// For machines: the same.
+    pub fn json(&self) -> Value {
+        json!({
+            "model": self.question.source.name,
+            "refused": self.joints.is_none(),
+            "joints": self.joints,
+            "states": self.question.states.len(),
+            "seed": self.seed,
+            "unit_of_errors": "machine epsilon times the size of the terms",
+            "bound": BOUND,
+            "libraries": self.findings.iter().map(report_json::object).collect::<Value>(),
+        })
+    }
+}

@@ -1,0 +1,48 @@
+//! The robot as the libraries get it.
+
+use crate::{Error, Result};
+use mozzi::Description;
+use mozzi_urdf::embedded;
+use std::path::Path;
+
+/// How the robot is handed over.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// What it is called in reports.
+    pub(crate) name: String,
+    /// "urdf" or "mjcf".
+    pub(crate) language: &'static str,
+    /// The file, where the library can read it itself.
+    pub(crate) path: Option<String>,
+    /// Its text, where it cannot.
+    pub(crate) text: Option<String>,
+}
+
+impl Source {
+    /// The file where the libraries can read it (URDF, MJCF); of an embedded robot its text; of JSON, what `robot` is, as URDF.
+    ///
+    /// # Errors
+    /// [`Error::Read`], [`Error::Write`].
+    pub fn read(name_or_path: &str, robot: &Description) -> Result<Self> {
+        let source = |language, path, text| Source { name: name_or_path.to_string(), language, path, text };
+        if let Some(embedded) = embedded::text(name_or_path) {
+            return Ok(source("urdf", None, Some(embedded.to_string())));
+        }
+        let path = Path::new(name_or_path);
+        if path.extension().is_some_and(|suffix| suffix == "json") {
+            return Self::written(name_or_path, robot);
+        }
+        let bytes = std::fs::read(path).map_err(|error| Error::Read { file: name_or_path.to_string(), error })?;
+        let is_mjcf = mozzi_urdf::mjcf::is_mjcf(&String::from_utf8_lossy(&bytes));
+        Ok(source(if is_mjcf { "mjcf" } else { "urdf" }, Some(name_or_path.to_string()), None))
+    }
+
+    /// The robot, written as URDF.
+    ///
+    /// # Errors
+    /// [`Error::Write`].
+    pub fn written(name: &str, robot: &Description) -> Result<Self> {
+        let text = mozzi_urdf::write(robot).map_err(|error| Error::Write { robot: name.to_string(), error })?;
+        Ok(Source { name: name.to_string(), language: "urdf", path: None, text: Some(text) })
+    }
+}

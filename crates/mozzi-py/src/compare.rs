@@ -1,0 +1,54 @@
+//! What other libraries make of the same robot: `mozzi.compare`.
+
+use crate::failure::{of_loader, of_model};
+use crate::load;
+use crate::model::PyModel;
+use mozzi_compare::{Comparison, Error, Options, Source, ask, compare};
+use mozzi_urdf::LoadError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+fn of_comparison(error: Error) -> PyErr {
+    match error {
+        Error::Robot(error) => of_model(error),
+        error @ (Error::Python { .. } | Error::NoLibrary { .. }) => PyRuntimeError::new_err(error.to_string()),
+        error => PyValueError::new_err(error.to_string()),
+    }
+}
+
+/// The text and the JSON of the comparison, and whether all agree, and are explained.
+#[pyfunction]
+pub fn _compare(
+    py: Python<'_>,
+    robot: &Bound<'_, PyAny>,
+    states: usize,
+    seed: u64,
+    python: PathBuf,
+    policy: &str,
+) -> PyResult<(String, String, bool, bool)> {
+    let options = Options { python, states, seed };
+    let report = |c: &Comparison| (c.text(), c.json().to_string(), c.agrees(), c.is_explained());
+    if let Ok(model) = robot.cast::<PyModel>() {
+        let description = model.get().robot().model.description();
+        let source = Source::written(&description.name, description).map_err(of_comparison)?;
+        return py.detach(|| compare(description, source, &options)).map(|c| report(&c)).map_err(of_comparison);
+    }
+    let name: PathBuf = robot.extract()?;
+    let name = name.to_string_lossy();
+    match load::loaded(py, &name, policy)? {
+        Ok(loaded) => {
+            let description = load::warned(py, loaded)?.description;
+            let source = Source::read(&name, &description).map_err(of_comparison)?;
+            py.detach(|| compare(&description, source, &options)).map(|c| report(&c)).map_err(of_comparison)
+        }
+        // the file is there, and wrong: whether others load it is worth knowing
+        Err(refusal @ LoadError::Refused { .. }) => {
+            let source = Source::read(&name, &mozzi::Description::new("refused")).map_err(of_comparison)?;
+            let found = py.detach(|| ask(source, &options)).map_err(of_comparison)?;
+            let (text, json, agrees, explained) = report(&found);
+            Ok((format!("{refusal}\n{text}"), json, agrees, explained))
+        }
+        Err(error) => Err(of_loader(py, error)),
+    }
+}

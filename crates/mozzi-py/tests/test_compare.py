@@ -1,0 +1,73 @@
+"""mozzi.compare: the libraries asked from Python."""
+
+import importlib.util
+import sys
+
+import mozzi
+import numpy as np
+import pytest
+from conftest import MODELS
+
+HAS_BOTH = all(importlib.util.find_spec(name) for name in ("pinocchio", "mujoco"))
+both = pytest.mark.skipif(not HAS_BOTH, reason="pin or mujoco is not installed")
+
+
+@both
+@pytest.mark.parametrize("robot", ["ur5", MODELS / "ur5.urdf", mozzi.models.ur5()], ids=["name", "path", "model"])
+def test_a_plain_arm_is_the_same_everywhere(robot):
+    found = mozzi.compare(robot, states=3)
+    assert found.agrees and found.explained and not found.refused
+    assert list(found.libraries) == ["Pinocchio", "MuJoCo"]
+    for entry in found.libraries.values():
+        assert entry["status"] == "agrees"
+        assert 0 < entry["comparison"]["errors"]["inverse_dynamics"] < 1e6
+    assert "Pinocchio" in str(found) and "agrees" in str(found)
+    assert repr(found).endswith("Pinocchio: agrees, MuJoCo: agrees>")
+    assert found._repr_html_().startswith("<pre>")
+
+
+@both
+def test_what_differs_is_explained():
+    found = mozzi.compare("panda", states=2)
+    assert found.explained and not found.agrees
+    causes = found.libraries["Pinocchio"]["comparison"]["causes"]
+    assert [cause["kind"] for cause in causes] == ["mimic"], causes
+    assert "panda_finger_joint2" in str(found)
+
+
+@both
+def test_a_file_that_mozzi_refuses(tmp_path):
+    text = (MODELS / "ur5.urdf").read_text().replace("8.393", "-8.393")
+    (tmp_path / "heavy.urdf").write_text(text)
+    found = mozzi.compare(tmp_path / "heavy.urdf")
+    assert found.refused and not found.explained
+    assert "-8.393" in str(found) and "mozzi refuses it" in str(found)
+    assert found.libraries["Pinocchio"]["status"] in ("loaded", "refused")
+
+
+def test_what_cannot_be_is_named(tmp_path):
+    with pytest.raises(ValueError, match="states is 0"):
+        mozzi.compare("ur5", states=0)
+    with pytest.raises(ValueError, match="seed is -1"):
+        mozzi.compare("ur5", seed=-1)
+    with pytest.raises(ValueError, match="nowhere"):
+        mozzi.compare("nowhere")
+    with pytest.raises(ValueError, match="policy is 'kind'"):
+        mozzi.compare("ur5", policy="kind")
+    with pytest.raises(TypeError):
+        mozzi.compare(7)
+    with pytest.raises(RuntimeError, match="did not start"):
+        mozzi.compare("ur5", python=tmp_path / "python")
+    helix = mozzi.Model.from_screws([np.eye(4)] * 2, [np.eye(6)], np.array([[0, 0, 1, 0, 0, 0.1]]).T)
+    with pytest.raises(ValueError, match="cannot be given to other libraries"):
+        mozzi.compare(helix)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script")
+def test_a_python_without_libraries(tmp_path):
+    bare = tmp_path / "python"
+    answer = '{"library": "mujoco", "version": null, "attempts": [], "error": {"stage": "import", "message": "no module"}}'
+    bare.write_text(f"#!/bin/sh\ncat > /dev/null; echo '{answer}'\n")
+    bare.chmod(0o755)
+    with pytest.raises(RuntimeError, match="no library to compare with"):
+        mozzi.compare("ur5", python=bare)
