@@ -69,8 +69,10 @@ impl Controller {
                 self.file
             )));
         }
-        let n = model.n();
-        let gains = |p: &str, d: &str| Ok::<_, Failure>(Gains { p: self.list(p, n)?, d: self.list(d, n)? });
+        // of each joint; a free base has no motors
+        let base = model.base().velocities();
+        let list = |key: &str| Ok::<_, Failure>([vec![0.0; base], self.list(key, model.n() - base)?].concat());
+        let gains = |p: &str, d: &str| Ok::<_, Failure>(Gains { p: list(p)?, d: list(d)? });
         let place = |error: mozzi_motion::Error| Failure::wrong(format!("{}: {error}", self.file));
         Ok(match self.kind.as_str() {
             "pd-gravity" => Box::new(PdGravity::new(model, reference, gains("p", "d")?).map_err(place)?),

@@ -50,6 +50,56 @@ fn a_motion_is_made_and_followed() {
 }
 
 #[test]
+fn joints_are_followed_while_the_base_falls() {
+    let folder = folder("follow_free");
+    let (way, fall) = (folder.join("way.csv"), folder.join("fall.csv"));
+    let (way, fall) = (way.to_str().expect("text"), fall.to_str().expect("text"));
+    text(&[&WAY[..], &["--time", "0.2", "--out", way]].concat());
+    let pd = file(
+        &folder,
+        "pd.json",
+        r#"{"controller": "pd-gravity", "p": [900, 900, 900, 60, 60, 20], "d": [20, 20, 20, 1, 1, 0.1]}"#,
+    );
+    let follow = |table: &str| {
+        let flags = [
+            "simulate",
+            "ur5",
+            "--floating",
+            "--method",
+            "dopri",
+            "--tolerance",
+            "1e-6",
+            "--step",
+            "0.01",
+            "--follow",
+            table,
+            "--controller",
+            &pd,
+        ];
+        text(&[&flags[..], &["--out", fall]].concat()); // a table with the base
+        json(&flags)
+    };
+    // its own table is followed as well as that of the joints alone
+    let (found, again) = (follow(way), follow(fall));
+    for found in [&found, &again] {
+        let worst = numbers(&found["tracking_error"]["largest"]);
+        assert!(worst.len() == 6 && worst.iter().all(|&e| e < 0.5), "{worst:?}");
+        let start = &rows(&found["theta"])[0];
+        assert_close(start, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.2, 1.5, 0.3, 1.1, 0.0], 0.0);
+        // whatever the motors do, the centre of mass falls by ½gt²
+        let model = mozzi_urdf::open("ur5").expect("embedded").build().expect("sound");
+        let mass: f64 = model.description().links.iter().map(|link| link.inertia.mass).sum();
+        let energy = numbers(&found["potential_energy"]);
+        let (fallen, expected) = (energy[0] - energy[energy.len() - 1], mass * 9.81 * 0.5 * 9.81 * 0.2 * 0.2);
+        assert!((fallen / expected - 1.0).abs() < 1e-4, "{fallen} {expected}");
+    }
+    let computed = file(&folder, "ct.json", r#"{"controller": "computed-torque", "p": 100, "d": 20}"#);
+    let (_, said) = complaint(&["simulate", "ur5", "--floating", "--follow", way, "--controller", &computed]);
+    assert!(said.contains("joints are followed; nothing drives the base, which begins at {s}"), "{said}");
+    assert!(said.contains("the base of a robot under computed torque is free"), "{said}");
+}
+
+#[test]
 fn ways_of_the_end_effector_and_through_points() {
     let start = ["trajectory", "ur5", "--from", "0,-1.2,1.5,0.3,1.1,0"];
     let line =

@@ -4,7 +4,7 @@ use super::simulate_page::{columns, object, page, told};
 use crate::conditions::{EventArguments, happened};
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
-use crate::motors::{Limit, MotorArguments, or_hold};
+use crate::motors::{Followed, Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::report::{self, MeshArguments};
@@ -18,7 +18,7 @@ use mozzi::{Model, Trajectory};
 use mozzi_codegen::{Compiled, Engine, Quantity, compile};
 use mozzi_motion::controllers::{Overload, Saturated, TrackingError, tracking_error};
 use mozzi_motion::integrators::{Event, Integrator, Occurrence, Run, Simulation, Stopped};
-use mozzi_motion::trajectories::{Hold, Reference};
+use mozzi_motion::trajectories::Hold;
 use std::ops::ControlFlow;
 
 #[derive(Args, Debug)]
@@ -136,23 +136,22 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
 
 impl SimulateArguments {
     fn simulate(&self, model: &Model) -> Result<Outcome> {
-        let (theta, dtheta) = match (&self.start.theta, self.motors.reference(model)?) {
-            (None, Some(reference)) => {
-                // where the reference begins
-                let start = reference.at(0.0);
-                let (_, dtheta) = self.start.read(model)?;
-                (start.theta, if self.start.dtheta.is_none() { start.dtheta } else { dtheta })
+        let followed = self.motors.followed(model)?;
+        let (mut theta, mut dtheta) = self.start.read(model)?;
+        if let (None, Some(Followed { start, .. })) = (&self.start.theta, &followed) {
+            theta.clone_from(&start[0]);
+            if self.start.dtheta.is_none() {
+                dtheta.clone_from(&start[1]);
             }
-            _ => self.start.read(model)?,
-        };
-        let (reference, hold) = (self.motors.reference(model)?, Hold::new(&theta, model.n()));
+        }
+        let hold = Hold::new(&theta, model.n());
         let controller = self.motors.controller(&self.robot)?;
-        let end = match (&self.time, &reference) {
+        let end = match (&self.time, &followed) {
             (Some(text), _) => number("--time", text)?,
-            (None, Some(reference)) => reference.duration(),
+            (None, Some(followed)) => followed.reference.duration(),
             (None, None) => 2.0,
         };
-        let motors = self.motors.motors(model, controller.as_ref(), or_hold(reference.as_ref(), &hold), end)?;
+        let motors = self.motors.motors(model, controller.as_ref(), or_hold(followed.as_ref(), &hold), end)?;
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
         let input = (&mut motors, self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
@@ -167,7 +166,7 @@ impl SimulateArguments {
             stops,
             missed: self.events.missed(&events),
             events,
-            tracking: reference.as_ref().map(|reference| tracking_error(model, &motion, reference)),
+            tracking: followed.as_ref().map(|followed| tracking_error(model, &motion, &followed.reference)),
             motion,
         })
     }
