@@ -1,22 +1,23 @@
 //! What drives a simulated robot: the flags of `mozzi simulate` as inputs.
 
 use crate::controller::Controller;
-use crate::failure::{Failure, Result};
+use crate::failure::{self, Failure, Result};
 use crate::numbers::{WRENCH, array};
 use crate::robot::RobotArguments;
 use crate::samples::{Samples, first_column};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
-use mozzi::{Model, Wrench};
+use mozzi::{Base, Model, Wrench};
 use mozzi_motion::Policy;
-use mozzi_motion::trajectories::{Hold, Recorded, Reference};
+use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
     /// The motors: zero, gravity-compensation, or a CSV file with columns t, tau_1, … (linear in between); beside a controller's
     #[arg(long, value_name = "FILE|zero|gravity-compensation", default_value = "zero")]
     pub torque: String,
-    /// What the controller is to follow: a CSV file with columns t, theta_1, … and, where known, dtheta_, ddtheta_
+    /// What the controller is to follow: a CSV file with columns t, theta_1, … and, where known, dtheta_, ddtheta_; of a free base's robot
+    /// the joints alone are followed, and may stand alone
     #[arg(long, value_name = "FILE.csv", requires = "controller")]
     pub follow: Option<String>,
     /// A controller in a JSON file; without --follow it holds the start
@@ -66,15 +67,38 @@ enum Beyond {
 
 impl MotorArguments {
     /// What is followed, where something is.
-    pub fn reference(&self, model: &Model) -> Result<Option<Recorded>> {
+    pub fn followed(&self, model: &Model) -> Result<Option<Followed>> {
         let Some(file) = &self.follow else { return Ok(None) };
-        let samples = Samples::read(file, model)?;
+        let bolted = model.with_base(Base::Fixed)?;
+        let (samples, is_of_joints) = Samples::read_joints(file, model, &bolted)?;
         let times = samples.need(&samples.t, "t")?;
         check_times(&samples, times)?;
         let theta = samples.need(&samples.theta, &first_column(model, "theta"))?;
-        let rates = [&samples.dtheta, &samples.ddtheta].map(|rows| rows.as_deref());
+        // what the rows say of the base, and of the joints
+        let whole = if is_of_joints { Base::Fixed } else { model.base() };
+        let joints =
+            |rows: &Vec<Vec<f64>>, base: usize| rows.iter().map(|row| row[base..].to_vec()).collect::<Vec<_>>();
+        let [dtheta, ddtheta] =
+            [&samples.dtheta, &samples.ddtheta].map(|rows| rows.as_ref().map(|rows| joints(rows, whole.velocities())));
         let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
-        Ok(Some(Recorded::new(model, times, theta, rates[0], rates[1]).map_err(place)?))
+        let (theta, pose) = (joints(theta, whole.positions()), theta[0].first_chunk().copied());
+        let recorded = Recorded::new(&bolted, times, &theta, dtheta.as_deref(), ddtheta.as_deref()).map_err(place)?;
+        if !model.is_floating() {
+            let start = recorded.at(0.0);
+            return Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(recorded) }));
+        }
+        let home = model.neutral_configuration().first_chunk().copied();
+        let pose = if is_of_joints { home } else { pose }.unwrap_or_default();
+        let reference = OfJoints { joints: recorded, pose };
+        let mut start = reference.at(0.0);
+        if let (false, Some(rows)) = (is_of_joints, &samples.dtheta) {
+            start.dtheta[..6].copy_from_slice(&rows[0][..6]);
+        }
+        failure::note(&format!(
+            "{file}: the joints are followed; nothing drives the base, which begins {}",
+            if is_of_joints { "at {s}" } else { "as the first row says" }
+        ));
+        Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(reference) }))
     }
 
     pub fn controller(&self, robot: &RobotArguments) -> Result<Option<Controller>> {
@@ -136,7 +160,8 @@ impl MotorArguments {
     }
 }
 
-fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
+/// Of a table whose rows are to follow each other.
+pub fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
     match (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
         None => Ok(()),
         Some(row) => {
@@ -146,10 +171,17 @@ fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
     }
 }
 
+/// A table that is followed.
+pub struct Followed {
+    pub reference: Box<dyn Reference>,
+    /// θ and θ̇ where it begins.
+    pub start: [Vec<f64>; 2],
+}
+
 /// Where nothing is followed, the start is held.
-pub fn or_hold<'a>(recorded: Option<&'a Recorded>, hold: &'a Hold) -> &'a dyn Reference {
-    match recorded {
-        Some(recorded) => recorded,
+pub fn or_hold<'a>(followed: Option<&'a Followed>, hold: &'a Hold) -> &'a dyn Reference {
+    match followed {
+        Some(followed) => &*followed.reference,
         None => hold,
     }
 }

@@ -9,6 +9,7 @@ use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, number};
 use crate::progress::Progress;
 use mozzi::{Model, Wrench};
+use std::cell::Cell;
 use std::io::Read;
 
 /// What `mozzi simulate` writes beside the groups; read and not used.
@@ -34,6 +35,22 @@ pub struct Samples {
 impl Samples {
     /// Reads a file, or standard input where it is called `-`.
     pub fn read(file: &str, model: &Model) -> Result<Self> {
+        Self::read_by(file, |_| model)
+    }
+
+    /// As of a robot or, where the header has as many positions as joints, as of the same robot bolted down. Was it that?
+    pub fn read_joints(file: &str, model: &Model, bolted: &Model) -> Result<(Self, bool)> {
+        let is_of_joints = Cell::new(false);
+        let choose = |header: &[String]| {
+            let positions = header.iter().filter(|name| name.starts_with("theta_")).count();
+            is_of_joints.set(positions == bolted.nq() && !header.iter().any(|name| name.starts_with("theta_base.")));
+            if is_of_joints.get() { bolted } else { model }
+        };
+        Ok((Self::read_by(file, choose)?, is_of_joints.get()))
+    }
+
+    /// The robot is chosen by the header.
+    fn read_by<'m>(file: &str, choose: impl FnOnce(&[String]) -> &'m Model) -> Result<Self> {
         let cannot = |error: std::io::Error| Failure::wrong(format!("{file} cannot be read: {error}"));
         let input: Box<dyn Read> = match file {
             "-" => Box::new(std::io::stdin().lock()),
@@ -45,7 +62,7 @@ impl Samples {
             Ok(header) => header.iter().map(|cell| cell.trim_start_matches('\u{feff}').to_string()).collect(),
             Err(error) => return Err(csv_failure(name, &error)),
         };
-        let places = Places::find(&format!("{name}:1"), &header, model)?;
+        let places = Places::find(&format!("{name}:1"), &header, choose(&header))?;
         let mut samples = Samples { file: name.to_string(), ..Samples::default() };
         let mut rows: Vec<Vec<f64>> = Vec::new();
         let kilobytes = std::fs::metadata(file).map_or(0, |found| found.len() / 1000) as usize;

@@ -4,7 +4,7 @@ use super::simulate_page::{columns, object, page, told};
 use crate::conditions::{EventArguments, happened};
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
-use crate::motors::{Limit, MotorArguments, or_hold};
+use crate::motors::{Followed, Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::report::{self, MeshArguments};
@@ -18,7 +18,7 @@ use mozzi::{Model, Trajectory};
 use mozzi_codegen::{Compiled, Engine, Quantity, compile};
 use mozzi_motion::controllers::{Overload, Saturated, TrackingError, tracking_error};
 use mozzi_motion::integrators::{Event, Integrator, Occurrence, Run, Simulation, Stopped};
-use mozzi_motion::trajectories::{Hold, Reference};
+use mozzi_motion::trajectories::Hold;
 use std::ops::ControlFlow;
 
 #[derive(Args, Debug)]
@@ -136,23 +136,22 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
 
 impl SimulateArguments {
     fn simulate(&self, model: &Model) -> Result<Outcome> {
-        let (theta, dtheta) = match (&self.start.theta, self.motors.reference(model)?) {
-            (None, Some(reference)) => {
-                // where the reference begins
-                let start = reference.at(0.0);
-                let (_, dtheta) = self.start.read(model)?;
-                (start.theta, if self.start.dtheta.is_none() { start.dtheta } else { dtheta })
+        let followed = self.motors.followed(model)?;
+        let (mut theta, mut dtheta) = self.start.read(model)?;
+        if let (None, Some(Followed { start, .. })) = (&self.start.theta, &followed) {
+            theta.clone_from(&start[0]);
+            if self.start.dtheta.is_none() {
+                dtheta.clone_from(&start[1]);
             }
-            _ => self.start.read(model)?,
-        };
-        let (reference, hold) = (self.motors.reference(model)?, Hold::new(&theta, model.n()));
+        }
+        let hold = Hold::new(&theta, model.n());
         let controller = self.motors.controller(&self.robot)?;
-        let end = match (&self.time, &reference) {
+        let end = match (&self.time, &followed) {
             (Some(text), _) => number("--time", text)?,
-            (None, Some(reference)) => reference.duration(),
+            (None, Some(followed)) => followed.reference.duration(),
             (None, None) => 2.0,
         };
-        let motors = self.motors.motors(model, controller.as_ref(), or_hold(reference.as_ref(), &hold), end)?;
+        let motors = self.motors.motors(model, controller.as_ref(), or_hold(followed.as_ref(), &hold), end)?;
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
         let input = (&mut motors, self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
@@ -167,7 +166,7 @@ impl SimulateArguments {
             stops,
             missed: self.events.missed(&events),
             events,
-            tracking: reference.as_ref().map(|reference| tracking_error(model, &motion, reference)),
+            tracking: followed.as_ref().map(|followed| tracking_error(model, &motion, &followed.reference)),
             motion,
         })
     }
@@ -209,12 +208,14 @@ impl SimulateArguments {
             Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
         };
         let options = Options { friction, record_every: self.record_every, ..Options::with_step(end, step)? };
+        // of a motion of no duration there is no shorter step
+        let step = if end == 0.0 { step } else { options.step() };
         let integrator = match self.method {
-            Way::Euler => Integrator::Fixed(Method::Euler, options.step()),
-            Way::SemiImplicitEuler => Integrator::Fixed(Method::SemiImplicitEuler, options.step()),
-            Way::Rk4 => Integrator::Fixed(Method::RungeKutta4, options.step()),
+            Way::Euler => Integrator::Fixed(Method::Euler, step),
+            Way::SemiImplicitEuler => Integrator::Fixed(Method::SemiImplicitEuler, step),
+            Way::Rk4 => Integrator::Fixed(Method::RungeKutta4, step),
             Way::Dopri => Integrator::DormandPrince { tolerance: number("--tolerance", &self.tolerance)? },
-            Way::Midpoint => Integrator::Midpoint { step: options.step() },
+            Way::Midpoint => Integrator::Midpoint { step },
         };
         let robot = self.machine_code(model)?;
         let simulation = Simulation {
@@ -222,7 +223,7 @@ impl SimulateArguments {
             forward_dynamics: robot.as_ref().and_then(Compiled::simulator),
             friction,
             stops: self.joint_limits.into(),
-            record: options.step() * self.record_every as f64,
+            record: step * self.record_every as f64,
             events,
             ..Simulation::new(end)
         };
@@ -234,7 +235,7 @@ impl SimulateArguments {
         })?;
         let shown = match integrator {
             Integrator::DormandPrince { tolerance } => tolerance,
-            _ => options.step(),
+            _ => step,
         };
         Ok((run, integrator.name(), shown))
     }

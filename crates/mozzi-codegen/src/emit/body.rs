@@ -1,6 +1,6 @@
 //! The lines of a function: its steps.
 
-use super::dialect::{Dialect, Emitted};
+use super::dialect::{Dialect, Emitted, Sines};
 use crate::function::Function;
 use crate::program::{Step, Value};
 use std::collections::BTreeMap;
@@ -13,13 +13,6 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
         Step::Input(array, index) => dialect.entry(&function.inputs[array as usize].name, index as usize),
         Step::Apply(..) => format!("v{value}"),
     };
-    // of each angle the places of its sine and cosine
-    let mut angles: BTreeMap<Value, [Option<Value>; 2]> = BTreeMap::new();
-    for (place, step) in (0..).zip(steps) {
-        if let Step::Apply(function @ (Function::Sin | Function::Cos), [angle, ..]) = step {
-            angles.entry(*angle).or_default()[usize::from(*function == Function::Cos)].get_or_insert(place);
-        }
-    }
     let mut entries: Vec<Vec<String>> = vec![Vec::new(); steps.len()];
     for (output, argument) in function.program.outputs.iter().zip(&function.outputs) {
         for (index, value) in output.values.iter().enumerate() {
@@ -32,6 +25,14 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
             step.operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
         }
     }
+    // of each angle the places of its sine and cosine
+    let mut angles: BTreeMap<Value, [Option<Value>; 2]> = BTreeMap::new();
+    for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
+        if let Step::Apply(function @ (Function::Sin | Function::Cos), [angle, ..]) = step {
+            angles.entry(*angle).or_default()[usize::from(*function == Function::Cos)].get_or_insert(place);
+        }
+    }
+    let is_step = |value: Value| matches!(steps[value as usize], Step::Apply(..));
     let mut lines = Vec::new();
     for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
         if let Step::Apply(function, operands) = step {
@@ -41,9 +42,18 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
             let fused = |a: &str, b: &str, c: &str| format!("{}({a}, {b}, {c})", dialect.helper("mul_add"));
             let expression = match function {
                 Function::Sin | Function::Cos => {
-                    if let Some([sin, cos]) = angles.remove(&operands[0]) {
-                        let [sin, cos] = [sin, cos].map(|place| place.map(|place| format!("v{place}")));
-                        lines.extend(dialect.bind_sin_cos(sin.as_deref(), cos.as_deref(), &a));
+                    if angles.contains_key(&operands[0]) {
+                        // all whose angles are known here, or this one
+                        let is_next = |angle: &Value| {
+                            let is_known = !is_step(*angle) || *angle < place;
+                            *angle == operands[0] || is_known && dialect.has_sines_abreast()
+                        };
+                        let next = angles.extract_if(.., |angle, _| is_next(angle));
+                        let sines = next.map(|(angle, places)| {
+                            let [sin, cos] = places.map(|place| place.map(|place| format!("v{place}")));
+                            Sines { angle: operand(angle), sin, cos }
+                        });
+                        lines.extend(dialect.bind_sines(&sines.collect::<Vec<_>>()));
                     }
                     None
                 }

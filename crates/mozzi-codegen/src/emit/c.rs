@@ -1,6 +1,6 @@
 //! C99: a header, which C++ reads, too, and a source.
 
-use super::dialect::{Argument, Dialect, Emitted, Source, digits};
+use super::dialect::{Argument, Dialect, Emitted, Sines, Source, digits, padded};
 use super::{Precision, SourceFile, body, sin_cos};
 use crate::function::Function;
 
@@ -10,6 +10,39 @@ pub(super) struct C(pub Precision);
 impl C {
     pub fn number(&self) -> &'static str {
         if self.0.is_f64() { "double" } else { "float" }
+    }
+
+    /// A call of this function.
+    pub fn bind_sines_by(&self, function: &str, Sines { angle, sin, cos }: &Sines) -> [String; 2] {
+        let names: Vec<&str> = sin.iter().chain(cos).map(String::as_str).collect();
+        let address = |name: &Option<String>| name.as_ref().map_or("0".to_string(), |name| format!("&{name}"));
+        [
+            format!("{} {};", self.number(), names.join(", ")),
+            format!("{function}({angle}, {}, {});", address(sin), address(cos)),
+        ]
+    }
+
+    /// A loop, which compilers make into registers of several.
+    fn bind_sines_abreast(&self, sines: &[Sines]) -> Vec<String> {
+        let Some(first) = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref())) else {
+            return Vec::new();
+        };
+        let (count, number, zero) = (padded(sines.len()), self.number(), self.literal(0.0));
+        let angles = sines.iter().map(|sines| &sines.angle[..]).chain(std::iter::repeat(&zero[..])).take(count);
+        let angles = angles.collect::<Vec<_>>().join(", ");
+        let mut lines = vec![
+            format!("const {number} x_{first}[{count}] = {{{angles}}};"),
+            format!("{number} sin_{first}[{count}], cos_{first}[{count}];"),
+            format!(
+                "for (int k = 0; k < {count}; ++k) {}(x_{first}[k], &sin_{first}[k], &cos_{first}[k]);",
+                self.helper("sin_cos")
+            ),
+        ];
+        for (k, Sines { sin, cos, .. }) in sines.iter().enumerate() {
+            lines.extend(sin.iter().map(|sin| self.bind(sin, &format!("sin_{first}[{k}]"))));
+            lines.extend(cos.iter().map(|cos| self.bind(cos, &format!("cos_{first}[{k}]"))));
+        }
+        lines
     }
 
     fn bits_type(&self) -> &'static str {
@@ -31,13 +64,11 @@ impl Dialect for C {
     fn bind(&self, name: &str, expression: &str) -> String {
         format!("const {} {name} = {expression};", self.number())
     }
-    fn bind_sin_cos(&self, sin: Option<&str>, cos: Option<&str>, angle: &str) -> Vec<String> {
-        let names: Vec<&str> = sin.into_iter().chain(cos).collect();
-        let address = |name: Option<&str>| name.map_or("0".to_string(), |name| format!("&{name}"));
-        vec![
-            format!("{} {};", self.number(), names.join(", ")),
-            format!("{}({angle}, {}, {});", self.helper("sin_cos"), address(sin), address(cos)),
-        ]
+    fn bind_sines(&self, sines: &[Sines]) -> Vec<String> {
+        match sines {
+            [one] => self.bind_sines_by(&self.helper("sin_cos"), one).to_vec(),
+            _ => self.bind_sines_abreast(sines),
+        }
     }
     fn bind_bits(&self, name: &str, expression: &str) -> String {
         format!("const {} {name} = {expression};", self.bits_type())

@@ -3,7 +3,7 @@
 //! The function reads and writes entries that are `stride` apart; each kernel calls it with its own, so that a program is written once.
 
 use super::c::C;
-use super::dialect::{Argument, Dialect, Emitted, Source};
+use super::dialect::{Argument, Dialect, Emitted, Sines, Source};
 use super::{SourceFile, body, sin_cos};
 use crate::function::Function;
 use std::cell::RefCell;
@@ -44,13 +44,12 @@ impl Dialect for Cuda<'_> {
     fn bind(&self, name: &str, expression: &str) -> String {
         self.c.bind(name, expression)
     }
-    fn bind_sin_cos(&self, sin: Option<&str>, cos: Option<&str>, angle: &str) -> Vec<String> {
-        let names: Vec<&str> = sin.into_iter().chain(cos).collect();
-        let address = |name: Option<&str>| name.map_or("0".to_string(), |name| format!("&{name}"));
-        vec![
-            format!("{} {};", self.c.number(), names.join(", ")),
-            format!("{}({angle}, {}, {});", self.helper("sin_cos"), address(sin), address(cos)),
-        ]
+    fn bind_sines(&self, sines: &[Sines]) -> Vec<String> {
+        sines.iter().flat_map(|one| self.c.bind_sines_by(&self.helper("sin_cos"), one)).collect()
+    }
+    /// Threads are abreast already, and numbers that are known early take registers.
+    fn has_sines_abreast(&self) -> bool {
+        false
     }
     fn bind_bits(&self, name: &str, expression: &str) -> String {
         let bits = if self.is_f64() { "unsigned long long" } else { "unsigned int" };

@@ -68,6 +68,19 @@ impl Source<'_> {
     }
 }
 
+/// A sine and a cosine to be computed.
+pub(super) struct Sines {
+    pub angle: String,
+    /// The names of their numbers; where one is not needed, none.
+    pub sin: Option<String>,
+    pub cos: Option<String>,
+}
+
+/// How many of an array's numbers make a loop over it worth a compiler's registers: a multiple of four, or two.
+pub(super) fn padded(count: usize) -> usize {
+    if count <= 2 { count } else { count.next_multiple_of(4) }
+}
+
 /// How a language says a step.
 pub(super) trait Dialect {
     /// A constant that is not negative.
@@ -78,8 +91,12 @@ pub(super) trait Dialect {
     fn helper(&self, name: &str) -> String;
     /// A new number.
     fn bind(&self, name: &str, expression: &str) -> String;
-    /// Two new numbers, sine and cosine; where one is not needed, none.
-    fn bind_sin_cos(&self, sin: Option<&str>, cos: Option<&str>, angle: &str) -> Vec<String>;
+    /// New numbers: sines and cosines.
+    fn bind_sines(&self, sines: &[Sines]) -> Vec<String>;
+    /// Are they computed as soon as their angles are known, side by side? Else each where it is needed.
+    fn has_sines_abreast(&self) -> bool {
+        true
+    }
     /// New bits, as many as a number has.
     fn bind_bits(&self, name: &str, expression: &str) -> String;
     /// A constant's bits.

@@ -23,9 +23,13 @@ pub(super) fn identifier(name: &str, nothing: &str) -> String {
     }
 }
 
-/// The name, with a number where it is taken, or one of those that local numbers have: `v12`, `r3`.
+/// How names begin that local numbers and arrays have, digits behind: `v12`, `r3`, `sin_v12`.
+const LOCAL: [&str; 5] = ["v", "r", "x_v", "sin_v", "cos_v"];
+
+/// The name, with a number where it is taken or local.
 pub(super) fn unique(name: &str, taken: &mut BTreeSet<String>) -> String {
-    let is_local = name.strip_prefix(['v', 'r']).is_some_and(|rest| rest.bytes().all(|c| c.is_ascii_digit()));
+    let is_number = |rest: &str| rest.bytes().all(|c| c.is_ascii_digit());
+    let is_local = LOCAL.iter().any(|start| name.strip_prefix(start).is_some_and(is_number));
     let mut unique = if is_local { format!("{name}_") } else { name.to_string() };
     for k in 2.. {
         if taken.insert(unique.clone()) {

@@ -1,6 +1,6 @@
 //! Rust that needs no `std`.
 
-use super::dialect::{Argument, Dialect, Emitted, Source, digits};
+use super::dialect::{Argument, Dialect, Emitted, Sines, Source, digits, padded};
 use super::{Precision, SourceFile, body, sin_cos};
 use crate::function::Function;
 
@@ -25,8 +25,31 @@ impl Dialect for Rust {
     fn bind(&self, name: &str, expression: &str) -> String {
         format!("let {name}: {} = {expression};", self.number())
     }
-    fn bind_sin_cos(&self, sin: Option<&str>, cos: Option<&str>, angle: &str) -> Vec<String> {
-        vec![format!("let ({}, {}) = sin_cos({angle});", sin.unwrap_or("_"), cos.unwrap_or("_"))]
+    fn bind_sines(&self, sines: &[Sines]) -> Vec<String> {
+        let name = |name: &Option<String>| name.clone().unwrap_or("_".into());
+        if let [Sines { angle, sin, cos }] = sines {
+            return vec![format!("let ({}, {}) = sin_cos({angle});", name(sin), name(cos))];
+        }
+        let Some(first) = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref())) else {
+            return Vec::new();
+        };
+        // a loop, which the compiler makes into registers of several
+        let (count, number) = (padded(sines.len()), self.number());
+        let angles = sines.iter().map(|sines| &sines.angle[..]).chain(std::iter::repeat("0.0")).take(count);
+        let angles = angles.collect::<Vec<_>>().join(", ");
+        let names = |pick: fn(&Sines) -> &Option<String>| {
+            sines.iter().map(|sines| name(pick(sines))).collect::<Vec<_>>().join(", ")
+        };
+        let (sin_names, cos_names) = (names(|sines| &sines.sin), names(|sines| &sines.cos));
+        vec![
+            format!("let x_{first}: [{number}; {count}] = [{angles}];"),
+            format!("let (mut sin_{first}, mut cos_{first}) = ([0.0; {count}], [0.0; {count}]);"),
+            format!("for ((x, sin), cos) in x_{first}.iter().zip(&mut sin_{first}).zip(&mut cos_{first}) {{"),
+            "    (*sin, *cos) = sin_cos(*x);".to_string(),
+            "}".to_string(),
+            format!("let [{sin_names}, ..] = sin_{first};"),
+            format!("let [{cos_names}, ..] = cos_{first};"),
+        ]
     }
     fn bind_bits(&self, name: &str, expression: &str) -> String {
         format!("let {name} = {expression};")

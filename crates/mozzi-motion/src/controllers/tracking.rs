@@ -3,10 +3,10 @@
 use crate::trajectories::Reference;
 use mozzi::{Model, Trajectory, difference};
 
-/// The error e = θ_d ⊖ θ over a motion.
+/// The error e = θ_d ⊖ θ of each joint over a motion; a free base follows nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingError {
-    /// √(mean of e²) of each velocity, over the rows: rad or m.
+    /// √(mean of e²) of each joint, over the rows: rad or m.
     pub rms: Vec<f64>,
     /// max |e| of each.
     pub largest: Vec<f64>,
@@ -29,12 +29,13 @@ impl TrackingError {
 /// # Panics
 /// When the motion or the reference is another robot's.
 pub fn tracking_error(model: &Model, motion: &Trajectory, reference: &impl Reference) -> TrackingError {
-    let (mut squares, mut largest, mut e) = (vec![0.0; model.n()], vec![0.0_f64; model.n()], vec![0.0; model.n()]);
+    let (base, mut e) = (model.base().velocities(), vec![0.0; model.n()]);
+    let (mut squares, mut largest) = (vec![0.0; model.n() - base], vec![0.0_f64; model.n() - base]);
     for row in motion.samples() {
         difference(model, row.theta, &reference.at(row.t).theta, &mut e);
-        for j in 0..e.len() {
-            squares[j] += e[j] * e[j];
-            largest[j] = largest[j].max(e[j].abs());
+        for (j, e) in e[base..].iter().enumerate() {
+            squares[j] += e * e;
+            largest[j] = largest[j].max(e.abs());
         }
     }
     let rms = squares.iter().map(|sum| (sum / motion.len().max(1) as f64).sqrt()).collect();

@@ -75,6 +75,31 @@ impl<P: Path> Reference for Timed<P> {
     }
 }
 
+/// A motion of the joints of a robot whose base is free. Nothing drives that, so that no controller looks at where it is desired: at one pose, at rest.
+#[derive(Clone, Debug)]
+pub struct OfJoints<R> {
+    /// What the joints are to do, as those of the bolted robot.
+    pub joints: R,
+    /// The base's, as in θ.
+    pub pose: [f64; 7],
+}
+
+impl<R: Reference> Reference for OfJoints<R> {
+    fn duration(&self) -> f64 {
+        self.joints.duration()
+    }
+
+    fn at(&self, t: f64) -> Desired {
+        let Desired { theta, dtheta, ddtheta } = self.joints.at(t);
+        let still = [0.0; 6];
+        Desired {
+            theta: [&self.pose[..], &theta].concat(),
+            dtheta: [&still[..], &dtheta].concat(),
+            ddtheta: [&still[..], &ddtheta].concat(),
+        }
+    }
+}
+
 /// Positions to be held.
 #[derive(Clone, Debug)]
 pub struct Hold {
