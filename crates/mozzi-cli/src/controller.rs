@@ -33,8 +33,10 @@ impl Controller {
         let value: Value = serde_json::from_str(&text).map_err(|error| wrong(format!("is no JSON: {error}")))?;
         let Value::Object(entries) = value else { return Err(wrong("is no JSON object".into())) };
         let kinds = KINDS.map(|(kind, _)| format!("`{kind}`")).join(", ");
-        let Some(kind) = entries.get("controller").and_then(Value::as_str) else {
-            return Err(wrong(format!("`controller` is missing, expected one of {kinds}")));
+        let kind = match entries.get("controller") {
+            Some(Value::String(kind)) => kind.as_str(),
+            Some(other) => return Err(wrong(format!("controller: is {other}, expected one of {kinds}"))),
+            None => return Err(wrong(format!("`controller` is missing, expected one of {kinds}"))),
         };
         let Some((kind, needed)) = KINDS.iter().find(|(known, _)| *known == kind) else {
             return Err(wrong(format!("controller: is `{kind}`, expected one of {kinds}")));
@@ -48,7 +50,11 @@ impl Controller {
         }
         let believed = match entries.get("model") {
             None => None,
-            Some(Value::String(name)) => Some(robot.load_other(name)?),
+            Some(Value::String(name)) => Some(robot.load_other(name).map_err(|failure| match failure {
+                Failure::Wrong(sentence) => wrong(format!("model: {sentence}")),
+                Failure::Load(error) if error.diagnostics().is_empty() => wrong(format!("model: {error}")),
+                other => other, // points into the robot's own file
+            })?),
             Some(other) => return Err(wrong(format!("model: is {other}, expected a file or an embedded robot"))),
         };
         Ok(Controller { file: file.to_string(), kind: kind.to_string(), believed, entries })
@@ -90,7 +96,9 @@ impl Controller {
 
     fn frame(&self, model: &Model) -> Result<mozzi::FrameId> {
         match &self.entries["frame"] {
-            Value::String(name) => Ok(model.frame(name)?),
+            Value::String(name) => {
+                model.frame(name).map_err(|error| Failure::wrong(format!("{}: frame: {error}", self.file)))
+            }
             other => Err(Failure::wrong(format!("{}: frame: is {other}, expected the name of a frame", self.file))),
         }
     }

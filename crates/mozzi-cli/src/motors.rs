@@ -160,7 +160,8 @@ impl MotorArguments {
     }
 }
 
-fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
+/// Of a table whose rows are to follow each other.
+pub fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
     match (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
         None => Ok(()),
         Some(row) => {

@@ -33,6 +33,11 @@ fn tables_in_tables_out() {
         rows.starts_with("theta_1,theta_2,theta_3,theta_4,theta_5,theta_6,reached,angle,distance,starts,iterations\n")
     );
     assert_eq!(rows.lines().count(), 3);
+    let found = json(&["ik", "ur5", "--in", &goals]);
+    assert_eq!((&found["frame"], &found["complete"]), (&"tool0".into(), &true.into()));
+    assert_eq!(numbers(&found["reached"]), [1.0, 1.0]);
+    let row: Vec<f64> = rows.lines().nth(1).expect("a row").split(',').map(|x| x.parse().expect("a number")).collect();
+    assert_close(&common::rows(&found["theta"])[0], &row[..6], 0.0);
     // one out of reach: its row is the nearest that was found, and the exit code says so
     let goals = file(&folder, "far.csv", "x,y,z,qw,qx,qy,qz\n0.4,0.2,0.5,1,0,0,0\n3,0,0,1,0,0,0\n");
     let output = mozzi(&["ik", "ur5", "--in", &goals, "--starts", "3"]);

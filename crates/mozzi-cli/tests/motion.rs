@@ -168,10 +168,47 @@ fn wrong_motions() {
     wrong(&[&WAY[..], &["--max-torque", "1"]].concat(), &["the motor of", "too weak at s = 0"]);
     wrong(&[&WAY[..], &["--max-velocity", "1,2"]].concat(), &["--max-velocity has 2 entries, expected 6"]);
     wrong(&["trajectory", "ur5", "--along", "line", "--position", "3,0,0"], &["`tool0` did not reach its goal"]);
+    let points = "theta_1,theta_2,theta_3,theta_4,theta_5,theta_6\n0,-1.5,1.5,0,0.5,0\n0,-1.5,1.5,0,0.5,0\n";
+    wrong(
+        &["trajectory", "ur5", "--via", &file(&folder, "same.csv", points)],
+        &["same.csv", "in row 2, as in the one before"],
+    );
+    let timed = file(&folder, "timed.csv", &points.replace("theta_1,", "t,theta_1,").replace("\n0,", "\n0,0,"));
+    wrong(&["trajectory", "ur5", "--via", &timed], &["timed.csv:3: t is 0 after 0"]);
+    let timed = file(
+        &folder,
+        "timed.csv",
+        &points.replace("theta_1,", "t,theta_1,").replacen("\n0,", "\n0,0,", 1).replacen("\n0,-", "\n1,0,-", 1),
+    );
+    wrong(
+        &["trajectory", "ur5", "--via", &timed, "--profile", "cubic"],
+        &["--profile and the column t", "both say when"],
+    );
+    wrong(&["trajectory", "ur5", "--to", "0,0,0,0,0,0"], &["expected a path along which something moves"]);
+    // beyond what was asked for, or what the robot can: told
+    let output = common::mozzi(&["trajectory", "ur5", "--to", "9,-1,1,0,0.5,0", "--time", "1", "--out", "-"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success() && said.contains("velocity limit: `shoulder_pan_joint` is asked for 16.87"),
+        "{said}"
+    );
+    assert!(
+        said.contains("joint limit: `shoulder_pan_joint` is asked for 9, beyond its 6.2831853, at t = 1 s"),
+        "{said}"
+    );
     for (text, words) in [
         ("{", "is no JSON"),
         ("{}", "`controller` is missing"),
         (r#"{"controller": "pid"}"#, "is `pid`, expected one of `pd-gravity`"),
+        (r#"{"controller": 3}"#, "controller: is 3, expected one of `pd-gravity`"),
+        (
+            r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "no.urdf"}"#,
+            "bad.json: model: `no.urdf` is neither a file",
+        ),
+        (
+            r#"{"controller": "task-space", "frame": "no", "p": 1, "d": 1, "posture_p": 1, "posture_d": 1}"#,
+            "bad.json: frame: there is no frame `no`",
+        ),
         (r#"{"controller": "pd-gravity", "p": 1}"#, "`d` is missing"),
         (r#"{"controller": "pd-gravity", "p": 1, "d": 1, "i": 1}"#, "`i` is no entry of `pd-gravity`"),
         (r#"{"controller": "pd-gravity", "p": [1, 2], "d": 1}"#, "expected a number, or a list of 6"),

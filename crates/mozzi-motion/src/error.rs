@@ -28,6 +28,14 @@ pub enum Error {
         /// Of all starts.
         iterations: usize,
     },
+    /// A frame cannot be led along its path.
+    #[error("at s = {s} of the path: {source}")]
+    OffPath {
+        /// Where on the path, 0 to 1.
+        s: f64,
+        /// Why not: [`Error::NotReached`].
+        source: Box<Error>,
+    },
     /// The joints' path along a frame's cannot be joined.
     #[error(
         "the path of frame `{frame}` breaks at s = {s}: however close its solutions, the joints between them are {deviation:.1e} off it, more than \

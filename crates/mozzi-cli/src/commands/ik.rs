@@ -13,7 +13,7 @@ use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_motion::inverse_kinematics::{self, Options, Secondary, Solution};
 use mozzi_motion::{Goal, InverseKinematics};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Of the table beside the positions: 1 or 0, what is left, and what it took.
@@ -109,7 +109,7 @@ impl IkArguments {
         guess: &[f64],
         secondary: &Secondary,
     ) -> Result<String> {
-        let poses = goals::read(file)?;
+        let (poses, frame) = (goals::read(file)?, model.frame_name(model.end_effector()?));
         interrupt::listen();
         let (progress, begin) = (Progress::new("inverse kinematics", poses.len(), "poses"), Instant::now());
         let (mut theta, mut numbers, mut missed) = (Vec::new(), [const { Vec::new() }; 5], Vec::new());
@@ -135,11 +135,6 @@ impl IkArguments {
         }
         drop(progress);
         let (count, seconds) = (theta.len(), begin.elapsed().as_secs_f64());
-        let mut columns = Columns::default();
-        columns.add_group(model, "theta", &theta);
-        for (name, values) in COLUMNS.into_iter().zip(numbers) {
-            columns.add(name, values);
-        }
         let micros = 1e6 * seconds / count.max(1) as f64;
         failure::note(&format!(
             "{} of {count} poses reached, {} s, {} µs a pose",
@@ -147,11 +142,23 @@ impl IkArguments {
             about(seconds),
             about(micros)
         ));
-        let text = match self.output.as_deref().filter(|file| *file != "-") {
-            None => columns.text(),
-            Some(file) => {
+        let object = self.robot.json.then(|| {
+            let lists = theta.iter().map(|row| json::vector(row)).collect::<Value>();
+            let mut object = json!({ "frame": frame, "theta": lists, "complete": count == poses.len() });
+            COLUMNS.into_iter().zip(&numbers).for_each(|(name, list)| object[name] = json::vector(list));
+            json::print(&json::of_robot(model, object))
+        });
+        let mut columns = Columns::default();
+        columns.add_group(model, "theta", &theta);
+        for (name, values) in COLUMNS.into_iter().zip(numbers) {
+            columns.add(name, values);
+        }
+        let text = match (self.output.as_deref().filter(|file| *file != "-"), object) {
+            (None, None) => columns.text(),
+            (None, Some(object)) => object,
+            (Some(file), object) => {
                 save(file, columns.text())?;
-                format!("{count} rows written to {file}\n")
+                object.unwrap_or_else(|| format!("{count} rows written to {file}\n"))
             }
         };
         if count < poses.len() {

@@ -140,10 +140,11 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let figure = Convergence::figure(title, &found.iter().map(curve).collect::<Vec<_>>());
     let mut text = save(figure, &arguments.out)?;
     for each in &found {
-        let order =
-            each.measured_order().map_or("unknown: too few motions went well".into(), |order| format!("{order:.2}"));
         let by = if each.is_adaptive() { " by its evaluations" } else { "" };
-        text += &format!("{}: order {}, measured {order}{by}\n", each.name, each.order);
+        let order = each
+            .measured_order()
+            .map_or("unknown: too few motions went well, or all too well".into(), |order| format!("{order:.2}{by}"));
+        text += &format!("{}: order {}, measured {order}\n", each.name, each.order);
     }
     Ok(text)
 }

@@ -208,12 +208,14 @@ impl SimulateArguments {
             Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
         };
         let options = Options { friction, record_every: self.record_every, ..Options::with_step(end, step)? };
+        // of a motion of no duration there is no shorter step
+        let step = if end == 0.0 { step } else { options.step() };
         let integrator = match self.method {
-            Way::Euler => Integrator::Fixed(Method::Euler, options.step()),
-            Way::SemiImplicitEuler => Integrator::Fixed(Method::SemiImplicitEuler, options.step()),
-            Way::Rk4 => Integrator::Fixed(Method::RungeKutta4, options.step()),
+            Way::Euler => Integrator::Fixed(Method::Euler, step),
+            Way::SemiImplicitEuler => Integrator::Fixed(Method::SemiImplicitEuler, step),
+            Way::Rk4 => Integrator::Fixed(Method::RungeKutta4, step),
             Way::Dopri => Integrator::DormandPrince { tolerance: number("--tolerance", &self.tolerance)? },
-            Way::Midpoint => Integrator::Midpoint { step: options.step() },
+            Way::Midpoint => Integrator::Midpoint { step },
         };
         let robot = self.machine_code(model)?;
         let simulation = Simulation {
@@ -221,7 +223,7 @@ impl SimulateArguments {
             forward_dynamics: robot.as_ref().and_then(Compiled::simulator),
             friction,
             stops: self.joint_limits.into(),
-            record: options.step() * self.record_every as f64,
+            record: step * self.record_every as f64,
             events,
             ..Simulation::new(end)
         };
@@ -233,7 +235,7 @@ impl SimulateArguments {
         })?;
         let shown = match integrator {
             Integrator::DormandPrince { tolerance } => tolerance,
-            _ => options.step(),
+            _ => step,
         };
         Ok((run, integrator.name(), shown))
     }

@@ -1,9 +1,10 @@
 //! `mozzi trajectory`: a motion to be followed.
 
 use crate::columns::{Columns, save};
-use crate::failure::{Failure, Result};
+use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
+use crate::motors::check_times;
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
@@ -39,9 +40,9 @@ pub struct TrajectoryArguments {
     /// How far off its way the end effector may be, ‖(ω, v)‖, rad and m
     #[arg(long, value_name = "EPS", default_value = "1e-6", allow_hyphen_values = true)]
     deviation: String,
-    /// How the way is run through
-    #[arg(long, default_value = "quintic")]
-    profile: Shaped,
+    /// How the way is run through [default: quintic]
+    #[arg(long)]
+    profile: Option<Shaped>,
     /// How long, s [default: as short as the limits allow]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     time: Option<String>,
@@ -112,13 +113,15 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     let told = rows.iter().enumerate().map(|(k, (_, row))| torque(row).inspect(|_| progress.at(k + 1)));
     let tau = told.collect::<std::result::Result<Vec<_>, _>>()?;
     drop(progress);
+    let told = beyond(&model, &rows, &tau, &limits);
+    told.iter().for_each(|line| failure::note(line));
     let text = columns(&model, &rows, &tau).text();
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
         save(file, &text)?;
     }
     match arguments.out.as_deref() {
         Some("-") => Ok(text),
-        _ if arguments.robot.json => Ok(json::print(&object(&model, &rows, &tau))),
+        _ if arguments.robot.json => Ok(json::print(&object(&model, &rows, &tau, told))),
         file => Ok(page(&model, &rows, &tau, &limits, file)),
     }
 }
@@ -154,6 +157,12 @@ impl TrajectoryArguments {
                 let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
                 match &samples.t {
                     Some(times) => {
+                        check_times(&samples, times)?;
+                        if self.profile.is_some() {
+                            return Err(Failure::wrong(format!(
+                                "--profile and the column t of {file} both say when, expected one of them"
+                            )));
+                        }
                         let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
                         let span = times[times.len() - 1] - times[0];
                         let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
@@ -165,12 +174,13 @@ impl TrajectoryArguments {
             None => self.path(model)?,
         };
         let rise = number("--rise", &self.rise)?;
-        let shape = |duration: f64| match self.profile {
+        let asked = self.profile.unwrap_or(Shaped::Quintic);
+        let shape = |duration: f64| match asked {
             Shaped::Cubic => Profile::cubic(duration),
             Shaped::Quintic => Profile::quintic(duration),
             Shaped::Trapezoidal | Shaped::Fastest => Profile::trapezoidal_in(duration, rise),
         };
-        let profile = match (&self.time, self.profile) {
+        let profile = match (&self.time, asked) {
             (None, Shaped::Fastest) => time_optimal(model, &path, limits, PLACES)?,
             (Some(text), Shaped::Fastest) => {
                 time_optimal(model, &path, limits, PLACES)?.in_time(number("--time", text)?)?
@@ -215,7 +225,36 @@ fn columns(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Columns 
     columns
 }
 
-fn object(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Value {
+/// A sentence for each limit that the motion passes: positions as the robot has them, the others as they were asked for.
+fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits) -> Vec<String> {
+    let (positions, velocities) = (model.base().positions(), model.base().velocities());
+    let mut told = Vec::new();
+    for (k, joint) in model.joints().enumerate() {
+        let (q, v) = (positions + k, velocities + k);
+        let [low, high] = joint.limits.position.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let mut say = |what: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
+            let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
+            let worst = (0..rows.len()).max_by(|&a, &b| excess(a).total_cmp(&excess(b))).unwrap_or(0);
+            // what keeps a limit may pass it by rounding
+            let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
+            if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
+                let (name, x, limit, t) = (&joint.name, scalar(x), scalar(limit), scalar(rows[worst].0));
+                told.push(format!("{what} limit: `{name}` is asked for {x}, beyond its {limit}, at t = {t} s"));
+            }
+        };
+        say("joint", &|row| rows[row].1.theta[q], [low, high]);
+        for (what, asked, limit) in [
+            ("velocity", &(|row: usize| rows[row].1.dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),
+            ("acceleration", &|row| rows[row].1.ddtheta[v], limits.acceleration[v]),
+            ("effort", &|row| tau[row][v], limits.torque[v]),
+        ] {
+            say(what, asked, [-limit, limit]);
+        }
+    }
+    told
+}
+
+fn object(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], beyond: Vec<String>) -> Value {
     let group =
         |pick: fn(&Desired) -> &Vec<f64>| rows.iter().map(|(_, row)| json::vector(pick(row))).collect::<Value>();
     json::of_robot(
@@ -226,6 +265,7 @@ fn object(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Value {
             "dtheta": group(|row| &row.dtheta),
             "ddtheta": group(|row| &row.ddtheta),
             "tau": tau.iter().map(|tau| json::vector(tau)).collect::<Value>(),
+            "beyond": beyond,
         }),
     )
 }

@@ -10,6 +10,8 @@ use std::ops::ControlFlow;
 
 /// The reference takes so many times as many steps as the finest that is compared with it, by Runge-Kutta 4.
 const FINER: usize = 4;
+/// Smaller errors, in rad or m, tell nothing of a method.
+const ROUNDING: f64 = 1e-13;
 
 /// Motions by one integrator beside the reference.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,12 +37,13 @@ pub struct Measured {
 
 impl Convergence {
     /// The order that errors show: of given steps the last two, by the steps; of Dormand-Prince the last and the one in the middle, by the evaluations.
+    /// None where they are rounding.
     pub fn measured_order(&self) -> Option<f64> {
         let (many, fine) = (self.measured.len(), self.measured.last()?);
         let coarse = if self.is_adaptive() { self.measured[many / 2] } else { self.measured[many.checked_sub(2)?] };
         let work = |of: &Measured| if self.is_adaptive() { of.evaluations as f64 } else { 1.0 / of.step };
         let order = (coarse.error / fine.error).ln() / (work(fine) / work(&coarse)).ln();
-        Some(order).filter(|order| order.is_finite())
+        Some(order).filter(|order| order.is_finite() && fine.error > ROUNDING)
     }
 
     /// Are its steps found by a tolerance?

@@ -49,7 +49,7 @@ impl Cartesian {
     /// that takes. Each knot is searched from the one before it, so that a robot with joints to spare takes the shortest steps.
     ///
     /// # Errors
-    /// [`Error::NotReached`] where the path leaves the robot's reach; [`Error::PathBroken`] where the solutions jump (at singular
+    /// [`Error::OffPath`] where the path leaves the robot's reach; [`Error::PathBroken`] where the solutions jump (at singular
     /// positions, or at a joint's limit); [`Error::Model`].
     pub fn new(
         model: &Model,
@@ -70,8 +70,8 @@ impl Cartesian {
             let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
             let mut points = vec![from.to_vec()];
             for &s in &s[1..] {
-                let next = solver.solve(Goal::Pose(pose(s)), &points[points.len() - 1])?.theta;
-                points.push(next);
+                let next = solver.solve(Goal::Pose(pose(s)), &points[points.len() - 1]);
+                points.push(next.map_err(|error| Error::OffPath { s, source: Box::new(error) })?.theta);
             }
             let spline = Spline::new(model, &s, &points, Ends::Natural)?;
             let off = |k: usize| {

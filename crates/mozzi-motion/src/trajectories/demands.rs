@@ -1,6 +1,8 @@
 //! What a path asks of the motors: τ = a s̈ + b ṡ² + c + d ṡ, linear in s̈ and ṡ² but for viscous friction.
 
 use super::path::Path;
+use crate::Error;
+use crate::error::check;
 use mozzi::{Environment, Model, Workspace, inverse_dynamics};
 
 /// The coefficients of each of the n velocities at one s.
@@ -17,8 +19,18 @@ pub(super) struct Demand {
     pub b: Vec<f64>,
     /// g + μ sgn θ′.
     pub c: Vec<f64>,
+    /// g: what is asked for at rest.
+    pub g: Vec<f64>,
     /// The viscous friction of θ′.
     pub d: Vec<f64>,
+}
+
+/// As [`demands`], of a path along which something moves.
+pub(super) fn demands_of_a_motion(model: &Model, path: &impl Path, s: &[f64]) -> Result<Vec<Demand>, Error> {
+    let all = demands(model, path, s);
+    let moves = all.iter().any(|demand| demand.slope.iter().any(|&x| x != 0.0));
+    check(moves, "the way of every joint along the path", 0, "a path along which something moves")?;
+    Ok(all)
 }
 
 /// At these s, by three inverse dynamics each.
@@ -34,7 +46,8 @@ pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand>
             inverse_dynamics(model, &point.theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
             tau
         };
-        let mut c = tau(&model.environment(), &still, &still);
+        let g = tau(&model.environment(), &still, &still);
+        let mut c = g.clone();
         let a = tau(&weightless, &still, &point.slope);
         let mut b = tau(&weightless, &point.slope, &point.curvature);
         let d: Vec<f64> = damping.iter().zip(&point.slope).map(|(d, x)| d * x).collect();
@@ -43,7 +56,7 @@ pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand>
             b[j] -= f;
             c[j] += f - d[j];
         }
-        Demand { s, slope: point.slope, curvature: point.curvature, a, b, c, d }
+        Demand { s, slope: point.slope, curvature: point.curvature, a, b, c, g, d }
     };
     s.iter().map(|&s| at(s)).collect()
 }

@@ -137,7 +137,8 @@ impl Profile {
         let ([a, b, c, d, e, f], x) = (self.pieces[k], t - self.times[k]);
         Progress {
             s: (a + x * (b + x * (c + x * (d + x * (e + x * f))))).clamp(0.0, 1.0),
-            ds: b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f))),
+            // none of them goes back but by rounding
+            ds: (b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f)))).max(0.0),
             dds: 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f)),
         }
     }

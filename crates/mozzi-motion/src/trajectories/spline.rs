@@ -64,8 +64,11 @@ impl Spline {
     pub fn through(model: &Model, points: &[Vec<f64>], ends: Ends) -> Result<Self, Error> {
         let apart = |p: &[Vec<f64>]| p[0].iter().zip(&p[1]).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
         let mut s = vec![0.0];
-        for pair in points.windows(2) {
-            s.push(s[s.len() - 1] + apart(pair));
+        for (k, pair) in points.windows(2).enumerate() {
+            let way = apart(pair);
+            let found = || format!("{:?} in row {}, as in the one before it", pair[1], k + 2);
+            check(way != 0.0, "a via point", found(), "points of which no two in a row are the same")?;
+            s.push(s[s.len() - 1] + way);
         }
         Self::new(model, &s, points, ends)
     }

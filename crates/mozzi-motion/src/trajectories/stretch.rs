@@ -1,6 +1,6 @@
 //! The shortest duration of a given shape of s(t) under limits.
 
-use super::demands::demands;
+use super::demands::demands_of_a_motion;
 use super::limits::Limits;
 use super::path::Path;
 use super::profile::Profile;
@@ -13,7 +13,7 @@ use mozzi::Model;
 ///
 /// # Errors
 /// [`Error::TooWeak`] where a torque limit cannot hold the robot; [`Error::Unlimited`] where nothing is limited;
-/// [`mozzi::Error::BadArgument`].
+/// [`mozzi::Error::BadArgument`], also of a path along which nothing moves.
 pub fn stretched(
     model: &Model,
     path: &impl Path,
@@ -31,7 +31,7 @@ pub fn stretched(
     )?;
     let times: Vec<f64> = (0..=samples).map(|k| profile.duration() * k as f64 / samples as f64).collect();
     let progress: Vec<_> = times.iter().map(|&t| profile.at(t)).collect();
-    let demands = demands(model, path, &progress.iter().map(|p| p.s).collect::<Vec<_>>());
+    let demands = demands_of_a_motion(model, path, &progress.iter().map(|p| p.s).collect::<Vec<_>>())?;
     let mut fastest = f64::INFINITY;
     for (demand, now) in demands.iter().zip(&progress) {
         for j in 0..model.n() {

@@ -164,7 +164,7 @@ fn the_hand_stays_on_its_path() {
             assert_rates(&model, &Timed::new(path, Profile::quintic(1.0).expect("fine")), 1e-4);
         }
         let far = Cartesian::new(&model, frame, &from, SE3::translation([2.0, 0.0, 0.0]), Shape::Straight, 1e-4);
-        assert!(matches!(far, Err(Error::NotReached { .. })), "{far:?}");
+        assert!(matches!(far, Err(Error::OffPath { s, .. }) if s > 0.0), "{far:?}");
     }
 }
 
@@ -223,12 +223,12 @@ fn a_pendulum_swings_up_as_its_energy_says() {
         assert!((now.ds * end - expected).abs() < 0.02 * expected.max(1.0), "{q}: {} {expected}", now.ds * end);
     }
     let [_, _, share] = used(&robot, &Timed::new(&line, shortest), &limits, 700);
-    assert!(share < 1.005 && share > 0.99, "{share}");
+    assert!(share < 1.0001 && share > 0.9999, "{share}");
     // friction of both kinds: within the limit, and near it
     let robot = pendulum(m, r, 0.8, 0.5);
     let shortest = time_optimal(&robot, &line, &limits, 500).expect("fine");
     let [_, _, share] = used(&robot, &Timed::new(&line, shortest), &limits, 700);
-    assert!(share < 1.005 && share > 0.97, "{share}");
+    assert!(share < 1.0001 && share > 0.97, "{share}");
     // too weak to be held on the way
     let weak = time_optimal(&robot, &line, &Limits { torque: vec![6.0], ..limits }, 500).expect_err("weak");
     let Error::TooWeak { joint, s, needed, limit } = &weak else { panic!("{weak:?}") };
@@ -250,7 +250,7 @@ fn the_fastest_way_keeps_all_limits_and_leaves_none_unused() {
     let profile = time_optimal(&ur5, &spline, &limits, 300).expect("fine");
     let fastest = Timed::new(&spline, profile);
     let share = used(&ur5, &fastest, &limits, 900);
-    assert!(share.iter().all(|&x| x < 1.02), "{share:?}");
+    assert!(share.iter().all(|&x| x < 1.0001), "{share:?}");
     // at almost every time some limit is reached
     let T = fastest.duration();
     let busy = (1..100).filter(|&k| {
@@ -285,12 +285,16 @@ fn what_makes_no_sense_is_refused() {
     words(Spline::new(&ur5, &[0.0, 1.0], &points, Ends::Natural).expect_err("two"), "2 entries, expected 3");
     words(Spline::new(&ur5, &[0.0, 1.0, 1.0], &points, Ends::Natural).expect_err("twice"), "1 in row 3");
     words(Spline::through(&ur5, &points[..1], Ends::Natural).expect_err("one"), "at least 2");
+    let twice = [points[0].clone(), points[1].clone(), points[1].clone()];
+    words(Spline::through(&ur5, &twice, Ends::Natural).expect_err("twice"), "in row 3, as in the one before it");
     words(Spline::through(&free, &points, Ends::Natural).expect_err("free"), "bolted base");
     words(Line::new(&ur5, &[0.0; 6], &[0.0; 5]).expect_err("five"), "5 entries, expected 6");
     words(Recorded::new(&ur5, &[0.0, 1.0, 2.0], &points, None, Some(&points)).expect_err("rates"), "θ̇ too");
     words(Recorded::new(&ur5, &[-1.0, 1.0, 2.0], &points, None, None).expect_err("early"), "first time is -1");
     let line = Line::new(&ur5, &[0.0; 6], &[1.0; 6]).expect("fine");
     let none = Limits::none(&ur5);
+    let still = Line::new(&ur5, &[0.3; 6], &[0.3; 6]).expect("fine");
+    words(time_optimal(&ur5, &still, &Limits::of(&ur5), 100).expect_err("still"), "along which something moves");
     words(time_optimal(&ur5, &line, &none, 100).expect_err("no limit"), "nothing limits the speed");
     words(
         stretched(&ur5, &line, &Profile::cubic(1.0).expect("fine"), &none, 100).expect_err("no limit"),

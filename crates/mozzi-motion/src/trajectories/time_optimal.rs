@@ -7,7 +7,7 @@
 //! Backwards, each point gets the largest x from which the next one's can be kept; forwards, each step takes the largest u.
 //! Limits are asked for at both ends of each interval.
 
-use super::demands::{Demand, demands};
+use super::demands::{Demand, demands, demands_of_a_motion};
 use super::limits::Limits;
 use super::linear_program::{HalfPlane, maximize};
 use super::path::Path;
@@ -20,13 +20,17 @@ use mozzi::Model;
 const UNBOUNDED: f64 = 1e12;
 /// Linearisations of viscous friction.
 const ROUNDS: usize = 4;
+/// So many places of each interval are looked at where the limits were not asked for, and so often are limits drawn in that are passed there.
+const BETWEEN: usize = 15;
+const CORRECTIONS: usize = 3;
 
 /// s(t) as fast as the limits allow, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques are those of the model's own gravity and
-/// friction; of viscous friction √x is replaced by a tangent, which is never below it.
+/// friction; of viscous friction √x is replaced by a tangent, which is never below it. Limits hold at the ends of each interval; where they are passed
+/// within, by some 10⁻⁴ of them, they are drawn in by as much, and all is solved anew.
 ///
 /// # Errors
 /// [`Error::TooWeak`] where a torque limit cannot hold the robot, or carry it along; [`Error::Unlimited`] where some part of the path is
-/// limited by nothing; [`mozzi::Error::BadArgument`].
+/// limited by nothing; [`mozzi::Error::BadArgument`], also of a path along which nothing moves.
 pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
     limits.check(model)?;
     check(intervals >= 2, "the number of intervals", intervals, "at least 2")?;
@@ -37,8 +41,51 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
         "a bolted base: torques are its motors'",
     )?;
     let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
-    let demands = demands(model, path, &s);
-    for demand in &demands {
+    let grid = demands_of_a_motion(model, path, &s)?;
+    let parts = BETWEEN + 1;
+    let inside = (0..intervals * parts).filter(|k| k % parts != 0).map(|k| k as f64 / (intervals * parts) as f64);
+    let inside = demands(model, path, &inside.collect::<Vec<_>>());
+    let mut drawn_in = limits.clone();
+    for _ in 0..CORRECTIONS {
+        let speeds = reachable(model, &s, &grid, &drawn_in)?;
+        let passed = shares(&s, &speeds, &inside, limits);
+        if passed.iter().flatten().all(|&share| share <= 1.0 + 1e-9) {
+            return Ok(Profile::of_speeds(&s, &speeds));
+        }
+        let Limits { velocity, acceleration, torque } = &mut drawn_in;
+        for (list, shares) in [velocity, acceleration, torque].into_iter().zip(&passed) {
+            list.iter_mut().zip(shares).for_each(|(limit, share)| *limit /= share.max(1.0));
+        }
+    }
+    Ok(Profile::of_speeds(&s, &reachable(model, &s, &grid, &drawn_in)?))
+}
+
+/// The largest shares of the limits of velocity, acceleration and torque that are used at places between those of the grid, s̈ being constant in between.
+fn shares(s: &[f64], speeds: &[f64], inside: &[Demand], limits: &Limits) -> [Vec<f64>; 3] {
+    let mut largest = [(); 3].map(|()| vec![0.0_f64; limits.torque.len()]);
+    for (k, demand) in inside.iter().enumerate() {
+        let i = k / BETWEEN;
+        let u = 0.5 * (speeds[i + 1].powi(2) - speeds[i].powi(2)) / (s[i + 1] - s[i]);
+        let x = (speeds[i].powi(2) + 2.0 * u * (demand.s - s[i])).max(0.0);
+        for j in 0..demand.a.len() {
+            let tau = demand.a[j] * u + demand.b[j] * x + demand.c[j] + demand.d[j] * x.sqrt();
+            let acceleration = demand.slope[j] * u + demand.curvature[j] * x;
+            let used = [
+                (demand.slope[j] * x.sqrt(), limits.velocity[j]),
+                (acceleration, limits.acceleration[j]),
+                (tau, limits.torque[j]),
+            ];
+            for (largest, (asked, limit)) in largest.iter_mut().zip(used) {
+                largest[j] = largest[j].max(asked.abs() / limit);
+            }
+        }
+    }
+    largest
+}
+
+/// ṡ at each place of the grid.
+fn reachable(model: &Model, s: &[f64], demands: &[Demand], limits: &Limits) -> Result<Vec<f64>, Error> {
+    for demand in demands {
         let weak = (0..model.n()).find(|&j| demand.c[j].abs() > limits.torque[j]);
         if let Some(j) = weak {
             return Err(too_weak(model, demand, limits, j));
@@ -49,9 +96,14 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
     // where √x is touched by its tangent: 0 for no friction at first, so that a solution exists to start from
     let mut speeds = vec![f64::INFINITY; s.len()];
     for round in 0..if damped { ROUNDS } else { 1 } {
-        let planes: Vec<Vec<HalfPlane>> =
+        let mut all: Vec<Vec<HalfPlane>> =
             demands.iter().zip(&speeds).map(|(demand, &speed)| planes(demand, limits, speed)).collect();
-        let found = fastest(model, &demands, limits, &planes)?;
+        // at both ends the robot rests, where friction neither hinders nor helps
+        for end in [0, demands.len() - 1] {
+            let rest = Demand { c: demands[end].g.clone(), ..demands[end].clone() };
+            all[end].extend(planes(&rest, limits, speeds[end]));
+        }
+        let found = fastest(model, demands, limits, &all)?;
         if round == 0 && damped {
             // the first round has none of the friction: half its speed is a place to touch
             speeds = found.iter().map(|x| 0.5 * x.sqrt()).collect();
@@ -59,7 +111,7 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
             speeds = found.iter().map(|x| x.sqrt()).collect();
         }
     }
-    Ok(Profile::of_speeds(&s, &speeds))
+    Ok(speeds)
 }
 
 /// The limits at a point, as half-planes of (u, x); √x touched at a speed, viscous friction left out where that is infinite.
