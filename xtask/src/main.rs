@@ -34,7 +34,7 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
-          the Python package, a while of fuzzing, the no_std check, every example, the main job
+          the Python package, its wheel, a while of fuzzing, the no_std check, every example, the main job
   check   formatting, clippy, documentation, licences, advisories, house rules
   docs    write the pages of docs/ anew; `test` holds them current
   page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` sees whether that was done
@@ -46,7 +46,8 @@ usage: cargo xtask COMMAND
           --install                                   let apt install clang and KDL first
           --criterion                                 each kernel alone, without peers
           --python                                    Python's calls beside Pinocchio's and the Modern Robotics package's
-  wheel   the Python package for Linux, into target/wheels; installed into an empty environment, where its README runs";
+  wheel   the Python package for Linux, into target/wheels; installed into an empty environment, where its README runs
+          --of-tests                                  of what `test` built, as `test` does it";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
         ["wheel"] => wheel(&workspace),
+        ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
@@ -86,6 +88,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
     report.step("Python package", || package::test(workspace, &mut count));
+    report.step("wheel", || wheel::test(workspace));
     report.step("fuzzing", || fuzz::run(workspace));
     report.step("no_std", || no_std::check(workspace));
     let mut programs = examples::Programs::new();

@@ -57,7 +57,7 @@ pub fn put_together(workspace: &Workspace, to: &Path, cargo: &[&str], profile: &
 }
 
 /// A folder with all in it, but for what Python left there.
-fn copy(from: &Path, to: &Path) -> Result<(), String> {
+pub fn copy(from: &Path, to: &Path) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{}: {error}", from.display());
     std::fs::create_dir_all(to).map_err(failed)?;
     for entry in std::fs::read_dir(from).map_err(failed)? {

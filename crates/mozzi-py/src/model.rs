@@ -138,6 +138,7 @@ impl PyModel {
 
     /// The same robot, these quantities of it made machine code: its methods are faster, on one state and on many, as long as
     /// float64 is computed in the robot's own gravity, its base at rest, touching nothing. All else is computed as before.
+    /// `simulate` goes by 'forward_dynamics', from one start and, where torques are a function, from many.
     ///
     /// Parameters
     /// ----------

@@ -55,6 +55,17 @@ def test_axes_and_threads(ur5, random):
     assert still.theta.shape == (3, 3, 0) and still.t.tolist() == [0, 0.75, 1] and not still.energy.any()
 
 
+def test_by_machine_code(robot, random):
+    theta, dtheta, _ = state(robot, random, 2)
+    fast = robot.compile("forward_dynamics")
+    for start in [(theta[0], dtheta[0]), (theta, dtheta)]:
+        for options in (dict(), dict(gravity=[0, 0, -1.6]), dict(torque="gravity_compensation")):
+            found, expected = fast.simulate(*start, 0.05, 5, **options), robot.simulate(*start, 0.05, 5, **options)
+            assert_close(found.theta, expected.theta)
+            assert_close(found.dtheta, expected.dtheta, tolerance=1e-10)
+            assert found.model == robot
+
+
 def test_a_table(ur5, random):
     theta, dtheta, _ = state(ur5, random, 3)
     found = ur5.simulate(theta, dtheta, 0.1, 4, record_every=2)

@@ -3,9 +3,8 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
-from typing import Any, Literal, Protocol, TypeAlias, overload
+from typing import Any, Literal, Protocol, overload
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ._results import (
@@ -24,9 +23,6 @@ from ._results import (
 __version__: str
 _embedded_names: list[str]
 _modern_robotics: ModuleType
-
-# One state. Of what may have leading axes the type of the answer is not known: Trajectories, where it has.
-_Row: TypeAlias = Sequence[float] | np.ndarray[tuple[int], np.dtype[Any]]
 
 def _compare(robot: Model | str | os.PathLike[str], states: int, seed: int, python: str | os.PathLike[str], policy: str) -> tuple[str, str, bool, bool]: ...
 
@@ -52,8 +48,9 @@ class Model:
     def closed_form(self, theta: ArrayLike, dtheta: ArrayLike, tip_wrench: ArrayLike | None = None, *, gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None, base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None) -> ClosedForm: ...
     def newton_euler(self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, tip_wrench: ArrayLike | None = None, *, frame: Literal["center_of_mass", "link"] = "center_of_mass", gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None, base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None) -> NewtonEuler: ...
     def base_parameters(self) -> BaseParameters: ...
+    # A list of numbers is one start. An array's axes are not in its type: Trajectory, or Trajectories where it has leading ones.
     @overload
-    def simulate(self, theta: _Row, dtheta: _Row, duration: float, steps: int, *, torque: Callable[[float, Array, Array], ArrayLike] | _Row | Literal["gravity_compensation"] | None = None, method: Literal["rk4", "semi-implicit-euler", "euler"] = "rk4", record_every: int = 1, gravity: ArrayLike | None = None, slip_speed: float | None = None, threads: int | None = None) -> Trajectory: ...
+    def simulate(self, theta: Sequence[float], dtheta: Sequence[float], duration: float, steps: int, *, torque: Callable[[float, Array, Array], ArrayLike] | Sequence[float] | Literal["gravity_compensation"] | None = None, method: Literal["rk4", "semi-implicit-euler", "euler"] = "rk4", record_every: int = 1, gravity: ArrayLike | None = None, slip_speed: float | None = None, threads: int | None = None) -> Trajectory: ...
     @overload
     def simulate(self, theta: ArrayLike, dtheta: ArrayLike, duration: float, steps: int, *, torque: Callable[[float, Array, Array], ArrayLike] | ArrayLike | Literal["gravity_compensation"] | None = None, method: Literal["rk4", "semi-implicit-euler", "euler"] = "rk4", record_every: int = 1, gravity: ArrayLike | None = None, slip_speed: float | None = None, threads: int | None = None) -> Any: ...
     def report(self, path: str | os.PathLike[str], trajectory: Trajectory | None = None, *, shapes: str | os.PathLike[str] | None = None, meshes: Literal["visual", "collision", "none"] = "visual", title: str = "simulated") -> None: ...

@@ -13,6 +13,7 @@ use crate::threads::Threads;
 use mozzi::simulation::{LARGEST, Motion, Options};
 use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, Surroundings};
+use mozzi_codegen::Compiled;
 use pyo3::prelude::*;
 
 /// Steps of all robots together between two looks at whether Python was interrupted: a part of a second. Not by the clock: how steps are cut
@@ -63,6 +64,8 @@ impl Record<'_> {
 struct Robots<'a> {
     model: &'a Model,
     batch: Batch<f64>,
+    /// Machine code, where there is some and gravity is the robot's own.
+    machine: Option<&'a Compiled>,
     surroundings: Surroundings<'a, f64>,
     leading: &'a [usize],
     options: &'a Options,
@@ -154,8 +157,11 @@ impl Robots<'_> {
         let mut tau = vec![0.0; dtheta.len()];
         let mut accelerations = |tau: &mut [f64], t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]| {
             torque(t, theta, dtheta, tau)?;
-            py.detach(|| self.batch.forward_dynamics(theta, dtheta, tau, &self.surroundings, ddtheta))
-                .map_err(|error| of_batch(error, self.leading))?;
+            let found = py.detach(|| match self.machine {
+                Some(code) => code.forward_dynamics_batch(theta, dtheta, tau, ddtheta),
+                None => self.batch.forward_dynamics(theta, dtheta, tau, &self.surroundings, ddtheta),
+            });
+            found.map_err(|error| of_batch(error, self.leading))?;
             Ok::<[f64; 0], PyErr>([])
         };
         let (base, robots) = (self.model.base(), dtheta.len() / self.model.n());
@@ -220,7 +226,8 @@ pub fn simulate<'py>(
     options.check().map_err(of_model)?;
     let environment = Environment::with_gravity(options.gravity.unwrap_or(model.gravity()));
     let surroundings = Surroundings::from(environment);
-    let robots = Robots { model, batch: batch(this.robot(), threads)?, surroundings, leading, options };
+    let machine = this.robot().compiled_for_many(threads).filter(|_| gravity.is_none());
+    let robots = Robots { model, batch: batch(this.robot(), threads)?, machine, surroundings, leading, options };
     let everywhere = |_| String::new();
     robots.check_finite("theta", start[0], everywhere)?;
     robots.check_finite("dtheta", start[1], everywhere)?;

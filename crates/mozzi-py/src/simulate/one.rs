@@ -5,8 +5,9 @@ use crate::array::Numbers;
 use crate::call::named;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
+use crate::robot::Robot;
+use mozzi::Error;
 use mozzi::simulation::{Energy, GravityCompensation, Input, Options, Trajectory, Zero};
-use mozzi::{Error, Model};
 use pyo3::prelude::*;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -57,27 +58,27 @@ pub fn simulate<'py>(
     options: &Options,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, this) = (robot.py(), robot.get());
-    let model = &this.robot().model;
-    let raised = RefCell::new(None);
-    let start = [theta, dtheta];
+    let (model, start, raised) = (&this.robot().model, [theta, dtheta], RefCell::new(None));
     let found = match torque {
-        Torque::None => run(py, model, start, Zero, options, &raised)?,
-        Torque::Constant(tau) => run(py, model, start, Constant(tau.slice::<f64>()?.to_vec()), options, &raised)?,
+        Torque::None => run(py, this.robot(), start, Zero, options, &raised)?,
+        Torque::Constant(tau) => {
+            run(py, this.robot(), start, Constant(tau.slice::<f64>()?.to_vec()), options, &raised)?
+        }
         Torque::GravityCompensation => {
             let motors = GravityCompensation::against(model, options.gravity.unwrap_or(model.gravity()));
-            run(py, model, start, motors, options, &raised)?
+            run(py, this.robot(), start, motors, options, &raised)?
         }
         Torque::Function(function) => {
-            run(py, model, start, Function { model: this, function, raised: &raised }, options, &raised)?
+            run(py, this.robot(), start, Function { model: this, function, raised: &raised }, options, &raised)?
         }
     };
     trajectory(py, robot, found)
 }
 
-/// Simulates, and looks now and then whether Python was interrupted.
+/// Simulates, by machine code where there is some for θ̈, and looks now and then whether Python was interrupted.
 fn run(
     py: Python<'_>,
-    model: &Model,
+    robot: &Robot,
     start: [&[f64]; 2],
     input: impl Input,
     options: &Options,
@@ -90,7 +91,10 @@ fn run(
             ControlFlow::Break(())
         }
     };
-    let found = model.simulate_with_progress(start[0], start[1], input, options, progress);
+    let found = match &robot.compiled {
+        Some(machine) => machine.code.simulate_with_progress(start[0], start[1], input, options, progress),
+        None => robot.model.simulate_with_progress(start[0], start[1], input, options, progress),
+    };
     match raised.borrow_mut().take() {
         Some(error) => Err(error),
         None => found.map_err(of_model),
