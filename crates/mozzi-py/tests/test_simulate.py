@@ -153,7 +153,7 @@ def test_a_blow_up_is_named(ur5):
 def test_interrupted(ur5, torque):
     starts = np.zeros((40, 6))
     timer = threading.Timer(0.3, _thread.interrupt_main)  # itself in need of Python's lock
-    timer.start()
     with pytest.raises(KeyboardInterrupt):
+        timer.start()
         ur5.simulate(starts, np.zeros(6), 1e3, 10**7, torque=torque, record_every=10**7)
     timer.join()
