@@ -211,9 +211,7 @@ impl Quantity for TaskSpaceDynamics<'_> {
     ) {
         let (task, k) = (self.0, self.0.rows.len());
         let (theta, dtheta) = input.split_at(model.nq());
-        if memory.task.as_ref().is_none_or(|(rows, _)| *rows != k) {
-            memory.task = None;
-        }
+        memory.task.take_if(|(rows, _)| *rows != k);
         let (_, own) = memory.task.get_or_insert_with(|| (k, TaskMemory::new(model, k)));
         let (Lambda, eta) = output.split_at_mut(k * k);
         kernel::task_space_dynamics(model, theta, dtheta, task, environment, &mut memory.workspace, own, Lambda, eta);

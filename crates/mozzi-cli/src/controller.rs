@@ -1,6 +1,7 @@
 //! `--controller FILE.json`: which controller, its gains, and what it believes the robot to be.
 
 use crate::failure::{Failure, Result};
+use crate::json_file;
 use crate::robot::RobotArguments;
 use mozzi::Model;
 use mozzi::simulation::Input;
@@ -28,10 +29,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 impl Controller {
     pub fn read(file: &str, robot: &RobotArguments) -> Result<Self> {
         let wrong = |sentence: String| Failure::wrong(format!("{file}: {sentence}"));
-        let text =
-            std::fs::read_to_string(file).map_err(|error| Failure::wrong(format!("{file} cannot be read: {error}")))?;
-        let value: Value = serde_json::from_str(&text).map_err(|error| wrong(format!("is no JSON: {error}")))?;
-        let Value::Object(entries) = value else { return Err(wrong("is no JSON object".into())) };
+        let Value::Object(entries) = json_file::read(file)? else { return Err(wrong("is no JSON object".into())) };
         let kinds = KINDS.map(|(kind, _)| format!("`{kind}`")).join(", ");
         let kind = match entries.get("controller") {
             Some(Value::String(kind)) => kind.as_str(),

@@ -10,6 +10,7 @@ mod failure;
 mod goals;
 mod interrupt;
 mod json;
+mod json_file;
 mod log;
 mod motors;
 mod numbers;

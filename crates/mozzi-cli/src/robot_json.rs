@@ -2,7 +2,7 @@
 
 use crate::commands::terms_json;
 use crate::failure::{Failure, Result};
-use crate::json;
+use crate::{json, json_file};
 use mozzi::model::description::{FreeJoint, Joint, JointKind, Limits, Mimic, NamedFrame};
 use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia};
 use serde_json::{Value, json};
@@ -46,10 +46,8 @@ pub fn is_json(name_or_path: &str) -> bool {
 }
 
 pub fn read(file: &str) -> Result<Description> {
-    let wrong = |why: String| Failure::wrong(format!("{file}: {why}"));
-    let text = std::fs::read_to_string(file).map_err(|error| wrong(format!("cannot be read: {error}")))?;
-    let value: Value = serde_json::from_str(&text).map_err(|error| wrong(format!("is no JSON: {error}")))?;
-    description(&At { value: &value, place: String::new() }).map_err(wrong)
+    let value = json_file::read(file)?;
+    description(&At { value: &value, place: String::new() }).map_err(|why| Failure::wrong(format!("{file}: {why}")))
 }
 
 type Read<T> = std::result::Result<T, String>;

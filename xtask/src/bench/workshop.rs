@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// clang makes Pinocchio 1.3 to 1.8 times faster than gcc does.
-const COMPILERS: [&str; 7] = ["clang++", "clang++-22", "clang++-21", "clang++-20", "clang++-19", "clang++-18", "g++"];
+const COMPILERS: [&str; 7] = ["clang++-22", "clang++-21", "clang++-20", "clang++-19", "clang++-18", "clang++", "g++"];
 
 const INSTALL: &str = "\
 A C++ compiler is needed, and clang makes the fastest peers:

@@ -1,6 +1,14 @@
 //! Broken files are refused, at the right place, in the right words.
+/// A body with something in it.
+macro_rules! body {
+    ($inside:literal) => {
+        concat!("<mujoco><worldbody><body name='b'>", $inside, "</body></worldbody></mujoco>")
+    };
+}
+
 mod meaning;
 mod mjcf;
+mod mjcf_left_out;
 mod numbers;
 mod structure;
 mod syntax;

@@ -93,7 +93,7 @@ impl Trajectory {
     /// One row more.
     ///
     /// # Panics
-    /// When the row is as long as another robot's.
+    /// When the row is not as long as this robot's.
     pub fn record(&mut self, row: Sample) {
         assert!(row.theta.len() == self.nq, "theta has {} entries, expected {}", row.theta.len(), self.nq);
         for list in [row.dtheta, row.ddtheta, row.tau] {

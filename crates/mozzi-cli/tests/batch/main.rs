@@ -1,74 +1,19 @@
 //! `mozzi batch` and `mozzi bench`: every quantity beside the library at one state, every kind of file, what is wrong with one.
 #![allow(non_snake_case)]
 
+mod by_python;
+#[path = "../common/mod.rs"]
 mod common;
+mod files;
 
-use arrow_array::{ArrayRef, Float64Array, Int64Array, RecordBatch};
-use arrow_ipc::{reader::FileReader, writer::FileWriter};
+use arrow_array::{ArrayRef, Float64Array, Int64Array};
 use common::{assert_close, complaint, file, folder, json, mozzi};
+use files::{npy, npz, parse, read_arrow, read_npz, save, to_columns, write_arrow};
 use mozzi::nalgebra::DMatrix;
 use mozzi::{Environment, Model, Wrench};
 use serde_json::Value;
-use std::fs::File;
-use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::Arc;
-
-/// As `numpy.save` writes it, by rows or by columns.
-fn npy(shape: &[usize], values: &[f64], by_columns: bool) -> Vec<u8> {
-    let order = if by_columns { "True" } else { "False" };
-    let tuple: String = shape.iter().map(|count| format!("{count}, ")).collect();
-    let header = format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': ({tuple}), }}\n");
-    let mut bytes = [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat();
-    values.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
-    bytes
-}
-
-fn save(folder: &Path, name: &str, bytes: &[u8]) -> String {
-    let path = folder.join(name);
-    std::fs::write(&path, bytes).expect("a file");
-    path.to_str().expect("text").to_string()
-}
-
-fn npz(folder: &Path, name: &str, arrays: &[(&str, &[usize], &[f64])]) -> String {
-    let path = folder.join(name);
-    let mut archive = zip::ZipWriter::new(File::create(&path).expect("a file"));
-    for (name, shape, values) in arrays {
-        // compressed, as numpy.savez_compressed does
-        let options = zip::write::SimpleFileOptions::default();
-        archive.start_file(format!("{name}.npy"), options).expect("an entry");
-        archive.write_all(&npy(shape, values, false)).expect("a file");
-    }
-    archive.finish().expect("an archive");
-    path.to_str().expect("text").to_string()
-}
-
-/// Shape and numbers of what was written.
-fn parse(bytes: &[u8]) -> (String, Vec<f64>) {
-    let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
-    let (header, data) = bytes[10..].split_at(length);
-    let header = String::from_utf8(header.to_vec()).expect("text");
-    let shape = header.split_once("'shape': ").expect("a shape").1.split(')').next().expect("an end").to_string() + ")";
-    let values = match header.contains("'<f8'") {
-        true => data.chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().expect("8"))).collect(),
-        false => data.chunks_exact(4).map(|x| f32::from_le_bytes(x.try_into().expect("4")).into()).collect(),
-    };
-    (shape, values)
-}
-
-fn read_npz(path: &str) -> Vec<(String, String, Vec<f64>)> {
-    let mut archive = zip::ZipArchive::new(File::open(path).expect("a file")).expect("an archive");
-    (0..archive.len())
-        .map(|index| {
-            let mut entry = archive.by_index(index).expect("an entry");
-            let name = entry.name().expect("a name").trim_end_matches(".npy").to_string();
-            let mut bytes = Vec::new();
-            entry.read_to_end(&mut bytes).expect("bytes");
-            let (shape, values) = parse(&bytes);
-            (name, shape, values)
-        })
-        .collect()
-}
 
 /// N states of a robot: θ, θ̇, θ̈ or τ, and the tip's wrench.
 struct States {
@@ -279,30 +224,6 @@ fn every_kind_of_file_is_read_and_written() {
     assert!(text.starts_with("kinetic_energy\n") && text.lines().count() == 6, "{text}");
 }
 
-/// The columns of an array by rows.
-fn to_columns(shape: &str, values: &[f64]) -> Vec<Vec<f64>> {
-    let states: usize = shape.trim_start_matches('(').split([',', ')']).next().expect("N").parse().expect("a number");
-    let width = values.len() / states;
-    (0..width).map(|c| values.iter().skip(c).step_by(width).copied().collect()).collect()
-}
-
-fn write_arrow(folder: &Path, name: &str, columns: Vec<(&str, ArrayRef)>) -> String {
-    let path = folder.join(name);
-    let batch = RecordBatch::try_from_iter(columns).expect("columns");
-    let mut writer = FileWriter::try_new(File::create(&path).expect("a file"), &batch.schema()).expect("a writer");
-    writer.write(&batch).expect("a batch");
-    writer.write(&batch.slice(0, 0)).expect("an empty batch");
-    writer.finish().expect("an end");
-    path.to_str().expect("text").to_string()
-}
-
-fn read_arrow(path: &str) -> Vec<(String, Vec<f64>)> {
-    let mut reader = FileReader::try_new(File::open(path).expect("a file"), None).expect("arrow");
-    let batch = reader.next().expect("a batch").expect("columns");
-    let column = |k: usize| batch.column(k).as_any().downcast_ref::<Float64Array>().expect("floats").values().to_vec();
-    batch.schema().fields().iter().enumerate().map(|(k, field)| (field.name().clone(), column(k))).collect()
-}
-
 #[test]
 fn a_free_base_has_its_columns_by_name() {
     let folder = folder("batch_floating");
@@ -472,79 +393,4 @@ fn bench_tells_this_machines_times() {
     for word in ["one state", "portable f64", "portable f32", "body-jacobian", "on 2 threads", "70 states a batch"] {
         assert!(page.contains(word), "{word} in {page}");
     }
-}
-
-/// Of `cargo xtask test`.
-fn python(imports: &str) -> Option<String> {
-    let python = std::env::var("MOZZI_PYTHON").ok()?;
-    let mut import = std::process::Command::new(&python);
-    let has = import.args(["-c", &format!("import {imports}")]).output().is_ok_and(|output| output.status.success());
-    has.then_some(python)
-}
-
-/// Writes states, runs the program, reads the results.
-const BY_NUMPY: &str = "
-import subprocess, sys
-import numpy as np
-program, folder = sys.argv[1:]
-def run(quantity, states, result):
-    command = [program, 'batch', 'ur5', '--quantity', quantity, '--in', f'{folder}/{states}', '--out', f'{folder}/{result}']
-    subprocess.run(command, check=True)
-theta = np.random.default_rng(1).uniform(-1, 1, (50, 6))
-np.save(f'{folder}/c.npy', theta)
-np.save(f'{folder}/f.npy', np.asfortranarray(theta))
-np.savez_compressed(f'{folder}/theta.npz', theta=theta)
-for states in ['c.npy', 'f.npy', 'theta.npz']:
-    run('mass-matrix', states, 'M.npy')
-    run('mass-matrix', states, 'M.npz')
-    M = np.load(f'{folder}/M.npy')
-    assert M.shape == (50, 6, 6) and M.dtype == np.float64
-    assert np.abs(M - M.transpose(0, 2, 1)).max() < 1e-12 and np.linalg.eigvalsh(M).min() > 0
-    assert (np.load(f'{folder}/M.npz')['M'] == M).all()
-np.save(f'{folder}/single.npy', theta.astype(np.float32))
-run('potential-energy', 'single.npy', 'P.npy')
-assert np.load(f'{folder}/P.npy').shape == (50,)
-";
-
-#[test]
-fn numpy_reads_what_is_written_and_writes_what_is_read() {
-    let Some(python) = python("numpy") else {
-        println!("skipped: MOZZI_PYTHON names no Python with NumPy (cargo xtask test makes one)");
-        return;
-    };
-    by_python(&python, BY_NUMPY, "batch_numpy");
-}
-
-const BY_PYARROW: &str = "
-import subprocess, sys
-import numpy as np, pyarrow as pa, pyarrow.feather as feather
-program, folder = sys.argv[1:]
-theta = np.random.default_rng(1).uniform(-1, 1, (50, 6))
-table = pa.table({f'theta_{j + 1}': theta[:, j] for j in range(6)})
-for compression in ['uncompressed', 'lz4']:
-    feather.write_feather(table, f'{folder}/states.feather', compression=compression)
-    command = [program, 'batch', 'ur5', '--quantity', 'gravity-forces', '--in', f'{folder}/states.feather']
-    subprocess.run(command + ['--out', f'{folder}/g.arrow'], check=True)
-    subprocess.run(command + ['--out', f'{folder}/g.npy'], check=True)
-    g = feather.read_table(f'{folder}/g.arrow')
-    assert g.column_names == [f'g_{j + 1}' for j in range(6)]
-    assert (np.stack([g[name].to_numpy() for name in g.column_names], 1) == np.load(f'{folder}/g.npy')).all()
-";
-
-#[test]
-fn pyarrow_reads_what_is_written_and_writes_what_is_read() {
-    let Some(python) = python("numpy, pyarrow") else {
-        println!("skipped: MOZZI_PYTHON names no Python with pyarrow");
-        return;
-    };
-    by_python(&python, BY_PYARROW, "batch_pyarrow");
-}
-
-fn by_python(python: &str, script: &str, name: &str) {
-    let folder = folder(name);
-    let output = std::process::Command::new(python)
-        .args(["-c", script, env!("CARGO_BIN_EXE_mozzi"), folder.to_str().expect("text")])
-        .output()
-        .expect("Python runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

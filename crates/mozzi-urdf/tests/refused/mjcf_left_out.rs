@@ -1,0 +1,116 @@
+//! Models of MuJoCo that load, and what is left out of them is said.
+use crate::warned;
+use mozzi_urdf::{Policy, parse, parse_with};
+
+const MASS: &str = "<geom size='1'/>";
+
+#[test]
+fn what_is_left_out_is_said() {
+    warned(&[
+        (
+            body!("<joint name='j' stiffness='§8'/><joint stiffness='2'/><geom size='1'/>"),
+            "ignored_force",
+            "joint `j`: stiffness: is `8`, a spring, which mozzi does not compute (here, and 1 more)",
+        ),
+        (
+            body!("<joint name='j' damping='§1 0 2'/><geom size='1'/>"),
+            "ignored_force",
+            "joint `j`: damping: is `1 0 2`, a damping that is not linear, which mozzi does not compute",
+        ),
+        (
+            "<mujoco><worldbody><body name='b' gravcomp='§1'><geom size='1'/></body></worldbody></mujoco>",
+            "ignored_force",
+            "body `b`: gravcomp: is `1`, a compensation of gravity, which mozzi does not compute",
+        ),
+        (
+            body!("<joint type='free' damping='§1'/><geom size='1'/>"),
+            "ignored_force",
+            "body `b`: joint: damping: is `1`, a damping of the free base, which mozzi does not compute",
+        ),
+        (
+            "<mujoco><option density='§1.2'/></mujoco>",
+            "ignored_force",
+            "option: density: is `1.2`, a fluid around the bodies, which mozzi does not compute",
+        ),
+        (
+            body!("<geom size='1'/><plugin plugin='§mujoco.elasticity.cable'/>"),
+            "ignored_force",
+            "body `b`: plugin: plugin: is `mujoco.elasticity.cable`, a plugin, which mozzi does not compute",
+        ),
+        (
+            body!("<§geom type='mesh' mesh='m'/>"),
+            "ignored_mesh",
+            "body `b`: geom: is a mesh, whose mass is not known; the body does not move",
+        ),
+        (body!("<§gadget/>"), "unknown_element", "body `b`: has an element <gadget>, which MJCF does not know here"),
+        (
+            "<mujoco><worldbody><§body name='b'><joint name='j'/></body></worldbody></mujoco>",
+            "massless_leaf",
+            "link `b`: mass: joint `j` moves it, but there is no inertia: forward dynamics has no answer",
+        ),
+        (
+            body!("<joint/><inertial mass='1' diaginertia='§1 1 3'/>"),
+            "unphysical_inertia",
+            "link `b`: inertia: the principal moments about the centre of mass, 1, 1 and 3 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1",
+        ),
+    ]);
+}
+
+#[test]
+fn plugins_are_told_where_they_are_declared() {
+    let extension = |plugin: &str, inside: &str| {
+        let text = format!("<mujoco><extension><plugin plugin='{plugin}'>{inside}</plugin></extension></mujoco>");
+        let robot = parse("a.xml", text).expect("a model");
+        robot.warnings.iter().map(|warning| warning.message().to_string()).collect::<Vec<_>>()
+    };
+    let listed = "mujoco: <extension> is ignored";
+    let force =
+        "extension: plugin: plugin: is `org.wind`, a plugin, whose forces are its own, which mozzi does not compute";
+    assert_eq!(extension("org.wind", "<instance name='i'/>"), [listed, force]);
+    assert_eq!(extension("org.wind", ""), [listed]);
+    assert_eq!(extension("mujoco.pid", "<instance name='i'/>"), [listed]);
+}
+
+#[test]
+fn attributes_without_effect_are_listed() {
+    let text = body!(
+        "<joint name='j' margin='1' actuatorfrcrange='-5 5' springref='1'/><joint axis='1 0 0' actuatorfrcrange='-1 2'/><geom \
+         size='1' rgba='1 1 1 1' friction='1'/><geom size='1' rgba='1 1 1 1'/>"
+    );
+    for policy in [Policy::Default, Policy::Strict] {
+        let robot = parse_with("a.xml", text, policy).expect("a model");
+        let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
+        let joint = "joint: `actuatorfrcrange`, `margin`, `springref` are ignored";
+        assert_eq!(said, [joint, "geom: `friction`, `rgba` are ignored"]);
+        let effort: Vec<Option<f64>> = robot.description.joints.iter().map(|joint| joint.limits.effort).collect();
+        assert_eq!(effort, [Some(5.0), None]);
+    }
+}
+
+#[test]
+fn what_is_right_and_has_no_place_is_listed() {
+    let text = "<mujoco><asset/><worldbody><light/><body name='b'><joint name='j'/><camera/><camera/><geom size='1'/><site name='b'/>\
+                </body></worldbody><actuator><motor joint='j'/></actuator><sensor/><keyframe/><visual/></mujoco>";
+    for policy in [Policy::Default, Policy::Strict] {
+        let robot = parse_with("a.xml", text, policy).expect("a model");
+        let is_known = |code: &str| ["mozzi::mjcf::ignored_element", "mozzi::mjcf::renamed_site"].contains(&code);
+        assert!(robot.warnings.iter().all(|warning| is_known(warning.code())));
+        let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
+        assert_eq!(
+            said,
+            [
+                "mujoco: <asset> is ignored",
+                "worldbody: <light> is ignored",
+                "body `b`: <camera> is ignored (here, and 1 more)",
+                "site `b`: a body has this name too; it is called `b:site` here",
+                "mujoco: <actuator> is ignored",
+                "mujoco: <sensor> is ignored",
+                "mujoco: <keyframe> is ignored",
+                "mujoco: <visual> is ignored",
+            ]
+        );
+    }
+    assert!(
+        parse("a.xml", format!("<mujoco><worldbody>{MASS}</worldbody></mujoco>")).expect("a world").warnings.is_empty()
+    );
+}
