@@ -1,12 +1,13 @@
 //! A model in a notebook: a table of its joints.
 
 use mozzi::Model;
+use mozzi_text::scalar;
 use std::fmt::Write;
 
 pub fn table(model: &Model) -> String {
     let (robot, mut text) = (model.description(), String::new());
     let base = if model.is_floating() { ", floating base" } else { "" };
-    let mass = model.mass();
+    let mass = scalar(model.mass());
     // writing to a String cannot fail
     let _ = write!(
         text,

@@ -10,6 +10,7 @@ use crate::{compiled, html, load};
 
 use mozzi::FrameId;
 use mozzi_codegen::{Engine, Refusal};
+use mozzi_text::scalar;
 use pyo3::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -212,7 +213,7 @@ impl PyModel {
             "<mozzi.Model '{}': {} joints, {links} links, {} kg{base}>",
             robot.name,
             model.joint_names().len(),
-            model.mass()
+            scalar(model.mass())
         )
     }
 
