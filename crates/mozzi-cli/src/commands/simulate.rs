@@ -49,7 +49,7 @@ pub struct SimulateArguments {
     /// Make Coulomb friction smooth: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
     #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
     slip_speed: Option<String>,
-    /// Forward dynamics by machine code, made for the robot before it moves: the same motion to rounding, in a fraction of the time
+    /// Forward dynamics by machine code, made for the robot before it moves: each step the same to rounding, in a fraction of the time
     #[arg(long)]
     compiled: bool,
     /// Record every K-th step
