@@ -68,10 +68,10 @@ pub fn simulate(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Du
     for peer in peers {
         let Some(algorithms) = peer.robot(slug, model, &states)?.map(|robot| robot.algorithms()) else { continue };
         for (k, (quantity, name)) in algorithms.into_iter().enumerate() {
-            let Some(mut robot) = peer.robot(slug, model, &states)?.filter(|_| quantity == Quantity::ForwardDynamics)
-            else {
+            if quantity != Quantity::ForwardDynamics {
                 continue;
-            };
+            }
+            let Some(mut robot) = peer.robot(slug, model, &states)? else { continue };
             simulators.push(Simulator::new(
                 &peer.name,
                 &name,

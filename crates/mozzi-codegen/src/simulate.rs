@@ -60,10 +60,6 @@ impl Compiled {
         options: &Options,
         progress: impl FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Result<Trajectory, Error> {
-        let equation = Equation::new(self.model(), input, options);
-        match self.simulator() {
-            Some(code) => equation.by(code)?.simulate(theta, dtheta, progress),
-            None => equation.simulate(theta, dtheta, progress),
-        }
+        Equation::new(self.model(), input, options).by(self.simulator())?.simulate(theta, dtheta, progress)
     }
 }

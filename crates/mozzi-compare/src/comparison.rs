@@ -6,7 +6,7 @@ use crate::question::Question;
 use crate::report_text::Finding;
 use crate::verdict::{Verdict, judge};
 use crate::{BOUND, Error, Result, Source, report_json, report_text, words};
-use mozzi::Description;
+use mozzi::Model;
 use mozzi_text::Page;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -42,8 +42,8 @@ pub struct Comparison {
 ///
 /// # Errors
 /// See [`Error`].
-pub fn compare(robot: &Description, source: Source, options: &Options) -> Result<Comparison> {
-    let model = robot.clone().build()?;
+pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Comparison> {
+    let robot = model.description();
     let question = Question::new(source, robot, options.states, options.seed)?;
     let mut peers = vec![Peer::Pinocchio, Peer::MuJoCo];
     if model.is_coupled() && question.source.language != "mjcf" {

@@ -7,8 +7,8 @@
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use mozzi_compare::{Options, Source, compare};
-//! let robot = mozzi_urdf::load("panda.urdf")?.description;
-//! let comparison = compare(&robot, Source::read("panda.urdf", &robot)?, &Options::default())?;
+//! let model = mozzi_urdf::load("panda.urdf")?.build()?;
+//! let comparison = compare(&model, Source::read("panda.urdf", model.description())?, &Options::default())?;
 //! print!("{}", comparison.text());
 //! assert!(comparison.is_explained());
 //! # Ok(()) }

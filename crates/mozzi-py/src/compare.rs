@@ -30,17 +30,17 @@ pub fn _compare(
     let options = Options { python, states, seed };
     let report = |c: &Comparison| (c.text(), c.json().to_string(), c.agrees(), c.is_explained());
     if let Ok(model) = robot.cast::<PyModel>() {
-        let description = model.get().robot().model.description();
-        let source = Source::written(&description.name, description).map_err(of_comparison)?;
-        return py.detach(|| compare(description, source, &options)).map(|c| report(&c)).map_err(of_comparison);
+        let model = &model.get().robot().model;
+        let source = Source::written(&model.description().name, model.description()).map_err(of_comparison)?;
+        return py.detach(|| compare(model, source, &options)).map(|c| report(&c)).map_err(of_comparison);
     }
     let name: PathBuf = robot.extract()?;
     let name = name.to_string_lossy();
     match load::loaded(py, &name, policy)? {
         Ok(loaded) => {
-            let description = load::warned(py, loaded)?.description;
-            let source = Source::read(&name, &description).map_err(of_comparison)?;
-            py.detach(|| compare(&description, source, &options)).map(|c| report(&c)).map_err(of_comparison)
+            let model = load::build(py, Ok(loaded), false)?;
+            let source = Source::read(&name, model.description()).map_err(of_comparison)?;
+            py.detach(|| compare(&model, source, &options)).map(|c| report(&c)).map_err(of_comparison)
         }
         // the file is there, and wrong: whether others load it is worth knowing
         Err(refusal @ LoadError::Refused { .. }) => {

@@ -21,23 +21,19 @@ fn policy(name: &str) -> PyResult<Policy> {
     }
 }
 
-/// Its warnings are Python's.
-pub fn warned(py: Python<'_>, loaded: Loaded) -> PyResult<Loaded> {
-    for warning in &loaded.warnings {
-        let text = CString::new(warning.to_string().replace('\0', "\\0")).map_err(refused)?;
-        PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
-    }
-    Ok(loaded)
-}
-
 /// A robot that mozzi brings along, by its name, or a file.
 pub fn loaded(py: Python<'_>, name_or_path: &str, how: &str) -> PyResult<Result<Loaded, LoadError>> {
     let policy = policy(how)?;
     Ok(py.detach(|| mozzi_urdf::open_with(name_or_path, policy)))
 }
 
-fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) -> PyResult<Model> {
-    let loaded = warned(py, loaded.map_err(|error| of_loader(py, error))?)?;
+/// The model, its warnings said as Python's.
+pub fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) -> PyResult<Model> {
+    let loaded = loaded.map_err(|error| of_loader(py, error))?;
+    for warning in &loaded.warnings {
+        let text = CString::new(warning.to_string().replace('\0', "\\0")).map_err(refused)?;
+        PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
+    }
     let model = loaded.build().map_err(|error| of_loader(py, error))?;
     if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }
 }

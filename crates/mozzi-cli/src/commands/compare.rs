@@ -40,8 +40,7 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
     let options = Options { python, states: arguments.states.into(), seed: arguments.seed };
     let (headline, comparison) = match arguments.policy.model(&arguments.model) {
         Ok(model) => {
-            let robot = model.description();
-            let comparison = compare(robot, Source::read(&arguments.model, robot)?, &options)?;
+            let comparison = compare(&model, Source::read(&arguments.model, model.description())?, &options)?;
             (info::headline(&model) + "\n", comparison)
         }
         Err(refusal) => {

@@ -1,6 +1,6 @@
 //! C99: a header, which C++ reads, too, and a source.
 
-use super::dialect::{Argument, Dialect, Emitted, Sines, Source, digits, padded};
+use super::dialect::{Argument, Dialect, Emitted, Sines, Source, abreast, digits};
 use super::{Precision, SourceFile, body, sin_cos};
 use crate::function::Function;
 
@@ -24,12 +24,8 @@ impl C {
 
     /// A loop, which compilers make into registers of several.
     fn bind_sines_abreast(&self, sines: &[Sines]) -> Vec<String> {
-        let Some(first) = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref())) else {
-            return Vec::new();
-        };
-        let (count, number, zero) = (padded(sines.len()), self.number(), self.literal(0.0));
-        let angles = sines.iter().map(|sines| &sines.angle[..]).chain(std::iter::repeat(&zero[..])).take(count);
-        let angles = angles.collect::<Vec<_>>().join(", ");
+        let Some((first, count, angles)) = abreast(sines, &self.literal(0.0)) else { return Vec::new() };
+        let number = self.number();
         let mut lines = vec![
             format!("const {number} x_{first}[{count}] = {{{angles}}};"),
             format!("{number} sin_{first}[{count}], cos_{first}[{count}];"),

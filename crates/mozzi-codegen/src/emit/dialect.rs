@@ -76,9 +76,13 @@ pub(super) struct Sines {
     pub cos: Option<String>,
 }
 
-/// How many of an array's numbers make a loop over it worth a compiler's registers: a multiple of four, or two.
-pub(super) fn padded(count: usize) -> usize {
-    if count <= 2 { count } else { count.next_multiple_of(4) }
+/// Sines that a loop computes: a name for its arrays, their length, which makes the loop worth a compiler's registers (a multiple of four, or
+/// two), and the angles, filled up with zeros.
+pub(super) fn abreast<'s>(sines: &'s [Sines], zero: &str) -> Option<(&'s str, usize, String)> {
+    let name = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref()))?;
+    let count = if sines.len() <= 2 { sines.len() } else { sines.len().next_multiple_of(4) };
+    let angles = sines.iter().map(|sines| &sines.angle[..]).chain(std::iter::repeat(zero)).take(count);
+    Some((name, count, angles.collect::<Vec<_>>().join(", ")))
 }
 
 /// How a language says a step.

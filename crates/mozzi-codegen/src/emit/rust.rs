@@ -1,6 +1,6 @@
 //! Rust that needs no `std`.
 
-use super::dialect::{Argument, Dialect, Emitted, Sines, Source, digits, padded};
+use super::dialect::{Argument, Dialect, Emitted, Sines, Source, abreast, digits};
 use super::{Precision, SourceFile, body, sin_cos};
 use crate::function::Function;
 
@@ -30,13 +30,9 @@ impl Dialect for Rust {
         if let [Sines { angle, sin, cos }] = sines {
             return vec![format!("let ({}, {}) = sin_cos({angle});", name(sin), name(cos))];
         }
-        let Some(first) = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref())) else {
-            return Vec::new();
-        };
         // a loop, which the compiler makes into registers of several
-        let (count, number) = (padded(sines.len()), self.number());
-        let angles = sines.iter().map(|sines| &sines.angle[..]).chain(std::iter::repeat("0.0")).take(count);
-        let angles = angles.collect::<Vec<_>>().join(", ");
+        let Some((first, count, angles)) = abreast(sines, &self.literal(0.0)) else { return Vec::new() };
+        let number = self.number();
         let names = |pick: fn(&Sines) -> &Option<String>| {
             sines.iter().map(|sines| name(pick(sines))).collect::<Vec<_>>().join(", ")
         };

@@ -120,7 +120,7 @@ impl<'a> Simulation<'a> {
             return self.run_plainly(model, [theta, dtheta], input, *method, *step, progress);
         }
         let options = Options { gravity: self.gravity, friction: self.friction, ..Options::new(self.duration, 1) };
-        let mut driven = Driven::new(self.equation(model, input, &options)?);
+        let mut driven = Driven::new(Equation::new(model, input, &options).by(self.forward_dynamics)?);
         let mut stops = Stops::new(model, self.stops, theta)?;
         let n = model.n();
         let mut state = State {
@@ -199,7 +199,7 @@ impl<'a> Simulation<'a> {
             Options { gravity: self.gravity, friction: self.friction, ..Options::with_step(self.duration, step)? };
         let (steps, h) = (options.steps, options.step());
         let every = if h > 0.0 { (self.record / h).round().clamp(1.0, 1e15) as usize } else { 1 };
-        let mut equation = self.equation(model, input, &options)?;
+        let mut equation = Equation::new(model, input, &options).by(self.forward_dynamics)?;
         let mut stops = Stops::new(model, self.stops, theta)?;
         let mut motion: Motion<f64, 3> =
             Motion::start(model.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
@@ -228,17 +228,6 @@ impl<'a> Simulation<'a> {
         }
         (run.motion.steps, run.motion.complete, run.stops) = (done, done == steps, stops.noted());
         Ok(run)
-    }
-
-    fn equation<'m, I: Input>(&self, model: &'m Model, input: I, options: &Options) -> Result<Equation<'m, I>, Error>
-    where
-        'a: 'm,
-    {
-        let equation = Equation::new(model, input, options);
-        Ok(match self.forward_dynamics {
-            Some(other) => equation.by(other)?,
-            None => equation,
-        })
     }
 
     /// Events within the step; where one of them ends the simulation, that is the end, and the answer is true.

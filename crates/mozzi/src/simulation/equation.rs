@@ -82,11 +82,12 @@ impl<'m, I: Input> Equation<'m, I> {
         }
     }
 
-    /// θ̈ by another way, where nothing is touched and gravity is the robot's own.
+    /// θ̈ by another way, where there is one, nothing is touched and gravity is the robot's own.
     ///
     /// # Errors
     /// [`Error::BadArgument`] where it is another robot's.
-    pub fn by(mut self, other: &'m dyn ForwardDynamics) -> Result<Self, Error> {
+    pub fn by(mut self, other: Option<&'m dyn ForwardDynamics>) -> Result<Self, Error> {
+        let Some(other) = other else { return Ok(self) };
         let (mine, its) = (self.model.description(), other.model().description());
         check(mine == its, "the forward dynamics", format!("that of another robot, `{}`", its.name), "this robot's")?;
         if self.gravity == self.model.gravity() {
