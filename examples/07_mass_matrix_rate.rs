@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         (&N + N.transpose()).amax()
     };
     let christoffel = model.coriolis_matrix(&theta, &dtheta)?;
-    let of_the_text = form.factor_of_c();
+    let of_the_text = form.book_coriolis_matrix();
     agree("C of the Christoffel symbols: Cθ̇ = c", &(&christoffel * &velocity), &c, 1e-13);
     agree("C of the text's formula:      Cθ̇ = c", &(&of_the_text * &velocity), &c, 1e-13);
 

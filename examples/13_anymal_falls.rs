@@ -1,4 +1,4 @@
-//! A quadruped falls onto its feet: ANYmal, its base free, and the books of its momentum.
+//! A quadruped falls onto its feet: ANYmal, its base floating, and the books of its momentum.
 //!
 //! The base's configuration T_sb stands first among the positions, its twist 𝒱_b first among the velocities, the wrench on it
 //! first among the forces; nothing drives it, so those six are 0. What changes the momentum of all that moves is what comes from

@@ -1,6 +1,6 @@
 //! A humanoid stands on two feet: the joints' torques for given wrenches at the soles.
 //!
-//! With a free base τ = M θ̈ + c + g + JᵀF has six rows more than there are motors. At rest g + JᵀF must be 0 in these six: the
+//! With a floating base τ = M θ̈ + c + g + JᵀF has six rows more than there are motors. At rest g + JᵀF must be 0 in these six: the
 //! wrenches at the soles carry the weight. There are twelve numbers for six equations; here the smallest that do it are taken
 //! (least squares). Then the other rows are the motors' torques. The proof is forward dynamics: with those torques and those
 //! wrenches, nothing moves.

@@ -4,7 +4,7 @@
 //! optimisation it takes a thousand.
 
 use mozzi::Environment;
-use mozzi_batch::{Batch, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dtheta: Vec<f64> = (0..states * n).map(|k| number(k, 1.1)).collect();
     let ddtheta: Vec<f64> = (0..states * n).map(|k| number(k, 1.3)).collect();
     let environment: Environment = ur5.environment();
-    let surroundings = Surroundings::from(environment);
+    let surroundings = BatchEnvironment::from(environment);
 
     let batch = Batch::new(&ur5);
     let mut tau = vec![0.0; states * n];

@@ -2,7 +2,7 @@
 #![allow(missing_docs)] // criterion's main
 
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
-use mozzi::{Twist, Workspace, body_jacobian, forward_kinematics, gravity_forces_derivative, native};
+use mozzi::{Twist, Workspace, body_jacobian, fast, forward_kinematics, gravity_forces_derivative};
 use mozzi_benches::{State, States, robots};
 use std::hint::black_box;
 use std::time::Duration;
@@ -27,48 +27,48 @@ fn kernels(criterion: &mut Criterion) {
             group.finish();
         };
         let both = || {
-            let workspaces = [native::Workspace::new(&model), native::Workspace::portable(&model)];
+            let workspaces = [fast::Workspace::new(&model), fast::Workspace::portable(&model)];
             workspaces.map(|workspace| (workspace.instruction_set(), workspace))
         };
         group("inverse_dynamics", &mut |group| {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, ddtheta, _]| {
-                    native::inverse_dynamics(&model, theta, dtheta, ddtheta, &environment, &mut w, black_box(&mut x));
+                    fast::inverse_dynamics(&model, theta, dtheta, ddtheta, &environment, &mut w, black_box(&mut x));
                 });
             }
         });
         group("forward_dynamics", &mut |group| {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, _, tau]| {
-                    native::forward_dynamics(&model, theta, dtheta, tau, &environment, &mut w, black_box(&mut x));
+                    fast::forward_dynamics(&model, theta, dtheta, tau, &environment, &mut w, black_box(&mut x));
                 });
             }
         });
         group("mass_matrix", &mut |group| {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, ..]| {
-                    native::mass_matrix(&model, theta, &mut w, black_box(&mut M));
+                    fast::mass_matrix(&model, theta, &mut w, black_box(&mut M));
                 });
             }
         });
         group("coriolis_matrix", &mut |group| {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, ..]| {
-                    native::coriolis_matrix(&model, theta, dtheta, &mut w, black_box(&mut M));
+                    fast::coriolis_matrix(&model, theta, dtheta, &mut w, black_box(&mut M));
                 });
             }
         });
         group("bias_forces", &mut |group| {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, ..]| {
-                    native::bias_forces(&model, theta, dtheta, &environment, &mut w, black_box(&mut x));
+                    fast::bias_forces(&model, theta, dtheta, &environment, &mut w, black_box(&mut x));
                 });
             }
         });
         group("velocity_product", &mut |group| {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, ..]| {
-                    native::velocity_product(&model, theta, dtheta, &mut w, black_box(&mut x));
+                    fast::velocity_product(&model, theta, dtheta, &mut w, black_box(&mut x));
                 });
             }
         });
@@ -76,7 +76,7 @@ fn kernels(criterion: &mut Criterion) {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, ddtheta, _]| {
                     let by = black_box(matrices.each_mut().map(|matrix| &mut matrix[..]));
-                    native::inverse_dynamics_derivatives(&model, theta, dtheta, ddtheta, &environment, &mut w, by);
+                    fast::inverse_dynamics_derivatives(&model, theta, dtheta, ddtheta, &environment, &mut w, by);
                 });
             }
         });
@@ -84,7 +84,7 @@ fn kernels(criterion: &mut Criterion) {
             for (path, mut w) in both() {
                 bench(group, path, &states, |[theta, dtheta, _, tau]| {
                     let (x, by) = black_box((&mut x[..], matrices.each_mut().map(|matrix| &mut matrix[..])));
-                    native::forward_dynamics_derivatives(&model, theta, dtheta, tau, &environment, &mut w, x, by);
+                    fast::forward_dynamics_derivatives(&model, theta, dtheta, tau, &environment, &mut w, x, by);
                 });
             }
         });

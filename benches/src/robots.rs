@@ -14,7 +14,7 @@ pub fn all() -> [(&'static str, Model); 3] {
     [("Panda", panda()), ("UR5", ur5()), ("tree of 32", tree())]
 }
 
-/// Legged robots with a free base, from the folder of robots of PyPI's `example-robot-data`.
+/// Legged robots with a floating base, from the folder of robots of PyPI's `example-robot-data`.
 ///
 /// # Errors
 /// When one of them cannot be read.
@@ -29,8 +29,8 @@ pub fn legged(folder: &Path) -> Result<[(&'static str, Model); 2], String> {
         robot.floating().build().map_err(|error| error.to_string())
     };
     Ok([
-        ("ANYmal, free base", read("anymal_b_simple_description/robots/anymal.urdf")?),
-        ("Talos, free base", read("talos_data/robots/talos_reduced.urdf")?),
+        ("ANYmal, floating base", read("anymal_b_simple_description/robots/anymal.urdf")?),
+        ("Talos, floating base", read("talos_data/robots/talos_reduced.urdf")?),
     ])
 }
 
@@ -114,7 +114,7 @@ pub fn merged(model: &Model) -> Description {
     let mut inertias = vec![SpatialInertia::zero(); moving.len() + 1];
     for link in &original.links {
         let (k, T) = place(original, &moving, &link.name);
-        inertias[k] += link.inertia.seen_from(T);
+        inertias[k] += link.inertia.transformed(T);
     }
     let mut robot = Description::new(&original.name).with_gravity([0.0, 0.0, -9.80665]);
     robot.base = original.base;

@@ -1,7 +1,7 @@
 //! The arm's equations, written anew from its URDF at every build.
 
 use mozzi::Solid;
-use mozzi_codegen::{Language, LeftOpen, Precision, Quantity, emit_into};
+use mozzi_codegen::{Arguments, Language, Precision, Quantity, emit_into};
 use std::error::Error;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     let loaded = loaded.build()?;
     for language in [Language::Rust, Language::C] {
         let of = |robot, quantities: &[Quantity]| {
-            emit_into(folder, robot, quantities, LeftOpen::default(), language, Precision::F64)
+            emit_into(folder, robot, quantities, Arguments::default(), language, Precision::F64)
         };
         of(&arm, &[Quantity::InverseDynamics, Quantity::ForwardDynamics])?;
         of(&loaded, &[Quantity::ForwardDynamics])?;

@@ -1,5 +1,5 @@
 //! The reference numbers: the scripts of `oracles/` compute them, `make.py` with Pinocchio on the robots of example-robot-data,
-//! bolted, `make_floating.py` with free bases, `make_mjcf.py` with MuJoCo on the models of gymnasium and dm_control.
+//! fixed, `make_floating.py` with floating bases, `make_mjcf.py` with MuJoCo on the models of gymnasium and dm_control.
 
 use crate::command;
 use crate::report::Outcome;

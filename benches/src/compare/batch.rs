@@ -4,14 +4,14 @@ use crate::compiled;
 use crate::contestant::Contestant;
 use crate::quantity::Quantity;
 use mozzi::Model;
-use mozzi_batch::{Batch, Error, InstructionSet, Layout, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment, Error, InstructionSet, Layout};
 use mozzi_benches::States;
 use mozzi_codegen::{Compiled, Engine, Shape};
 use std::hint::black_box;
 
 /// What computes them.
 enum Means {
-    Kernels(Batch, Surroundings<'static>),
+    Kernels(Batch, BatchEnvironment<'static>),
     MachineCode(Compiled),
 }
 

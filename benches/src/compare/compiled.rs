@@ -5,7 +5,7 @@ use crate::quantity::Quantity;
 use mozzi::Model;
 use mozzi_batch::{Batch, InstructionSet};
 use mozzi_benches::{State, States};
-use mozzi_codegen::{Compiled, Kernel, LeftOpen, Quantity as Code, Shape, compile};
+use mozzi_codegen::{Arguments, Compiled, Kernel, Quantity as Code, Shape, compile};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -24,7 +24,7 @@ pub fn code(quantity: Quantity) -> Option<Code> {
 
 /// Of its machine code of this shape, where there is one.
 pub fn flops(model: &Model, code: Code, shape: Shape) -> Option<usize> {
-    Some(Kernel::new(&code.record(model, LeftOpen::default()), shape).ok()?.flops())
+    Some(Kernel::new(&code.record(model, Arguments::default()), shape).ok()?.flops())
 }
 
 /// One state a call.

@@ -6,7 +6,7 @@ use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{Error, Model};
 use mozzi_benches::State;
 
-/// How a peer orders and measures a free base.
+/// How a peer orders and measures a floating base.
 pub enum Convention {
     Mozzi,
     Pinocchio(Pinocchio),

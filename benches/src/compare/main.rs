@@ -92,7 +92,7 @@ fn compare(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// Each robot's numbers, for what generates code: gravity, whether the base is free, then the bodies, one a line.
+/// Each robot's numbers, for what generates code: gravity, whether the base floats, then the bodies, one a line.
 fn describe(arguments: &Arguments, folder: &Path) -> Result<(), String> {
     for (_, slug, model) in chosen(arguments)? {
         let words = |numbers: &[f64]| numbers.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(" ");

@@ -5,7 +5,7 @@ use crate::compiled;
 use crate::contestant::{Contestant, Entry};
 use crate::peak::Width;
 use crate::quantity::Quantity;
-use mozzi::native::{self, Workspace};
+use mozzi::fast::{self, Workspace};
 use mozzi::{Environment, Model};
 use mozzi_batch::{InstructionSet, Layout};
 use mozzi_benches::{State, States};
@@ -68,18 +68,18 @@ fn evaluate(
     let n = model.n();
     let (x, matrices) = out.split_at_mut(n);
     match quantity {
-        Quantity::InverseDynamics => native::inverse_dynamics(model, theta, dtheta, ddtheta, environment, w, x),
-        Quantity::ForwardDynamics => native::forward_dynamics(model, theta, dtheta, tau, environment, w, x),
-        Quantity::MassMatrix => native::mass_matrix(model, theta, w, &mut matrices[..n * n]),
-        Quantity::CoriolisMatrix => native::coriolis_matrix(model, theta, dtheta, w, &mut matrices[..n * n]),
-        Quantity::BiasForces => native::bias_forces(model, theta, dtheta, environment, w, x),
+        Quantity::InverseDynamics => fast::inverse_dynamics(model, theta, dtheta, ddtheta, environment, w, x),
+        Quantity::ForwardDynamics => fast::forward_dynamics(model, theta, dtheta, tau, environment, w, x),
+        Quantity::MassMatrix => fast::mass_matrix(model, theta, w, &mut matrices[..n * n]),
+        Quantity::CoriolisMatrix => fast::coriolis_matrix(model, theta, dtheta, w, &mut matrices[..n * n]),
+        Quantity::BiasForces => fast::bias_forces(model, theta, dtheta, environment, w, x),
         Quantity::InverseDynamicsDerivatives => {
             let by = three(matrices, n);
-            native::inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, w, by);
+            fast::inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, w, by);
         }
         Quantity::ForwardDynamicsDerivatives => {
             let by = three(matrices, n);
-            native::forward_dynamics_derivatives(model, theta, dtheta, tau, environment, w, x, by);
+            fast::forward_dynamics_derivatives(model, theta, dtheta, tau, environment, w, x, by);
         }
     }
 }

@@ -177,7 +177,7 @@ impl Drop for Robot<'_> {
     }
 }
 
-/// The URDF of the robot, its base bolted, for a library that reads nothing else. It has no words for gravity.
+/// The URDF of the robot, its base fixed, for a library that reads nothing else. It has no words for gravity.
 pub fn urdf(description: &Description) -> Result<String, String> {
     let standard = Description { gravity: [0.0, 0.0, -9.81], base: mozzi::Base::Fixed, ..description.clone() };
     mozzi_urdf::write(&standard).map_err(|error| error.to_string())

@@ -64,7 +64,7 @@ fn how() -> String {
 - One process on one processor; in each round everything runs over all states, in turn, for half a millisecond untimed, then once timed.
   Where a library has several algorithms for a quantity, the fastest is quoted.
 - Nanoseconds for one state: least of all rounds / median. In bold the time over mozzi's, least over least; behind it median over median.
-- mozzi: {rustc}, release profile, no flags: `mozzi::native` finds FMA when it runs; portable is the same source
+- mozzi: {rustc}, release profile, no flags: `mozzi::fast` finds FMA when it runs; portable is the same source
   without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows; blocks
   the same with tables in blocks; compiled is `mozzi_codegen`, machine code
   made for the one robot when the program runs, where it is not longer than the instruction cache.

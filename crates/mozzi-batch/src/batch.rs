@@ -4,10 +4,10 @@ use crate::chunk::{Chunk, Table, TableMut, Worker};
 use crate::columns::{Layout, place};
 use crate::instruction_set::{Entry, InstructionSet, Number, OnLanes, choose};
 use crate::lanes::Lane;
+use crate::pool::Pool;
 use crate::quantity::Quantity;
-use crate::shelf::Shelf;
 use crate::threads::Threads;
-use crate::{Error, Surroundings};
+use crate::{BatchEnvironment, Error};
 use mozzi::{Environment, FrameId, Model, Wrench};
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub struct Batch<T: Number = f64> {
     layout: Layout,
     threads: Threads,
     /// Workers of earlier calls.
-    shelf: Shelf,
+    pool: Pool,
 }
 
 impl Batch {
@@ -45,16 +45,16 @@ impl<T: Number> Batch<T> {
             set: InstructionSet::best(),
             layout: Layout::Rows,
             threads: Threads::All,
-            shelf: Shelf::default(),
+            pool: Pool::default(),
         }
     }
 
     /// On registers of this kind.
     ///
     /// # Errors
-    /// [`Error::NotAvailable`].
+    /// [`Error::UnsupportedInstructionSet`].
     pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, Error> {
-        if set.is_available() { Ok(Batch { set, ..self }) } else { Err(Error::NotAvailable { set }) }
+        if set.is_available() { Ok(Batch { set, ..self }) } else { Err(Error::UnsupportedInstructionSet { set }) }
     }
 
     /// On this many threads; on one, on the caller's. Results are the same to the bit for any number.
@@ -126,7 +126,9 @@ impl<T: Number> Batch<T> {
         let (width, lanes) = (self.model.nq(), self.block());
         match theta.len() {
             0 => Ok(0),
-            found if width == 0 || !found.is_multiple_of(width * lanes) => Err(Error::NotWhole { found, width, lanes }),
+            found if width == 0 || !found.is_multiple_of(width * lanes) => {
+                Err(Error::IncompleteState { found, width, lanes })
+            }
             found => Ok(found / width),
         }
     }
@@ -149,7 +151,7 @@ impl<T: Number> Batch<T> {
         &self,
         inputs: &[(&'static str, Table<T>)],
         outputs: &[(&'static str, usize, usize)],
-        surroundings: &Surroundings<T>,
+        surroundings: &BatchEnvironment<T>,
     ) -> Result<usize, Error> {
         let (model, lanes) = (&*self.model, self.block());
         let states = self.states(inputs[0].1.0)?;
@@ -183,7 +185,7 @@ impl<T: Number> Batch<T> {
         quantity: &Q,
         inputs: &[(&'static str, Table<T>)],
         outputs: Vec<(&'static str, TableMut<T>)>,
-        surroundings: Surroundings<T>,
+        surroundings: BatchEnvironment<T>,
     ) -> Result<(), Error> {
         let sizes: Vec<_> = outputs.iter().map(|(what, (table, width))| (*what, table.len(), *width)).collect();
         let states = self.check(inputs, &sizes, &surroundings)?;
@@ -210,7 +212,7 @@ impl<T: Number> Batch<T> {
         states: usize,
         inputs: &[Table<'a, T>],
         mut outputs: Vec<TableMut<'a, T>>,
-        surroundings: &'a Surroundings<'a, T>,
+        surroundings: &'a BatchEnvironment<'a, T>,
         frames: &'a [FrameId],
     ) -> Vec<Chunk<'a, T>> {
         let width: usize = inputs.iter().map(|&(_, w)| w).chain(outputs.iter().map(|&(_, w)| w)).sum();
@@ -259,7 +261,7 @@ impl<T: Number> Batch<T> {
         quantity: &Q,
         index: usize,
         inputs: &[(&'static str, Table<T>)],
-        surroundings: &Surroundings<T>,
+        surroundings: &BatchEnvironment<T>,
     ) -> Result<(), Error> {
         let mut applied = surroundings.environment.applied.to_vec();
         for &(frame, table) in surroundings.wrenches {
@@ -285,7 +287,7 @@ impl<T: Number, Q: Quantity> OnLanes<T, Q> for Run<'_, '_, T, Q> {
         let model = &*self.batch.constants;
         let suspects = self.batch.threads.map(
             self.chunks,
-            || self.batch.shelf.lend::<Worker<L>>(),
+            || self.batch.pool.lend::<Worker<L>>(),
             |lent, chunk| {
                 let worker = lent.get(|| Worker::new(model));
                 entry(self.quantity, model, worker, chunk);

@@ -2,7 +2,7 @@
 
 use crate::lanes::Lane;
 use crate::quantity::{Memory, Quantity};
-use crate::{Batch, Error, Number, Surroundings};
+use crate::{Batch, BatchEnvironment, Error, Number};
 use mozzi::scalar::Float;
 use mozzi::{Environment, Model, Vec3};
 
@@ -43,6 +43,6 @@ impl<T: Number> Batch<T> {
     ) -> Result<(), Error> {
         let inputs: Vec<_> = inputs.iter().map(|&(name, table, width)| (name, (table, width))).collect();
         let outputs = outputs.into_iter().map(|(name, table, width)| (name, (table, width))).collect();
-        self.run(&External(kernel), &inputs, outputs, Surroundings::from(Environment::with_gravity(Vec3::zero())))
+        self.run(&External(kernel), &inputs, outputs, BatchEnvironment::from(Environment::with_gravity(Vec3::zero())))
     }
 }

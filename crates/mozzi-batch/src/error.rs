@@ -24,7 +24,7 @@ pub enum Error {
     },
     /// θ is not a whole number of states.
     #[error("theta has {found} numbers, expected a multiple of {width}: {width} positions a state{}", padded(*lanes))]
-    NotWhole {
+    IncompleteState {
         /// Its length.
         found: usize,
         /// Positions a state.
@@ -45,7 +45,7 @@ pub enum Error {
     Model(#[from] mozzi::Error),
     /// The machine has not these registers.
     #[error("this machine has no {}; it has {}", set.name(), names())]
-    NotAvailable {
+    UnsupportedInstructionSet {
         /// What was asked for.
         set: InstructionSet,
     },

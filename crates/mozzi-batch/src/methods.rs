@@ -1,15 +1,15 @@
 //! The methods of a batch, one for each quantity: their tables, numbers a state, and the kernel.
 
 use crate::quantity as q;
-use crate::{Batch, Error, Surroundings};
+use crate::{Batch, BatchEnvironment, Error};
 use mozzi::simulation::Method;
 use mozzi::{Environment, FrameId, Task};
 
 /// The wrenches alone.
-fn of_wrenches<T>(all: Surroundings<T>) -> Surroundings<T> {
+fn of_wrenches<T>(all: BatchEnvironment<T>) -> BatchEnvironment<T> {
     let environment =
         Environment { applied: all.environment.applied, ..Environment::with_gravity(mozzi::Vec3::zero()) };
-    Surroundings { environment, ..all }
+    BatchEnvironment { environment, ..all }
 }
 
 /// Methods: their tables, numbers a state, and the kernel.
@@ -29,13 +29,13 @@ macro_rules! methods {
         $(#[$doc])*
         #[allow(clippy::too_many_arguments)] // the kernel's
         pub fn $name(
-            &self, $($frame: FrameId,)? $($input: &[$T],)* $($surroundings: &Surroundings<$T>,)? $($output: &mut [$T]),*
+            &self, $($frame: FrameId,)? $($input: &[$T],)* $($surroundings: &BatchEnvironment<$T>,)? $($output: &mut [$T]),*
         ) -> Result<(), Error> {
             $(self.model().check_frame($frame)?;)?
             let inputs = [$((stringify!($input), ($input, self.model().$in_width()))),*];
             let outputs = vec![$((stringify!($output), ($output, { let $n = self.model().n(); $out_width }))),*];
             #[allow(unused_mut, unused_assignments)] // of a quantity that nothing surrounds
-            let mut all = Surroundings::from(Environment::with_gravity(mozzi::Vec3::zero()));
+            let mut all = BatchEnvironment::from(Environment::with_gravity(mozzi::Vec3::zero()));
             $(all = *$surroundings; $(let $given = all; all = $part;)?)?
             self.run(&$Q, &inputs, outputs, all)
         }
@@ -50,7 +50,7 @@ macro_rules! methods {
             task: Task,
             theta: &[$T],
             dtheta: &[$T],
-            surroundings: &Surroundings<$T>,
+            surroundings: &BatchEnvironment<$T>,
             Lambda: &mut [$T],
             eta: &mut [$T],
         ) -> Result<(), Error> {
@@ -73,7 +73,7 @@ macro_rules! methods {
             theta: &mut [$T],
             dtheta: &mut [$T],
             tau: &[$T],
-            surroundings: &Surroundings<$T>,
+            surroundings: &BatchEnvironment<$T>,
             method: Method,
             duration: f64,
             steps: usize,
@@ -169,11 +169,11 @@ methods! {
     /// # Errors
     /// Tables of a wrong length; a state's error with its number.
     inverse_dynamics_derivatives(theta: nq, dtheta: n, ddtheta: n; surroundings)
-        -> by_theta: |n| n * n, by_dtheta: |n| n * n, by_ddtheta: |n| n * n => q::InverseDynamicsDerivatives;
+        -> d_theta: |n| n * n, d_dtheta: |n| n * n, d_ddtheta: |n| n * n => q::InverseDynamicsDerivatives;
     /// θ̈ (N, n); ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹ (N, n, n): see [`mozzi::forward_dynamics_derivatives`].
     ///
     /// # Errors
     /// Tables of a wrong length; a state's error with its number: of a singular mass matrix the first, after all states are computed.
     forward_dynamics_derivatives(theta: nq, dtheta: n, tau: n; surroundings)
-        -> ddtheta: |n| n, by_theta: |n| n * n, by_dtheta: |n| n * n, by_tau: |n| n * n => q::ForwardDynamicsDerivatives;
+        -> ddtheta: |n| n, d_theta: |n| n * n, d_dtheta: |n| n * n, d_tau: |n| n * n => q::ForwardDynamicsDerivatives;
 }

@@ -2,7 +2,7 @@
 
 use crate::quantity::ForwardDynamics;
 use crate::threads::Threads;
-use crate::{Batch, Error, Layout, Number, Surroundings};
+use crate::{Batch, BatchEnvironment, Error, Layout, Number};
 use mozzi::simulation::{Method, Motion};
 
 /// Robots that one thread moves together: their states and the method's stages stay in its cache.
@@ -15,7 +15,7 @@ impl<T: Number> Batch<T> {
         &self,
         [theta, dtheta]: [&mut [T]; 2],
         tau: &[T],
-        surroundings: &Surroundings<T>,
+        surroundings: &BatchEnvironment<T>,
         (method, duration, steps): (Method, f64, usize),
     ) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n());
@@ -36,7 +36,7 @@ impl<T: Number> Batch<T> {
             let wrenches: Vec<_> =
                 surroundings.wrenches.iter().map(|&(frame, table)| (frame, rows(table, 6))).collect();
             let wrenches: Vec<_> = wrenches.iter().map(|(frame, table)| (*frame, &table[..])).collect();
-            let surroundings = Surroundings { wrenches: &wrenches, ..*surroundings };
+            let surroundings = BatchEnvironment { wrenches: &wrenches, ..*surroundings };
             let (mut q, mut v, tau) = (rows(theta, nq), rows(dtheta, n), rows(tau, n));
             let by_rows = self.clone().with_layout(Layout::Rows);
             by_rows.simulate_all([&mut q, &mut v], &tau, &surroundings, (method, duration, steps))?;
@@ -57,7 +57,7 @@ impl<T: Number> Batch<T> {
                     .iter()
                     .map(|&(frame, table)| (frame, &table[first * 6..][..robots * 6]))
                     .collect();
-                let surroundings = Surroundings { wrenches: &wrenches, ..*surroundings };
+                let surroundings = BatchEnvironment { wrenches: &wrenches, ..*surroundings };
                 let tau = &tau[first * n..][..robots * n];
                 let accelerations = |_t: f64, theta: &[T], dtheta: &[T], ddtheta: &mut [T]| {
                     let inputs = [("theta", (theta, nq)), ("dtheta", (dtheta, n)), ("tau", (tau, n))];

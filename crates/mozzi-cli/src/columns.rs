@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use mozzi::Model;
 use std::fmt::Write;
 
-/// The columns of a group: by number, `tau_1` … `tau_n`; where the base is free, by name, for then the joints' numbers in θ are
+/// The columns of a group: by number, `tau_1` … `tau_n`; where the base floats, by name, for then the joints' numbers in θ are
 /// others than in θ̇.
 pub fn names(model: &Model, group: &str) -> Vec<String> {
     let all: Vec<&str> =

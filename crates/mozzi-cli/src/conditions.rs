@@ -1,8 +1,8 @@
-//! `--until` and `--event`: what is looked for along a motion.
+//! `--until` and `--report-event`: what is looked for along a motion.
 
+use crate::csv::GROUPS;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::number;
-use crate::samples::GROUPS;
 use crate::text::scalar;
 use clap::Args;
 use mozzi::{FrameId, Model, forward_kinematics};
@@ -21,7 +21,7 @@ pub struct EventArguments {
     until: Vec<String>,
     /// Tell when this becomes true, and go on; may be repeated
     #[arg(long, value_name = "CONDITION", allow_hyphen_values = true)]
-    event: Vec<String>,
+    report_event: Vec<String>,
 }
 
 /// What a condition compares with a number.
@@ -47,7 +47,7 @@ impl EventArguments {
     /// For a motion from (θ, θ̇).
     pub fn events<'m>(&self, model: &'m Model, [theta, dtheta]: [&[f64]; 2]) -> Result<Vec<Event<'m>>> {
         let mut events = Vec::new();
-        for (flag, list, stop) in [("--until", &self.until, true), ("--event", &self.event, false)] {
+        for (flag, list, stop) in [("--until", &self.until, true), ("--report-event", &self.report_event, false)] {
             for text in list {
                 let these = read(&format!("{flag} `{text}`"), text.trim(), model)?;
                 events.extend(these.into_iter().map(|event| Event { stop, ..event }));
@@ -71,7 +71,7 @@ impl EventArguments {
             LIMIT => event.name.starts_with(LIMIT),
             _ => event.name == text,
         };
-        let all = self.until.iter().chain(&self.event).map(|text| text.trim());
+        let all = self.until.iter().chain(&self.report_event).map(|text| text.trim());
         all.filter(|text| !events.iter().any(|event| of(text, event))).map(str::to_string).collect()
     }
 }

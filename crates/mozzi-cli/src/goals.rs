@@ -1,8 +1,8 @@
 //! Where the end effector is to be: by flags, or tables of poses in CSV files with columns x y z of the origin and qw qx qy qz of the orientation, in {s}.
 
+use crate::csv::csv_failure;
 use crate::failure::{Failure, Result};
 use crate::numbers::{array, number};
-use crate::samples::csv_failure;
 use clap::Args;
 use mozzi::{SE3, SO3, Vec3};
 use mozzi_motion::Goal;
@@ -85,7 +85,7 @@ pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
     Ok(poses)
 }
 
-/// Of a quaternion that is one: its length may be off 1 by 10⁻³, as a free base's.
+/// Of a quaternion that is one: its length may be off 1 by 10⁻³, as a floating base's.
 fn from_pose(place: &str, pose: [f64; 7]) -> Result<SE3> {
     let length = pose[..4].iter().map(|x| x * x).sum::<f64>().sqrt();
     if (length - 1.0).abs() > 1e-3 {

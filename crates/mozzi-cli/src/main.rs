@@ -6,6 +6,7 @@ mod columns;
 mod commands;
 mod conditions;
 mod controller;
+mod csv;
 mod failure;
 mod goals;
 mod interrupt;
@@ -15,13 +16,12 @@ mod log;
 mod motors;
 mod numbers;
 mod progress;
-mod quantities;
 mod report;
 mod robot;
 mod robot_json;
-mod samples;
 mod serve;
 mod state;
+mod table;
 
 use clap::{Parser, Subcommand};
 use commands::{check, convert, explain, forward_dynamics, info, inverse_dynamics, screws, simulate, terms, tour};
@@ -109,7 +109,7 @@ Examples:
   mozzi bench panda                                     nanoseconds a state on your machine
   mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
   mozzi codegen panda --explain                         the work before and after folding
-  mozzi terms quadruped.urdf --floating                 the same robot, its base free: quaternion and origin first
+  mozzi terms quadruped.urdf --floating                 the same robot, its base floating: quaternion and origin first
   mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions that put the tool there
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
   mozzi simulate ur5 --report fall.html                 the motion as a page: 3-D, plots, one file
@@ -127,25 +127,25 @@ CSV files have a header and one row for each state; columns in any order:
   t                                     time, s
   theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_;
                                         a joint by its number, or by its name: theta_elbow_joint;
-                                        of a free base theta_base.qw qx qy qz x y z, and
+                                        of a floating base theta_base.qw qx qy qz x y z, and
                                         dtheta_base.wx wy wz vx vy vz, likewise ddtheta_, tau_
   m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in its frame
 Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0,
-and so are the six of a free base in tau.
+and so are the six of a floating base in tau.
 What one subcommand writes, the others read.";
 
 const TRAJECTORIES: &str = "\
 Examples:
   mozzi trajectory ur5 --to 1,-1,1,0,0.5,0                         joints, as fast as a quintic may
   mozzi trajectory ur5 --to 1,-1,1,0,0.5,0 --profile fastest --max-acceleration 15 --out way.csv
-  mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --along line --position 0.4,0.2,0.5 --time 2
+  mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --path line --position 0.4,0.2,0.5 --time 2
   mozzi trajectory ur5 --via points.csv --profile trapezoidal      a spline through points
   mozzi simulate ur5 --follow way.csv --controller computed.json   see mozzi simulate --help";
 
 const SIMULATIONS: &str = "\
 Examples:
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
-  mozzi simulate double_pendulum --theta 2,1 --method dopri --event 'joint1 = 0' --until 'tip.z > 0.4'
+  mozzi simulate double_pendulum --theta 2,1 --method dopri --report-event 'joint1 = 0' --until 'tip.z > 0.4'
   mozzi simulate panda --method dopri --until joint-limit
   mozzi simulate ur5 --follow way.csv --controller computed.json
 A condition counts where it becomes true, at the zero of the polynomial between two steps: as exact as the method. One that is

@@ -1,10 +1,10 @@
 //! What drives a simulated robot: the flags of `mozzi simulate` as inputs.
 
 use crate::controller::Controller;
+use crate::csv::{Samples, first_column};
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{WRENCH, array};
 use crate::robot::RobotArguments;
-use crate::samples::{Samples, first_column};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi::{Base, Model, Wrench};
@@ -16,7 +16,7 @@ pub struct MotorArguments {
     /// The motors: zero, gravity-compensation, or a CSV file with columns t, tau_1, … (linear in between); beside a controller's
     #[arg(long, value_name = "FILE|zero|gravity-compensation", default_value = "zero")]
     pub torque: String,
-    /// What the controller is to follow: a CSV file with columns t, theta_1, … and, where known, dtheta_, ddtheta_; of a free base's robot
+    /// What the controller is to follow: a CSV file with columns t, theta_1, … and, where known, dtheta_, ddtheta_; of a floating base's robot
     /// the joints alone are followed, and may stand alone
     #[arg(long, value_name = "FILE.csv", requires = "controller")]
     pub follow: Option<String>,
@@ -31,7 +31,7 @@ pub struct MotorArguments {
     pub tip_wrench: Option<String>,
     /// What a table says before its first and after its last time
     #[arg(long, value_name = "WHAT", default_value = "error")]
-    outside: Beyond,
+    extrapolate: Beyond,
 }
 
 /// What is made of limits.
@@ -69,8 +69,8 @@ impl MotorArguments {
     /// What is followed, where something is.
     pub fn followed(&self, model: &Model) -> Result<Option<Followed>> {
         let Some(file) = &self.follow else { return Ok(None) };
-        let bolted = model.with_base(Base::Fixed)?;
-        let (samples, is_of_joints) = Samples::read_joints(file, model, &bolted)?;
+        let fixed = model.with_base(Base::Fixed)?;
+        let (samples, is_of_joints) = Samples::read_joints(file, model, &fixed)?;
         let times = samples.need(&samples.t, "t")?;
         check_times(&samples, times)?;
         let theta = samples.need(&samples.theta, &first_column(model, "theta"))?;
@@ -82,7 +82,7 @@ impl MotorArguments {
             [&samples.dtheta, &samples.ddtheta].map(|rows| rows.as_ref().map(|rows| joints(rows, whole.velocities())));
         let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
         let (theta, pose) = (joints(theta, whole.positions()), theta[0].first_chunk().copied());
-        let recorded = Recorded::new(&bolted, times, &theta, dtheta.as_deref(), ddtheta.as_deref()).map_err(place)?;
+        let recorded = Recorded::new(&fixed, times, &theta, dtheta.as_deref(), ddtheta.as_deref()).map_err(place)?;
         if !model.is_floating() {
             let start = recorded.at(0.0);
             return Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(recorded) }));
@@ -142,7 +142,7 @@ impl MotorArguments {
     }
 
     fn table(&self, samples: &Samples, values: Vec<f64>, end: f64) -> Result<Table> {
-        let outside = match self.outside {
+        let outside = match self.extrapolate {
             Beyond::Error => Outside::Error,
             Beyond::Hold => Outside::Hold,
             Beyond::Zero => Outside::Zero,
@@ -150,9 +150,9 @@ impl MotorArguments {
         let times = samples.need(&samples.t, "t")?;
         check_times(samples, times)?;
         let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
-        if matches!(self.outside, Beyond::Error) && (first > 0.0 || last < end * (1.0 - 1e-12)) {
+        if matches!(self.extrapolate, Beyond::Error) && (first > 0.0 || last < end * (1.0 - 1e-12)) {
             return Err(Failure::wrong(format!(
-                "{} covers t = {first} s to {last} s, expected 0 s to {end} s; shorten --time, or say --outside hold or zero",
+                "{} covers t = {first} s to {last} s, expected 0 s to {end} s; shorten --time, or say --extrapolate hold or zero",
                 samples.file
             )));
         }

@@ -1,8 +1,8 @@
 //! A robot and its motion as a page.
 
 use crate::columns::save;
+use crate::csv::{Samples, first_column};
 use crate::failure::{self, Failure, Result};
-use crate::samples::{Samples, first_column};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::Input;
 use mozzi::{Model, Trajectory, Wrench};

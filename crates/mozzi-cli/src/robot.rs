@@ -94,7 +94,7 @@ pub struct RobotArguments {
     /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
     #[arg(long, value_name = "FRAME", visible_alias = "frame")]
     pub end_effector: Option<String>,
-    /// Gravity in {s}, which is the frame of a bolted base, m/s² [default: the robot's own, 0,0,-9.81]
+    /// Gravity in {s}, which is the frame of a fixed base, m/s² [default: the robot's own, 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Print one JSON object, every digit of every number, instead of text
@@ -145,7 +145,7 @@ pub struct Units {
     pub inertia: &'static str,
 }
 
-/// A free base turns and slides, too.
+/// A floating base turns and slides, too.
 const MIXED: Units = Units { position: "rad, m", force: "N m, N", inertia: "kg m², kg m, kg" };
 
 /// What {s} is to this robot.

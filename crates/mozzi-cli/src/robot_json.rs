@@ -106,7 +106,7 @@ impl<'v> At<'v> {
 
 fn description(at: &At) -> Read<Description> {
     let mut robot = Description::new(at.get("robot").text()?).with_gravity(at.get("gravity").vector()?);
-    robot.base = at.get("base").some(base)?.unwrap_or_default(); // files of before had bolted bases only
+    robot.base = at.get("base").some(base)?.unwrap_or_default(); // files of before had fixed bases only
     let free_joint = |at: &At| Ok(FreeJoint { name: at.get("name").text()?, parent: at.get("parent").text()? });
     robot.free_joint = at.get("free_joint").some(free_joint)?.unwrap_or_default();
     robot.end_effector = at.get("end_effector").some(At::text)?;

@@ -7,10 +7,10 @@ use mozzi::{Environment, FrameId, Model, Wrench};
 
 #[derive(Args, Debug, Default)]
 pub struct StartArguments {
-    /// Positions θ, rad or m; of a free base its pose first [default: joints at 0, a free base at {s}]
+    /// Positions θ, rad or m; of a floating base its pose first [default: joints at 0, a floating base at {s}]
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     pub theta: Option<String>,
-    /// Velocities θ̇, rad/s or m/s; of a free base its twist first, in its own coordinates [default: all 0]
+    /// Velocities θ̇, rad/s or m/s; of a floating base its twist first, in its own coordinates [default: all 0]
     #[arg(long, value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
     pub dtheta: Option<String>,
 }
@@ -101,7 +101,7 @@ pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f
     }
 }
 
-/// One number for each name; of a free base, `layout` tells what stands before the joints.
+/// One number for each name; of a floating base, `layout` tells what stands before the joints.
 fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str) -> Result<Vec<f64>> {
     if !model.is_floating() {
         return numbers_for(flag, text, names.into_iter());

@@ -40,8 +40,8 @@ fn info_tells_joints_limits_masses_and_frames() {
     let robot = json(&["info", "panda"]);
     assert_eq!((robot["n"].as_u64(), robot["moving_links"].as_u64()), (Some(8), Some(9)));
     assert!(robot["end_effector"].is_null());
-    let follower = robot["joints"].as_array().expect("joints").iter().find(|joint| !joint["mimic"].is_null());
-    assert_eq!(follower.expect("a follower")["mimic"]["ratio"], 1.0);
+    let mimic_joint = robot["joints"].as_array().expect("joints").iter().find(|joint| !joint["mimic"].is_null());
+    assert_eq!(mimic_joint.expect("a mimic joint")["mimic"]["ratio"], 1.0);
     assert!(json(&["info", "ur5", "--gravity", "0,0,-1.62"])["gravity"][2] == -1.62);
 }
 
@@ -96,8 +96,8 @@ fn terms_satisfy_the_equation_of_motion() {
     assert!(found["closed_form"].is_null());
 
     let tau: Vec<String> = of("inverse_dynamics").iter().map(f64::to_string).collect();
-    let by_tau = json(&[&["terms", "ur5"], &STATE[..4], &["--tau", &tau.join(",")], &STATE[6..]].concat());
-    assert_close(&numbers(&by_tau["ddtheta"]), &ddtheta, 1e-10);
+    let d_tau = json(&[&["terms", "ur5"], &STATE[..4], &["--tau", &tau.join(",")], &STATE[6..]].concat());
+    assert_close(&numbers(&d_tau["ddtheta"]), &ddtheta, 1e-10);
 }
 
 #[test]
@@ -123,10 +123,10 @@ fn derivatives_are_what_small_steps_make_of_the_answers() {
     let derivatives = &found["derivatives"];
     let column = |key: &str| rows(&derivatives["inverse_dynamics"][key]).iter().map(|row| row[1]).collect::<Vec<_>>();
     let slope = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<_>>();
-    assert_close(&column("by_theta"), &slope(tau(h, 0.0), tau(-h, 0.0)), 1e-7);
-    assert_close(&column("by_dtheta"), &slope(tau(0.0, h), tau(0.0, -h)), 1e-7);
+    assert_close(&column("d_theta"), &slope(tau(h, 0.0), tau(-h, 0.0)), 1e-7);
+    assert_close(&column("d_dtheta"), &slope(tau(0.0, h), tau(0.0, -h)), 1e-7);
     // M and its inverse; `terms` has the same
-    let (M, inverse) = (&derivatives["inverse_dynamics"]["by_ddtheta"], &derivatives["forward_dynamics"]["by_tau"]);
+    let (M, inverse) = (&derivatives["inverse_dynamics"]["d_ddtheta"], &derivatives["forward_dynamics"]["d_tau"]);
     let columns = rows(inverse);
     for (j, row) in columns.iter().enumerate() {
         let product = times(&rows(M), row);
@@ -188,7 +188,8 @@ fn forward_dynamics_undoes_inverse_dynamics_in_three_ways() {
     let tau: Vec<String> = numbers(&inverse["inverse_dynamics"]).iter().map(f64::to_string).collect();
     for by in ["articulated-body", "mass-matrix", "inverse-dynamics"] {
         let tau = tau.join(",");
-        let arguments = [&["forward-dynamics", "ur5", "--by", by], &STATE[..4], &STATE[6..], &["--tau", &tau]].concat();
+        let arguments =
+            [&["forward-dynamics", "ur5", "--algorithm", by], &STATE[..4], &STATE[6..], &["--tau", &tau]].concat();
         assert_close(&numbers(&json(&arguments)["forward_dynamics"]), &[1.0, 0.5, -1.0, 2.0, 0.0, -0.5], 1e-10);
     }
     assert!(text(&["inverse-dynamics", "ur5"]).contains("inverse_dynamics"));

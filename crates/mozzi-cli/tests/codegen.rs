@@ -30,8 +30,10 @@ fn files_of_each_language() {
         std::fs::read_to_string(std::path::Path::new(out).join("ur5.h")).expect("a file")
     };
     assert!(header(&["--gravity", "0,0,-1.62"]).contains("(0, 0, -1.62) m/s^2"));
-    assert!(header(&["--open", "gravity"]).contains("const double theta[6], const double gravity[3], double g[6]);"));
-    let both = header(&["--open", "wrench", "--open", "parameters"]);
+    assert!(
+        header(&["--argument", "gravity"]).contains("const double theta[6], const double gravity[3], double g[6]);")
+    );
+    let both = header(&["--argument", "wrench", "--argument", "parameters"]);
     assert!(both.contains("const double parameters[") && both.contains("const double wrench[6]"));
 }
 
@@ -54,7 +56,7 @@ fn explain_tells_the_work() {
     assert!(line.split_whitespace().any(|word| word == after), "{page}");
     assert!(!page.contains("mass-matrix"), "{page}");
     // fewer numbers are folded where more are arguments
-    let open = json(&["codegen", "panda", "--explain", "--quantity", "inverse-dynamics", "--open", "parameters"]);
+    let open = json(&["codegen", "panda", "--explain", "--quantity", "inverse-dynamics", "--argument", "parameters"]);
     assert!(open["work"][0]["after"]["flops"].as_u64() > work[0]["after"]["flops"].as_u64());
 }
 

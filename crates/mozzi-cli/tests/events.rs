@@ -1,4 +1,4 @@
-//! `--until` and `--event`: when, against Runge-Kutta's steps that end there; and what is said of them.
+//! `--until` and `--report-event`: when, against Runge-Kutta's steps that end there; and what is said of them.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn root(guess: f64, g: impl Fn(&[f64], &[f64]) -> f64) -> f64 {
 
 #[test]
 fn conditions_become_true_on_time() {
-    let flags = ["--event", "joint1 = 0", "--event", "dtheta_2 < -1", "--until", " tip.z>0.4 "];
+    let flags = ["--report-event", "joint1 = 0", "--report-event", "dtheta_2 < -1", "--until", " tip.z>0.4 "];
     let height = |theta: &[f64], _: &[f64]| -0.5 * (theta[0].cos() + (theta[0] + theta[1]).cos()) - 0.4;
     let expected = [
         ("joint1 = 0", root(0.6112, |theta, _| theta[0])),
@@ -62,7 +62,7 @@ fn limits_of_joints_are_conditions() {
     assert_eq!(event["condition"], "joint-limit: upper limit of panda_joint2");
     assert!((theta[1] - 1.7628).abs() < 1e-12 && found["joint_limits"][0]["joint"] == "panda_joint2");
     // where joints rest at their limits, each is told as it comes there
-    let page = text(&[&fall[..], &["--event", "joint-limit", "--joint-limits", "respect"]].concat());
+    let page = text(&[&fall[..], &["--report-event", "joint-limit", "--joint-limits", "respect"]].concat());
     assert!(page.contains("event: `joint-limit: upper limit of panda_finger_joint1` at t = 0.54"), "{page}");
 }
 
@@ -70,7 +70,9 @@ fn limits_of_joints_are_conditions() {
 fn what_happened_is_told_everywhere() {
     let folder = folder("events");
     let page = folder.join("swing.html").to_string_lossy().into_owned();
-    let said = text(&[&SWING[..], &["--event", "joint1 = 0", "--event", "joint1 = 9", "--report", &page]].concat());
+    let said = text(
+        &[&SWING[..], &["--report-event", "joint1 = 0", "--report-event", "joint1 = 9", "--report", &page]].concat(),
+    );
     assert!(said.contains("event: `joint1 = 0` at t = 0.6111928 s\n"), "{said}");
     assert!(said.contains("event: `joint1 = 9` did not happen until t = 3 s\n"), "{said}");
     assert!(std::fs::read_to_string(page).expect("a page").contains("event: `joint1 = 0` at t = 0.6111928 s"));
@@ -79,10 +81,10 @@ fn what_happened_is_told_everywhere() {
     assert!(output.status.success() && rows.lines().last().expect("a row").starts_with("0.6111"), "{rows}");
     let noted = String::from_utf8(output.stderr).expect("text");
     assert_eq!(noted, "note: event: `joint1 < 0` at t = 0.6111928 s, where the motion ends\n");
-    // a free base by name; what is so already counts when it becomes so again
+    // a floating base by name; what is so already counts when it becomes so again
     let output = mozzi(&["simulate", "ur5", "--floating", "--time", "0.5", "--until", "base.z < -0.5"]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("`base.z < -0.5` at t = 0.319275"), "√(2 · 0.5/9.81)");
-    let output = mozzi(&[&SWING[..], &["--event", "joint1 > 1"]].concat());
+    let output = mozzi(&[&SWING[..], &["--report-event", "joint1 > 1"]].concat());
     assert!(String::from_utf8_lossy(&output.stderr).contains("`joint1 > 1` is so at the start already"));
 }
 

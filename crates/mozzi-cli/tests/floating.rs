@@ -1,4 +1,4 @@
-//! A free base on the command line: its layout, its names, and that every command takes it.
+//! A floating base on the command line: its layout, its names, and that every command takes it.
 
 mod common;
 
@@ -24,11 +24,11 @@ fn the_layout_is_told_by_names() {
     assert_eq!(names(&info["positions"])[7..], names(&info["independent_joints"]));
     let fixed = json(&["info", TREE]);
     assert_eq!((&fixed["base"], &fixed["positions"]), (&"fixed".into(), &fixed["independent_joints"]));
-    assert!(text(&["info", TREE, "--floating"]).contains("a free base, 5 independent joints and 2 followers"));
+    assert!(text(&["info", TREE, "--floating"]).contains("a floating base, 5 independent joints and 2 mimic joints"));
     assert!(text(&["screws", TREE, "--floating"]).contains("G_0, the base"));
     assert_eq!(json(&["screws", TREE, "--floating"])["base"], "floating");
     let output = mozzi(&["check", TREE, "--floating"]);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("a free base"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("a floating base"), "{output:?}");
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn inverse_and_forward_dynamics_at_a_pose() {
     let tau = numbers(&inverse["inverse_dynamics"]);
     let list = tau.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
     for by in ["articulated-body", "mass-matrix", "inverse-dynamics"] {
-        let forward = json(&[&["forward-dynamics"][..], &state, &["--tau", &list, "--by", by]].concat());
+        let forward = json(&[&["forward-dynamics"][..], &state, &["--tau", &list, "--algorithm", by]].concat());
         assert_close(&numbers(&forward["forward_dynamics"]), &numbers(&inverse["ddtheta"]), 1e-10);
     }
     let terms = json(&[&["terms"][..], &state, &["--ddtheta", ddtheta, "--stacked"]].concat());
@@ -52,10 +52,10 @@ fn inverse_and_forward_dynamics_at_a_pose() {
     assert_close(&rows(&terms["closed_form"]["mass_matrix"]).concat(), &M.concat(), 1e-11);
     let page = text(&[&["terms"][..], &state, &["--stacked"]].concat());
     for words in [
-        "its base free, 5 joints: 12 positions θ and 11 velocities θ̇",
+        "its base floating, 5 joints: 12 positions θ and 11 velocities θ̇",
         "base.qw",
         "base.vz",
-        "link 1 being the free base",
+        "link 1 being the floating base",
     ] {
         assert!(page.contains(words), "{words} in {page}");
     }
@@ -147,7 +147,7 @@ fn files_carry_the_base() {
     text(&["convert", "ur5", "--floating", &python]);
     let literals = std::fs::read_to_string(&python).expect("a file");
     assert!(literals.contains("base = \"floating\"\nGbase = np.array("), "{literals}");
-    // a file that says nothing of the base has a bolted one
+    // a file that says nothing of the base has a fixed one
     let robot: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&first).expect("it")).expect("JSON");
     let edited = |base: Option<&str>| {
         let mut robot = robot.clone();

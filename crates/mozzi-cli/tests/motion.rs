@@ -103,7 +103,7 @@ fn joints_are_followed_while_the_base_falls() {
 fn ways_of_the_end_effector_and_through_points() {
     let start = ["trajectory", "ur5", "--from", "0,-1.2,1.5,0.3,1.1,0"];
     let line =
-        json(&[&start[..], &["--along", "line", "--position", "0.5,0.1,0.5", "--time", "1", "--step", "0.5"]].concat());
+        json(&[&start[..], &["--path", "line", "--position", "0.5,0.1,0.5", "--time", "1", "--step", "0.5"]].concat());
     let pose = |theta: &[f64]| {
         let list: Vec<String> = theta.iter().map(|x| format!("{x:?}")).collect();
         rows(&json(&["terms", "ur5", &format!("--theta={}", list.join(","))])["forward_kinematics"])
@@ -167,7 +167,7 @@ fn wrong_motions() {
     wrong(&["trajectory", "ur5", "--to", "1,2"], &["2 entries, expected 6"]);
     wrong(&[&WAY[..], &["--max-torque", "1"]].concat(), &["the motor of", "too weak at s = 0"]);
     wrong(&[&WAY[..], &["--max-velocity", "1,2"]].concat(), &["--max-velocity has 2 entries, expected 6"]);
-    wrong(&["trajectory", "ur5", "--along", "line", "--position", "3,0,0"], &["`tool0` did not reach its goal"]);
+    wrong(&["trajectory", "ur5", "--path", "line", "--position", "3,0,0"], &["`tool0` did not reach its goal"]);
     let points = "theta_1,theta_2,theta_3,theta_4,theta_5,theta_6\n0,-1.5,1.5,0,0.5,0\n0,-1.5,1.5,0,0.5,0\n";
     wrong(
         &["trajectory", "ur5", "--via", &file(&folder, "same.csv", points)],

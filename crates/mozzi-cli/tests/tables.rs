@@ -96,7 +96,7 @@ fn a_simulation_is_driven_by_tables_and_read_by_inverse_dynamics() {
     let with_wrench = [&base[..], &["--tip-wrench", &wrench]].concat();
     let (code, message) = complaint(&with_wrench);
     assert!(code == 1 && message.contains("wrench.csv covers t = 0 s to 0.1 s, expected 0 s to 0.2 s"), "{message}");
-    text(&[&with_wrench[..], &["--outside", "hold"]].concat());
+    text(&[&with_wrench[..], &["--extrapolate", "hold"]].concat());
     assert_ne!(motion, std::fs::read_to_string(&out).expect("a table"));
     text(&[&base[..], &["--tip-wrench", "0,0,0,-1,0,0"]].concat());
 }

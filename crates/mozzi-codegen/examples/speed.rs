@@ -1,11 +1,11 @@
-//! Machine code beside `mozzi::native` at one state and `mozzi-batch` at many, and beside the emitted C by `gcc -O3 -march=native -std=gnu99`
+//! Machine code beside `mozzi::fast` at one state and `mozzi-batch` at many, and beside the emitted C by `gcc -O3 -march=native -std=gnu99`
 //! where there is a gcc, in one interleaved run on one thread: the least of many rounds, in nanoseconds a state.
 //!
 //! `cargo run --release -p mozzi-codegen --example speed [ROBOT …]`
 
-use mozzi::{Model, native};
+use mozzi::{Model, fast};
 use mozzi_batch::Batch;
-use mozzi_codegen::{Compiled, Kernel, Language, LeftOpen, Precision, Quantity, Shape, compile, emit_into};
+use mozzi_codegen::{Arguments, Compiled, Kernel, Language, Precision, Quantity, Shape, compile, emit_into};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -35,7 +35,7 @@ fn at_one_state<'r>(
     [theta, dtheta, x]: [&'r [f64]; 3],
 ) -> [Run<'r>; 2] {
     let (n, nq, environment) = (model.n(), model.nq(), model.environment());
-    let (mut w, mut out, mut out3) = (native::Workspace::new(model), vec![0.0; n * n], vec![0.0; 3 * n * n]);
+    let (mut w, mut out, mut out3) = (fast::Workspace::new(model), vec![0.0; n * n], vec![0.0; 3 * n * n]);
     let kernels = move || {
         for k in 0..STATES {
             let (q, v, a) = (&theta[nq * k..][..nq], &dtheta[n * k..][..n], &x[n * k..][..n]);
@@ -43,13 +43,13 @@ fn at_one_state<'r>(
             let three = [first, &mut others[..n * n], &mut out[..]];
             match quantity {
                 Quantity::InverseDynamics => {
-                    native::inverse_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n])
+                    fast::inverse_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n])
                 }
-                Quantity::MassMatrix => native::mass_matrix(model, q, &mut w, &mut out),
+                Quantity::MassMatrix => fast::mass_matrix(model, q, &mut w, &mut out),
                 Quantity::ForwardDynamics => {
-                    native::forward_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n])
+                    fast::forward_dynamics(model, q, v, a, &environment, &mut w, &mut out[..n])
                 }
-                _ => native::inverse_dynamics_derivatives(model, q, v, a, &environment, &mut w, three),
+                _ => fast::inverse_dynamics_derivatives(model, q, v, a, &environment, &mut w, three),
             }
             black_box(&mut out);
         }
@@ -107,7 +107,7 @@ fn at_many_states<'r>(
 /// The emitted C's function as gcc compiles it; none without a gcc.
 fn emitted(model: &Model, quantity: Quantity) -> Option<(libloading::Library, String)> {
     let folder = std::env::temp_dir().join(format!("mozzi_speed_{}", std::process::id()));
-    emit_into(&folder, model, &[quantity], LeftOpen::default(), Language::C, Precision::F64).ok()?;
+    emit_into(&folder, model, &[quantity], Arguments::default(), Language::C, Precision::F64).ok()?;
     let name = &model.description().name;
     let mut gcc = std::process::Command::new("gcc");
     gcc.args(["-O3", "-march=native", "-std=gnu99", "-shared", "-fPIC", "-o"]).arg(folder.join("robot.so"));
@@ -206,11 +206,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Quantity::InverseDynamicsDerivatives,
         ] {
             let robot = compile(&model, &[quantity])?.with_threads(1)?;
-            let program = quantity.record(&model, LeftOpen::default());
+            let program = quantity.record(&model, Arguments::default());
             let mut compile_time = f64::INFINITY;
             for _ in 0..20 {
                 let start = Instant::now();
-                black_box(Kernel::new(&quantity.record(&model, LeftOpen::default()), Shape::OneF64).is_ok());
+                black_box(Kernel::new(&quantity.record(&model, Arguments::default()), Shape::OneF64).is_ok());
                 compile_time = compile_time.min(start.elapsed().as_secs_f64());
             }
             let kernel = Kernel::new(&program, lanes);

@@ -183,9 +183,9 @@ methods! {
     velocity_product_batch = velocity_product(theta, dtheta; ) -> c => VelocityProduct, |c| vec![c.as_slice().to_vec()];
     mass_matrix_batch = mass_matrix(theta; ) -> M => MassMatrix, |M| vec![M.as_slice().to_vec()];
     inverse_dynamics_derivatives_batch = inverse_dynamics_derivatives(theta, dtheta, ddtheta; environment)
-        -> by_theta, by_dtheta, by_ddtheta => InverseDynamicsDerivatives,
-        |d| [d.by_theta, d.by_dtheta, d.by_ddtheta].map(|M| M.transpose().as_slice().to_vec()).to_vec();
+        -> d_theta, d_dtheta, d_ddtheta => InverseDynamicsDerivatives,
+        |d| [d.d_theta, d.d_dtheta, d.d_ddtheta].map(|M| M.transpose().as_slice().to_vec()).to_vec();
     forward_dynamics_derivatives_batch = forward_dynamics_derivatives(theta, dtheta, tau; environment)
-        -> ddtheta, by_theta, by_dtheta, by_tau => ForwardDynamicsDerivatives,
-        |d| [vec![d.ddtheta.as_slice().to_vec()], [d.by_theta, d.by_dtheta, d.by_tau].map(|M| M.transpose().as_slice().to_vec()).to_vec()].concat();
+        -> ddtheta, d_theta, d_dtheta, d_tau => ForwardDynamicsDerivatives,
+        |d| [vec![d.ddtheta.as_slice().to_vec()], [d.d_theta, d.d_dtheta, d.d_tau].map(|M| M.transpose().as_slice().to_vec()).to_vec()].concat();
 }

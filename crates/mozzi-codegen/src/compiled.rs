@@ -1,7 +1,7 @@
 //! A robot whose quantities are machine code.
 
 use crate::jit::{Kernel, Refusal, Shape};
-use crate::quantity::{LeftOpen, Quantity};
+use crate::quantity::{Arguments, Quantity};
 use mozzi::model::are_regular;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::scalar::Float;
@@ -59,7 +59,7 @@ pub fn compile(model: &Model, quantities: &[Quantity]) -> Result<Compiled, Error
 
 impl Machine {
     fn new(model: &Model, quantity: Quantity, set: InstructionSet) -> Self {
-        let program = quantity.record(model, LeftOpen::default());
+        let program = quantity.record(model, Arguments::default());
         let lengths: Vec<usize> = program.outputs().iter().map(|output| output.values.len()).collect();
         let divides = matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsDerivatives);
         let pivots = divides.then_some(lengths.len() - 1);
@@ -278,8 +278,8 @@ impl Compiled {
         let [mut a, mut b, mut c] = [(); 3].map(|()| vec![0.0; n * n]);
         let outputs = &mut [&mut a[..], &mut b, &mut c];
         self.evaluate(Quantity::InverseDynamicsDerivatives, &[theta, dtheta, ddtheta], outputs);
-        let [by_theta, by_dtheta, by_ddtheta] = [a, b, c].map(|rows| DMatrix::from_row_slice(n, n, &rows));
-        Ok(InverseDynamicsDerivatives { by_theta, by_dtheta, by_ddtheta })
+        let [d_theta, d_dtheta, d_ddtheta] = [a, b, c].map(|rows| DMatrix::from_row_slice(n, n, &rows));
+        Ok(InverseDynamicsDerivatives { d_theta, d_dtheta, d_ddtheta })
     }
 
     /// θ̈ and ∂θ̈: see [`Model::forward_dynamics_derivatives`].
@@ -301,8 +301,8 @@ impl Compiled {
         if !are_regular(&pivots) {
             return self.model.forward_dynamics_derivatives(theta, dtheta, tau, &self.model.environment());
         }
-        let [by_theta, by_dtheta, by_tau] = [a, b, c].map(|rows| DMatrix::from_row_slice(n, n, &rows));
-        Ok(ForwardDynamicsDerivatives { ddtheta, by_theta, by_dtheta, by_tau })
+        let [d_theta, d_dtheta, d_tau] = [a, b, c].map(|rows| DMatrix::from_row_slice(n, n, &rows));
+        Ok(ForwardDynamicsDerivatives { ddtheta, d_theta, d_dtheta, d_tau })
     }
 }
 

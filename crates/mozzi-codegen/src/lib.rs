@@ -3,7 +3,7 @@
 //! - [`compile`] a robot: an object with the model's methods, for one state and for many, that runs machine code made for this robot, where
 //!   the processor is an x86-64 with AVX2 and FMA, or AVX-512; elsewhere the kernels. [`Compiled::engine`] says which.
 //! - [`Quantity::record`] a program: `mozzi`'s own kernel, run once on the scalar [`Traced`], without all that the robot's zeros and ones make
-//!   superfluous, every operation once. [`LeftOpen`] tells which numbers of the robot stay inputs. A [`Program`] is printed, read, counted and
+//!   superfluous, every operation once. [`Arguments`] tells which numbers of the robot stay inputs. A [`Program`] is printed, read, counted and
 //!   evaluated in any [`Scalar`](mozzi::Scalar).
 //! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C; [`emit_into`] a folder, for `build.rs`. Without the feature `batch`,
 //!   which build scripts do not need, there is no [`compile`], and nothing of `mozzi-batch` is built.
@@ -11,9 +11,9 @@
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use mozzi_codegen::{LeftOpen, Quantity};
+//! use mozzi_codegen::{Arguments, Quantity};
 //! let model = mozzi_urdf::open("ur5")?.build()?;
-//! let program = Quantity::InverseDynamics.record(&model, LeftOpen::default());
+//! let program = Quantity::InverseDynamics.record(&model, Arguments::default());
 //! let before = program.count_before_folding().ok_or("recorded here")?;
 //! println!("{before}\n{}", program.count()); // 1710 flops, of which 380 are left
 //! assert!(program.count().flops() < before.flops() / 4);
@@ -49,7 +49,7 @@ pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_into, emit
 pub use function::Function;
 pub use jit::{Kernel, LONGEST_CODE, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};
-pub use quantity::{LeftOpen, Quantity};
+pub use quantity::{Arguments, Quantity};
 pub use record::record;
 pub use text::NotAProgram;
 pub use traced::Traced;

@@ -39,7 +39,7 @@ use Quantity::*;
 /// What of the robot stays an input of the program, further arrays after the state in this order. By default nothing does: all numbers
 /// of the robot are in the program, and what is multiplied by a zero of them is not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LeftOpen {
+pub struct Arguments {
     /// `parameters`: [`Model::parameters`], the masses, inertias and frictions. Geometry stays fixed.
     pub parameters: bool,
     /// `gravity`: three numbers, in {s}.
@@ -88,9 +88,9 @@ impl Quantity {
     ///
     /// # Panics
     /// When a frame is not this model's.
-    pub fn record(self, model: &Model, open: LeftOpen) -> Program {
+    pub fn record(self, model: &Model, open: Arguments) -> Program {
         match self {
-            ForwardDynamics if !model.is_coupled() => {
+            ForwardDynamics if !model.has_mimic_joints() => {
                 let by = [false, true].map(|by_mass_matrix| self.record_by(model, open, by_mass_matrix));
                 by.into_iter().min_by_key(work).expect("two ways")
             }
@@ -98,7 +98,7 @@ impl Quantity {
         }
     }
 
-    fn record_by(self, model: &Model, open: LeftOpen, by_mass_matrix: bool) -> Program {
+    fn record_by(self, model: &Model, open: Arguments, by_mass_matrix: bool) -> Program {
         let model = &model.reduced();
         let length = |name: &str| if name == "theta" { model.nq() } else { model.n() };
         let mut inputs: Vec<(&str, usize)> = self.state().iter().map(|&name| (name, length(name))).collect();
@@ -198,13 +198,13 @@ impl Quantity {
                 let mut by = [X.clone(), X.clone(), X];
                 let slices = by.each_mut().map(|matrix| &mut matrix[..]);
                 kernel::inverse_dynamics_derivatives(model, theta, dtheta, third, environment, &mut w, slices);
-                ["by_theta", "by_dtheta", "by_ddtheta"].into_iter().zip(by).collect()
+                ["d_theta", "d_dtheta", "d_ddtheta"].into_iter().zip(by).collect()
             }
             ForwardDynamicsDerivatives => {
                 let mut by = [X.clone(), X.clone(), X];
                 let slices = by.each_mut().map(|matrix| &mut matrix[..]);
                 kernel::forward_dynamics_derivatives(model, theta, dtheta, third, environment, &mut w, &mut x, slices);
-                let derivatives = ["by_theta", "by_dtheta", "by_tau"].into_iter().zip(by);
+                let derivatives = ["d_theta", "d_dtheta", "d_tau"].into_iter().zip(by);
                 [("ddtheta", x)].into_iter().chain(derivatives).chain([("pivots", w.pivots().to_vec())]).collect()
             }
         }

@@ -60,6 +60,8 @@ impl Compiled {
         options: &Options,
         progress: impl FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Result<Trajectory, Error> {
-        Equation::new(self.model(), input, options).by(self.simulator())?.simulate(theta, dtheta, progress)
+        Equation::new(self.model(), input, options)
+            .with_forward_dynamics(self.simulator())?
+            .simulate(theta, dtheta, progress)
     }
 }

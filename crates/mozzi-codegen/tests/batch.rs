@@ -41,21 +41,21 @@ fn rows_and_blocks_of_any_number_of_states() {
                 near("θ̈", &ddtheta, &|[a, b, c]| {
                     model.forward_dynamics(a, b, c, &environment).expect("sound").as_slice().to_vec()
                 });
-                let [mut by_theta, mut by_dtheta, mut by_tau] = [(); 3].map(|()| vec![0.0; states * n * n]);
+                let [mut d_theta, mut d_dtheta, mut d_tau] = [(); 3].map(|()| vec![0.0; states * n * n]);
                 robot
                     .forward_dynamics_derivatives_batch(
                         &theta,
                         &dtheta,
                         &x,
                         &mut ddtheta,
-                        &mut by_theta,
-                        &mut by_dtheta,
-                        &mut by_tau,
+                        &mut d_theta,
+                        &mut d_dtheta,
+                        &mut d_tau,
                     )
                     .expect("regular");
-                near("∂θ̈/∂θ", &by_theta, &|[a, b, c]| {
+                near("∂θ̈/∂θ", &d_theta, &|[a, b, c]| {
                     let d = model.forward_dynamics_derivatives(a, b, c, &environment).expect("sound");
-                    d.by_theta.transpose().as_slice().to_vec()
+                    d.d_theta.transpose().as_slice().to_vec()
                 });
             }
             let robot = robot.with_layout(Layout::Blocks);

@@ -55,14 +55,14 @@ fn methods_are_the_models() {
             );
             let found = robot.inverse_dynamics_derivatives(theta, dtheta, x).expect("sound");
             let expected = model.inverse_dynamics_derivatives(theta, dtheta, x, &environment).expect("sound");
-            matrix("∂τ/∂θ", &found.by_theta, &expected.by_theta, 2e-14);
-            matrix("∂τ/∂θ̇", &found.by_dtheta, &expected.by_dtheta, 2e-14);
-            matrix("∂τ/∂θ̈", &found.by_ddtheta, &expected.by_ddtheta, 2e-14);
+            matrix("∂τ/∂θ", &found.d_theta, &expected.d_theta, 2e-14);
+            matrix("∂τ/∂θ̇", &found.d_dtheta, &expected.d_dtheta, 2e-14);
+            matrix("∂τ/∂θ̈", &found.d_ddtheta, &expected.d_ddtheta, 2e-14);
             let found = robot.forward_dynamics_derivatives(theta, dtheta, x).expect("regular");
             let expected = model.forward_dynamics_derivatives(theta, dtheta, x, &environment).expect("regular");
-            matrix("∂θ̈/∂θ", &found.by_theta, &expected.by_theta, 1e-10);
-            matrix("∂θ̈/∂θ̇", &found.by_dtheta, &expected.by_dtheta, 1e-10);
-            matrix("∂θ̈/∂τ", &found.by_tau, &expected.by_tau, 1e-10);
+            matrix("∂θ̈/∂θ", &found.d_theta, &expected.d_theta, 1e-10);
+            matrix("∂θ̈/∂θ̇", &found.d_dtheta, &expected.d_dtheta, 1e-10);
+            matrix("∂θ̈/∂τ", &found.d_tau, &expected.d_tau, 1e-10);
         }
     }
 }

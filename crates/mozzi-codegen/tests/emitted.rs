@@ -7,7 +7,9 @@ mod harness;
 use common::{error, published, state, tree};
 use harness::{Call, Module, build, exists, rounded, run};
 use mozzi::{Base, Environment, Model, Scalar};
-use mozzi_codegen::{EmitError, Language, LeftOpen, Precision, Program, Quantity, Traced, emit, emit_programs, record};
+use mozzi_codegen::{
+    Arguments, EmitError, Language, Precision, Program, Quantity, Traced, emit, emit_programs, record,
+};
 use std::process::Command;
 
 fn embedded(name: &str) -> Model {
@@ -69,8 +71,8 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
     let anymal = embedded("anymal").with_base(Base::Floating).expect("sound");
     let ur5 = embedded("ur5");
     let tool = ur5.frames().last().expect("a frame").0;
-    let open = LeftOpen { parameters: true, gravity: true, wrench: Some(tool) };
-    let fixed = LeftOpen::default();
+    let open = Arguments { parameters: true, gravity: true, wrench: Some(tool) };
+    let fixed = Arguments::default();
     let rubbing = tree(3, 9, 0).build().expect("sound");
     let turning = rubbing.joint_names().position(|name| name == "joint2").expect("a joint that only turns");
     let mut robots = vec![
@@ -91,7 +93,7 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
         let arms = published().into_iter().map(|(_, robot)| robot).filter(|robot| (6..8).contains(&robot.n()));
         robots.extend(arms.map(|robot| (robot, dynamics(), fixed, 1)));
     }
-    let of_robot = |(model, quantities, open, angle): (Model, Vec<Quantity>, LeftOpen, usize)| {
+    let of_robot = |(model, quantities, open, angle): (Model, Vec<Quantity>, Arguments, usize)| {
         let call = |quantity: &Quantity| {
             let program = quantity.record(&model, open);
             let frame = quantity.frame().map(|frame| format!("_{}", model.frame_name(frame)));
@@ -216,7 +218,7 @@ fn cuda_keeps_its_numbers_in_registers() {
     std::fs::create_dir_all(&folder).expect("a folder");
     for precision in [Precision::F64, Precision::F32] {
         let quantities = [Quantity::InverseDynamics, Quantity::ForwardDynamics];
-        let files = emit(&embedded("panda"), &quantities, LeftOpen::default(), Language::Cuda, precision);
+        let files = emit(&embedded("panda"), &quantities, Arguments::default(), Language::Cuda, precision);
         files.expect("text")[0].write(&folder).expect("a file");
         let arguments = ["-arch=sm_90", "-Xptxas", "-v", "-cubin", "-o", "panda.cubin", "panda.cu"];
         let output = Command::new("nvcc").args(arguments).current_dir(&folder).output().expect("a compiler");
@@ -233,7 +235,7 @@ fn cuda_keeps_its_numbers_in_registers() {
 fn the_interpreter_is_the_kernel() {
     let (model, quantity) = (embedded("panda"), Quantity::InverseDynamics);
     let [theta, dtheta, ddtheta] = state(&model, 1);
-    let found = quantity.record(&model, LeftOpen::default()).evaluate(&[&theta[..], &dtheta, &ddtheta]);
+    let found = quantity.record(&model, Arguments::default()).evaluate(&[&theta[..], &dtheta, &ddtheta]);
     let environment = Environment::with_gravity(model.gravity());
     let expected = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
     assert!(error(&found[0], expected.as_slice()) < 2e-14);
@@ -242,7 +244,7 @@ fn the_interpreter_is_the_kernel() {
 #[test]
 fn what_cannot_be_written_is_refused() {
     let model = embedded("ur5");
-    let fixed = LeftOpen::default();
+    let fixed = Arguments::default();
     let nothing = emit(&model, &[], fixed, Language::C, Precision::F64);
     assert!(matches!(nothing, Err(EmitError::Nothing)));
     let far = embedded("anymal").frames().last().expect("a frame").0;
@@ -262,7 +264,7 @@ fn files_are_written_where_they_differ() {
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("files are written");
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
-    let files = emit(&embedded("ur5"), &[Quantity::GravityForces], LeftOpen::default(), Language::C, Precision::F64);
+    let files = emit(&embedded("ur5"), &[Quantity::GravityForces], Arguments::default(), Language::C, Precision::F64);
     let files = files.expect("text");
     let written = || {
         let path = files[0].write(&folder).expect("a folder");

@@ -6,7 +6,7 @@ mod common;
 use common::{Random, error, quantities, robots, state};
 use mozzi::Model;
 use mozzi::scalar::Float as Number;
-use mozzi_codegen::{Kernel, LeftOpen, Program, Quantity, Refusal, Shape, record};
+use mozzi_codegen::{Arguments, Kernel, Program, Quantity, Refusal, Shape, record};
 
 /// The outputs of each lane, and the sums of squares, at one state for each lane.
 fn run<S: Number>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> (Vec<Vec<Vec<S>>>, Vec<S>) {
@@ -55,7 +55,7 @@ fn every_quantity_of_every_robot_in_every_shape() {
     let (mut made, mut refused) = (0, 0);
     for (name, model) in robots() {
         for quantity in quantities(&model) {
-            let program = quantity.record(&model, LeftOpen::default());
+            let program = quantity.record(&model, Arguments::default());
             let is_solve = matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsDerivatives);
             for shape in Shape::ALL {
                 let kernel = match Kernel::new(&program, shape) {

@@ -5,7 +5,7 @@ mod common;
 
 use common::{error, quantities, robots, state};
 use mozzi::{Dual, Environment, Model, Scalar, Vec3, Wrench};
-use mozzi_codegen::{LeftOpen, Program, Quantity};
+use mozzi_codegen::{Arguments, Program, Quantity};
 
 /// The kernels' outputs, by the methods of the model.
 fn reference(
@@ -36,11 +36,11 @@ fn reference(
         Quantity::SpaceJacobian(frame) => vec![columns(model.space_jacobian(theta, frame).expect("lengths"))],
         Quantity::InverseDynamicsDerivatives => {
             let d = model.inverse_dynamics_derivatives(theta, dtheta, x, environment).expect("lengths");
-            [d.by_theta, d.by_dtheta, d.by_ddtheta].map(rows).to_vec()
+            [d.d_theta, d.d_dtheta, d.d_ddtheta].map(rows).to_vec()
         }
         Quantity::ForwardDynamicsDerivatives => {
             let d = model.forward_dynamics_derivatives(theta, dtheta, x, environment).expect("regular");
-            [list(d.ddtheta)].into_iter().chain([d.by_theta, d.by_dtheta, d.by_tau].map(rows)).collect()
+            [list(d.ddtheta)].into_iter().chain([d.d_theta, d.d_dtheta, d.d_tau].map(rows)).collect()
         }
     }
 }
@@ -57,7 +57,7 @@ fn tolerance(quantity: Quantity) -> f64 {
 fn every_quantity_of_every_robot() {
     for (name, model) in robots() {
         for quantity in quantities(&model) {
-            let program = quantity.record(&model, LeftOpen::default());
+            let program = quantity.record(&model, Arguments::default());
             let text: Program = program.to_string().parse().expect("a program");
             assert_eq!(text.to_string(), program.to_string());
             for seed in 0..3 {
@@ -79,13 +79,13 @@ fn every_quantity_of_every_robot() {
 fn folding_leaves_less_work() {
     for (name, model) in robots() {
         for quantity in quantities(&model) {
-            let program = quantity.record(&model, LeftOpen::default());
+            let program = quantity.record(&model, Arguments::default());
             let (before, after) = (program.count_before_folding().expect("recorded"), program.count());
             assert!(after.flops() < before.flops(), "{name}, {}: {before}; {after}", quantity.name());
         }
     }
     let ur5 = mozzi_urdf::open("ur5").and_then(|robot| robot.build()).expect("an embedded robot");
-    let count = Quantity::InverseDynamics.record(&ur5, LeftOpen::default()).count();
+    let count = Quantity::InverseDynamics.record(&ur5, Arguments::default()).count();
     assert!(count.flops() < 420, "{count}");
 }
 
@@ -93,7 +93,7 @@ fn folding_leaves_less_work() {
 fn what_is_left_open_is_an_input() {
     for (name, model) in robots() {
         let tip = model.frames().last().expect("a frame").0;
-        let open = LeftOpen { parameters: true, gravity: true, wrench: Some(tip) };
+        let open = Arguments { parameters: true, gravity: true, wrench: Some(tip) };
         for quantity in [Quantity::InverseDynamics, Quantity::ForwardDynamics, Quantity::BiasForces] {
             let program = quantity.record(&model, open);
             let names: Vec<_> = program.inputs().iter().map(|input| input.name.as_str()).collect();
@@ -128,7 +128,7 @@ fn what_is_left_open_is_an_input() {
 fn programs_run_on_any_scalar() {
     // the derivative of τ along θ̈ is M's product
     let model = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");
-    let program = Quantity::InverseDynamics.record(&model, LeftOpen::default());
+    let program = Quantity::InverseDynamics.record(&model, Arguments::default());
     let [theta, dtheta, ddtheta] = state(&model, 1);
     let (along, zero) = (vec![1.0; model.n()], vec![0.0; model.n()]);
     let duals = [Dual::list(&theta, &zero), Dual::list(&dtheta, &zero), Dual::list(&ddtheta, &along)];

@@ -68,7 +68,8 @@ fn what_cannot_be_is_refused_as_by_the_model() {
     both(&theta, &dtheta, || Box::new(torque(|_, _, _, tau| tau[0] = f64::INFINITY)), &options);
 
     let other = common::tree(5, 6, 1).build().expect("sound");
-    let error = Equation::new(&other, Zero, &options).by(Some(&robot)).map(|_| ()).expect_err("another's");
+    let error =
+        Equation::new(&other, Zero, &options).with_forward_dynamics(Some(&robot)).map(|_| ()).expect_err("another's");
     assert!(error.to_string().contains("that of another robot, `tree 4`"), "{error}");
 
     // a massless tip that turns freely

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A way around what MuJoCo refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remedy {
+pub enum Workaround {
     /// Without visual and collision elements.
     Geometry,
     /// Without inertias of links that no joint moves.
@@ -21,7 +21,7 @@ pub enum Remedy {
 
 /// Why a library computes nothing.
 #[derive(Clone, Debug)]
-pub enum Silence {
+pub enum Unavailable {
     NotInstalled(String),
     Refuses(String),
     /// The script ended without an answer.
@@ -51,8 +51,8 @@ pub struct Answer {
     pub library: &'static str,
     pub version: Option<String>,
     /// What it said of the file as it stands, and what was done then.
-    pub attempts: Vec<(String, Remedy)>,
-    pub robot: Result<Robot, Silence>,
+    pub attempts: Vec<(String, Workaround)>,
+    pub robot: Result<Robot, Unavailable>,
 }
 
 pub fn name_of(library: &str) -> &'static str {
@@ -60,27 +60,27 @@ pub fn name_of(library: &str) -> &'static str {
 }
 
 impl Answer {
-    pub fn silent(library: &str, silence: Silence) -> Self {
-        Answer { library: name_of(library), version: None, attempts: Vec::new(), robot: Err(silence) }
+    pub fn silent(library: &str, unavailable: Unavailable) -> Self {
+        Answer { library: name_of(library), version: None, attempts: Vec::new(), robot: Err(unavailable) }
     }
 
     /// From the script's JSON; `None` where that is not as the script writes it.
     pub fn read(value: &Value) -> Option<Self> {
         let attempt = |step: &Value| {
-            let remedy = match step["then"].as_str()? {
-                "geometry" => Remedy::Geometry,
-                "fixed" => Remedy::Fixed,
-                "balance" => Remedy::Balance,
-                "bound" => Remedy::Bound,
+            let workaround = match step["then"].as_str()? {
+                "geometry" => Workaround::Geometry,
+                "fixed" => Workaround::Fixed,
+                "balance" => Workaround::Balance,
+                "bound" => Workaround::Bound,
                 _ => return None,
             };
-            Some((step["message"].as_str()?.to_string(), remedy))
+            Some((step["message"].as_str()?.to_string(), workaround))
         };
         let error = &value["error"];
         let robot = match error["stage"].as_str() {
             None => Ok(robot(value)?),
-            Some("import") => Err(Silence::NotInstalled(error["message"].as_str()?.to_string())),
-            Some(_) => Err(Silence::Refuses(error["message"].as_str()?.to_string())),
+            Some("import") => Err(Unavailable::NotInstalled(error["message"].as_str()?.to_string())),
+            Some(_) => Err(Unavailable::Refuses(error["message"].as_str()?.to_string())),
         };
         Some(Answer {
             library: name_of(value["library"].as_str()?),
@@ -162,7 +162,7 @@ fn robot(value: &Value) -> Option<Robot> {
     }
     forces.retain(|_, list| list.iter().any(|force| force.amax() > 0.0));
     let text = |value: &Value| value.as_str().map(str::to_string);
-    let coupling = |entry: &Value| Some((text(&entry["joint"])?, text(&entry["master"])?));
+    let coupling = |entry: &Value| Some((text(&entry["joint"])?, text(&entry["source"])?));
     Some(Robot {
         constants: Constants { joints, gravity: array(&value["gravity"])? },
         side: Side { names, states },

@@ -1,7 +1,7 @@
 //! Bodies that weigh differently on the two sides, and why.
 
 use crate::Result;
-use crate::answer::{Answer, Remedy, Robot};
+use crate::answer::{Answer, Robot, Workaround};
 use crate::cause::Cause;
 use crate::constants::{Constants, freed, home, same_body};
 use mozzi::{Description, SpatialInertia, Sym3};
@@ -61,7 +61,7 @@ fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robo
     let home = home(robot)?;
     let links = || robot.links.iter().filter(|link| change.links.contains(&link.name));
     let whole = |edit: &dyn Fn(SpatialInertia) -> SpatialInertia| {
-        links().fold(SpatialInertia::zero(), |sum, link| sum + edit(link.inertia).seen_from(home[&link.name]))
+        links().fold(SpatialInertia::zero(), |sum, link| sum + edit(link.inertia).transformed(home[&link.name]))
     };
     let setting = |name: &str| from.settings[name].as_f64().unwrap_or(0.0);
     let (mass, moment) = (setting("boundmass"), setting("boundinertia"));
@@ -74,7 +74,7 @@ fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robo
     if balances && same_body(&whole(&balanced), &change.theirs) {
         return Ok(Reason::Balanced);
     }
-    let tried_bound = answer.attempts.iter().any(|(_, remedy)| *remedy == Remedy::Bound);
+    let tried_bound = answer.attempts.iter().any(|(_, workaround)| *workaround == Workaround::Bound);
     let is_light = |link: &mozzi::model::description::Link| {
         let [least, ..] = link.inertia.verdict().principal_moments;
         link.inertia.mass < mass || least < moment

@@ -16,18 +16,18 @@ pub struct Change {
     pub theirs: f64,
 }
 
-/// A follower that moves on its own there.
+/// A mimic joint that moves on its own there.
 #[derive(Clone, Debug)]
 pub struct Freed {
     pub joint: String,
-    pub master: String,
-    /// The library holds it to its master by the force of a constraint.
+    pub source: String,
+    /// The library holds it to its source joint by the force of a constraint.
     pub constrained: bool,
 }
 
 #[derive(Clone, Debug)]
 pub enum Cause {
-    Followers(Vec<Freed>),
+    Mimics(Vec<Freed>),
     /// These joints do not move there.
     Held(Vec<String>),
     Gravity {
@@ -63,7 +63,7 @@ impl Cause {
             Cause::Armature(changes) => each(changes, |joint, value| joint.armature = value),
             Cause::Damping(changes) => each(changes, |joint, value| joint.damping = value),
             Cause::Friction(changes) => each(changes, |joint, value| joint.friction = value),
-            Cause::Followers(list) => {
+            Cause::Mimics(list) => {
                 list.iter().for_each(|freed| joints(robot, &freed.joint).for_each(|joint| joint.mimic = None));
             }
             Cause::Held(list) => {
@@ -92,7 +92,7 @@ impl Cause {
                 let home = home(robot)?;
                 for change in changes {
                     for (k, name) in change.links.iter().enumerate() {
-                        let whole = change.theirs.seen_from(home[name].inverse());
+                        let whole = change.theirs.transformed(home[name].inverse());
                         let inertia = if k == 0 { whole } else { SpatialInertia::zero() };
                         robot
                             .links
@@ -107,7 +107,7 @@ impl Cause {
                 for (name, axis) in changes {
                     let Ok(S) = ScrewAxis::from_array(*axis) else { continue };
                     for joint in joints(robot, name) {
-                        joint.kind = JointKind::Screw(S.seen_from(home[&joint.child].inverse()));
+                        joint.kind = JointKind::Screw(S.transformed(home[&joint.child].inverse()));
                     }
                 }
             }
@@ -121,7 +121,7 @@ fn joints<'r>(robot: &'r mut Description, name: &str) -> impl Iterator<Item = &'
 }
 
 /// Every cause that the two sides' constants suggest; whether it explains anything is tried then. `coupled`: the
-/// library was asked to couple followers.
+/// library was asked to couple mimic joints.
 pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: bool) -> Result<Vec<Cause>> {
     let (theirs, mut causes) = (&from.constants, Vec::new());
     let mine = Constants::of(robot)?;
@@ -140,13 +140,13 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     }
     let mine = Constants::of(&robot)?; // bodies of joints that are held are the bodies that carry them
     let freed = |joint: &Joint| {
-        let master = joint.mimic.as_ref()?.joint.clone();
-        let constrained = from.couplings.iter().any(|(follower, _)| *follower == joint.name);
-        there(&joint.name).then(|| Freed { joint: joint.name.clone(), master, constrained })
+        let source = joint.mimic.as_ref()?.joint.clone();
+        let constrained = from.couplings.iter().any(|(mimic_joint, _)| *mimic_joint == joint.name);
+        there(&joint.name).then(|| Freed { joint: joint.name.clone(), source, constrained })
     };
     let freed: Vec<Freed> = robot.joints.iter().filter_map(freed).collect();
     if !freed.is_empty() {
-        causes.push(Cause::Followers(freed));
+        causes.push(Cause::Mimics(freed));
     }
     let apart = |a: f64, b: f64| (a - b).abs() > 1e-12 * a.abs().max(b.abs());
     if (0..3).any(|k| apart(mine.gravity[k], theirs.gravity[k])) {
@@ -157,7 +157,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     type Number = fn(&JointConstants) -> f64;
     let changes = |pick: Number, ignored: bool| -> Vec<Change> {
         let change = |joint: &JointConstants| {
-            // a follower that is coupled there has no numbers of its own; what τ leaves out, it leaves out of all
+            // a mimic joint that is coupled there has no numbers of its own; what τ leaves out, it leaves out of all
             let theirs = if ignored { 0.0 } else { pick(theirs.joint(&joint.name)?) };
             let mozzi = pick(joint);
             apart(mozzi, theirs).then(|| Change { joint: joint.name.clone(), mozzi, theirs })

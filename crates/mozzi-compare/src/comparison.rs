@@ -1,11 +1,11 @@
 //! Asking, judging, and what came of it.
 
-use crate::answer::{Answer, Robot, Silence};
+use crate::answer::{Answer, Robot, Unavailable};
 use crate::python::{self, Peer};
 use crate::question::Question;
 use crate::report_text::Finding;
 use crate::verdict::{Verdict, judge};
-use crate::{BOUND, Error, Result, Source, report_json, report_text, words};
+use crate::{BOUND, Error, Result, Source, report_json, report_text, vocabulary};
 use mozzi::Model;
 use mozzi_text::Page;
 use serde_json::{Value, json};
@@ -46,7 +46,7 @@ pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Compa
     let robot = model.description();
     let question = Question::new(source, robot, options.states, options.seed)?;
     let mut peers = vec![Peer::Pinocchio, Peer::MuJoCo];
-    if model.is_coupled() && question.source.language != "mjcf" {
+    if model.has_mimic_joints() && question.source.language != "mjcf" {
         peers.push(Peer::PinocchioMimic);
     }
     let mut answers = python::ask(&options.python, &question, &peers)?;
@@ -82,12 +82,12 @@ pub fn ask(source: Source, options: &Options) -> Result<Comparison> {
 }
 
 fn somebody(python: &Path, answers: &[Answer]) -> Result<()> {
-    let silent = |answer: &Answer| matches!(answer.robot, Err(Silence::NotInstalled(_) | Silence::Died(_)));
+    let silent = |answer: &Answer| matches!(answer.robot, Err(Unavailable::NotInstalled(_) | Unavailable::Died(_)));
     if !answers.iter().all(silent) {
         return Ok(());
     }
     let reason = |answer: &Answer| match &answer.robot {
-        Err(silence) => format!("{} {}", answer.library, words::silence(silence, answer.library)),
+        Err(unavailable) => format!("{} {}", answer.library, vocabulary::unavailable(unavailable, answer.library)),
         Ok(_) => String::new(),
     };
     let reasons = answers.iter().map(reason).collect::<Vec<_>>().join("; ");

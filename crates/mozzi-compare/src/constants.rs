@@ -32,14 +32,14 @@ pub struct Constants {
     pub gravity: [f64; 3],
 }
 
-/// The robot with every follower moving on its own.
+/// The robot with every mimic joint moving on its own.
 pub fn freed(robot: &Description) -> Description {
     let mut robot = robot.clone();
     robot.joints.iter_mut().for_each(|joint| joint.mimic = None);
     robot
 }
 
-/// Where each link is when every joint, followers too, is at 0, and a free base at {s}.
+/// Where each link is when every joint, mimic joints too, is at 0, and a floating base at {s}.
 pub fn home(robot: &Description) -> Result<BTreeMap<String, SE3>> {
     let model = freed(robot).build()?;
     let poses = model.frame_poses(&model.neutral_configuration::<f64>())?;
@@ -65,9 +65,9 @@ impl Constants {
         let bodies = model.folded_links();
         let joint = |(joint, body): (&&Joint, &mozzi::model::FoldedBody)| {
             let sum = (body.links.iter())
-                .fold(SpatialInertia::zero(), |sum, (link, _)| sum + inertia[link].seen_from(home[*link]));
+                .fold(SpatialInertia::zero(), |sum, (link, _)| sum + inertia[link].transformed(home[*link]));
             let axis = match joint.kind {
-                JointKind::Screw(A) => A.seen_from(home[&joint.child]).twist().to_array(),
+                JointKind::Screw(A) => A.transformed(home[&joint.child]).twist().to_array(),
                 JointKind::Fixed => [0.0; 6],
             };
             JointConstants {

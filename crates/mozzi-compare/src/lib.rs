@@ -30,7 +30,7 @@ mod source;
 #[cfg(test)]
 mod tests;
 mod verdict;
-mod words;
+mod vocabulary;
 
 pub use comparison::{Comparison, Options, ask, compare};
 pub use error::Error;

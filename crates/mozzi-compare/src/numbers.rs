@@ -62,7 +62,7 @@ impl Side {
         let at = |values: &[f64]| -> Vec<f64> {
             let value =
                 |name: &String| question.names.iter().position(|known| known == name).map_or(0.0, |k| values[k]);
-            names.iter().map(value).collect() // a free base is at rest
+            names.iter().map(value).collect() // a floating base is at rest
         };
         let base = model.base();
         let numbers = |state: &State| {

@@ -323,7 +323,7 @@ class MuJoCo:
             if model.eq_type[i] != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[i] < 0:
                 continue
             names = [self.names[model.eq_obj1id[i]], self.names[model.eq_obj2id[i]]]
-            couplings.append({"joint": names[0], "master": names[1]})
+            couplings.append({"joint": names[0], "source": names[1]})
         off = int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
         compiler = self.spec.compiler
         return {

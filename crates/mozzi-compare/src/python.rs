@@ -1,6 +1,6 @@
 //! Asking the libraries: the script in a Python, a question in, an answer out.
 
-use crate::answer::{Answer, Silence, name_of};
+use crate::answer::{Answer, Unavailable, name_of};
 use crate::question::Question;
 use crate::{Error, Result};
 use std::io::Write;
@@ -13,7 +13,7 @@ const SCRIPT: &str = include_str!("peers.py");
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
     Pinocchio,
-    /// Pinocchio with its followers coupled.
+    /// Pinocchio with its mimic joints coupled.
     PinocchioMimic,
     MuJoCo,
 }
@@ -42,7 +42,7 @@ pub fn ask(python: &Path, question: &Question, peers: &[Peer]) -> Result<Vec<Ans
             .into_iter()
             .map(|(peer, child)| (peer, scope.spawn(move || answer(child, question, peer))))
             .collect();
-        let died = |peer: Peer| Answer::silent(peer.key(), Silence::Died("its answer was not read".into()));
+        let died = |peer: Peer| Answer::silent(peer.key(), Unavailable::Died("its answer was not read".into()));
         threads.into_iter().map(|(peer, thread)| thread.join().unwrap_or_else(|_| died(peer))).collect()
     });
     Ok(answers)
@@ -60,7 +60,7 @@ fn answer(child: Child, question: &Question, peer: Peer) -> Answer {
         answer.ok_or_else(|| not_written(&value.to_string()))
     };
     let answer = value(child, question, peer).and_then(read);
-    answer.unwrap_or_else(|why| Answer::silent(peer.key(), Silence::Died(why)))
+    answer.unwrap_or_else(|why| Answer::silent(peer.key(), Unavailable::Died(why)))
 }
 
 /// One answer as JSON, to be kept.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// One number for each joint that moves, followers included, which are where they follow to.
+/// One number for each joint that moves, mimic joints included, which are where they follow to.
 #[derive(Clone, Debug)]
 pub struct State {
     pub theta: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct Question {
     /// Its screw axis at home, by which a library's joint of another name is known.
     pub axes: Vec<[f64; 6]>,
     pub states: Vec<State>,
-    /// The file's own base is free: it is compared at rest at {s}, where every convention has the same axes.
+    /// The file's own base floats: it is compared at rest at {s}, where every convention has the same axes.
     pub floating: bool,
 }
 
@@ -38,7 +38,7 @@ impl Question {
         Ok(Question { source, names, axes, states, floating: robot.base == Base::Floating })
     }
 
-    /// As a library's script reads it. `mimic` asks Pinocchio to couple followers.
+    /// As a library's script reads it. `mimic` asks Pinocchio to couple mimic joints.
     pub fn json(&self, library: &str, mimic: bool) -> Value {
         let joint = |(name, axis): (&String, &[f64; 6])| json!({ "name": name, "axis": axis });
         let state = |state: &State| json!({ "theta": state.theta, "dtheta": state.dtheta, "ddtheta": state.ddtheta });

@@ -1,12 +1,12 @@
 //! The doctor's report for machines.
 
-use crate::answer::Silence;
+use crate::answer::Unavailable;
 use crate::bodies::BodyChange;
 use crate::cause::{Cause, Change};
 use crate::numbers::Errors;
 use crate::report_text::Finding;
 use crate::verdict::Verdict;
-use crate::words;
+use crate::vocabulary;
 use serde_json::{Value, json};
 
 pub fn object(finding: &Finding) -> Value {
@@ -16,11 +16,11 @@ pub fn object(finding: &Finding) -> Value {
         "version": answer.version,
         "status": status(finding),
         "message": match &answer.robot {
-            Err(silence) => Value::from(words::silence(silence, answer.library)),
+            Err(unavailable) => Value::from(vocabulary::unavailable(unavailable, answer.library)),
             Ok(_) => Value::Null,
         },
-        "refusals": answer.attempts.iter().map(|(message, remedy)| json!({
-            "message": message, "then": words::remedy(*remedy),
+        "refusals": answer.attempts.iter().map(|(message, workaround)| json!({
+            "message": message, "then": vocabulary::workaround(*workaround),
         })).collect::<Value>(),
     });
     if let (Ok(robot), Some(verdict)) = (&answer.robot, &finding.verdict) {
@@ -37,11 +37,10 @@ pub fn object(finding: &Finding) -> Value {
         object["comparison"] = comparison(verdict, finding);
         object["with_mimic"] = match &finding.coupled {
             Some((_, Some(verdict))) => comparison(verdict, finding),
-            Some((answer, None)) => answer
-                .robot
-                .as_ref()
-                .err()
-                .map_or(Value::Null, |silence| json!({ "message": words::silence(silence, answer.library) })),
+            Some((answer, None)) => answer.robot.as_ref().err().map_or(
+                Value::Null,
+                |unavailable| json!({ "message": vocabulary::unavailable(unavailable, answer.library) }),
+            ),
             None => Value::Null,
         };
     }
@@ -50,9 +49,9 @@ pub fn object(finding: &Finding) -> Value {
 
 pub fn status(finding: &Finding) -> &'static str {
     match (&finding.answer.robot, &finding.verdict) {
-        (Err(Silence::NotInstalled(_)), _) => "not installed",
-        (Err(Silence::Refuses(_)), _) => "refused",
-        (Err(Silence::Died(_)), _) => "no answer",
+        (Err(Unavailable::NotInstalled(_)), _) => "not installed",
+        (Err(Unavailable::Refuses(_)), _) => "refused",
+        (Err(Unavailable::Died(_)), _) => "no answer",
         (Ok(_), None) => "loaded",
         (Ok(_), Some(verdict)) if verdict.agrees() => "agrees",
         (Ok(_), Some(verdict)) if verdict.is_explained() => "explained",
@@ -71,7 +70,7 @@ fn comparison(verdict: &Verdict, finding: &Finding) -> Value {
         "errors_explained": errors(verdict.after),
         "causes": verdict.causes.iter().map(|found| {
             let mut object = cause(&found.cause);
-            object["message"] = words::cause(&found.cause, &finding.answer).into();
+            object["message"] = vocabulary::cause(&found.cause, &finding.answer).into();
             object["errors_without"] = errors(found.without);
             object
         }).collect::<Value>(),
@@ -90,9 +89,9 @@ fn cause(cause: &Cause) -> Value {
         json!({ "kind": kind, "joints": list.iter().map(entry).collect::<Value>() })
     };
     match cause {
-        Cause::Followers(list) => json!({
+        Cause::Mimics(list) => json!({
             "kind": "mimic",
-            "joints": list.iter().map(|freed| json!({ "joint": freed.joint, "master": freed.master })).collect::<Value>(),
+            "joints": list.iter().map(|freed| json!({ "joint": freed.joint, "source": freed.source })).collect::<Value>(),
         }),
         Cause::Held(list) => json!({ "kind": "held_joints", "joints": list }),
         Cause::Gravity { mozzi, theirs } => {

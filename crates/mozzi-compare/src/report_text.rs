@@ -4,7 +4,7 @@ use crate::answer::{Answer, Robot};
 use crate::numbers::{Entry, Errors, QUANTITIES};
 use crate::question::Question;
 use crate::verdict::Verdict;
-use crate::words;
+use crate::vocabulary;
 use mozzi_text::{Page, about, table};
 
 /// What was found of one library.
@@ -12,7 +12,7 @@ use mozzi_text::{Page, about, table};
 pub struct Finding {
     pub answer: Answer,
     pub verdict: Option<Verdict>,
-    /// What Pinocchio says when it is asked to couple followers, where it has been asked.
+    /// What Pinocchio says when it is asked to couple mimic joints, where it has been asked.
     pub coupled: Option<(Answer, Option<Verdict>)>,
 }
 
@@ -31,7 +31,7 @@ pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
             page.blank().line(format!("{name}: {answered}"));
             numbers(page, verdict, question);
             verdict.causes.iter().for_each(|found| {
-                page.line(format!("  - {}", words::cause(&found.cause, answer)));
+                page.line(format!("  - {}", vocabulary::cause(&found.cause, answer)));
                 // of a single cause it is the first row of the table
                 if verdict.after.agree() && verdict.causes.len() > 1 {
                     page.line(format!("    all but this: {}", errors(found.without)));
@@ -43,8 +43,8 @@ pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
             }
             notes(page, question, robot, finding, verdict);
         }
-        (Err(silence), _) => {
-            page.blank().line(format!("{name}: {}", words::silence(silence, answer.library)));
+        (Err(unavailable), _) => {
+            page.blank().line(format!("{name}: {}", vocabulary::unavailable(unavailable, answer.library)));
         }
         // a robot that mozzi refuses
         (Ok(robot), None) => {
@@ -52,8 +52,11 @@ pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
         }
     }
     let verb = if answer.robot.is_ok() { "taken" } else { "tried" };
-    for (message, remedy) in &answer.attempts {
-        page.line(format!("  it refuses the file as it stands: {message}; {verb} {}", words::remedy(*remedy)));
+    for (message, workaround) in &answer.attempts {
+        page.line(format!(
+            "  it refuses the file as it stands: {message}; {verb} {}",
+            vocabulary::workaround(*workaround)
+        ));
     }
 }
 
@@ -114,12 +117,12 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
     let joints = &robot.constants.joints;
     let circles: Vec<&str> = joints.iter().filter(|j| j.nv == 1 && j.nq == 2).map(|j| j.name.as_str()).collect();
     if !circles.is_empty() {
-        let names = words::some(&circles, |name| format!("`{name}`"));
+        let names = vocabulary::some(&circles, |name| format!("`{name}`"));
         page.line(format!("  positions: {library} takes (cos θ, sin θ) of joints without limits: {names}"));
     }
     let renamed: Vec<_> = joints.iter().filter(|joint| joint.name != joint.called).collect();
     if !renamed.is_empty() {
-        let names = words::some(&renamed, |joint| format!("`{}` is `{}`", joint.name, joint.called));
+        let names = vocabulary::some(&renamed, |joint| format!("`{}` is `{}`", joint.name, joint.called));
         page.line(format!("  names: known by their axes, here and in {library}: {names}"));
     }
     match &finding.coupled {
@@ -130,15 +133,15 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
         Some((_, Some(verdict))) if verdict.is_explained() => {
             let worst = about(verdict.after.worst());
             page.line(format!(
-                "  tried: with mimic=True the followers follow; the rest explained as above, worst error {worst} ε"
+                "  tried: with mimic=True the mimic joints follow; the rest explained as above, worst error {worst} ε"
             ));
         }
         Some((_, Some(verdict))) => {
             page.line(format!("  tried: with mimic=True it differs still: {}", errors(verdict.before)));
         }
         Some((answer, None)) => {
-            if let Err(silence) = &answer.robot {
-                page.line(format!("  tried: with mimic=True it {}", words::silence(silence, library)));
+            if let Err(unavailable) = &answer.robot {
+                page.line(format!("  tried: with mimic=True it {}", vocabulary::unavailable(unavailable, library)));
             }
         }
         None => {}

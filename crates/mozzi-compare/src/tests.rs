@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::Source;
-use crate::answer::{Answer, Remedy, Robot};
+use crate::answer::{Answer, Robot, Workaround};
 use crate::bodies::Reason;
 use crate::cause::Cause;
 use crate::python::{self, Peer};
@@ -53,7 +53,7 @@ fn judged(record: usize, edit: impl Fn(&mut Description)) -> (Verdict, Answer) {
     let from: &Robot = answer.robot.as_ref().unwrap();
     let verdict = judge(&robot, &question, &answer, from, peer == Peer::PinocchioMimic).unwrap();
     for found in &verdict.causes {
-        let structure = matches!(found.cause, Cause::Followers(_) | Cause::Held(_));
+        let structure = matches!(found.cause, Cause::Mimics(_) | Cause::Held(_));
         assert!(structure || !verdict.after.agree() || !found.without.agree(), "{:?} makes no difference", found.cause);
     }
     (verdict, answer)
@@ -61,7 +61,7 @@ fn judged(record: usize, edit: impl Fn(&mut Description)) -> (Verdict, Answer) {
 
 fn kinds(verdict: &Verdict) -> Vec<&'static str> {
     let kind = |cause: &Cause| match cause {
-        Cause::Followers(_) => "followers",
+        Cause::Mimics(_) => "mimic joints",
         Cause::Held(_) => "held",
         Cause::Gravity { .. } => "gravity",
         Cause::Armature(_) => "armature",
@@ -85,9 +85,9 @@ fn kinds(verdict: &Verdict) -> Vec<&'static str> {
 #[test]
 fn every_record_is_explained_by_its_causes() {
     let expected: [&[&str]; 9] = [
-        &["followers", "damping", "friction"],
+        &["mimic joints", "damping", "friction"],
         &["damping", "friction"],
-        &["followers", "friction", "constraints", "balanced", "dropped", "shapes"],
+        &["mimic joints", "friction", "constraints", "balanced", "dropped", "shapes"],
         &[],
         &["gravity", "bounded"],
         &["damping", "friction"],
@@ -101,11 +101,12 @@ fn every_record_is_explained_by_its_causes() {
         assert!(verdict.is_explained() && verdict.after.worst() < 100.0 && verdict.first.is_none(), "{verdict:?}");
         assert_eq!(verdict.agrees(), expected.is_empty());
         for found in &verdict.causes {
-            assert!(crate::words::cause(&found.cause, &answer).contains(answer.library), "{:?}", found.cause);
+            assert!(crate::vocabulary::cause(&found.cause, &answer).contains(answer.library), "{:?}", found.cause);
         }
     }
-    let remedies: Vec<Remedy> = answer("massless_mujoco.json").attempts.iter().map(|(_, remedy)| *remedy).collect();
-    assert_eq!(remedies, [Remedy::Geometry, Remedy::Fixed, Remedy::Bound]);
+    let workarounds: Vec<Workaround> =
+        answer("massless_mujoco.json").attempts.iter().map(|(_, workaround)| *workaround).collect();
+    assert_eq!(workarounds, [Workaround::Geometry, Workaround::Fixed, Workaround::Bound]);
     let (verdict, _) = judged(0, |_| {});
     assert!(verdict.order.is_some(), "Pinocchio sorts siblings by name");
 }
@@ -133,7 +134,7 @@ fn numbers_of_joints_and_of_the_world() {
     });
     assert_eq!(kinds(&verdict), ["gravity", "armature"]);
     assert!(verdict.is_explained());
-    let words = crate::words::cause(&verdict.causes[1].cause, &answer);
+    let words = crate::vocabulary::cause(&verdict.causes[1].cause, &answer);
     assert_eq!(words, "armature (rotor inertia), here and in Pinocchio: `tilt` 0.25 / 0");
 }
 
@@ -166,7 +167,7 @@ fn a_place_without_a_reason_is_no_explanation() {
     let (verdict, answer) = judged(3, |robot| robot.links[3].inertia = robot.links[3].inertia.map(|x| 1.01 * x));
     assert_eq!(kinds(&verdict), ["unknown"]);
     assert!(verdict.after.agree() && !verdict.is_explained());
-    let words = crate::words::cause(&verdict.causes[0].cause, &answer);
+    let words = crate::vocabulary::cause(&verdict.causes[0].cause, &answer);
     assert!(words.contains("`arm` 2.02 / 2 kg"), "{words}");
     let (verdict, _) = judged(3, |robot| robot.joints[2].origin.p.0[0] += 0.1);
     assert!(kinds(&verdict).contains(&"axes") && !verdict.is_explained(), "{verdict:?}");

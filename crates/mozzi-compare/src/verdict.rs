@@ -64,7 +64,7 @@ pub fn judge(
     let mut kept: Vec<&Cause> = all.iter().collect();
     let (mine, theirs) = with(&[])?;
     let before = Pair::new(&mine, &theirs, question).errors();
-    let is_structure = |cause: &Cause| matches!(cause, Cause::Followers(_) | Cause::Held(_));
+    let is_structure = |cause: &Cause| matches!(cause, Cause::Mimics(_) | Cause::Held(_));
     // what is known comes first: a body whose place alone is known is no explanation where a reason will do
     let mut droppable: Vec<&Cause> = kept.iter().copied().filter(|cause| !is_structure(cause)).collect();
     droppable.sort_by_key(|cause| cause.is_explanation());

@@ -1,11 +1,11 @@
 //! From arguments to results: one state at once where nothing needs converting, everything else through NumPy and a batch.
 
 use crate::array::{Numbers, common_leading, function, wrong_shape};
+use crate::environment::{Arguments, Around, Given};
 use crate::failure::{of_batch, of_model, of_state};
 use crate::numpy::{self, Element, Fresh};
 use crate::quantity::{AtMany, Quantity};
 use crate::robot::{HasEngines, Robot, batch};
-use crate::surroundings::{Arguments, Around, Given};
 use crate::threads::Threads;
 use mozzi::FrameId;
 use pyo3::exceptions::PyTypeError;

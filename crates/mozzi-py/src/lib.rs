@@ -6,6 +6,7 @@ mod compare;
 mod compiled;
 mod conventions;
 mod describe;
+mod environment;
 mod failure;
 mod html;
 mod load;
@@ -16,7 +17,6 @@ mod numpy;
 mod quantity;
 mod robot;
 mod simulate;
-mod surroundings;
 mod threads;
 
 use pyo3::prelude::*;

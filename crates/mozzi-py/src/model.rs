@@ -227,13 +227,13 @@ impl PyModel {
         &self.0.model.description().name
     }
 
-    /// Velocities: independent joints, and the six of a free base.
+    /// Velocities: independent joints, and the six of a floating base.
     #[getter]
     fn n(&self) -> usize {
         self.0.model.n()
     }
 
-    /// Positions: n, and one more where the base is free.
+    /// Positions: n, and one more where the base floats.
     #[getter]
     fn nq(&self) -> usize {
         self.0.model.nq()
@@ -263,7 +263,7 @@ impl PyModel {
         self.0.model.end_effector().ok().map(|frame| self.0.model.frame_name(frame))
     }
 
-    /// Is the base free?
+    /// Is the base floating?
     #[getter]
     fn is_floating(&self) -> bool {
         self.0.model.is_floating()
@@ -316,7 +316,7 @@ impl PyModel {
         self.0.model.parameter_names()
     }
 
-    /// All joints at 0, a free base at {s}.
+    /// All joints at 0, a floating base at {s}.
     #[getter]
     fn neutral_configuration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let theta: Vec<f64> = self.0.model.neutral_configuration();

@@ -6,7 +6,7 @@ use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::numpy::{self, Fresh};
 use mozzi::{
-    Environment, HomeFrames, Mat3, Model, SE3, SO3, ScrewAxis, Screws, SpatialInertia, Twist, Vec3, Wrench, native,
+    Environment, HomeFrames, Mat3, Model, SE3, SO3, ScrewAxis, Screws, SpatialInertia, Twist, Vec3, Wrench, fast,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -230,9 +230,9 @@ fn inverse_dynamics<'py>(
     let environment = Environment { gravity: gravity(g)?, applied: &applied, ..model.environment() };
     let (theta, dtheta) = (scaled(theta, &sizes), scaled(dtheta, &sizes));
     let mut tau = Fresh::<f64>::new(py, &[n])?;
-    let mut workspace = native::Workspace::new(&model);
+    let mut workspace = fast::Workspace::new(&model);
     let ddtheta = scaled(ddtheta, &sizes);
-    native::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut workspace, tau.numbers());
+    fast::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut workspace, tau.numbers());
     tau.numbers().iter_mut().zip(&sizes).for_each(|(tau, k)| *tau *= k);
     Ok(tau.into_array())
 }
@@ -249,7 +249,7 @@ fn mass_matrix<'py>(
     let n = theta.len();
     let (model, sizes) = chain(n, Mlist, Glist, Slist)?;
     let mut M = Fresh::<f64>::new(py, &[n, n])?;
-    native::mass_matrix(&model, &scaled(theta, &sizes), &mut native::Workspace::new(&model), M.numbers());
+    fast::mass_matrix(&model, &scaled(theta, &sizes), &mut fast::Workspace::new(&model), M.numbers());
     for (place, x) in M.numbers().iter_mut().enumerate() {
         *x *= sizes[place / n] * sizes[place % n];
     }
@@ -277,10 +277,10 @@ fn forward_dynamics<'py>(
     tau.iter_mut().zip(&sizes).for_each(|(tau, k)| *tau /= k);
     let applied = wrench(&model, Some(Ftip))?;
     let environment = Environment { gravity: gravity(Some(g))?, applied: &applied, ..model.environment() };
-    let mut workspace = native::Workspace::new(&model);
+    let mut workspace = fast::Workspace::new(&model);
     let mut ddtheta = Fresh::<f64>::new(py, &[n])?;
     let theta = scaled(theta, &sizes);
-    native::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, ddtheta.numbers());
+    fast::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, ddtheta.numbers());
     if !workspace.is_regular() || sizes.contains(&0.0) {
         let why = match model.forward_dynamics(&theta, &dtheta, &tau, &environment) {
             Err(error) => error.to_string(),

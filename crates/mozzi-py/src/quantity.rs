@@ -1,8 +1,8 @@
 //! What a model can be asked for: the arguments' names, the results' shapes, and who computes it at one state and at many.
 
 use crate::robot::Memory;
-use mozzi::{self as kernel, Environment, Error, FrameId, Model, Task, Twist, Vec3, native};
-use mozzi_batch::{Batch, Surroundings};
+use mozzi::{self as kernel, Environment, Error, FrameId, Model, Task, Twist, Vec3, fast};
+use mozzi_batch::{Batch, BatchEnvironment};
 use mozzi_codegen::Compiled;
 
 /// A quantity of a state.
@@ -96,26 +96,26 @@ impl Quantity<'_> {
         if model.is_floating() && !matches!(self, JointFriction) {
             model.check_configuration(s[0])?;
         }
-        let w = &mut memory.native;
+        let w = &mut memory.fast;
         match self {
-            InverseDynamics => native::inverse_dynamics(model, s[0], s[1], s[2], environment, w, out[0]),
-            BiasForces => native::bias_forces(model, s[0], s[1], environment, w, out[0]),
-            VelocityProduct => native::velocity_product(model, s[0], s[1], w, out[0]),
-            MassMatrix => native::mass_matrix(model, s[0], w, out[0]),
-            CoriolisMatrix => native::coriolis_matrix(model, s[0], s[1], w, out[0]),
+            InverseDynamics => fast::inverse_dynamics(model, s[0], s[1], s[2], environment, w, out[0]),
+            BiasForces => fast::bias_forces(model, s[0], s[1], environment, w, out[0]),
+            VelocityProduct => fast::velocity_product(model, s[0], s[1], w, out[0]),
+            MassMatrix => fast::mass_matrix(model, s[0], w, out[0]),
+            CoriolisMatrix => fast::coriolis_matrix(model, s[0], s[1], w, out[0]),
             ForwardDynamics => {
-                native::forward_dynamics(model, s[0], s[1], s[2], environment, w, out[0]);
+                fast::forward_dynamics(model, s[0], s[1], s[2], environment, w, out[0]);
                 if !w.is_regular() {
                     out[0].copy_from_slice(model.forward_dynamics(s[0], s[1], s[2], environment)?.as_slice());
                 }
             }
             InverseDynamicsDerivatives => {
                 let [a, b, c] = out else { return Ok(()) };
-                native::inverse_dynamics_derivatives(model, s[0], s[1], s[2], environment, w, [a, b, c]);
+                fast::inverse_dynamics_derivatives(model, s[0], s[1], s[2], environment, w, [a, b, c]);
             }
             ForwardDynamicsDerivatives => {
                 let [x, a, b, c] = out else { return Ok(()) };
-                native::forward_dynamics_derivatives(model, s[0], s[1], s[2], environment, w, x, [a, b, c]);
+                fast::forward_dynamics_derivatives(model, s[0], s[1], s[2], environment, w, x, [a, b, c]);
                 if !w.is_regular() {
                     model.forward_dynamics_derivatives(s[0], s[1], s[2], environment)?;
                 }
@@ -199,7 +199,7 @@ pub trait AtMany: Sized {
         quantity: Quantity,
         batch: &Batch<Self>,
         state: &[&[Self]],
-        around: &Surroundings<Self>,
+        around: &BatchEnvironment<Self>,
         out: &mut [&mut [Self]],
     ) -> Option<Result<(), mozzi_batch::Error>>
     where
@@ -222,7 +222,7 @@ macro_rules! at_many {
             $many_compiled(compiled, quantity, state, out)
         }
 
-        fn many(quantity: Quantity, batch: &Batch<$T>, s: &[&[$T]], around: &Surroundings<$T>, out: &mut [&mut [$T]])
+        fn many(quantity: Quantity, batch: &Batch<$T>, s: &[&[$T]], around: &BatchEnvironment<$T>, out: &mut [&mut [$T]])
             -> Option<Result<(), mozzi_batch::Error>>
         {
             Some(match (quantity, out) {

@@ -4,7 +4,7 @@ use crate::compiled;
 use crate::failure::of_batch;
 use crate::quantity::Quantity;
 use crate::threads::Threads;
-use mozzi::{Environment, FrameId, Model, native};
+use mozzi::{Environment, FrameId, Model, fast};
 use mozzi_batch::{Batch, Number};
 use mozzi_codegen::Compiled;
 use pyo3::prelude::*;
@@ -12,13 +12,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Memory for the kernels at one state.
 pub struct Memory {
-    pub native: native::Workspace,
+    pub fast: fast::Workspace,
     pub plain: mozzi::Workspace,
 }
 
 impl Memory {
     fn new(model: &Model) -> Self {
-        Memory { native: native::Workspace::new(model), plain: mozzi::Workspace::new(model) }
+        Memory { fast: fast::Workspace::new(model), plain: mozzi::Workspace::new(model) }
     }
 }
 

@@ -39,7 +39,7 @@ def tip(robot):
 
 
 def positions(robot, random, *leading):
-    """Random θ; a free base's quaternion is a unit one."""
+    """Random θ; a floating base's quaternion is a unit one."""
     theta = random.uniform(-2, 2, (*leading, robot.nq))
     if robot.is_floating:
         theta[..., :4] /= np.linalg.norm(theta[..., :4], axis=-1, keepdims=True)

@@ -58,7 +58,7 @@ def test_chains_as_the_modern_robotics_package(n, random):
 
 
 def moved(robot, theta, dtheta, t):
-    """θ after the time t at the rate dtheta; a free base by its body twist."""
+    """θ after the time t at the rate dtheta; a floating base by its body twist."""
     if not robot.is_floating:
         return theta + t * dtheta
     T = mr.RpToTrans(rotation(theta[:4]), theta[4:7]) @ mr.MatrixExp6(mr.VecTose3(t * dtheta[:6]))
@@ -103,16 +103,16 @@ def test_rates_by_differences(robot, random):
     close(robot.tip_forces_derivative(theta, applied_wrenches={frame: wrench}) @ dtheta, forces)
     close(robot.mass_matrix_product_derivative(theta, ddtheta) @ dtheta, lambda x: robot.mass_matrix(x) @ ddtheta)
     derivatives = robot.inverse_dynamics_derivatives(theta, dtheta, ddtheta)
-    close(derivatives.by_theta @ dtheta, lambda x: robot.inverse_dynamics(x, dtheta, ddtheta))
-    assert_close(derivatives.by_ddtheta, robot.mass_matrix(theta))
+    close(derivatives.d_theta @ dtheta, lambda x: robot.inverse_dynamics(x, dtheta, ddtheta))
+    assert_close(derivatives.d_ddtheta, robot.mass_matrix(theta))
     tau = robot.inverse_dynamics(theta, dtheta, ddtheta)
     forward = robot.forward_dynamics_derivatives(theta, dtheta, tau)
     M = robot.mass_matrix(theta)
     size = np.linalg.cond(M)
     assert_close(forward.ddtheta, ddtheta, size)
-    assert_close(M @ forward.by_tau, np.eye(robot.n), size)
-    assert_close(M @ forward.by_theta, -derivatives.by_theta, size * np.abs(derivatives.by_theta).max())
-    assert_close(M @ forward.by_dtheta, -derivatives.by_dtheta, size * np.abs(derivatives.by_dtheta).max())
+    assert_close(M @ forward.d_tau, np.eye(robot.n), size)
+    assert_close(M @ forward.d_theta, -derivatives.d_theta, size * np.abs(derivatives.d_theta).max())
+    assert_close(M @ forward.d_dtheta, -derivatives.d_dtheta, size * np.abs(derivatives.d_dtheta).max())
 
 
 def test_identities(robot, random):

@@ -14,7 +14,7 @@ ROBOTS = {
     "ur5": mozzi.models.ur5(),
     "compiled": mozzi.models.ur5().compile("inverse_dynamics", "mass_matrix", "forward_dynamics"),
     "anymal": mozzi.models.anymal(),
-    "bolted": mozzi.Model.from_urdf_string("<robot name='bolted'><link name='base'/></robot>"),
+    "fixed": mozzi.Model.from_urdf_string("<robot name='fixed'><link name='base'/></robot>"),
 }
 FEW = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 

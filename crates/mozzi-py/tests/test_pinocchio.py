@@ -128,8 +128,8 @@ def test_derivatives(both, random):
             pytest.skip("Pinocchio has no derivatives of this robot's joints")
         rows = np.ix_(both.v, both.v)
         ours = robot.inverse_dynamics_derivatives(theta, dtheta, ddtheta)
-        assert_close(ours.by_theta, theirs[0][rows])
-        assert_close(ours.by_dtheta - np.diag(slope(robot)), theirs[1][rows])
+        assert_close(ours.d_theta, theirs[0][rows])
+        assert_close(ours.d_dtheta - np.diag(slope(robot)), theirs[1][rows])
 
 
 def slope(robot):

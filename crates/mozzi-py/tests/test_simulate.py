@@ -19,7 +19,7 @@ def test_each_start_by_itself(robot, method, random):
 
     def motors(t, theta, dtheta):
         assert theta.shape[:-1] == dtheta.shape[:-1] in ((), (3, 2))
-        return (np.arange(robot.n) >= robot.n - len(robot.joint_names)) * (np.cos(9 * t) - dtheta)  # none of a free base
+        return (np.arange(robot.n) >= robot.n - len(robot.joint_names)) * (np.cos(9 * t) - dtheta)  # none of a floating base
 
     constant = motors(0, theta, dtheta)
     for torque in (None, constant[1, 0], constant, "gravity_compensation", motors):
@@ -50,8 +50,8 @@ def test_axes_and_threads(ur5, random):
     assert ur5.simulate(theta[0], dtheta[0], 0.05, 5, torque=tau[:2]).theta.shape == (2, 6, 6)
     assert ur5.simulate(np.zeros((0, 6)), np.zeros(6), 1, 10).theta.shape == (0, 11, 6)
     assert np.array_equal(ur5.simulate(theta[:2], dtheta[:2], 0, 1).theta[:, 1], theta[:2])
-    bolted = mozzi.Model.from_urdf_string("<robot name='bolted'><link name='base'/></robot>")
-    still = bolted.simulate(np.zeros((3, 0)), np.zeros(0), 1, 4, record_every=3)
+    fixed = mozzi.Model.from_urdf_string("<robot name='fixed'><link name='base'/></robot>")
+    still = fixed.simulate(np.zeros((3, 0)), np.zeros(0), 1, 4, record_every=3)
     assert still.theta.shape == (3, 3, 0) and still.t.tolist() == [0, 0.75, 1] and not still.energy.any()
 
 

@@ -86,7 +86,7 @@ impl Drawing {
         self.meshes.iter().map(mesh).collect()
     }
 
-    /// Shapes of links that the model has no frame for (what a free base is freed from) are left out.
+    /// Shapes of links that the model has no frame for (what a floating base is freed from) are left out.
     pub(crate) fn shapes_to_json(&self, frame_of: &dyn Fn(&str) -> Option<usize>) -> Value {
         let shape = |shape: &Shape| {
             let (kind, size, mesh) = self.form(&shape.form);

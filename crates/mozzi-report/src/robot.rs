@@ -42,8 +42,8 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
     let bodies: Value = (model.moving_joints().zip(inertias).enumerate())
         .map(|(k, (joint, inertia))| {
             let parent = body_of(&joint.parent).unwrap_or(0);
-            let (master, ratio, offset) = followed(model, joint);
-            let j = names.iter().position(|name| *name == master).unwrap_or(0);
+            let (source, ratio, offset) = followed(model, joint);
+            let j = names.iter().position(|name| *name == source).unwrap_or(0);
             let A = match joint.kind {
                 JointKind::Screw(A) => A.twist(),
                 JointKind::Fixed => Twist::from_array([0.0; 6]), // which no moving joint is
@@ -75,13 +75,13 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
     }))
 }
 
-/// The independent joint that a joint follows in the end, and by which θ = ratio · θ_master + offset.
+/// The independent joint that a joint follows in the end, and by which θ = ratio · θ_source + offset.
 fn followed<'m>(model: &'m Model, joint: &'m Joint) -> (&'m str, f64, f64) {
     let (mut joint, mut ratio, mut offset) = (joint, 1.0, 0.0);
     while let Some(mimic) = &joint.mimic {
         (ratio, offset) = (ratio * mimic.ratio, ratio * mimic.offset + offset);
         match model.moving_joints().find(|other| other.name == mimic.joint) {
-            Some(master) => joint = master,
+            Some(source) => joint = source,
             None => break,
         }
     }
@@ -123,8 +123,8 @@ mod tests {
 
     #[test]
     fn the_page_is_told_all_that_moves() {
-        let follower = include_str!("../../../oracles/test_tree.urdf");
-        let tree = mozzi_urdf::parse("test_tree.urdf", follower).expect("sound").description;
+        let mimic_joint = include_str!("../../../oracles/test_tree.urdf");
+        let tree = mozzi_urdf::parse("test_tree.urdf", mimic_joint).expect("sound").description;
         let open = |name| mozzi_urdf::open(name).expect("embedded").description;
         for description in [open("ur5"), open("panda"), tree, open("anymal").floating()] {
             let model: Model = description.build().expect("sound");

@@ -3,7 +3,7 @@
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
-use crate::words::AXIS;
+use crate::vocabulary::AXIS;
 use mozzi::{ScrewAxis, Twist, Vec3};
 
 /// How far from 1 an axis' length may be before it is worth a word: digits that were cut stay below.

@@ -4,7 +4,7 @@ use crate::context::{Context, Unknown};
 use crate::finding::Finding;
 use crate::number::{NotNumbers, numbers};
 use crate::pages::Pages;
-use crate::words::{Vocabulary, shown};
+use crate::vocabulary::{Vocabulary, shown};
 use roxmltree::{Attribute, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -183,7 +183,7 @@ impl<'a> Element<'a> {
                     cx.findings.add(Finding::error("misspelled_attribute", span, message).help(help));
                 }
                 Unknown::First => {
-                    let known = crate::words::list(words.attributes);
+                    let known = crate::vocabulary::list(words.attributes);
                     let name = self.name();
                     let help = format!("it is ignored here and wherever it stands on <{name}>; known are {known}");
                     cx.findings.add(Finding::warning("unknown_attribute", span, message).help(help));

@@ -62,7 +62,7 @@ impl LoadError {
             LoadError::File { path, source } => format!("{} cannot be read: {source}", path.display()),
             LoadError::NoSuchRobot { name } => {
                 let known: Vec<&str> = embedded::names().collect();
-                format!("`{name}` is neither a file nor one of the robots {}", crate::words::list(&known))
+                format!("`{name}` is neither a file nor one of the robots {}", crate::vocabulary::list(&known))
             }
             LoadError::Refused { file, is_cut, .. } => match self.errors().count() {
                 1 => format!("{file} is refused: 1 error"),

@@ -38,7 +38,7 @@ const CODES: [Entry; 57] = [
     ("empty_name",
         "A link or joint has the empty name.",
         "give it a name that no other has"),
-    ("fixed_follower",
+    ("fixed_mimic",
         "A fixed joint follows another joint (mimic). It does not move, so this has no effect.",
         "was the joint meant to move? Otherwise remove the <mimic>"),
     ("fixed_master",

@@ -1,9 +1,9 @@
-//! A floating joint at the root is a free base: the link that carries it is {s}, and no link of the robot.
+//! A floating joint at the root is a floating base: the link that carries it is {s}, and no link of the robot.
 
 use crate::context::Context;
 use crate::finding::Finding;
 use crate::places::Places;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use mozzi::model::description::FreeJoint;
 use mozzi::{Base, Description, SE3, SpatialInertia};
 

@@ -9,7 +9,7 @@ use crate::origin;
 use crate::places::Place;
 use crate::planar;
 use crate::spelling::did_you_mean;
-use crate::words::{DYNAMICS, JOINT, JOINT_TYPES, LIMIT, MIMIC, PARENT, list, shown};
+use crate::vocabulary::{DYNAMICS, JOINT, JOINT_TYPES, LIMIT, MIMIC, PARENT, list, shown};
 use mozzi::model::description::{Joint, JointKind, Limits, Mimic};
 use mozzi::{SE3, ScrewAxis};
 

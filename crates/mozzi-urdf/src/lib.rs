@@ -6,9 +6,9 @@
 //!
 //! # What is refused, and what is said
 //! Measured on the 69 robots of `example-robot-data` 6.0.0: 66 load, 38 of them without a word; three are refused, for a
-//! follower of a joint that does not exist, for negative moments of inertia, and for having no links.
+//! mimic joint of a joint that does not exist, for negative moments of inertia, and for having no links.
 //!
-//! - A `floating` joint at the root is a free base ([`mozzi::Base`]); the empty link that carries it is the space frame, and no link
+//! - A `floating` joint at the root is a floating base ([`mozzi::Base`]); the empty link that carries it is the space frame, and no link
 //!   of the robot. A `planar` joint `j` becomes the slides `j.x` and `j.y` and the turn `j.theta` about its axis, with massless links
 //!   between: x is along the joint frame's x-axis projected onto the plane (its y-axis where |axis_x| > 0.9), y along axis × x.
 //!   Floating joints inside the tree and ball joints are refused.
@@ -68,7 +68,7 @@ mod scan;
 mod source;
 mod spelling;
 mod syntax;
-mod words;
+mod vocabulary;
 mod write;
 mod xacro;
 

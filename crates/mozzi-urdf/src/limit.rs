@@ -9,7 +9,7 @@ use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::Place;
-use crate::words::LIMIT;
+use crate::vocabulary::LIMIT;
 use mozzi::model::description::Limits;
 
 /// The limits of a joint that moves.

@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::finding::Finding;
 use crate::origin;
 use crate::places::Place;
-use crate::words::{INERTIA, INERTIAL, LINK, MASS, shown};
+use crate::vocabulary::{INERTIA, INERTIAL, LINK, MASS, shown};
 use mozzi::linalg::Sym3;
 use mozzi::model::description::Link;
 use mozzi::{SE3, SpatialInertia, Vec3};

@@ -3,7 +3,7 @@
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
-use crate::words::ORIGIN;
+use crate::vocabulary::ORIGIN;
 use mozzi::{SE3, SO3, Vec3};
 
 /// Zeros where nothing is said; None, and reported, when it cannot be read.

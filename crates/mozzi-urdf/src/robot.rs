@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
 use crate::spelling::did_you_mean;
-use crate::words::{ROBOT, shown};
+use crate::vocabulary::{ROBOT, shown};
 use crate::{floating, joint, link, planar};
 use joint::Freedoms;
 use mozzi::Description;

@@ -4,7 +4,7 @@ use crate::dialect::Dialect;
 use crate::finding::Finding;
 use crate::scan::{Unfinished, scan};
 use crate::source::Source;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use crate::xacro;
 use roxmltree::{Document, Error, ParsingOptions};
 

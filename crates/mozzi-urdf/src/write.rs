@@ -152,8 +152,8 @@ fn joint(text: &mut String, joint: &Joint) -> fmt::Result {
         writeln!(text, "    <dynamics damping=\"{:?}\" friction=\"{:?}\"/>", joint.damping, joint.friction)?;
     }
     if let Some(mimic) = &joint.mimic {
-        let (master, ratio, offset) = (escaped(&mimic.joint), mimic.ratio, mimic.offset);
-        writeln!(text, "    <mimic joint=\"{master}\" multiplier=\"{ratio:?}\" offset=\"{offset:?}\"/>")?;
+        let (source, ratio, offset) = (escaped(&mimic.joint), mimic.ratio, mimic.offset);
+        writeln!(text, "    <mimic joint=\"{source}\" multiplier=\"{ratio:?}\" offset=\"{offset:?}\"/>")?;
     }
     text.write_str("  </joint>\n")
 }

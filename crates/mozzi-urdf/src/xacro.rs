@@ -2,7 +2,7 @@
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use roxmltree::{Document, Node};
 use std::ops::Range;
 

@@ -108,7 +108,7 @@ fn wrong_throughout() {
     let error = parse("wrong.urdf", format!("<robot name='r'>{text}</robot>")).expect_err("wrong");
     assert_eq!(error.errors().count(), 1000);
     assert!(error.to_string().ends_with("more"), "{error}");
-    // a circle of followers
+    // a circle of mimic joints
     let text: String = (0..20_000)
         .map(|k| {
             let next = (k + 1) % 20_000;

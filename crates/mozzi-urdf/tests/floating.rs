@@ -1,4 +1,4 @@
-//! mozzi with a free base against Pinocchio's free flyer and MuJoCo's free joint, by way of `mozzi::conventions`: the committed
+//! mozzi with a floating base against Pinocchio's free flyer and MuJoCo's free joint, by way of `mozzi::conventions`: the committed
 //! numbers of `oracles/floating/`, and, where the folder that the environment variable MOZZI_ORACLES names has a folder `floating` made
 //! by `oracles/make_floating.py`, a hundred states of every robot in that.
 #![allow(clippy::unwrap_used)]
@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// The robot of a file of oracles, its base free: without rotors, and with those of the file. No friction.
+/// The robot of a file of oracles, its base floating: without rotors, and with those of the file. No friction.
 fn models(oracle: &Value) -> Result<[Model; 2], String> {
     let path = match oracle.get("urdf_path").and_then(Value::as_str) {
         Some(path) => PathBuf::from(path),
@@ -238,7 +238,7 @@ fn compare_folder(folder: &Path) {
 
 #[test]
 fn committed_numbers() {
-    println!("free base, worst normalised errors, in ε:");
+    println!("floating base, worst normalised errors, in ε:");
     compare_folder(&repository().join("oracles/floating"));
 }
 

@@ -1,4 +1,4 @@
-//! Joints of several freedoms: free bases and planar joints, and what becomes of them.
+//! Joints of several freedoms: floating bases and planar joints, and what becomes of them.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::{Base, Twist};
@@ -59,7 +59,7 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
 }
 
 #[test]
-fn followers_of_a_planar_joint_name_its_parts() {
+fn mimic_joints_of_a_planar_joint_name_its_parts() {
     let text = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>\
                 <joint name='j' type='planar'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>\
                 <joint name='k' type='continuous'><parent link='a'/><child link='c'/><mimic joint='j'/></joint></robot>";

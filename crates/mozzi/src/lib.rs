@@ -21,11 +21,11 @@
 //!
 //! - Robots: [`Description`] (from screw lists, by hand, or from a file with `mozzi-urdf`), built into a [`Model`].
 //! - Quantities: methods of [`Model`], which check their arguments, allocate and answer with nalgebra's types; or the functions
-//!   of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number, which allocate nothing; or [`native`], the
+//!   of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number, which allocate nothing; or [`fast`], the
 //!   kernels on `f64` with the machine's instruction set, for control loops.
 //! - To look at: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
 //! - In time: [`simulation`].
-//! - Derivatives: along any direction, [`Model::derivative_along`]; by a robot's parameters, [`Model::varying`], and
+//! - Derivatives: along any direction, [`Model::directional_derivative`]; by a robot's parameters, [`Model::with_parameter_tangent`], and
 //!   linear in them, [`Model::regressor`]; through time, [`Model::step_sensitivity`].
 //! - Beside Pinocchio and MuJoCo: [`conventions`].
 //!
@@ -39,12 +39,12 @@ pub mod accuracy;
 mod api;
 pub mod conventions;
 pub mod dynamics;
+#[cfg(feature = "std")]
+pub mod fast;
 pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
-#[cfg(feature = "std")]
-pub mod native;
 pub mod scalar;
 pub mod simulation;
 pub mod spatial;

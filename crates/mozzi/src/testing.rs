@@ -58,8 +58,8 @@ pub fn distance(a: SE3, b: SE3) -> f64 {
 }
 
 /// A random tree of moving links: revolute, prismatic and helical joints, axes and masses off every frame, masses over
-/// four decades, fixed links folded in between, friction and armature; `followers` of the last joints follow others.
-pub fn tree(seed: u64, links: usize, followers: usize) -> Model {
+/// four decades, fixed links folded in between, friction and armature; `mimic joints` of the last joints follow others.
+pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut random = Random(seed + 3000);
     let mut robot = Description::new("tree").link("link0", inertia(seed));
     for i in 1..=links {
@@ -84,8 +84,8 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Model {
         if i % 3 == 0 {
             (joint.damping, joint.friction, joint.armature) = (0.3 + random.next() * 0.2, 0.5, 0.1);
         }
-        if i > links - followers {
-            let joint_followed = format!("joint{}", 1 + (i * 7) % (links - followers));
+        if i > links - mimics {
+            let joint_followed = format!("joint{}", 1 + (i * 7) % (links - mimics));
             joint.mimic = Some(Mimic { joint: joint_followed, ratio: 1.5 * random.next(), offset: random.next() });
         }
         let scale = libm::pow(10.0, 2.0 * random.next());
@@ -103,12 +103,12 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// The same on a free base.
-pub fn floating_tree(seed: u64, links: usize, followers: usize) -> Model {
-    tree(seed, links, followers).with_base(Base::Floating).expect("a sound robot")
+/// The same on a floating base.
+pub fn floating_tree(seed: u64, links: usize, mimics: usize) -> Model {
+    tree(seed, links, mimics).with_base(Base::Floating).expect("a sound robot")
 }
 
-pub use crate::kinematics::moving_along as moving;
+pub use crate::kinematics::seed_direction as moving;
 
 /// A random state (θ, θ̇, θ̈) of a model.
 pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {

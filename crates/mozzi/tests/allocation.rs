@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::{HomeFrames, Screws};
-use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Twist, Vec3, Workspace, native};
+use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Twist, Vec3, Workspace, fast};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -47,7 +47,7 @@ fn kernels_allocate_nothing() {
         let tip = model.end_effector().unwrap();
         let push = [(tip, mozzi::Wrench::from_array([1.0; 6]))];
         let environment = mozzi::Environment { applied: &push, ..model.environment() };
-        let (mut w, mut fast) = (Workspace::new(&model), native::Workspace::new(&model));
+        let (mut w, mut fast) = (Workspace::new(&model), fast::Workspace::new(&model));
         let mut poses = vec![SE3::identity(); model.frames().len()];
 
         let before = ALLOCATIONS.get();
@@ -79,10 +79,10 @@ fn kernels_allocate_nothing() {
         mozzi::space_jacobian_rate(&model, &theta, &dtheta, tip, &mut w, &mut J);
         mozzi::body_jacobian_rate(&model, &theta, &dtheta, tip, &mut J);
         mozzi::space_jacobian_derivative(&model, &theta, tip, &mut w, &mut H);
-        native::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut fast, &mut tau);
-        native::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut fast, &mut tau);
-        native::mass_matrix(&model, &theta, &mut fast, &mut M);
-        native::coriolis_matrix(&model, &theta, &dtheta, &mut fast, &mut M);
+        fast::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut fast, &mut tau);
+        fast::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut fast, &mut tau);
+        fast::mass_matrix(&model, &theta, &mut fast, &mut M);
+        fast::coriolis_matrix(&model, &theta, &dtheta, &mut fast, &mut M);
         let x = &ddtheta;
         mozzi::gravity_forces_derivative(&model, &theta, model.gravity(), &mut w, &mut M);
         mozzi::tip_forces_derivative(&model, &theta, &push, &mut w, &mut M);
@@ -92,9 +92,9 @@ fn kernels_allocate_nothing() {
         let three = by.each_mut().map(|matrix| &mut matrix[..]);
         mozzi::forward_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut w, &mut tau, three);
         let three = by.each_mut().map(|matrix| &mut matrix[..]);
-        native::inverse_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut fast, three);
+        fast::inverse_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut fast, three);
         let three = by.each_mut().map(|matrix| &mut matrix[..]);
-        native::forward_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut fast, &mut tau, three);
+        fast::forward_dynamics_derivatives(&model, &theta, &dtheta, x, &environment, &mut fast, &mut tau, three);
         assert_eq!(ALLOCATIONS.get() - before, 0);
         assert!(tau.iter().chain(&M).chain(by.iter().flatten()).all(|x| x.is_finite()));
     }

@@ -1,4 +1,4 @@
-//! A robot of dynibo's, bolted or free, with its states.
+//! A robot of dynibo's, fixed or free, with its states.
 
 use dynibo::{BaseState, FloatingRobot, Frame, RobotModel, Twist};
 use nalgebra::{DMatrix, Quaternion, Translation3, UnitQuaternion, Vector3};
@@ -21,7 +21,7 @@ enum Kind {
 struct State {
     /// With the acceleration of θ̈, and with that of θ̈ = 0.
     base: [BaseState; 2],
-    /// The body twist of a free base.
+    /// The body twist of a floating base.
     v: [Vector3<f64>; 2],
     q: Vec<f64>,
     qd: Vec<f64>,

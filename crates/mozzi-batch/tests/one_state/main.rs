@@ -6,7 +6,7 @@ mod quantities;
 use mozzi::simulation::{Method, Options};
 use mozzi::testing::{Random, floating_tree, state, tree, wrench};
 use mozzi::{Environment, FrameId, Model, Wrench};
-use mozzi_batch::{Batch, InstructionSet, Layout, Number, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment, InstructionSet, Layout, Number};
 
 /// States side by side.
 struct States {
@@ -47,7 +47,7 @@ macro_rules! against_one_state {
             let environment = Environment { applied: &shared, ..model.environment() };
             let [q, v, a, F] = [&states.theta, &states.dtheta, &states.x, &states.wrenches].map(|x| numbers::<$T>(x));
             let wrenches = [(tip, &F[..])];
-            let surroundings = Surroundings { environment, wrenches: &wrenches };
+            let surroundings = BatchEnvironment { environment, wrenches: &wrenches };
             for set in InstructionSet::available() {
                 let batch = Batch::<$T>::of(&model).with_instruction_set(set).unwrap().with_threads(1).unwrap();
                 for (name, widths, of_batch, at_one) in quantities!($T) {
@@ -120,7 +120,7 @@ fn f32_forward_dynamics_undoes_inverse_dynamics() {
 fn threads_and_layouts_change_no_bit() {
     for model in [tree(1, 7, 0), floating_tree(3, 6, 0)] {
         let (count, nq, n) = (5003, model.nq(), model.n());
-        let (states, surroundings) = (States::new(&model, count), Surroundings::from(model.environment()));
+        let (states, surroundings) = (States::new(&model, count), BatchEnvironment::from(model.environment()));
         for set in InstructionSet::available() {
             let batch = Batch::new(&model).with_instruction_set(set).unwrap();
             let run = |batch: &Batch, wide: bool| {
@@ -144,7 +144,7 @@ fn threads_and_layouts_change_no_bit() {
 fn a_state_that_is_no_number_spoils_no_other() {
     let model = tree(1, 7, 0);
     let n = model.n();
-    let (mut states, surroundings) = (States::new(&model, 40), Surroundings::from(model.environment()));
+    let (mut states, surroundings) = (States::new(&model, 40), BatchEnvironment::from(model.environment()));
     for set in InstructionSet::available() {
         let batch = Batch::new(&model).with_instruction_set(set).unwrap();
         let run = |states: &States| {
@@ -191,7 +191,7 @@ fn many_robots_move_as_each_alone() {
         let (count, nq, n) = (601, model.nq(), model.n()); // more than a piece
         let mut states = States::new(&model, count);
         states.dtheta.iter_mut().for_each(|x| *x *= 0.1);
-        let surroundings = Surroundings::from(model.environment());
+        let surroundings = BatchEnvironment::from(model.environment());
         let (duration, steps) = (0.02, 4);
         for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
             for set in InstructionSet::available() {
@@ -231,7 +231,7 @@ fn a_task_of_six_rows_and_one_that_cannot_be() {
     });
     let model = model.expect("one of a thousand trees reaches in all directions");
     let (n, task) = (model.n(), mozzi::Task::all(model.end_effector().unwrap(), mozzi::TaskFrame::Body));
-    let (states, surroundings) = (States::new(&model, 13), Surroundings::from(model.environment()));
+    let (states, surroundings) = (States::new(&model, 13), BatchEnvironment::from(model.environment()));
     for set in InstructionSet::available() {
         let batch = Batch::new(&model).with_instruction_set(set).unwrap();
         let (mut Lambda, mut eta) = (vec![0.0; 13 * 36], vec![0.0; 13 * 6]);

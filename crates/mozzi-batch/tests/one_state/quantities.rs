@@ -1,10 +1,10 @@
 //! The quantities: how a batch is asked for each, and how the model.
 
 use mozzi::{Environment, FrameId, Model};
-use mozzi_batch::{Batch, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment};
 
 pub type OfBatch<T> =
-    fn(&Batch<T>, FrameId, &[&[T]; 3], &Surroundings<T>, &mut [Vec<T>]) -> Result<(), mozzi_batch::Error>;
+    fn(&Batch<T>, FrameId, &[&[T]; 3], &BatchEnvironment<T>, &mut [Vec<T>]) -> Result<(), mozzi_batch::Error>;
 pub type AtOne = fn(&Model, FrameId, [&[f64]; 3], &Environment) -> Vec<Vec<f64>>;
 
 /// Name, outputs' numbers a state, the batch's method, the model's.
@@ -134,7 +134,7 @@ macro_rules! quantities {
                 },
                 |m, _, [q, v, a], e| {
                     let d = m.inverse_dynamics_derivatives(q, v, a, e).unwrap();
-                    vec![rows(d.by_theta), rows(d.by_dtheta), rows(d.by_ddtheta)]
+                    vec![rows(d.d_theta), rows(d.d_dtheta), rows(d.d_ddtheta)]
                 },
             ),
             (
@@ -146,7 +146,7 @@ macro_rules! quantities {
                 },
                 |m, _, [q, v, a], e| {
                     let d = m.forward_dynamics_derivatives(q, v, a, e).unwrap();
-                    vec![d.ddtheta.as_slice().to_vec(), rows(d.by_theta), rows(d.by_dtheta), rows(d.by_tau)]
+                    vec![d.ddtheta.as_slice().to_vec(), rows(d.d_theta), rows(d.d_dtheta), rows(d.d_tau)]
                 },
             ),
         ];

@@ -2,9 +2,9 @@
 
 use super::quantity::Precision;
 use super::states::Groups;
+use crate::csv::{GROUPS, Places};
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
-use crate::samples::{GROUPS, Places};
 use arrow_array::{Array, Float32Array, Float64Array, Int64Array, RecordBatch};
 use arrow_ipc::reader::FileReader;
 use arrow_ipc::writer::FileWriter;

@@ -7,7 +7,7 @@ use crate::failure::{Failure, Result};
 use crate::interrupt;
 use crate::progress::Progress;
 use mozzi::{Environment, FrameId};
-use mozzi_batch::{Batch, Error, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment, Error};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
@@ -38,7 +38,7 @@ pub fn compute<T: Precision>(
             &table[first * width..][..these * width]
         };
         let wrenches: Vec<(FrameId, &[T])> = tip.map(|tip| (tip, input("wrench"))).into_iter().collect();
-        let surroundings = Surroundings { environment, wrenches: &wrenches };
+        let surroundings = BatchEnvironment { environment, wrenches: &wrenches };
         let slices = outputs.iter_mut().map(|output| {
             let width = output.width();
             &mut output.values[first * width..][..these * width]

@@ -1,13 +1,13 @@
 //! Every quantity at one state, by the kernels: the measure of a batch.
 
 use super::quantity::Quantity;
-use mozzi::{Environment, FrameId, Model, Twist, Workspace, native};
+use mozzi::{Environment, FrameId, Model, Twist, Workspace, fast};
 
-/// The machine's instruction set where [`native`] has the quantity, else plain `f64`.
+/// The machine's instruction set where [`fast`] has the quantity, else plain `f64`.
 pub struct OneState<'m> {
     model: &'m Model,
     frame: Option<FrameId>,
-    native: native::Workspace,
+    fast: fast::Workspace,
     plain: Workspace,
     columns: Vec<Twist>,
 }
@@ -17,7 +17,7 @@ impl<'m> OneState<'m> {
         OneState {
             model,
             frame: model.end_effector().ok(),
-            native: native::Workspace::new(model),
+            fast: fast::Workspace::new(model),
             plain: Workspace::new(model),
             columns: vec![Twist::zero(); model.n()],
         }
@@ -25,29 +25,29 @@ impl<'m> OneState<'m> {
 
     /// (θ, θ̇, θ̈ or τ) to the quantity's outputs, one after the other.
     pub fn evaluate(&mut self, quantity: Quantity, state: [&[f64]; 3], environment: &Environment, out: &mut [f64]) {
-        let OneState { model, native: fast, plain, columns, .. } = self;
+        let OneState { model, fast, plain, columns, .. } = self;
         let [theta, dtheta, x] = state;
         let frame = self.frame;
         match quantity {
-            Quantity::InverseDynamics => native::inverse_dynamics(model, theta, dtheta, x, environment, fast, out),
-            Quantity::ForwardDynamics => native::forward_dynamics(model, theta, dtheta, x, environment, fast, out),
-            Quantity::MassMatrix => native::mass_matrix(model, theta, fast, out),
+            Quantity::InverseDynamics => fast::inverse_dynamics(model, theta, dtheta, x, environment, fast, out),
+            Quantity::ForwardDynamics => fast::forward_dynamics(model, theta, dtheta, x, environment, fast, out),
+            Quantity::MassMatrix => fast::mass_matrix(model, theta, fast, out),
             Quantity::MassMatrixRate => mozzi::mass_matrix_rate(model, theta, dtheta, plain, out),
-            Quantity::CoriolisMatrix => native::coriolis_matrix(model, theta, dtheta, fast, out),
-            Quantity::VelocityProduct => native::velocity_product(model, theta, dtheta, fast, out),
+            Quantity::CoriolisMatrix => fast::coriolis_matrix(model, theta, dtheta, fast, out),
+            Quantity::VelocityProduct => fast::velocity_product(model, theta, dtheta, fast, out),
             Quantity::GravityForces => mozzi::gravity_forces(model, theta, environment.gravity, plain, out),
-            Quantity::BiasForces => native::bias_forces(model, theta, dtheta, environment, fast, out),
+            Quantity::BiasForces => fast::bias_forces(model, theta, dtheta, environment, fast, out),
             Quantity::TipForces => mozzi::tip_forces(model, theta, environment.applied, plain, out),
             Quantity::KineticEnergy => {
                 out[0] = mozzi::kinetic_energy(model, theta, dtheta, environment.base_twist, plain)
             }
             Quantity::PotentialEnergy => out[0] = mozzi::potential_energy(model, theta, environment.gravity, plain),
             Quantity::InverseDynamicsDerivatives => {
-                native::inverse_dynamics_derivatives(model, theta, dtheta, x, environment, fast, thirds(out));
+                fast::inverse_dynamics_derivatives(model, theta, dtheta, x, environment, fast, thirds(out));
             }
             Quantity::ForwardDynamicsDerivatives => {
                 let (ddtheta, by) = out.split_at_mut(model.n());
-                native::forward_dynamics_derivatives(model, theta, dtheta, x, environment, fast, ddtheta, thirds(by));
+                fast::forward_dynamics_derivatives(model, theta, dtheta, x, environment, fast, ddtheta, thirds(by));
             }
             Quantity::ForwardKinematics => {
                 if let Some(frame) = frame {

@@ -1,7 +1,7 @@
 //! What can be asked of many states: the methods of [`Batch`], by name.
 
 use clap::ValueEnum;
-use mozzi_batch::{Batch, Error, InstructionSet, Number, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment, Error, InstructionSet, Number};
 
 /// The shape of a result at one state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub trait Precision: Number {
         batch: &Batch<Self>,
         quantity: Quantity,
         input: &dyn Fn(&'static str) -> &'a [Self],
-        surroundings: &Surroundings<Self>,
+        surroundings: &BatchEnvironment<Self>,
         outputs: Vec<&mut [Self]>,
     ) -> Result<(), Error>;
 
@@ -85,10 +85,10 @@ macro_rules! methods {
         BodyJacobianRate body_jacobian_rate [frame] (theta dtheta) [] -> dJ Jacobian;
         /// ∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M of θ, θ̇, θ̈
         InverseDynamicsDerivatives inverse_dynamics_derivatives [] (theta dtheta ddtheta) [surroundings]
-            -> by_theta Matrix, by_dtheta Matrix, by_ddtheta Matrix;
+            -> d_theta Matrix, d_dtheta Matrix, d_ddtheta Matrix;
         /// θ̈ and ∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹ of θ, θ̇, τ
         ForwardDynamicsDerivatives forward_dynamics_derivatives [] (theta dtheta tau) [surroundings]
-            -> ddtheta Vector, by_theta Matrix, by_dtheta Matrix, by_tau Matrix;
+            -> ddtheta Vector, d_theta Matrix, d_dtheta Matrix, d_tau Matrix;
     } };
 }
 
@@ -125,7 +125,7 @@ macro_rules! precision {
                 batch: &Batch<Self>,
                 quantity: Quantity,
                 input: &dyn Fn(&'static str) -> &'a [Self],
-                all: &Surroundings<Self>,
+                all: &BatchEnvironment<Self>,
                 outputs: Vec<&mut [Self]>,
             ) -> Result<(), Error> {
                 let mut outputs = outputs.into_iter();

@@ -34,7 +34,7 @@ impl<T: Precision> Output<T> {
         self.shape[1..].iter().product()
     }
 
-    /// Columns by name: `tau_1` …, `M_1_1`, `M_1_2` …; where the base is free, by the names of the velocities' entries.
+    /// Columns by name: `tau_1` …, `M_1_1`, `M_1_2` …; where the base floats, by the names of the velocities' entries.
     fn columns(&self, model: &Model) -> Vec<(String, Vec<T>)> {
         let entries = columns::names(model, "");
         let numbers = |count: usize| (1..=count).map(|k| format!("_{k}")).collect::<Vec<_>>();

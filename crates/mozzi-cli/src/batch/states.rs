@@ -4,9 +4,9 @@ use super::format::Format;
 use super::npy::{self, Array, tuple};
 use super::quantity::Quantity;
 use super::{arrow, npz};
+use crate::csv::{GROUPS, Samples, first_column};
 use crate::failure::{Failure, Result};
 use crate::numbers::WRENCH;
-use crate::samples::{GROUPS, Samples, first_column};
 use mozzi::Model;
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@ use crate::text::{Page, about, table};
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use mozzi::{Environment, FrameId, Model, Wrench};
-use mozzi_batch::{Batch, InstructionSet, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment, InstructionSet};
 use mozzi_compare::Random;
 use serde_json::{Value, json};
 use std::hint::black_box;
@@ -153,7 +153,7 @@ impl<T: Precision> Run for Many<'_, T> {
             &self.data.tables[k][..]
         };
         let wrenches: Vec<(FrameId, &[T])> = self.tip.map(|tip| (tip, &self.data.wrenches[..])).into_iter().collect();
-        let surroundings = Surroundings { environment: self.batch.model().environment(), wrenches: &wrenches };
+        let surroundings = BatchEnvironment { environment: self.batch.model().environment(), wrenches: &wrenches };
         let outputs = self.outputs.iter_mut().map(|output| black_box(&mut output.values[..])).collect();
         T::evaluate(&self.batch, self.quantity, &input, &surroundings, outputs).map_err(wrong)
     }

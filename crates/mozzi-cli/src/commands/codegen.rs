@@ -8,7 +8,7 @@ use crate::text::{Page, table};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_codegen::{
-    Count, Kernel, Language, LeftOpen, Precision, Program, Quantity, Refusal, Shape, SourceFile, emit,
+    Arguments, Count, Kernel, Language, Precision, Program, Quantity, Refusal, Shape, SourceFile, emit,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub struct CodegenArguments {
     out: Option<PathBuf>,
     /// An argument of the functions instead of numbers in them; may be repeated
     #[arg(long, value_name = "WHAT")]
-    open: Vec<Open>,
+    argument: Vec<OpenArgument>,
     /// Tell the work before and after folding, and the length of machine code
     #[arg(long)]
     explain: bool,
@@ -102,7 +102,7 @@ enum Bits {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Open {
+enum OpenArgument {
     /// Masses, inertias, frictions
     Parameters,
     /// Gravity in {s}
@@ -113,11 +113,11 @@ enum Open {
 
 pub fn run(arguments: &CodegenArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let is_open = |what: Open| arguments.open.contains(&what);
-    let open = LeftOpen {
-        parameters: is_open(Open::Parameters),
-        gravity: is_open(Open::Gravity),
-        wrench: if is_open(Open::Wrench) { Some(model.end_effector()?) } else { None },
+    let is_open = |what: OpenArgument| arguments.argument.contains(&what);
+    let open = Arguments {
+        parameters: is_open(OpenArgument::Parameters),
+        gravity: is_open(OpenArgument::Gravity),
+        wrench: if is_open(OpenArgument::Wrench) { Some(model.end_effector()?) } else { None },
     };
     let mut names = arguments.quantity.clone();
     if names.is_empty() {
@@ -178,7 +178,7 @@ struct Work {
 }
 
 impl Work {
-    fn of(model: &Model, quantity: Quantity, open: LeftOpen, precision: Precision) -> Self {
+    fn of(model: &Model, quantity: Quantity, open: Arguments, precision: Precision) -> Self {
         let program: Program = quantity.record(model, open);
         let (one, widest, narrower) = match precision {
             Precision::F64 => (Shape::OneF64, Shape::EightF64, Shape::FourF64),

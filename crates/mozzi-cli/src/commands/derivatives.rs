@@ -46,16 +46,16 @@ impl Derivatives {
     pub fn lines(&self) -> Vec<String> {
         let named = |name: &str, values: &DMatrix<f64>| (name.to_string(), matrix(values));
         let mut lines = beside(&[
-            named("∂τ/∂θ", &self.inverse.by_theta),
-            named("∂τ/∂θ̇", &self.inverse.by_dtheta),
-            named("∂τ/∂θ̈ = M", &self.inverse.by_ddtheta),
+            named("∂τ/∂θ", &self.inverse.d_theta),
+            named("∂τ/∂θ̇", &self.inverse.d_dtheta),
+            named("∂τ/∂θ̈ = M", &self.inverse.d_ddtheta),
             named("∂g/∂θ", &self.gravity),
         ]);
         if let Some(forward) = &self.forward {
             lines.extend(beside(&[
-                named("∂θ̈/∂θ", &forward.by_theta),
-                named("∂θ̈/∂θ̇", &forward.by_dtheta),
-                named("∂θ̈/∂τ = M⁻¹", &forward.by_tau),
+                named("∂θ̈/∂θ", &forward.d_theta),
+                named("∂θ̈/∂θ̇", &forward.d_dtheta),
+                named("∂θ̈/∂τ = M⁻¹", &forward.d_tau),
             ]));
         }
         lines
@@ -65,16 +65,16 @@ impl Derivatives {
     pub fn object(&self) -> Value {
         json!({
             "inverse_dynamics": {
-                "by_theta": json::matrix(&self.inverse.by_theta),
-                "by_dtheta": json::matrix(&self.inverse.by_dtheta),
-                "by_ddtheta": json::matrix(&self.inverse.by_ddtheta),
+                "d_theta": json::matrix(&self.inverse.d_theta),
+                "d_dtheta": json::matrix(&self.inverse.d_dtheta),
+                "d_ddtheta": json::matrix(&self.inverse.d_ddtheta),
             },
             "forward_dynamics": self.forward.as_ref().map(|forward| json!({
-                "by_theta": json::matrix(&forward.by_theta),
-                "by_dtheta": json::matrix(&forward.by_dtheta),
-                "by_tau": json::matrix(&forward.by_tau),
+                "d_theta": json::matrix(&forward.d_theta),
+                "d_dtheta": json::matrix(&forward.d_dtheta),
+                "d_tau": json::matrix(&forward.d_tau),
             })),
-            "gravity_forces": { "by_theta": json::matrix(&self.gravity) },
+            "gravity_forces": { "d_theta": json::matrix(&self.gravity) },
         })
     }
 }
@@ -101,7 +101,7 @@ pub fn run(arguments: &DerivativesArguments) -> Result<String> {
     let names: Vec<String> = model.velocity_names().zip(1..).map(|(name, j)| format!("{j} {name}")).collect();
     page.lines(&flow(&names));
     if model.is_floating() {
-        page.line("a column by θ is along the velocity: of the free base along its twist in its own coordinates");
+        page.line("a column by θ is along the velocity: of the floating base along its twist in its own coordinates");
     }
     page.title("derivatives of inverse and forward dynamics").lines(&derivatives.lines());
     Ok(page.end())

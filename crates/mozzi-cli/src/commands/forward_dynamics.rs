@@ -3,9 +3,9 @@
 use super::trajectories::{self, TableArguments};
 use crate::failure::Result;
 use crate::json;
-use crate::quantities::{Quantity, quantities};
 use crate::robot::{RobotArguments, Units};
 use crate::state::{StartArguments, TipArguments, environment, velocities};
+use crate::table::{Quantity, quantities};
 use clap::{Args, ValueEnum};
 use mozzi::{Environment, Model};
 use nalgebra::DVector;
@@ -26,7 +26,7 @@ pub struct ForwardArguments {
     table: TableArguments,
     /// How M θ̈ = τ − h − JᵀF − f is solved
     #[arg(long, value_name = "WAY", default_value = "articulated-body")]
-    by: Way,
+    algorithm: Way,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -57,7 +57,7 @@ impl Way {
 }
 
 pub fn run(arguments: &ForwardArguments) -> Result<String> {
-    let (model, by) = (arguments.robot.load()?, arguments.by);
+    let (model, by) = (arguments.robot.load()?, arguments.algorithm);
     if arguments.table.input.is_some() {
         let names = ("tau", "ddtheta", "forward_dynamics");
         return trajectories::run(&model, &arguments.table, arguments.robot.json, names, |row| {

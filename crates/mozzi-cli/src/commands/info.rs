@@ -37,12 +37,12 @@ pub fn headline(model: &Model) -> String {
     let robot = model.description();
     let plural = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let joints = model.joint_names().len();
-    let followers = model.moving_links() - joints;
-    let coupled = if followers == 0 { String::new() } else { format!(" and {}", plural(followers, "follower")) };
+    let mimics = model.moving_links() - joints;
+    let coupled = if mimics == 0 { String::new() } else { format!(" and {}", plural(mimics, "mimic joint")) };
     format!(
         "{}: {}{}{coupled}, {}, {} kg",
         robot.name,
-        if model.is_floating() { "a free base, " } else { "" },
+        if model.is_floating() { "a floating base, " } else { "" },
         plural(joints, "independent joint"),
         plural(robot.links.len(), "link"),
         scalar(total_mass(robot)),
@@ -82,7 +82,7 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     page.end()
 }
 
-/// What a free base adds to the state.
+/// What a floating base adds to the state.
 fn base(model: &Model) -> Vec<String> {
     let list = |names: Vec<&str>| names.join(" ");
     let (positions, velocities) = (model.base().positions(), model.base().velocities());

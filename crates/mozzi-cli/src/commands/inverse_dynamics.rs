@@ -3,9 +3,9 @@
 use super::trajectories::{self, TableArguments};
 use crate::failure::Result;
 use crate::json;
-use crate::quantities::{Quantity, quantities};
 use crate::robot::{RobotArguments, Units};
 use crate::state::{StartArguments, TipArguments, environment, velocities};
+use crate::table::{Quantity, quantities};
 use clap::Args;
 use serde_json::json;
 

@@ -41,7 +41,7 @@ pub fn run(arguments: &ScrewsArguments) -> Result<String> {
 pub fn python(model: &Model) -> Result<String> {
     let lists = model.screws();
     let serial = lists.parents.iter().enumerate().all(|(i, &parent)| parent == i);
-    if !serial || model.is_coupled() {
+    if !serial || model.has_mimic_joints() {
         return Err(Failure::wrong(format!(
             "Python: `{}` has {}, and the Modern Robotics package knows serial chains of independent joints only; \
              JSON has the lists of any robot",

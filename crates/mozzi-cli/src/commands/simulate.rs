@@ -90,7 +90,7 @@ pub struct Outcome {
     pub motors: String,
     pub overloads: Vec<Overload>,
     pub stops: Vec<Stopped>,
-    /// What `--until` and `--event` found, in the order of time.
+    /// What `--until` and `--report-event` found, in the order of time.
     pub events: Vec<Occurrence>,
     /// The conditions that were looked for and not found.
     pub missed: Vec<String>,

@@ -3,9 +3,9 @@
 use super::simulate::Outcome;
 use crate::columns::Columns;
 use crate::conditions::happened;
+use crate::csv::ENERGIES;
 use crate::json;
 use crate::robot::Units;
-use crate::samples::ENERGIES;
 use crate::text::{Decimals, Page, about, scalar, table};
 use mozzi::{Model, Trajectory, simulation};
 use mozzi_motion::controllers::Overload;
@@ -75,7 +75,7 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
     )
 }
 
-/// Positions that a row has room for: eight, or a free base's seven.
+/// Positions that a row has room for: eight, or a floating base's seven.
 fn shown_positions(model: &Model) -> usize {
     match model.base().positions() {
         0 => 8,

@@ -11,7 +11,7 @@ pub fn lines(model: &Model, form: &ClosedForm, ddtheta: &[f64]) -> Vec<String> {
     let mut lines = vec![
         format!(
             "N = {N} moving links, n = {n} {}; blocks of six rows, base to tips; blocks that are not shown are 0",
-            if base == 1 { "velocities, link 1 being the free base" } else { "joints" }
+            if base == 1 { "velocities, link 1 being the floating base" } else { "joints" }
         ),
         "𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base,  𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip,  M = 𝒜ᵀℒᵀ𝒢ℒ𝒜,  τ = 𝒜ᵀ𝓕".to_string(),
     ];

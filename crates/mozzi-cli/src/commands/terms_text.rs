@@ -3,8 +3,8 @@
 use super::stacked;
 use super::terms::{Terms, Tip};
 use crate::numbers::{TWIST, WRENCH};
-use crate::quantities::{Quantity, quantities};
 use crate::robot::{Units, space_frame};
+use crate::table::{Quantity, quantities};
 use crate::text::{Page, beside, flow, matrix, scalar, sixes, table, tuple};
 use mozzi::{Base, Jacobian, SE3, TaskFrame, Twist};
 use nalgebra::DMatrix;
@@ -17,7 +17,7 @@ pub fn page(terms: &Terms) -> String {
     if model.is_floating() {
         let (name, nq, n) = (&model.description().name, model.nq(), model.n());
         page.line(format!(
-            "{name}, its base free, {} joints: {nq} positions θ and {n} velocities θ̇,",
+            "{name}, its base floating, {} joints: {nq} positions θ and {n} velocities θ̇,",
             model.joint_names().len()
         ));
         page.lines(&numbered(model.velocity_names().collect()));

@@ -1,10 +1,10 @@
 //! Tables in, tables out: what inverse and forward dynamics share.
 
 use crate::columns::{Columns, save};
+use crate::csv::{Samples, first_column};
 use crate::failure::{self, Failure, Result};
 use crate::numbers::WRENCH;
 use crate::progress::Progress;
-use crate::samples::{Samples, first_column};
 use crate::{interrupt, json};
 use clap::Args;
 use mozzi::{FrameId, Model, Wrench};

@@ -1,6 +1,7 @@
 //! `mozzi trajectory`: a motion to be followed.
 
 use crate::columns::{Columns, save};
+use crate::csv::{Samples, first_column};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
@@ -8,7 +9,6 @@ use crate::motors::check_times;
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
-use crate::samples::{Samples, first_column};
 use crate::state::positions;
 use crate::text::{Decimals, Page, about, scalar, table};
 use clap::{Args, ValueEnum};
@@ -23,7 +23,7 @@ use serde_json::{Value, json};
 pub struct TrajectoryArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// Where the motion begins [default: joints at 0, a free base at {s}]
+    /// Where the motion begins [default: joints at 0, a floating base at {s}]
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     from: Option<String>,
     /// Where it ends
@@ -34,7 +34,7 @@ pub struct TrajectoryArguments {
     via: Option<String>,
     /// The way: of the joints, or of the end effector to --to's pose or to --position and --rpy
     #[arg(long, value_name = "WAY", default_value = "joints", conflicts_with = "via")]
-    along: Way,
+    path: Way,
     #[command(flatten)]
     goal: GoalArguments,
     /// How far off its way the end effector may be, ‖(ω, v)‖, rad and m
@@ -48,7 +48,7 @@ pub struct TrajectoryArguments {
     time: Option<String>,
     /// Of a trapezoid: the part of the time in which it rises, and falls
     #[arg(long, value_name = "PART", default_value = "0.25", allow_hyphen_values = true)]
-    rise: String,
+    ramp_fraction: String,
     /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_velocity: Option<String>,
@@ -173,7 +173,7 @@ impl TrajectoryArguments {
             }
             None => self.path(model)?,
         };
-        let rise = number("--rise", &self.rise)?;
+        let rise = number("--ramp-fraction", &self.ramp_fraction)?;
         let asked = self.profile.unwrap_or(Shaped::Quintic);
         let shape = |duration: f64| match asked {
             Shaped::Cubic => Profile::cubic(duration),
@@ -194,7 +194,7 @@ impl TrajectoryArguments {
     fn path<'m>(&self, model: &'m Model) -> Result<Box<dyn Path + 'm>> {
         let from = positions("--from", self.from.as_deref(), model)?;
         let to = self.to.as_deref().map(|text| positions("--to", Some(text), model)).transpose()?;
-        let shape = match (self.along, &to) {
+        let shape = match (self.path, &to) {
             (Way::Joints, Some(to)) => return Ok(Box::new(Line::new(model, &from, to)?)),
             (Way::Joints, None) => return Err(Failure::wrong("there is no end, expected --to or --via")),
             (Way::Screw, _) => Shape::Screw,
@@ -207,7 +207,7 @@ impl TrajectoryArguments {
             (None, Some(Goal::Pose(T))) => T,
             (None, Some(Goal::Position(p))) => SE3::new(start.R, p),
             (None, Some(Goal::Orientation(R))) => SE3::new(R, start.p),
-            _ => return Err(Failure::wrong("--along expects either --to, or --position, --rpy or --quaternion")),
+            _ => return Err(Failure::wrong("--path expects either --to, or --position, --rpy or --quaternion")),
         };
         let deviation = number("--deviation", &self.deviation)?;
         Ok(Box::new(Cartesian::new(model, frame, &from, goal, shape, deviation)?))

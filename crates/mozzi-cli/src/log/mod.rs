@@ -12,10 +12,10 @@ use crate::batch::results::Output;
 use crate::batch::{arrow, npy, npz};
 use crate::columns::{Columns, save};
 use crate::commands::simulate_page::{columns, energies};
+use crate::csv::ENERGIES;
 use crate::failure::{Failure, Result};
 #[cfg(feature = "parquet")]
 use crate::interrupt::Writing;
-use crate::samples::ENERGIES;
 use mozzi::{Model, Trajectory};
 use std::path::Path;
 

@@ -58,7 +58,7 @@ pub fn joint_state(time: u64, names: &[&str], values: [&[f64]; 3]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The frame that transforms are seen from: the base link, or what a free base is seen from.
+/// The frame that transforms are seen from: the base link, or what a floating base is seen from.
 pub fn space_frame(model: &Model) -> &str {
     match model.is_floating() {
         true => &model.description().free_joint.parent,

@@ -88,18 +88,18 @@ fn at_one(model: &Model, [theta, dtheta, x, F]: [&[f64]; 4]) -> Vec<(&'static st
         (
             "inverse-dynamics-derivatives",
             vec![
-                ("by_theta", rows(inverse.by_theta)),
-                ("by_dtheta", rows(inverse.by_dtheta)),
-                ("by_ddtheta", rows(inverse.by_ddtheta)),
+                ("d_theta", rows(inverse.d_theta)),
+                ("d_dtheta", rows(inverse.d_dtheta)),
+                ("d_ddtheta", rows(inverse.d_ddtheta)),
             ],
         ),
         (
             "forward-dynamics-derivatives",
             vec![
                 ("ddtheta", ddtheta()),
-                ("by_theta", rows(forward.by_theta)),
-                ("by_dtheta", rows(forward.by_dtheta)),
-                ("by_tau", rows(forward.by_tau)),
+                ("d_theta", rows(forward.d_theta)),
+                ("d_dtheta", rows(forward.d_dtheta)),
+                ("d_tau", rows(forward.d_tau)),
             ],
         ),
     ]
@@ -114,7 +114,7 @@ fn every_quantity_is_that_of_one_state() {
     let folder = folder("batch_quantities");
     let ur5 = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
     let shapes = [("tau", "(11, 6)"), ("M", "(11, 6, 6)"), ("J", "(11, 6, 6)"), ("T", "(11, 4, 4)")];
-    let shapes = shapes.into_iter().chain([("kinetic_energy", "(11,)"), ("by_theta", "(11, 6, 6)")]);
+    let shapes = shapes.into_iter().chain([("kinetic_energy", "(11,)"), ("d_theta", "(11, 6, 6)")]);
     let shapes: std::collections::BTreeMap<&str, &str> = shapes.collect();
     let states = States::new(&ur5, 11);
     let input = states.npz(&folder, "states.npz");
@@ -354,7 +354,7 @@ fn what_is_wrong_is_named() {
         (
             "inverse-dynamics-derivatives",
             &all,
-            "holds one array, and inverse-dynamics-derivatives gives 3: by_theta, by_dtheta, by_ddtheta; expected a name that ends in .npz",
+            "holds one array, and inverse-dynamics-derivatives gives 3: d_theta, d_dtheta, d_ddtheta; expected a name that ends in .npz",
         ),
     ] {
         let (code, said) = said(quantity, input, &[]);

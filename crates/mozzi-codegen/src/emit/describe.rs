@@ -3,11 +3,11 @@
 use super::Precision;
 use super::names::in_comment;
 use crate::program::Program;
-use crate::quantity::{LeftOpen, Quantity};
+use crate::quantity::{Arguments, Quantity};
 use mozzi::{FrameId, Model};
 
 /// The head of a text.
-pub(super) fn robot(model: &Model, open: LeftOpen, precision: Precision) -> Vec<String> {
+pub(super) fn robot(model: &Model, open: Arguments, precision: Precision) -> Vec<String> {
     let mut lines = vec![
         format!("The dynamics of the robot `{}` as straight-line code.", in_comment(&model.description().name)),
         format!("Made by mozzi {}; make it anew instead of changing it.", env!("CARGO_PKG_VERSION")),
@@ -19,7 +19,7 @@ pub(super) fn robot(model: &Model, open: LeftOpen, precision: Precision) -> Vec<
     ));
     lines.push("Arrays must not overlap. A matrix is written by rows, where nothing else is said.".to_string());
     lines.push(
-        "Frames: {s} is where the robot is bolted to, or what a free base is seen from; a link's frame is its file's."
+        "Frames: {s} is where the robot is fixed to, or what a floating base is seen from; a link's frame is its file's."
             .to_string(),
     );
     let gravity = match open.gravity {
@@ -71,7 +71,7 @@ fn frame_name(model: &Model, frame: FrameId) -> String {
 }
 
 /// A quantity in words, and how much of it was left.
-pub(super) fn quantity(model: &Model, quantity: Quantity, open: LeftOpen, program: &Program) -> Vec<String> {
+pub(super) fn quantity(model: &Model, quantity: Quantity, open: Arguments, program: &Program) -> Vec<String> {
     let frame = quantity.frame().map(|frame| frame_name(model, frame)).unwrap_or_default();
     let wrench = if open.wrench.is_some() { " + J^T F" } else { "" };
     let words = match quantity {
@@ -101,7 +101,7 @@ pub(super) fn quantity(model: &Model, quantity: Quantity, open: LeftOpen, progra
 }
 
 /// Shape, meaning and unit of an array.
-pub(super) fn array(model: &Model, quantity: Quantity, open: LeftOpen, name: &str) -> String {
+pub(super) fn array(model: &Model, quantity: Quantity, open: Arguments, name: &str) -> String {
     let (n, nq) = (model.n(), model.nq());
     let free = if model.is_floating() { "base and " } else { "" };
     match name {
@@ -126,7 +126,7 @@ pub(super) fn array(model: &Model, quantity: Quantity, open: LeftOpen, name: &st
             "6; (m, f) that the frame `{}` applies to what it touches, in its own coordinates, N m, N",
             open.wrench.map(|frame| frame_name(model, frame)).unwrap_or_default()
         ),
-        "by_tau" => format!("{n} x {n}; d ddtheta_i / d tau_j, the inverse of the mass matrix"),
+        "d_tau" => format!("{n} x {n}; d ddtheta_i / d tau_j, the inverse of the mass matrix"),
         _ => {
             let of = if quantity == Quantity::InverseDynamicsDerivatives { "tau" } else { "ddtheta" };
             let by = name.trim_start_matches("by_");

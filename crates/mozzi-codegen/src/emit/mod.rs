@@ -14,7 +14,7 @@ mod sin_cos;
 
 use crate::function::Function;
 use crate::program::{Program, Step};
-use crate::quantity::{LeftOpen, Quantity};
+use crate::quantity::{Arguments, Quantity};
 use dialect::{Argument, Emitted, Source};
 use mozzi::Model;
 use mozzi::scalar::Float;
@@ -115,10 +115,10 @@ impl std::error::Error for EmitError {}
 /// first lines tell the robot, its joints and units, frames and gravity; each function's, its arguments and its work.
 ///
 /// ```
-/// use mozzi_codegen::{Language, LeftOpen, Precision, Quantity, emit};
+/// use mozzi_codegen::{Language, Arguments, Precision, Quantity, emit};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let model = mozzi_urdf::open("ur5")?.build()?;
-/// let files = emit(&model, &[Quantity::GravityForces], LeftOpen::default(), Language::C, Precision::F32)?;
+/// let files = emit(&model, &[Quantity::GravityForces], Arguments::default(), Language::C, Precision::F32)?;
 /// assert!(files[0].name == "ur5.h" && files[0].text.contains("void ur5_gravity_forces(const float theta[6], float g[6]);"));
 /// assert!(files[1].name == "ur5.c");
 /// # Ok(()) }
@@ -132,7 +132,7 @@ impl std::error::Error for EmitError {}
 pub fn emit(
     model: &Model,
     quantities: &[Quantity],
-    open: LeftOpen,
+    open: Arguments,
     language: Language,
     precision: Precision,
 ) -> Result<Vec<SourceFile>, EmitError> {
@@ -163,7 +163,7 @@ pub fn emit_into(
     folder: &Path,
     model: &Model,
     quantities: &[Quantity],
-    open: LeftOpen,
+    open: Arguments,
     language: Language,
     precision: Precision,
 ) -> Result<Vec<PathBuf>, EmitError> {

@@ -31,12 +31,12 @@ impl Random {
 
 fn body(random: &mut Random) -> SpatialInertia {
     let turn = SE3::exp(Twist::from_array(random.array()));
-    Solid::Box([0.3, 0.2 + 0.1 * random.number(), 0.1]).inertia(2.0 + random.number()).seen_from(turn)
+    Solid::Box([0.3, 0.2 + 0.1 * random.number(), 0.1]).inertia(2.0 + random.number()).transformed(turn)
 }
 
-/// A tree of revolute, prismatic and helical joints off every axis, with friction and armature; `followers` of the last joints follow
+/// A tree of revolute, prismatic and helical joints off every axis, with friction and armature; `mimic joints` of the last joints follow
 /// others.
-pub fn tree(seed: u64, links: usize, followers: usize) -> Description {
+pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
     let mut random = Random(seed);
     let mut robot = Description::new(format!("tree {seed}")).link("link0", body(&mut random));
     for i in 1..=links {
@@ -55,8 +55,8 @@ pub fn tree(seed: u64, links: usize, followers: usize) -> Description {
         if i % 3 == 0 {
             (joint.damping, joint.friction, joint.armature) = (0.3, 0.5, 0.1);
         }
-        if i > links - followers {
-            let followed = format!("joint{}", 1 + (i * 7) % (links - followers));
+        if i > links - mimics {
+            let followed = format!("joint{}", 1 + (i * 7) % (links - mimics));
             joint.mimic = Some(Mimic { joint: followed, ratio: 1.5 * random.number(), offset: random.number() });
         }
         robot = robot.link(format!("link{i}"), body(&mut random)).joint(joint);
@@ -87,7 +87,7 @@ pub fn published() -> Vec<(String, Model)> {
     FILES.into_iter().map(load).collect()
 }
 
-/// The embedded robots, random trees, both on free bases, and [`published`] ones.
+/// The embedded robots, random trees, both on floating bases, and [`published`] ones.
 pub fn robots() -> Vec<(String, Model)> {
     let mut robots: Vec<_> = mozzi_urdf::embedded::names()
         .map(|name| {
@@ -95,8 +95,8 @@ pub fn robots() -> Vec<(String, Model)> {
             (name.to_string(), model)
         })
         .collect();
-    for (seed, links, followers) in [(1, 2, 0), (2, 4, 0), (3, 9, 0), (4, 8, 2), (5, 12, 3)] {
-        let robot = tree(seed, links, followers);
+    for (seed, links, mimics) in [(1, 2, 0), (2, 4, 0), (3, 9, 0), (4, 8, 2), (5, 12, 3)] {
+        let robot = tree(seed, links, mimics);
         robots.push((format!("{} free", robot.name), robot.clone().floating().build().expect("sound")));
         robots.push((robot.name.clone(), robot.build().expect("sound")));
     }

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::error::check;
 use crate::trajectories::Reference;
 use mozzi::simulation::Input;
-use mozzi::{Model, native};
+use mozzi::{Model, fast};
 
 /// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot that is as modelled,
 /// ë + K_d ė + K_p e = 0.
@@ -14,7 +14,7 @@ pub struct ComputedTorque<'m, R> {
     /// What is followed.
     pub reference: R,
     gains: Gains,
-    workspace: native::Workspace,
+    workspace: fast::Workspace,
     tau: Vec<f64>,
 }
 
@@ -22,7 +22,7 @@ impl<'m, R: Reference> ComputedTorque<'m, R> {
     /// For a robot that this model describes, rightly or not.
     ///
     /// # Errors
-    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or a free base, which no motor
+    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or a floating base, which no motor
     /// moves.
     pub fn new(model: &'m Model, reference: R, gains: Gains) -> Result<Self, Error> {
         gains.check(model)?;
@@ -30,13 +30,13 @@ impl<'m, R: Reference> ComputedTorque<'m, R> {
             !model.is_floating(),
             "the base of a robot under computed torque",
             "free",
-            "a bolted base: no motor moves a free one",
+            "a fixed base: no motor moves a free one",
         )?;
         Ok(ComputedTorque {
             model,
             reference,
             gains,
-            workspace: native::Workspace::new(model),
+            workspace: fast::Workspace::new(model),
             tau: vec![0.0; model.n()],
         })
     }
@@ -52,7 +52,7 @@ impl<R: Reference> Input for ComputedTorque<'_, R> {
         }
         self.model.check_lengths(theta, [("the reference's ddtheta", &ddtheta)])?;
         let environment = self.model.environment();
-        native::inverse_dynamics(self.model, theta, dtheta, &ddtheta, &environment, &mut self.workspace, &mut self.tau);
+        fast::inverse_dynamics(self.model, theta, dtheta, &ddtheta, &environment, &mut self.workspace, &mut self.tau);
         tau.iter_mut().zip(&self.tau).for_each(|(sum, tau)| *sum += tau);
         Ok(())
     }

@@ -27,7 +27,7 @@ use crate::error::check;
 use crate::trajectories::Desired;
 use mozzi::{Model, difference};
 
-/// Gains of each of the n velocities; those of a free base, which has no motors, are not used.
+/// Gains of each of the n velocities; those of a floating base, which has no motors, are not used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gains {
     /// K_p, diagonal.

@@ -6,7 +6,7 @@ use crate::trajectories::Reference;
 use mozzi::simulation::Input;
 use mozzi::{Model, Workspace, gravity_forces};
 
-/// τ = g(θ) + K_p e + K_d ė, with K_p in N m/rad or N/m. Along a moving reference it lags: it knows of no accelerations. A free base has no
+/// τ = g(θ) + K_p e + K_d ė, with K_p in N m/rad or N/m. Along a moving reference it lags: it knows of no accelerations. A floating base has no
 /// motors.
 pub struct PdGravity<'m, R> {
     model: &'m Model,

@@ -56,7 +56,7 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
     ///
     /// # Errors
     /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, a frame of another model, or a
-    /// free base.
+    /// floating base.
     pub fn new(model: &'m Model, reference: R, frame: FrameId, law: Law, posture: Gains) -> Result<Self, Error> {
         model.check_frame(frame)?;
         posture.check(model)?;
@@ -65,7 +65,7 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
             let fine = list.iter().all(|x| *x >= 0.0 && x.is_finite());
             check(fine, what, format!("{list:?}"), "finite numbers that are not negative")?;
         }
-        check(!model.is_floating(), "the base of a robot under task-space control", "free", "a bolted base")?;
+        check(!model.is_floating(), "the base of a robot under task-space control", "free", "a fixed base")?;
         Ok(TaskSpace { model, reference, frame, law, posture })
     }
 

@@ -29,7 +29,7 @@ fn acceleration(model: &Model, input: &mut impl Input, t: f64, theta: &[f64], dt
 
 #[test]
 fn computed_torque_makes_the_error_linear() {
-    // at any state, with followers and friction: θ̈ = θ̈_d + K_d ė + K_p e
+    // at any state, with mimic joints and friction: θ̈ = θ̈_d + K_d ė + K_p e
     let model = tree(4, 7, 1);
     let [from, ..] = state(&model, 1);
     let [to, ..] = state(&model, 2);

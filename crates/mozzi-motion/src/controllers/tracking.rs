@@ -3,7 +3,7 @@
 use crate::trajectories::Reference;
 use mozzi::{Model, Trajectory, difference};
 
-/// The error e = θ_d ⊖ θ of each joint over a motion; a free base follows nothing.
+/// The error e = θ_d ⊖ θ of each joint over a motion; a floating base follows nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingError {
     /// √(mean of e²) of each joint, over the rows: rad or m.

@@ -38,7 +38,7 @@ impl<'a> Event<'a> {
     }
 
     /// A joint that reaches an end of its way, from within: an event for each limit of position that there is, called
-    /// `lower limit of shoulder`. A follower's limits are its master's.
+    /// `lower limit of shoulder`. A mimic joint's limits are its source joint's.
     pub fn joint_limits(model: &Model) -> Vec<Self> {
         let Bounds { positions, joints, .. } = Bounds::of(model);
         let mut events = Vec::new();

@@ -102,7 +102,7 @@ impl Midpoint {
     }
 }
 
-/// A free base's momentum at the midpoint and at the end of a step.
+/// A floating base's momentum at the midpoint and at the end of a step.
 struct BaseMomentum {
     middle: [f64; 6],
     end: [f64; 6],

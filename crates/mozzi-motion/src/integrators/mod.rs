@@ -7,7 +7,7 @@
 //! | [`Integrator::DormandPrince`] | 5 | found | smooth motions, to a tolerance |
 //! | [`Integrator::Midpoint`] | 2 | given | long motions: the energy's error is bounded |
 //!
-//! All of them integrate on SE(3) where the base is free. Events are zeros of functions of (t, θ, θ̇), found on the polynomial between two steps.
+//! All of them integrate on SE(3) where the base floats. Events are zeros of functions of (t, θ, θ̇), found on the polynomial between two steps.
 //! A joint's limit is ignored, reported, or respected: then the joint comes to rest there, inelastically, and is held as long as
 //! it is pressed against its stop.
 //!
@@ -54,7 +54,7 @@ pub enum Integrator {
         /// Above 0.
         tolerance: f64,
     },
-    /// The implicit midpoint rule in (θ, p), by steps of this many seconds: symplectic; of a free base it keeps the momentum, too.
+    /// The implicit midpoint rule in (θ, p), by steps of this many seconds: symplectic; of a floating base it keeps the momentum, too.
     Midpoint {
         /// Seconds.
         step: f64,

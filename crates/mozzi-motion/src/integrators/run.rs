@@ -120,7 +120,8 @@ impl<'a> Simulation<'a> {
             return self.run_plainly(model, [theta, dtheta], input, *method, *step, progress);
         }
         let options = Options { gravity: self.gravity, friction: self.friction, ..Options::new(self.duration, 1) };
-        let mut driven = Driven::new(Equation::new(model, input, &options).by(self.forward_dynamics)?);
+        let mut driven =
+            Driven::new(Equation::new(model, input, &options).with_forward_dynamics(self.forward_dynamics)?);
         let mut stops = Stops::new(model, self.stops, theta)?;
         let n = model.n();
         let mut state = State {
@@ -199,7 +200,7 @@ impl<'a> Simulation<'a> {
             Options { gravity: self.gravity, friction: self.friction, ..Options::with_step(self.duration, step)? };
         let (steps, h) = (options.steps, options.step());
         let every = if h > 0.0 { (self.record / h).round().clamp(1.0, 1e15) as usize } else { 1 };
-        let mut equation = Equation::new(model, input, &options).by(self.forward_dynamics)?;
+        let mut equation = Equation::new(model, input, &options).with_forward_dynamics(self.forward_dynamics)?;
         let mut stops = Stops::new(model, self.stops, theta)?;
         let mut motion: Motion<f64, 3> =
             Motion::start(model.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;

@@ -4,8 +4,8 @@ use mozzi::Model;
 use mozzi::testing::Random;
 use std::f64::consts::PI;
 
-/// Lowest and highest value of each independent joint, as many as there are joints: −∞ and ∞ where there is no limit. A follower's
-/// limits are its master's, too.
+/// Lowest and highest value of each independent joint, as many as there are joints: −∞ and ∞ where there is no limit. A mimic joint's
+/// limits are its source joint's, too.
 #[derive(Clone, Debug)]
 pub(crate) struct Bounds {
     /// Where the joints begin in θ and in θ̇.
@@ -22,16 +22,16 @@ impl Bounds {
         let names: Vec<&str> = model.joint_names().collect();
         let mut joints = vec![free; names.len()];
         for joint in model.moving_joints() {
-            let (master, ratio, offset) = match &joint.mimic {
+            let (source, ratio, offset) = match &joint.mimic {
                 None => (&joint.name, 1.0, 0.0),
                 Some(mimic) => (&mimic.joint, mimic.ratio, mimic.offset),
             };
-            let Some(j) = names.iter().position(|name| name == master) else { continue };
+            let Some(j) = names.iter().position(|name| name == source) else { continue };
             let (Some(limits), true) = (joint.limits.position, ratio != 0.0) else { continue };
             let [a, b] = limits.map(|x| (x - offset) / ratio);
             let [low, high] = joints[j];
             let both = [low.max(a.min(b)), high.min(a.max(b))];
-            // a follower that its master's limits never let into its own says nothing
+            // a mimic joint that its source joint's limits never let into its own says nothing
             joints[j] = if both[0] <= both[1] { both } else { joints[j] };
         }
         let turns = model.joints().map(|joint| joint.kind.name() != "prismatic").collect();
@@ -58,7 +58,7 @@ impl Bounds {
         }
     }
 
-    /// Anywhere within the bounds; of a joint without, half a turn or a metre around the guess. A free base stays.
+    /// Anywhere within the bounds; of a joint without, half a turn or a metre around the guess. A floating base stays.
     pub fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64> {
         let mut theta = guess.to_vec();
         for ((q, &[low, high]), turns) in theta[self.positions..].iter_mut().zip(&self.joints).zip(&self.turns) {

@@ -32,7 +32,7 @@ impl<P: Path + ?Sized> Path for Box<P> {
     }
 }
 
-/// θ₀ ⊕ sΔ with Δ = θ₁ ⊖ θ₀: the joints in proportion to each other, a free base along a screw.
+/// θ₀ ⊕ sΔ with Δ = θ₁ ⊖ θ₀: the joints in proportion to each other, a floating base along a screw.
 #[derive(Clone, Debug)]
 pub struct Line<'m> {
     model: &'m Model,

@@ -27,7 +27,7 @@ impl Recorded {
     /// From rows at these times, in seconds, the first not below 0.
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] for times that do not increase, numbers that are not finite, θ̈ without θ̇, or a free base;
+    /// [`mozzi::Error::BadArgument`] for times that do not increase, numbers that are not finite, θ̈ without θ̇, or a floating base;
     /// [`mozzi::Error::WrongLength`].
     pub fn new(
         model: &Model,

@@ -30,14 +30,14 @@ impl Spline {
     /// [`Profile::linear`](super::Profile::linear) of their span.
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] for fewer than two points, an s that does not increase, or a free base;
+    /// [`mozzi::Error::BadArgument`] for fewer than two points, an s that does not increase, or a floating base;
     /// [`mozzi::Error::WrongLength`].
     pub fn new(model: &Model, s: &[f64], points: &[Vec<f64>], ends: Ends) -> Result<Self, Error> {
         check(
             !model.is_floating(),
             "the base of a spline's robot",
             "free",
-            "a bolted base: positions that can be added",
+            "a fixed base: positions that can be added",
         )?;
         check(points.len() >= 2, "the number of via points", points.len(), "at least 2")?;
         if s.len() != points.len() {

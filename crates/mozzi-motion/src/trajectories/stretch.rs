@@ -27,7 +27,7 @@ pub fn stretched(
         !model.is_floating(),
         "the base of a robot on a timed path",
         "free",
-        "a bolted base: torques are its motors'",
+        "a fixed base: torques are its motors'",
     )?;
     let times: Vec<f64> = (0..=samples).map(|k| profile.duration() * k as f64 / samples as f64).collect();
     let progress: Vec<_> = times.iter().map(|&t| profile.at(t)).collect();

@@ -287,7 +287,7 @@ fn what_makes_no_sense_is_refused() {
     words(Spline::through(&ur5, &points[..1], Ends::Natural).expect_err("one"), "at least 2");
     let twice = [points[0].clone(), points[1].clone(), points[1].clone()];
     words(Spline::through(&ur5, &twice, Ends::Natural).expect_err("twice"), "in row 3, as in the one before it");
-    words(Spline::through(&free, &points, Ends::Natural).expect_err("free"), "bolted base");
+    words(Spline::through(&free, &points, Ends::Natural).expect_err("free"), "fixed base");
     words(Line::new(&ur5, &[0.0; 6], &[0.0; 5]).expect_err("five"), "5 entries, expected 6");
     words(Recorded::new(&ur5, &[0.0, 1.0, 2.0], &points, None, Some(&points)).expect_err("rates"), "θ̇ too");
     words(Recorded::new(&ur5, &[-1.0, 1.0, 2.0], &points, None, None).expect_err("early"), "first time is -1");

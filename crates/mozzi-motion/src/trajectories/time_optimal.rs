@@ -38,7 +38,7 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
         !model.is_floating(),
         "the base of a robot on a timed path",
         "free",
-        "a bolted base: torques are its motors'",
+        "a fixed base: torques are its motors'",
     )?;
     let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
     let grid = demands_of_a_motion(model, path, &s)?;

@@ -15,18 +15,18 @@ Array = NDArray[Any]
 class InverseDynamicsDerivatives(NamedTuple):
     """∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M, each (..., n, n)."""
 
-    by_theta: Array
-    by_dtheta: Array
-    by_ddtheta: Array
+    d_theta: Array
+    d_dtheta: Array
+    d_ddtheta: Array
 
 
 class ForwardDynamicsDerivatives(NamedTuple):
     """θ̈ (..., n); ∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹, each (..., n, n)."""
 
     ddtheta: Array
-    by_theta: Array
-    by_dtheta: Array
-    by_tau: Array
+    d_theta: Array
+    d_dtheta: Array
+    d_tau: Array
 
 
 class TaskSpaceDynamics(NamedTuple):

@@ -63,7 +63,7 @@ def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
     """
     if model is None:
         return _Pinocchio(robot, None)
-    # the universe is number 0, then a free flyer; followers have no positions
+    # the universe is number 0, then a free flyer; mimics have no positions
     moving = [
         (str(name), int(nq))
         for name, nq, nv in zip(model.names, model.nqs, model.nvs)

@@ -14,7 +14,7 @@ def panda(*, floating: bool = False) -> Model:
 
 
 def anymal(*, floating: bool = True) -> Model:
-    """ANYbotics' ANYmal, by default with a free base."""
+    """ANYbotics' ANYmal, by default with a floating base."""
     return Model._embedded("anymal", floating)
 
 

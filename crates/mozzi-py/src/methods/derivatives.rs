@@ -2,9 +2,9 @@
 
 use crate::array::Numbers;
 use crate::call::{Options, named};
+use crate::environment::{Arguments, Given};
 use crate::model::PyModel;
 use crate::quantity::Quantity;
-use crate::surroundings::{Arguments, Given};
 use crate::threads::Threads;
 use mozzi::Vec3;
 use pyo3::prelude::*;
@@ -14,14 +14,14 @@ methods! {
     inverse_dynamics_derivatives(theta, dtheta, ddtheta; touching tip_wrench; in gravity, applied_wrenches, base_twist, base_acceleration)
         = Quantity::InverseDynamicsDerivatives, as InverseDynamicsDerivatives => {
         /// InverseDynamicsDerivatives
-        ///     `by_theta`, `by_dtheta`, `by_ddtheta`, each of shape (..., n, n), row i being τ_i's.
+        ///     `d_theta`, `d_dtheta`, `d_ddtheta`, each of shape (..., n, n), row i being τ_i's.
     }
 
     /// θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹, exact.
     forward_dynamics_derivatives(theta, dtheta, tau; touching tip_wrench; in gravity, applied_wrenches, base_twist, base_acceleration)
         = Quantity::ForwardDynamicsDerivatives, as ForwardDynamicsDerivatives => {
         /// ForwardDynamicsDerivatives
-        ///     `ddtheta`, shape (..., n); `by_theta`, `by_dtheta`, `by_tau`, shape (..., n, n).
+        ///     `ddtheta`, shape (..., n); `d_theta`, `d_dtheta`, `d_tau`, shape (..., n, n).
     }
 
     /// ∂g/∂θ.

@@ -1,9 +1,9 @@
 //! Inverse and forward dynamics, their parts, and energies, of a model in Python.
 
 use crate::call::Options;
+use crate::environment::{Arguments, Given};
 use crate::model::PyModel;
 use crate::quantity::Quantity;
-use crate::surroundings::{Arguments, Given};
 use crate::threads::Threads;
 use pyo3::prelude::*;
 

@@ -38,7 +38,7 @@ impl PyModel {
         Self::built(self.robot().model.with_gravity(Numbers::fixed("gravity", gravity, "(3,): m/s²")?))
     }
 
-    /// With its base free, or bolted.
+    /// With its base floating, or fixed.
     #[pyo3(signature = (floating=true))]
     fn with_floating_base(&self, floating: bool) -> PyResult<Self> {
         let base = if floating { Base::Floating } else { Base::Fixed };

@@ -1,9 +1,9 @@
 //! Configurations, Jacobians and the task space, of a model in Python.
 
 use crate::call::{Options, named};
+use crate::environment::{Arguments, Given};
 use crate::model::PyModel;
 use crate::quantity::Quantity;
-use crate::surroundings::{Arguments, Given};
 use crate::threads::Threads;
 use mozzi::{FrameId, Task, TaskFrame};
 use pyo3::exceptions::PyValueError;

@@ -3,9 +3,9 @@
 #[macro_use]
 mod quantities;
 
+mod closed_form;
 mod derivatives;
 mod dynamics;
 mod edits;
 mod kinematics;
 mod report;
-mod to_look_at;

@@ -70,9 +70,9 @@ macro_rules! said {
     ($first:ident, $($rest:ident),+) => { concat!(said!($first), "\n", said!($($rest),+)) };
     (one $first:ident, $($rest:ident),+) => { concat!(said!(one $first), "\n", said!(one $($rest),+)) };
     (theta) => { "theta : array_like, shape (..., nq)
-    Positions: rad (revolute, helical) or m (prismatic); of a free base first its quaternion (w, x, y, z) and origin." };
+    Positions: rad (revolute, helical) or m (prismatic); of a floating base first its quaternion (w, x, y, z) and origin." };
     (dtheta) => { "dtheta : array_like, shape (..., n)
-    Velocities: rad/s or m/s; of a free base first its body twist (ω, v)." };
+    Velocities: rad/s or m/s; of a floating base first its body twist (ω, v)." };
     (ddtheta) => { "ddtheta : array_like, shape (..., n)
     Accelerations: rad/s² or m/s²." };
     (tau) => { "tau : array_like, shape (..., n)

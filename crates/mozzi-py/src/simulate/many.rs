@@ -3,16 +3,16 @@
 use super::Torque;
 use crate::array::{Numbers, shown, wrong_shape};
 use crate::call::{self, named};
+use crate::environment::{Arguments, Given};
 use crate::failure::{of_batch, of_model, of_state};
 use crate::model::{PyModel, array};
 use crate::numpy::Fresh;
 use crate::quantity::Quantity;
 use crate::robot::batch;
-use crate::surroundings::{Arguments, Given};
 use crate::threads::Threads;
 use mozzi::simulation::{LARGEST, Motion, Options};
 use mozzi::{Environment, Error, Model};
-use mozzi_batch::{Batch, Surroundings};
+use mozzi_batch::{Batch, BatchEnvironment};
 use mozzi_codegen::Compiled;
 use pyo3::prelude::*;
 
@@ -66,7 +66,7 @@ struct Robots<'a> {
     batch: Batch<f64>,
     /// Machine code, where there is some and gravity is the robot's own.
     machine: Option<&'a Compiled>,
-    surroundings: Surroundings<'a, f64>,
+    surroundings: BatchEnvironment<'a, f64>,
     leading: &'a [usize],
     options: &'a Options,
 }
@@ -225,7 +225,7 @@ pub fn simulate<'py>(
     let model = &this.robot().model;
     options.check().map_err(of_model)?;
     let environment = Environment::with_gravity(options.gravity.unwrap_or(model.gravity()));
-    let surroundings = Surroundings::from(environment);
+    let surroundings = BatchEnvironment::from(environment);
     let machine = this.robot().compiled_for_many(threads).filter(|_| gravity.is_none());
     let robots = Robots { model, batch: batch(this.robot(), threads)?, machine, surroundings, leading, options };
     let everywhere = |_| String::new();

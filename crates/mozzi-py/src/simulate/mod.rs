@@ -4,8 +4,8 @@ mod many;
 mod one;
 
 use crate::array::{Numbers, common_leading};
+use crate::environment::Given;
 use crate::model::PyModel;
-use crate::surroundings::Given;
 use crate::threads::Threads;
 use mozzi::Vec3;
 use mozzi::simulation::{Friction, Method, Options};

@@ -34,7 +34,7 @@ impl Plane {
 }
 
 /// At each configuration the robot's links up to a frame, and in its origin two ellipses of this plane of {s}: of velocities,
-/// { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a free base is held. The force ellipse is
+/// { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a floating base is held. The force ellipse is
 /// scaled to the size of the other, as the legend tells, and left out where J_v is singular.
 ///
 /// # Errors

@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::origin;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use mozzi::SE3;
 use std::collections::BTreeMap;
 

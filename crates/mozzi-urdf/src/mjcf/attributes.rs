@@ -6,7 +6,7 @@ use crate::element::{Element, Value};
 use crate::finding::Finding;
 use crate::number::{NotNumbers, numbers, up_to};
 use crate::spelling::did_you_mean;
-use crate::words::{list, shown};
+use crate::vocabulary::{list, shown};
 use std::rc::Rc;
 
 /// An element that has a class of defaults, or none.

@@ -7,12 +7,12 @@ use super::contents::{Contents, Inside};
 use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
 use super::tree::{Link, Name, Site};
-use super::{attributes::Item, words};
+use super::{attributes::Item, vocabulary};
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::Place;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use mozzi::{SE3, SpatialInertia, Vec3};
 
 /// A body that carries others.
@@ -28,8 +28,8 @@ impl<'a> Model<'a> {
     /// The tree of bodies; what stands in the world itself does not move.
     pub fn world(&mut self, element: &Element<'a>, cx: &mut Context) {
         let element = element.called("worldbody");
-        element.check_attributes(&words::WORLD, cx);
-        element.check_children(&words::WORLD, cx);
+        element.check_attributes(&vocabulary::WORLD, cx);
+        element.check_children(&vocabulary::WORLD, cx);
         let class = self.classes.named(&element, "childclass", Class::MAIN, cx);
         let mut contents = Contents::default();
         self.gather(&element, SE3::identity(), class, 0, &mut contents, cx);
@@ -48,8 +48,8 @@ impl<'a> Model<'a> {
         let name = Name::of(&element, format!("body{}", self.tree.bodies), cx);
         let element = element.called(format!("body `{}`", name.shown()));
         let item = Item::plain(&element);
-        element.check_attributes(&words::BODY, cx);
-        element.check_children(&words::BODY, cx);
+        element.check_attributes(&vocabulary::BODY, cx);
+        element.check_children(&vocabulary::BODY, cx);
         let class = self.classes.named(&element, "childclass", inside.class, cx);
         let mut origin = inside.T * pose(&item, &self.compiler, cx);
         if item.number("gravcomp", 0.0, cx) != 0.0 {
@@ -107,8 +107,8 @@ impl<'a> Model<'a> {
     /// A site is a frame, if it has a name.
     fn site(&mut self, site: &Inside, link: usize, cx: &mut Context) {
         let Inside { item, T, .. } = site;
-        item.element.check_attributes(&words::SITE, cx);
-        item.element.called("site").check_children(&words::SITE, cx);
+        item.element.check_attributes(&vocabulary::SITE, cx);
+        item.element.called("site").check_children(&vocabulary::SITE, cx);
         let name = Name::of(&item.element.called("site"), String::new(), cx);
         let mut frame = pose(item, &self.compiler, cx);
         if let Some([a, b, c, d, e, f]) = item.vector::<6>("fromto", cx) {
@@ -126,8 +126,8 @@ impl<'a> Model<'a> {
 
     /// The words of a geom; a plugin in it makes its shape.
     fn check_geom(&mut self, geom: &Element<'a>, cx: &mut Context) {
-        geom.check_attributes(&words::GEOM, cx);
-        geom.check_children(&words::GEOM, cx);
+        geom.check_attributes(&vocabulary::GEOM, cx);
+        geom.check_children(&vocabulary::GEOM, cx);
         if let Some(plugin) = geom.elements().find(|child| child.name() == "plugin") {
             self.ignored.list("plugin", plugin.span(), &geom.subject, "it makes a shape for contacts");
         }

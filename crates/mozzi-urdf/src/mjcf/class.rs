@@ -1,12 +1,12 @@
 //! `<default>`: classes of values for attributes that are not written.
 
 use super::attributes::Item;
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::element::{Element, Value};
 use crate::finding::Finding;
 use crate::spelling::did_you_mean;
-use crate::words::{Vocabulary, shown};
+use crate::vocabulary::{Vocabulary, shown};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -36,13 +36,13 @@ pub(crate) struct Classes<'a> {
 /// What a default gives to which elements, and the attributes that are read.
 fn of_tag(tag: &str) -> Option<(&'static str, &'static Vocabulary)> {
     Some(match tag {
-        "joint" => ("joint", &words::JOINT),
-        "geom" => ("geom", &words::GEOM),
-        "site" => ("site", &words::SITE),
-        "equality" => ("equality", &words::COUPLING),
-        "tendon" => ("tendon", &words::TENDON),
+        "joint" => ("joint", &vocabulary::JOINT),
+        "geom" => ("geom", &vocabulary::GEOM),
+        "site" => ("site", &vocabulary::SITE),
+        "equality" => ("equality", &vocabulary::COUPLING),
+        "tendon" => ("tendon", &vocabulary::TENDON),
         // all kinds of actuators share their defaults
-        tag if words::ACTUATORS.contains(&tag) => ("actuator", &words::ACTUATOR),
+        tag if vocabulary::ACTUATORS.contains(&tag) => ("actuator", &vocabulary::ACTUATOR),
         _ => return None,
     })
 }
@@ -65,15 +65,15 @@ impl<'a> Classes<'a> {
 
     /// The values of one class, then the classes inside it.
     fn fill(&mut self, element: &Element<'a>, class: Class, depth: usize, cx: &mut Context) {
-        element.check_attributes(&words::DEFAULT, cx);
-        element.check_children(&words::DEFAULT, cx);
+        element.check_attributes(&vocabulary::DEFAULT, cx);
+        element.check_children(&vocabulary::DEFAULT, cx);
         if super::contents::is_too_deep(element, depth, cx) {
             return;
         }
         for child in element.elements() {
             let Some((tag, words)) = of_tag(child.name()) else {
                 if let Some(known) =
-                    words::DEFAULT.many.iter().find(|&&known| known == child.name() && known != "default")
+                    vocabulary::DEFAULT.many.iter().find(|&&known| known == child.name() && known != "default")
                 {
                     cx.leave_out("default", known, child.span());
                 }

@@ -1,15 +1,15 @@
 //! `<equality>`, `<tendon>` and `<actuator>`: what couples joints or closes loops. An affine coupling of two joints is a
-//! follower; the rest is refused by name, unless it has no effect on the dynamics.
+//! mimic joint; the rest is refused by name, unless it has no effect on the dynamics.
 
 use super::Model;
 use super::attributes::Item;
 use super::class::{Class, MOST_SUGGESTED};
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::spelling::did_you_mean;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use mozzi::model::description::Mimic;
 use std::collections::BTreeMap;
 
@@ -21,8 +21,8 @@ impl<'a> Model<'a> {
             .collect();
         for section in sections {
             match section.name() {
-                "equality" => section.check_children(&words::EQUALITY, cx),
-                "tendon" => section.check_children(&words::TENDONS, cx),
+                "equality" => section.check_children(&vocabulary::EQUALITY, cx),
+                "tendon" => section.check_children(&vocabulary::TENDONS, cx),
                 _ => continue,
             };
         }
@@ -48,7 +48,7 @@ impl<'a> Model<'a> {
     }
 
     fn equality(&mut self, element: Element<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
-        if !words::EQUALITY.many.contains(&element.name()) {
+        if !vocabulary::EQUALITY.many.contains(&element.name()) {
             return; // which was said
         }
         let item = self.classes.item(element, "equality", Class::MAIN, cx);
@@ -69,11 +69,11 @@ impl<'a> Model<'a> {
             cx.findings.add(Finding::error(code, item.element.span(), message).help(help));
             return;
         }
-        item.element.check_attributes(&words::COUPLING, cx);
+        item.element.check_attributes(&vocabulary::COUPLING, cx);
         self.coupling(&item, names, cx);
     }
 
-    /// y − y₀ = a₀ + a₁ (x − x₀) makes y a follower of x.
+    /// y − y₀ = a₀ + a₁ (x − x₀) makes y a mimic joint of x.
     fn coupling(&mut self, item: &Item<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
         let mut polynomial = item.overlaid::<5>("polycoef", cx);
         if !item.has("polycoef") {
@@ -96,12 +96,12 @@ impl<'a> Model<'a> {
             }
             found.map(|found| (found, value))
         };
-        let follower = find("joint1");
+        let mimic_joint = find("joint1");
         if item.element.attribute("joint2").is_none() {
             cx.findings.add(refuse("holds a joint where it is, which mozzi does not compute"));
             return;
         }
-        let (Some((y, _)), Some((x, master))) = (follower, find("joint2")) else { return };
+        let (Some((y, _)), Some((x, source))) = (mimic_joint, find("joint2")) else { return };
         if curved != [0.0; 3] {
             cx.findings.add(refuse("couples joints by a curve, which mozzi does not compute"));
             return;
@@ -112,17 +112,17 @@ impl<'a> Model<'a> {
         }
         let offset = self.tree.joints[y].reference + a0 - a1 * self.tree.joints[x].reference;
         let joint = &mut self.tree.joints[y];
-        joint.place.set("mimic", master.span);
-        joint.joint.mimic = Some(Mimic { joint: master.text.to_string(), ratio: a1, offset });
+        joint.place.set("mimic", source.span);
+        joint.joint.mimic = Some(Mimic { joint: source.text.to_string(), ratio: a1, offset });
     }
 
     /// A tendon that only transmits the force of an actuator has no effect of its own.
     fn tendon(&mut self, element: Element<'a>, cx: &mut Context) {
-        if !words::TENDONS.many.contains(&element.name()) {
+        if !vocabulary::TENDONS.many.contains(&element.name()) {
             return; // which was said
         }
         let item = self.classes.item(element, "tendon", Class::MAIN, cx);
-        item.element.check_attributes(&words::TENDON, cx);
+        item.element.check_attributes(&vocabulary::TENDON, cx);
         let force = ["stiffness", "damping"].into_iter().find(|name| item.overlaid::<3>(name, cx) != [0.0; 3]);
         let more = ["frictionloss", "armature"].into_iter().find(|name| item.number(name, 0.0, cx) != 0.0);
         let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");

@@ -1,11 +1,11 @@
 //! `<compiler>`: how the numbers of a model are meant.
 
 use super::attributes::Item;
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use mozzi::{SO3, Vec3};
 
 /// Where the inertia of a body is from.
@@ -54,8 +54,8 @@ impl Compiler {
     }
 
     fn take(&mut self, item: &Item, cx: &mut Context) {
-        item.element.check_attributes(&words::COMPILER, cx);
-        let children = item.element.check_children(&words::COMPILER, cx);
+        item.element.check_attributes(&vocabulary::COMPILER, cx);
+        let children = item.element.check_children(&vocabulary::COMPILER, cx);
         if let Some(child) = children.get("lengthrange") {
             cx.leave_out("compiler", "lengthrange", child.span());
         }

@@ -4,7 +4,7 @@ use super::Model;
 use super::attributes::Item;
 use super::class::Class;
 use super::orientation::pose;
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
@@ -73,8 +73,8 @@ impl<'a> Model<'a> {
                 "inertial" => contents.inertial = contents.inertial.take().or(Some(Item::plain(&child))),
                 "freejoint" => contents.free.push(Inside { item: Item::plain(&child), T, class }), // takes no defaults
                 "frame" => {
-                    child.check_attributes(&words::FRAME, cx);
-                    child.check_children(&words::FRAME, cx);
+                    child.check_attributes(&vocabulary::FRAME, cx);
+                    child.check_children(&vocabulary::FRAME, cx);
                     let class = self.classes.named(&child, "childclass", class, cx);
                     let frame = T * pose(&Item::plain(&child), &self.compiler, cx);
                     self.gather(&child, frame, class, depth + 1, contents, cx);

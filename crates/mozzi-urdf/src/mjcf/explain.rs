@@ -98,7 +98,7 @@ pub(crate) const CODES: [Entry; 36] = [
         "An element asks for something that mozzi does not compute or expand: flexible bodies, or copies of parts of the tree.",
         "let MuJoCo expand or remove it, and save the model there"),
     ("unsupported_equality",
-        "An equality is not a straight line between the positions of two joints. Only that is a follower; anything else would be lost in silence, so the file is refused.",
+        "An equality is not a straight line between the positions of two joints. Only that is a mimic joint; anything else would be lost in silence, so the file is refused.",
         "remove it, or set active=\"false\", if the tree without it is what you want to compute"),
     ("unsupported_joint",
         "A joint is a ball, or a free joint stands where it frees nothing: inside the tree, beside other joints of its body, or beside another free body. Or something else moves in the world beside a free body. Every joint of mozzi has one number as its position; only the base can be free. A quaternion inside the tree would need columns and brackets of its own in every algorithm.",

@@ -4,7 +4,7 @@ use super::Model;
 use super::attributes::Item;
 use super::contents::{Contents, Inside};
 use super::tree::{Free, Joint, Name};
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::finding::Finding;
 use mozzi::model::description::JointKind;
@@ -19,7 +19,7 @@ impl<'a> Model<'a> {
         let subject =
             name.given.as_ref().map_or_else(|| item.element.subject.clone(), |_| format!("joint `{}`", name.shown()));
         let item = Item { element: item.element.called(subject), ..item.clone() };
-        item.element.check_attributes(if is_word { &words::FREE_JOINT } else { &words::JOINT }, cx);
+        item.element.check_attributes(if is_word { &vocabulary::FREE_JOINT } else { &vocabulary::JOINT }, cx);
         let why = if carrier != 0 {
             Some("is a free joint inside the tree: only a body of the world can be free".to_string())
         } else if contents.joints.len() + contents.free.len() > 1 {
@@ -63,13 +63,13 @@ impl<'a> Model<'a> {
         }
         let (damper, spring) = (self.options.damper, self.options.spring);
         if damper && item.overlaid::<3>("damping", cx) != [0.0; 3] {
-            self.ignored.force("free damping", item, "damping", "a damping of the free base");
+            self.ignored.force("free damping", item, "damping", "a damping of the floating base");
         }
         if self.options.friction && item.number("frictionloss", 0.0, cx) != 0.0 {
-            self.ignored.force("free frictionloss", item, "frictionloss", "a friction of the free base");
+            self.ignored.force("free frictionloss", item, "frictionloss", "a friction of the floating base");
         }
         if spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
-            self.ignored.force("free stiffness", item, "stiffness", "a spring of the free base");
+            self.ignored.force("free stiffness", item, "stiffness", "a spring of the floating base");
         }
     }
 
@@ -95,7 +95,7 @@ impl<'a> Model<'a> {
             self.ignored.beside("body", &link.name.shown(), link.place.span(""), &base);
         }
         for site in self.tree.sites.iter().filter(|site| !stays[site.link]) {
-            self.ignored.beside("site", &crate::words::shown(&site.name), site.place.span(""), &base);
+            self.ignored.beside("site", &crate::vocabulary::shown(&site.name), site.place.span(""), &base);
         }
         let mut count = 0;
         let number = |stays: &bool| {

@@ -55,7 +55,7 @@ impl Model<'_> {
             Some([mass]) => solid.inertia(mass),
             None => solid.of_density(density),
         };
-        Mass::Known(inertia.seen_from(T * frame))
+        Mass::Known(inertia.transformed(T * frame))
     }
 
     /// The solid, centred in its frame; None, and reported, where a size is missing.

@@ -4,7 +4,7 @@ use super::attributes::Item;
 use crate::context::{Context, LeftOut};
 use crate::element::Element;
 use crate::finding::Finding;
-use crate::words::{list, shown};
+use crate::vocabulary::{list, shown};
 use std::collections::BTreeMap;
 use std::ops::Range;
 

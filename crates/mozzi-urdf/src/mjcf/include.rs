@@ -6,7 +6,7 @@ use crate::dialect::Dialect;
 use crate::finding::{Finding, Findings};
 use crate::source::Source;
 use crate::syntax;
-use crate::words::shown;
+use crate::vocabulary::shown;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::ops::Range;

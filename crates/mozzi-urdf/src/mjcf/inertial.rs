@@ -3,7 +3,7 @@
 use super::Model;
 use super::attributes::Item;
 use super::orientation::{ORIENTATIONS, pose};
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::finding::Finding;
 use crate::places::Place;
@@ -14,8 +14,8 @@ use nalgebra::{Matrix3, SymmetricEigen};
 impl Model<'_> {
     /// The inertia in the body's frame.
     pub fn inertial(&self, item: &Item, place: &mut Place, cx: &mut Context) -> SpatialInertia {
-        item.element.check_attributes(&words::INERTIAL, cx);
-        item.element.check_children(&words::INERTIAL, cx);
+        item.element.check_attributes(&vocabulary::INERTIAL, cx);
+        item.element.check_children(&vocabulary::INERTIAL, cx);
         let T = pose(item, &self.compiler, cx);
         for (name, check) in [("mass", "mass"), ("diaginertia", "inertia"), ("fullinertia", "inertia")] {
             if let Some(value) = item.value(name) {

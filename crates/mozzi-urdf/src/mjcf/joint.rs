@@ -4,7 +4,7 @@ use super::Model;
 use super::attributes::Item;
 use super::contents::Inside;
 use super::tree::Name;
-use super::words;
+use super::vocabulary;
 use crate::axis;
 use crate::context::Context;
 use crate::finding::Finding;
@@ -21,8 +21,8 @@ impl<'a> Model<'a> {
         let shown = name.shown();
         let element = inside.item.element.called(format!("joint `{shown}`"));
         let item = Item { element, ..inside.item.clone() };
-        item.element.check_attributes(&words::JOINT, cx);
-        item.element.check_children(&words::JOINT, cx);
+        item.element.check_attributes(&vocabulary::JOINT, cx);
+        item.element.check_children(&vocabulary::JOINT, cx);
         let mut place = Place::new(item.element.span());
         for (name, check) in [
             ("name", "name"),
@@ -122,7 +122,7 @@ fn screw(item: &Item, T: SE3, is_slide: bool, cx: &mut Context) -> Option<ScrewA
     let kind = if is_slide { "prismatic" } else { "revolute" };
     let Some((screw, _)) = axis::screw(kind, T.R * axis) else {
         let text = item.value("axis").map_or("", |value| value.text.trim());
-        let message = format!("axis: is `{}`, expected a direction", crate::words::shown(text));
+        let message = format!("axis: is `{}`, expected a direction", crate::vocabulary::shown(text));
         let help = "the axis of a joint is a vector in the body's frame, such as `0 0 1`";
         cx.findings.add(item.error("zero_axis", "axis", &message).help(help));
         return None;

@@ -6,7 +6,7 @@
 //! # What is read
 //! Bodies, frames and sites with every way to write an orientation; a free body of the world; hinges and slides, several in a body, with `ref`,
 //! `range`, `armature`, `damping` and `frictionloss`; inertias, given or computed from geoms; default classes;
-//! includes; the compiler's settings that matter; gravity; an equality of two joints that is affine, as a follower.
+//! includes; the compiler's settings that matter; gravity; an equality of two joints that is affine, as a mimic joint.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
 //!   MuJoCo's `qpos`, with `ref`. Between two joints of one body stands a massless link `body:joint`.
@@ -41,7 +41,7 @@ mod orientation;
 #[cfg(test)]
 mod schema;
 mod tree;
-mod words;
+mod vocabulary;
 
 pub(crate) use explain::CODES;
 pub use explain::codes;
@@ -104,13 +104,14 @@ pub(crate) fn read(
 
 fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)> {
     if root.name() != "mujoco" {
-        let message = format!("the root element is <{}>, expected <mujoco>", crate::words::shown(root.written_name()));
+        let message =
+            format!("the root element is <{}>, expected <mujoco>", crate::vocabulary::shown(root.written_name()));
         let help = "a <mujocoinclude> is a part of a model: open the file that includes it";
         cx.findings.add(Finding::error("wrong_root", root.span(), message).help(help));
         return None;
     }
-    root.check_attributes(&words::MUJOCO, cx);
-    root.check_children(&words::MUJOCO, cx);
+    root.check_attributes(&vocabulary::MUJOCO, cx);
+    root.check_children(&vocabulary::MUJOCO, cx);
     let sections: Vec<Element> = root.elements().filter(|child| !child.has_prefix()).collect();
     let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
 

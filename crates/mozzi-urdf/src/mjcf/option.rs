@@ -2,7 +2,7 @@
 
 use super::attributes::Item;
 use super::ignored::Ignored;
-use super::words;
+use super::vocabulary;
 use crate::context::Context;
 use crate::element::Element;
 
@@ -31,8 +31,8 @@ impl Options {
         let (mut options, mut weightless) = (Options::default(), false);
         for section in sections {
             let item = Item::plain(&section.called("option"));
-            item.element.check_attributes(&words::OPTION, cx);
-            let children = item.element.check_children(&words::OPTION, cx);
+            item.element.check_attributes(&vocabulary::OPTION, cx);
+            let children = item.element.check_children(&vocabulary::OPTION, cx);
             options.gravity = item.vector::<3>("gravity", cx).unwrap_or(options.gravity);
             for name in ["density", "viscosity"] {
                 if item.number(name, 0.0, cx) != 0.0 {
@@ -40,7 +40,7 @@ impl Options {
                 }
             }
             let Some(flag) = children.get("flag") else { continue };
-            flag.check_attributes(&words::FLAG, cx);
+            flag.check_attributes(&vocabulary::FLAG, cx);
             let flag = Item::plain(flag);
             let mut is_off = |name| flag.word(name, &["enable", "disable"], cx) == Some("disable");
             weightless |= is_off("gravity");

@@ -4,7 +4,7 @@ use super::attributes::Item;
 use super::compiler::Compiler;
 use crate::context::Context;
 use crate::finding::Finding;
-use crate::words::list;
+use crate::vocabulary::list;
 use mozzi::linalg::Mat3;
 use mozzi::{SE3, SO3, Vec3};
 
@@ -46,7 +46,7 @@ fn orientation(item: &Item, compiler: &Compiler, cx: &mut Context) -> SO3 {
         Some(Some(R)) => R,
         Some(None) => {
             let text = item.value(name).map_or("", |value| value.text.trim());
-            let message = format!("{name}: is `{}`, which has no direction", crate::words::shown(text));
+            let message = format!("{name}: is `{}`, which has no direction", crate::vocabulary::shown(text));
             cx.findings.add(item.error("zero_axis", name, &message));
             SO3::identity()
         }

@@ -1,7 +1,7 @@
 //! Every word of MuJoCo's schema is computed, refused by name, or listed as ignored.
 
-use super::words;
-use crate::words::Vocabulary;
+use super::vocabulary;
+use crate::vocabulary::Vocabulary;
 use crate::{Diagnostic, parse};
 
 /// Made by `oracles/make_schema.py`: a path and its attributes on each line.
@@ -10,19 +10,19 @@ const SCHEMA: &str = include_str!("../../../../oracles/mjcf_schema.txt");
 /// The words that are known at a path, where the elements there are read.
 fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
     Some(match path {
-        "mujoco" => &words::MUJOCO,
-        "mujoco/compiler" => &words::COMPILER,
-        "mujoco/option" => &words::OPTION,
-        "mujoco/option/flag" => &words::FLAG,
-        "mujoco/default" => &words::DEFAULT,
-        "mujoco/body" => &words::BODY,
-        "mujoco/body/inertial" => &words::INERTIAL,
-        "mujoco/body/freejoint" => &words::FREE_JOINT,
-        "mujoco/body/joint" | "mujoco/default/joint" => &words::JOINT,
-        "mujoco/body/geom" | "mujoco/default/geom" => &words::GEOM,
-        "mujoco/body/site" | "mujoco/default/site" => &words::SITE,
-        "mujoco/equality/joint" | "mujoco/default/equality" => &words::COUPLING,
-        "mujoco/tendon/spatial" | "mujoco/tendon/fixed" | "mujoco/default/tendon" => &words::TENDON,
+        "mujoco" => &vocabulary::MUJOCO,
+        "mujoco/compiler" => &vocabulary::COMPILER,
+        "mujoco/option" => &vocabulary::OPTION,
+        "mujoco/option/flag" => &vocabulary::FLAG,
+        "mujoco/default" => &vocabulary::DEFAULT,
+        "mujoco/body" => &vocabulary::BODY,
+        "mujoco/body/inertial" => &vocabulary::INERTIAL,
+        "mujoco/body/freejoint" => &vocabulary::FREE_JOINT,
+        "mujoco/body/joint" | "mujoco/default/joint" => &vocabulary::JOINT,
+        "mujoco/body/geom" | "mujoco/default/geom" => &vocabulary::GEOM,
+        "mujoco/body/site" | "mujoco/default/site" => &vocabulary::SITE,
+        "mujoco/equality/joint" | "mujoco/default/equality" => &vocabulary::COUPLING,
+        "mujoco/tendon/spatial" | "mujoco/tendon/fixed" | "mujoco/default/tendon" => &vocabulary::TENDON,
         _ => return None,
     })
 }
@@ -108,7 +108,8 @@ fn every_word_is_in_a_class() {
         }
         let Some(known) = vocabulary(path) else {
             // descendants are told with the first that is told; of an actuator's defaults, what matters is read
-            let is_actuator = path.strip_prefix("mujoco/default/").is_some_and(|tag| words::ACTUATORS.contains(&tag));
+            let is_actuator =
+                path.strip_prefix("mujoco/default/").is_some_and(|tag| vocabulary::ACTUATORS.contains(&tag));
             let told = TOLD.iter().any(|(start, ..)| path.starts_with(start));
             let is_section = ["mujoco/tendon", "mujoco/equality"].contains(&path);
             assert!(told || is_actuator || is_section, "{path} is in no class");
@@ -154,8 +155,8 @@ fn what_is_told_as_a_whole_is_told() {
             let is_told_before =
                 TOLD.iter().find(|(start, ..)| known.starts_with(start)).map(|told| told.0) != Some(path);
             let tag = known.rsplit('/').next().unwrap_or_default();
-            let is_read =
-                vocabulary(known).is_some() && !known.starts_with("mujoco/tendon/") || words::ACTUATORS.contains(&tag);
+            let is_read = vocabulary(known).is_some() && !known.starts_with("mujoco/tendon/")
+                || vocabulary::ACTUATORS.contains(&tag);
             if !is_child || is_told_before || is_read && path != "mujoco/actuator" {
                 continue;
             }

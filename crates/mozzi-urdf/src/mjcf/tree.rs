@@ -4,7 +4,7 @@ use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
-use crate::words::shown;
+use crate::vocabulary::shown;
 use mozzi::model::description::{self, FreeJoint, JointKind};
 use mozzi::{Base, Description, SE3, SpatialInertia};
 use std::collections::BTreeSet;

@@ -19,8 +19,8 @@ pub fn compare(
     let theirs = |X: &DMatrix<f64>| DMatrix::from_fn(X.nrows(), X.ncols(), |i, j| X[(velocities[i], velocities[j])]);
     if state.get("dtau_dq").is_some() {
         let mine = model.inverse_dynamics_derivatives(theta, dtheta, ddtheta, &environment).unwrap();
-        worst.add("∂τ/∂θ", &theirs(&mine.by_theta), &matrix(&state["dtau_dq"]), 0.0);
-        worst.add("∂τ/∂θ̇", &theirs(&mine.by_dtheta), &matrix(&state["dtau_dv"]), 0.0);
+        worst.add("∂τ/∂θ", &theirs(&mine.d_theta), &matrix(&state["dtau_dq"]), 0.0);
+        worst.add("∂τ/∂θ̇", &theirs(&mine.d_dtheta), &matrix(&state["dtau_dv"]), 0.0);
     }
     if state.get("ddq_dq").is_some() {
         // backward: M times the difference, over the size of M's products with it; by θ also over what θ̈ is uncertain by, M⁻¹ times
@@ -28,11 +28,11 @@ pub fn compare(
         let M = theirs(&model.mass_matrix(theta).unwrap());
         let mine = model.forward_dynamics_derivatives(theta, dtheta, tau, &environment).unwrap();
         let largest = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let of_ddtheta = M.amax() * mine.by_tau.amax() * largest;
+        let of_ddtheta = M.amax() * mine.d_tau.amax() * largest;
         let by = [
-            ("∂θ̈/∂θ", mine.by_theta, "ddq_dq", of_ddtheta),
-            ("∂θ̈/∂θ̇", mine.by_dtheta, "ddq_dv", 0.0),
-            ("M⁻¹", mine.by_tau, "Minv", 0.0),
+            ("∂θ̈/∂θ", mine.d_theta, "ddq_dq", of_ddtheta),
+            ("∂θ̈/∂θ̇", mine.d_dtheta, "ddq_dv", 0.0),
+            ("M⁻¹", mine.d_tau, "Minv", 0.0),
         ];
         for (what, mine, key, size) in by {
             let (mine, reference) = (theirs(&mine), matrix(&state[key]));
@@ -55,7 +55,7 @@ pub fn compare(
     }
 }
 
-/// mozzi's number of each of the oracle's bodies: a free base, and what each joint moves, followers among them.
+/// mozzi's number of each of the oracle's bodies: a floating base, and what each joint moves, mimic joints among them.
 fn bodies(model: &Model, oracle: &Value) -> Vec<usize> {
     let base = usize::from(model.is_floating());
     let of =

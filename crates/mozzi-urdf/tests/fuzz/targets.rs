@@ -194,9 +194,9 @@ impl Reader<'_> {
                 joint.limits = Limits { position, velocity: Some(self.size()), effort: Some(self.size()) };
             }
             if self.below(4) == 0 {
-                let master = self.below(8);
+                let source = self.below(8);
                 joint.mimic =
-                    Some(Mimic { joint: self.name("j", master), ratio: self.number(), offset: self.number() });
+                    Some(Mimic { joint: self.name("j", source), ratio: self.number(), offset: self.number() });
             }
             robot = robot.joint(joint);
         }

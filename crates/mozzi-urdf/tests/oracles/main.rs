@@ -141,7 +141,7 @@ fn compare(model: &Model, order: &[usize], oracle: &Value, state: &Value, worst:
 fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
     let names: Vec<&str> =
         oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-    assert_eq!(oracle.get("floating").is_some(), model.is_floating(), "{name}: is the base free?");
+    assert_eq!(oracle.get("floating").is_some(), model.is_floating(), "{name}: is the base floating?");
     let base = model.base().velocities();
     assert_eq!(base + names.len(), model.n(), "{name}");
     let of = |name: &&str| base + model.joint_names().position(|mine| mine == *name).unwrap();

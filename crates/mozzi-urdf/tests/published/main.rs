@@ -23,7 +23,7 @@ said today.
 /// Why each kind is right; a kind that is not here fails the test.
 const WHY: [(&str, &str); 11] = [
     (
-        "fixed_follower",
+        "fixed_mimic",
         "The arms of Talos were reduced by making joints fixed, and their `<mimic>` was left in. A fixed joint does not \
          move, so these fingers stay where they are: whoever expects a gripper that closes should know.",
     ),

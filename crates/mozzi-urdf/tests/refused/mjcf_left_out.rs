@@ -25,7 +25,7 @@ fn what_is_left_out_is_said() {
         (
             body!("<joint type='free' damping='§1'/><geom size='1'/>"),
             "ignored_force",
-            "body `b`: joint: damping: is `1`, a damping of the free base, which mozzi does not compute",
+            "body `b`: joint: damping: is `1`, a damping of the floating base, which mozzi does not compute",
         ),
         (
             "<mujoco><option density='§1.2'/></mujoco>",

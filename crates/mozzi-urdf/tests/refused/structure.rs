@@ -83,7 +83,7 @@ fn trees() {
 }
 
 #[test]
-fn followers_in_a_circle_and_at_odds() {
+fn mimic_joints_in_a_circle_and_at_odds() {
     let text = |j: &str, k: &str| {
         format!(
             "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>\n\
@@ -101,7 +101,7 @@ fn followers_in_a_circle_and_at_odds() {
     warned(&[(odd.leak(), "contradictory_limits", message)]);
     let fixed =
         text(&limit("0", "1"), "<mimic joint='§j'/>").replace("name='k' type='revolute'", "name='k' type='fixed'");
-    warned(&[(fixed.leak(), "fixed_follower", "joint `k`: mimic: follows `j`, but is fixed: it does not move")]);
+    warned(&[(fixed.leak(), "fixed_mimic", "joint `k`: mimic: follows `j`, but is fixed: it does not move")]);
 }
 
 #[test]

@@ -6,28 +6,28 @@ use crate::spatial::Wrench;
 use alloc::vec;
 use nalgebra::{DMatrix, DVector};
 
-/// The derivatives of τ, each n × n, row i being τ_i's; by θ along the velocities: of a free base along its body twist.
+/// The derivatives of τ, each n × n, row i being τ_i's; by θ along the velocities: of a floating base along its body twist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InverseDynamicsDerivatives {
     /// ∂τ/∂θ.
-    pub by_theta: DMatrix<f64>,
+    pub d_theta: DMatrix<f64>,
     /// ∂τ/∂θ̇.
-    pub by_dtheta: DMatrix<f64>,
+    pub d_dtheta: DMatrix<f64>,
     /// ∂τ/∂θ̈ = M(θ).
-    pub by_ddtheta: DMatrix<f64>,
+    pub d_ddtheta: DMatrix<f64>,
 }
 
-/// θ̈ and its derivatives, each n × n, row i being θ̈_i's; by θ along the velocities: of a free base along its body twist.
+/// θ̈ and its derivatives, each n × n, row i being θ̈_i's; by θ along the velocities: of a floating base along its body twist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForwardDynamicsDerivatives {
     /// θ̈ itself.
     pub ddtheta: DVector<f64>,
     /// ∂θ̈/∂θ.
-    pub by_theta: DMatrix<f64>,
+    pub d_theta: DMatrix<f64>,
     /// ∂θ̈/∂θ̇.
-    pub by_dtheta: DMatrix<f64>,
+    pub d_dtheta: DMatrix<f64>,
     /// ∂θ̈/∂τ = M(θ)⁻¹.
-    pub by_tau: DMatrix<f64>,
+    pub d_tau: DMatrix<f64>,
 }
 
 impl Model<f64> {
@@ -44,11 +44,11 @@ impl Model<f64> {
     ) -> Result<InverseDynamicsDerivatives, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
         self.check_environment(environment)?;
-        let [by_theta, by_dtheta, by_ddtheta] = self.three_matrices(|w, derivatives| {
+        let [d_theta, d_dtheta, d_ddtheta] = self.three_matrices(|w, derivatives| {
             kernel::inverse_dynamics_derivatives(self, theta, dtheta, ddtheta, environment, w, derivatives);
             Ok(())
         })?;
-        Ok(InverseDynamicsDerivatives { by_theta, by_dtheta, by_ddtheta })
+        Ok(InverseDynamicsDerivatives { d_theta, d_dtheta, d_ddtheta })
     }
 
     /// θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹: see [`forward_dynamics_derivatives`](kernel::forward_dynamics_derivatives()).
@@ -66,11 +66,11 @@ impl Model<f64> {
         self.check_environment(environment)?;
         let mut ddtheta = DVector::zeros(self.n());
         let x = ddtheta.as_mut_slice();
-        let [by_theta, by_dtheta, by_tau] = self.three_matrices(|w, derivatives| {
+        let [d_theta, d_dtheta, d_tau] = self.three_matrices(|w, derivatives| {
             kernel::forward_dynamics_derivatives(self, theta, dtheta, tau, environment, w, x, derivatives);
             self.check_pivots(theta, w)
         })?;
-        Ok(ForwardDynamicsDerivatives { ddtheta, by_theta, by_dtheta, by_tau })
+        Ok(ForwardDynamicsDerivatives { ddtheta, d_theta, d_dtheta, d_tau })
     }
 
     /// ∂g/∂θ under the model's gravity: see [`gravity_forces_derivative`](kernel::gravity_forces_derivative).

@@ -1,13 +1,13 @@
 //! Directional derivatives of anything that is computed of θ, in one call.
 
-use crate::kinematics::{integrate, moving_along};
+use crate::kinematics::{integrate, seed_direction};
 use crate::model::{Error, Model};
 use crate::scalar::Dual;
 use alloc::vec::Vec;
 
 impl Model<f64> {
     /// f(θ ⊕ δθ ε) at ε = 0, with its derivative in ε: f gets the positions as dual numbers that move along δθ, and its answer is
-    /// this method's. δθ has n entries, as velocities have; a free base moves along the twist δθ₁ … δθ₆ in its own coordinates.
+    /// this method's. δθ has n entries, as velocities have; a floating base moves along the twist δθ₁ … δθ₆ in its own coordinates.
     /// Other arguments that move (θ̇, τ, …) are dual numbers of [`Dual::list`], constant ones of [`Dual::constants`].
     ///
     /// ```
@@ -24,14 +24,14 @@ impl Model<f64> {
     ///     .joint(Joint::new("slide", "rail", "bob", SE3::identity(), slide))
     ///     .build()?;
     ///
-    /// let M = arm.derivative_along(&[0.4, 0.5], &[0.0, 1.0], |theta| {
+    /// let M = arm.directional_derivative(&[0.4, 0.5], &[0.0, 1.0], |theta| {
     ///     let mut M = Dual::constants(&[0.0; 4]);
     ///     mass_matrix(&arm, theta, &mut Workspace::new(&arm), &mut M);
     ///     M
     /// })?;
     /// assert!((M[0].value - 0.5).abs() < 1e-15 && (M[0].derivative - 2.0).abs() < 1e-15);
     ///
-    /// let d2M = arm.second_derivative_along(&[0.4, 0.5], [&[0.0, 1.0], &[0.0, 1.0]], |theta| {
+    /// let d2M = arm.second_directional_derivative(&[0.4, 0.5], [&[0.0, 1.0], &[0.0, 1.0]], |theta| {
     ///     let mut M = [Dual::constant(Dual::constant(0.0)); 4];
     ///     mass_matrix(&arm, theta, &mut Workspace::new(&arm), &mut M);
     ///     M[0].derivative.derivative
@@ -44,21 +44,26 @@ impl Model<f64> {
     ///
     /// # Errors
     /// [`Error::WrongLength`].
-    pub fn derivative_along<R>(&self, theta: &[f64], along: &[f64], f: impl FnOnce(&[Dual]) -> R) -> Result<R, Error> {
+    pub fn directional_derivative<R>(
+        &self,
+        theta: &[f64],
+        along: &[f64],
+        f: impl FnOnce(&[Dual]) -> R,
+    ) -> Result<R, Error> {
         self.check_lengths(theta, [("the direction", along)])?;
-        Ok(f(&moving_along(self, theta, along)))
+        Ok(f(&seed_direction(self, theta, along)))
     }
 
     /// f(θ ⊕ (u ε₁ + v ε₂)) with its derivatives, for two directions: of each number x of the answer `x.value.derivative` is
     /// ∂f/∂ε₁, `x.derivative.value` is ∂f/∂ε₂, and `x.derivative.derivative` ∂²f/∂ε₁∂ε₂, at ε = 0. The last is
-    /// symmetric in u and v, also of a free base, whose directions are added before it moves (e^{`[u + v]`}). See
-    /// [`derivative_along`](Self::derivative_along).
+    /// symmetric in u and v, also of a floating base, whose directions are added before it moves (e^{`[u + v]`}). See
+    /// [`directional_derivative`](Self::directional_derivative).
     ///
     /// Cost: one f on dual numbers of dual numbers.
     ///
     /// # Errors
     /// [`Error::WrongLength`].
-    pub fn second_derivative_along<R>(
+    pub fn second_directional_derivative<R>(
         &self,
         theta: &[f64],
         [u, v]: [&[f64]; 2],
@@ -106,9 +111,9 @@ mod tests {
                 integrate(&model, &mut moved, &along, 1.0);
                 tau(&model, &moved, &rates)
             };
-            let first = model.derivative_along(&theta, &u, |q| tau(&model, q, &rates)).expect("lengths");
+            let first = model.directional_derivative(&theta, &u, |q| tau(&model, q, &rates)).expect("lengths");
             let second = |u: &[f64], v: &[f64]| -> Vec<Dual<Dual>> {
-                model.second_derivative_along(&theta, [u, v], |q| tau(&model, q, &rates)).expect("lengths")
+                model.second_directional_derivative(&theta, [u, v], |q| tau(&model, q, &rates)).expect("lengths")
             };
             let (both, swapped) = (second(&u, &v), second(&v, &u));
             let (h, k) = (1e-5, 1e-3);

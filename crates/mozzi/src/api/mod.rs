@@ -18,7 +18,7 @@ use crate::scalar::Scalar;
 use alloc::format;
 
 impl Model<f64> {
-    /// Every argument as long as it must be: θ nq, the others, with their names, n; and a free base's quaternion of length 1, to 10⁻³.
+    /// Every argument as long as it must be: θ nq, the others, with their names, n; and a floating base's quaternion of length 1, to 10⁻³.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for the quaternion.
@@ -31,7 +31,7 @@ impl Model<f64> {
         self.check_velocities(velocities)
     }
 
-    /// Is θ as long as it must be, and its quaternion, where the base is free, of length 1 to 10⁻³?
+    /// Is θ as long as it must be, and its quaternion, where the base floats, of length 1 to 10⁻³?
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::BadArgument`].
@@ -77,7 +77,7 @@ fn check_length(what: &'static str, slice: &[f64], expected: usize) -> Result<()
     if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
 }
 
-/// A free base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
+/// A floating base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
 pub(crate) fn check_unit(q: [f64; 4]) -> Result<(), Error> {
     let length = Scalar::sqrt(q.iter().map(|x| x * x).sum::<f64>());
     if (length - 1.0).abs() <= 1e-3 || length.is_nan() {
@@ -85,6 +85,6 @@ pub(crate) fn check_unit(q: [f64; 4]) -> Result<(), Error> {
     }
     let found = format!("{q:?}, of length {length}");
     let expected =
-        "a unit quaternion (w, x, y, z), to 1e-3: theta of a free base is (w, x, y, z), its origin, and the joints";
+        "a unit quaternion (w, x, y, z), to 1e-3: theta of a floating base is (w, x, y, z), its origin, and the joints";
     Err(Error::BadArgument { what: "the base's orientation in theta", found, expected })
 }

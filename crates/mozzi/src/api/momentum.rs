@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
-    /// The mass of all that moves, kg: of the moving links, and of a free base.
+    /// The mass of all that moves, kg: of the moving links, and of a floating base.
     pub fn mass(&self) -> f64 {
         let base = if self.is_floating() { self.base_inertia.mass } else { 0.0 };
         self.links.iter().fold(base, |sum, link| sum + link.G.mass)
@@ -118,9 +118,9 @@ mod tests {
     use crate::{Dual, Environment};
 
     fn models() -> impl Iterator<Item = (u64, Model)> {
-        [(5, 0), (9, 2), (14, 3)].into_iter().enumerate().flat_map(|(k, (links, followers))| {
+        [(5, 0), (9, 2), (14, 3)].into_iter().enumerate().flat_map(|(k, (links, mimics))| {
             let seed = 300 + k as u64;
-            [(seed, tree(seed, links, followers)), (seed, floating_tree(seed, links, followers))]
+            [(seed, tree(seed, links, mimics)), (seed, floating_tree(seed, links, mimics))]
         })
     }
 

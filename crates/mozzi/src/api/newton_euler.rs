@@ -86,8 +86,8 @@ mod tests {
 
     #[test]
     fn the_recursion_equals_the_stacked_equations() {
-        for (links, followers) in [(4, 0), (11, 3)] {
-            let model = tree(links as u64, links, followers);
+        for (links, mimics) in [(4, 0), (11, 3)] {
+            let model = tree(links as u64, links, mimics);
             let [theta, dtheta, ddtheta] = state(&model, 1);
             let tip = model.end_effector().expect("named");
             let environment = Environment {

@@ -56,7 +56,7 @@ impl JointOrder {
         self.base.velocities() + self.joints.len()
     }
 
-    /// A vector of velocities or forces in the other's order of joints, and linear first where the base is free.
+    /// A vector of velocities or forces in the other's order of joints, and linear first where the base floats.
     pub fn velocities_to(&self, what: &'static str, mine: &[f64]) -> Result<DVector<f64>, Error> {
         check_length(what, mine.len(), self.n())?;
         Ok(DVector::from_fn(self.n(), |k, _| mine[self.velocity(k)]))

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// States, forces and matrices of a model in the coordinates of MuJoCo, and back.
 ///
-/// | | mozzi | MuJoCo (a free base is its `freejoint`), R = `R_sb` |
+/// | | mozzi | MuJoCo (a floating base is its `freejoint`), R = `R_sb` |
 /// |---|---|---|
 /// | configuration | (q_w, q_x, q_y, q_z, p, joints) | `qpos` = (p, q_w, q_x, q_y, q_z, joints) |
 /// | velocity | (ω, v, joints), in the base link's coordinates | `qvel` = (Rv, ω, joints): ṗ in world axes, ω in the body's |
@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// h is no [`force`](Self::force) alone: it is what θ̈ = 0 needs, and `qfrc_bias` what `qacc` = 0 needs.
 ///
-/// All is exact to the rounding of one rotation; permutations, and all of a bolted robot, to the bit. Where mozzi's methods take θ
+/// All is exact to the rounding of one rotation; permutations, and all of a fixed robot, to the bit. Where mozzi's methods take θ
 /// to know R, those that lead back take `qpos`.
 #[derive(Clone, Debug)]
 pub struct MuJoCo {
@@ -186,7 +186,7 @@ impl MuJoCo {
         }
     }
 
-    /// `R_sb` of a free base.
+    /// `R_sb` of a floating base.
     fn orientation(&self, theta: &[f64]) -> Result<Option<SO3>, Error> {
         check_length("theta", theta.len(), self.order.nq())?;
         let (Some(&[w, x, y, z]), true) = (theta.first_chunk(), self.order.is_floating()) else { return Ok(None) };

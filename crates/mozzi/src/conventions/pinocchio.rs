@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// States, forces and matrices of a model in the order of Pinocchio, and back.
 ///
-/// | | mozzi | Pinocchio (a free base is its `JointModelFreeFlyer`) |
+/// | | mozzi | Pinocchio (a floating base is its `JointModelFreeFlyer`) |
 /// |---|---|---|
 /// | configuration | (q_w, q_x, q_y, q_z, p, joints) | `q` = (p, q_x, q_y, q_z, q_w, joints) |
 /// | velocity | (ω, v, joints), in the base link's coordinates | `v` = (v, ω, joints), in the same |
@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector};
 /// | force | (m, f, joints) | `tau` = (f, m, joints) |
 ///
 /// Joints stand as Pinocchio's reader of URDF orders them: depth first, siblings by the alphabet. One that turns without limits
-/// (URDF: continuous) has two positions, (cos θ, sin θ). Followers have none, as with `mimic=True`.
+/// (URDF: continuous) has two positions, (cos θ, sin θ). Mimic joints have none, as with `mimic=True`.
 ///
 /// X is a permutation, so all but those two positions is exact, there and back. h, c, g and JᵀF are [`force`](Self::force)s; C,
 /// Ṁ, M⁻¹, ∂τ and ∂θ̈ convert as M.

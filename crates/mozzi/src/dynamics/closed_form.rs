@@ -10,14 +10,14 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 /// Every stacked vector and matrix of the closed form at one state, for N moving links and n velocities. Frame {i} is at the
-/// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A free base is the first of the
+/// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A floating base is the first of the
 /// N moving links, with the axes I, in the base link's own frame.
 ///
 /// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
 /// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
 #[derive(Clone, Debug)]
 pub struct ClosedForm {
-    /// 𝒜, 6N × n: the screw axes on the block diagonal; a follower's stands in its master's column, times its ratio.
+    /// 𝒜, 6N × n: the screw axes on the block diagonal; a mimic joint's stands in its source joint's column, times its ratio.
     pub A: DMatrix<f64>,
     /// 𝒢, 6N × 6N: the spatial inertias.
     pub G: DMatrix<f64>,
@@ -131,14 +131,14 @@ impl ClosedForm {
 
     /// The book's matrix before θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + `[ad_𝒱]`ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ less twice this
     /// matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
-    pub fn factor_of_c(&self) -> DMatrix<f64> {
+    pub fn book_coriolis_matrix(&self) -> DMatrix<f64> {
         let inner = &self.G * &self.L * &self.ad_Adtheta * &self.W + self.ad_V.transpose() * &self.G;
         -(self.jacobians().transpose() * inner * self.jacobians())
     }
 
     /// c, base at rest.
     pub fn velocity_product(&self) -> DVector<f64> {
-        self.factor_of_c() * &self.dtheta
+        self.book_coriolis_matrix() * &self.dtheta
     }
 
     /// g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base.

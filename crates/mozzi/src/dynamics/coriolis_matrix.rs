@@ -12,7 +12,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// With J̇_k = Ad `[ad_𝒱_i]` A_i − `[ad_𝒱_k]` Ad A_i, what stands before Ad A_i is ½ (𝒢̇ + H(𝒢𝒱)): the rate of the
 /// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too, but
-/// Ṁ − 2C is not skew for it.) A free base's velocities are no coordinates' rates and have no Christoffel symbols; the same
+/// Ṁ − 2C is not skew for it.) A floating base's velocities are no coordinates' rates and have no Christoffel symbols; the same
 /// formula gives a C with the same two properties for it.
 ///
 /// Cost O(n · depth), no allocation.

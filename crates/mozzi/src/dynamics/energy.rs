@@ -7,7 +7,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of all that moves: the moving links,
-/// and a free base. `V_s` is the twist of {s} in its own coordinates (zero for ½ θ̇ᵀMθ̇).
+/// and a floating base. `V_s` is the twist of {s} in its own coordinates (zero for ½ θ̇ᵀMθ̇).
 ///
 /// Cost O(n), no allocation.
 ///

@@ -12,7 +12,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ̇)
 ///
-/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a free base by a 6 × 6 LDLᵀ at the root; where joints follow
+/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a 6 × 6 LDLᵀ at the root; where joints follow
 /// others, by the mass matrix. No allocation. Where M is singular the result is not finite or meaningless: the methods
 /// of [`Model`] look at the pivots and answer with an error.
 ///
@@ -28,7 +28,7 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     ddtheta: &mut [S],
 ) {
-    if model.is_coupled() {
+    if model.has_mimic_joints() {
         let mut M = core::mem::take(&mut workspace.matrix);
         forward_dynamics_by_mass_matrix(model, theta, dtheta, tau, environment, workspace, &mut M, ddtheta);
         workspace.matrix = M;
@@ -53,7 +53,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
     vector.fill(S::zero());
     let (V_0, dV_0) = base_motion(model, theta, dtheta, vector, environment);
-    let (V_0, dV_0) = V_0.beside_origin(dV_0);
+    let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
     (V[0], dV[0]) = (V_0.twist(), dV_0);
     if model.is_floating() {
         let G = model.base_inertia.map(S::from);
@@ -66,7 +66,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         let (A, dq) = (link.A(), link.rate(dtheta));
         let T_i = link.transform_with(sin_cos[i], theta);
         let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;
-        let (V_i, dV_i) = V_i.beside_origin((V_i.ad() * (A * dq)).twist());  // velocity-product acceleration
+        let (V_i, dV_i) = V_i.classical_acceleration((V_i.ad() * (A * dq)).twist());  // velocity-product acceleration
         (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
         F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
         G_hat[i] = link.G().into();
@@ -94,7 +94,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         }
     }
 
-    // a free base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free
+    // a floating base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free
     if let (Some(&F_tau), true) = (tau.first_chunk(), model.is_floating()) {
         let needed = Wrench::from_array(F_tau) - F[0] - G_hat[0] * dV[0];
         let (ddbase, base_pivots) = ldlt::solve_6(G_hat[0].to_matrix(), needed.to_array());

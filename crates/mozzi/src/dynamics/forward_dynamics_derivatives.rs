@@ -1,7 +1,7 @@
 //! ∂θ̈ of forward dynamics, by those of inverse dynamics and the factors of M (Carpentier and Mansard 2018).
 
 use super::bias_forces::take_zeros;
-use super::inverse_dynamics_derivatives::{accelerate, carry, fill, forces};
+use super::inverse_dynamics_derivatives::{add_accelerations, inward_pass, joint_forces, outward_pass};
 use super::joint_friction::joint_friction;
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
@@ -27,29 +27,29 @@ use crate::scalar::Scalar;
 #[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and the derivatives
 pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], tau: &[S],
-    environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S], [by_theta, by_dtheta, by_tau]: [&mut [S]; 3],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S], [d_theta, d_dtheta, d_tau]: [&mut [S]; 3],
 ) {
     let (n, pattern) = (model.n(), &model.structure.pattern);
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     joint_transforms(model, theta, workspace);
     let zero = take_zeros(workspace);
-    carry(model, theta, dtheta, &zero, environment, workspace);
+    outward_pass(model, theta, dtheta, &zero, environment, workspace);
     workspace.vector = zero;
 
     // M θ̈ = τ − h − f
-    fill(model, theta, environment, workspace, true, [None, None, Some(by_tau)]);
-    forces(model, workspace, ddtheta);
+    inward_pass(model, theta, environment, workspace, true, [None, None, Some(d_tau)]);
+    joint_forces(model, workspace, ddtheta);
     for j in 0..n {
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
     }
-    ldlt::factor(pattern, by_tau);
-    ldlt::solve(pattern, by_tau, ddtheta);
+    ldlt::factor(pattern, d_tau);
+    ldlt::solve(pattern, d_tau, ddtheta);
     for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
-        *pivot = by_tau[j * n + j];
+        *pivot = d_tau[j * n + j];
     }
 
-    accelerate(model, ddtheta, workspace);
-    fill(model, theta, environment, workspace, false, [Some(by_theta), Some(by_dtheta), None]);
-    ldlt::solve_rows(pattern, by_tau, [by_theta, by_dtheta]);
-    ldlt::invert(pattern, by_tau, &mut workspace.vector);
+    add_accelerations(model, ddtheta, workspace);
+    inward_pass(model, theta, environment, workspace, false, [Some(d_theta), Some(d_dtheta), None]);
+    ldlt::solve_rows(pattern, d_tau, [d_theta, d_dtheta]);
+    ldlt::invert(pattern, d_tau, &mut workspace.vector);
 }

@@ -11,7 +11,7 @@ use crate::spatial::Wrench;
 /// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇), with f = d θ̇ + μ sgn θ̇
 ///
 /// where M holds the rotors' inertia (armature) and F is what `environment.applied` says the robot applies to its
-/// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a free base are the
+/// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a floating base are the
 /// wrench (m, f) on it that the motion takes, in its own coordinates.
 ///
 /// Cost O(n), no allocation.
@@ -36,7 +36,7 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The links' part of τ, without armature and friction, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
-/// 𝓕 of every link, the motion as seen from beside it; 𝓕_0 is the wrench that a bolted base applies to the chain, or that a free
+/// 𝓕 of every link, the motion as seen from beside it; 𝓕_0 is the wrench that a fixed base applies to the chain, or that a free
 /// one, itself included, needs.
 ///
 /// **Seen from beside the link.** The equations of a body are the same for all observers in uniform motion. One of them moves, at
@@ -57,7 +57,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
 
     // base: its twist, accelerating against gravity; nothing hangs from it yet
     let (V_0, dV_0) = base_motion(model, theta, dtheta, ddtheta, environment);
-    let (V_0, dV_0) = V_0.beside_origin(dV_0);
+    let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
     (V[0], dV[0]) = (V_0.twist(), dV_0);
     F[0] = Wrench::zero();
     if model.is_floating() {
@@ -72,7 +72,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         let T_i  = link.transform_with(sin_cos[i], theta);                                // T_{i,i−1}(θ) (8.50)
         let V_i  = T_i.Ad() * V[p].spin() + A * dq;                                       // (8.51)
         let dV_i = T_i.Ad() * dV[p] + V_i.ad() * (A * dq) + A * ddq;                      // (8.52)
-        let (V_i, dV_i) = V_i.beside_origin(dV_i);
+        let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
         (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
         F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
     }
@@ -81,7 +81,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;                        // by link i to the environment
     }
 
-    // tips to base: what each joint must carry (a follower adds to its master)
+    // tips to base: what each joint must carry (a mimic joint adds to its source joint)
     for (i, link) in model.inward::<S>() {
         let p = link.parent;
         tau[link.j] += link.ratio() * (link.A() * F[i]);                                  // (8.54)

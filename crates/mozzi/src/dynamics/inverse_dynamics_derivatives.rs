@@ -35,12 +35,12 @@ use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
 use crate::scalar::Scalar;
-use crate::spatial::{BodyCoriolis, Twist, Wrench};
+use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
 /// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n, row-major: row i is τ_i's.
 ///
 /// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ for a joint, the
-/// body twist of a free base, in its own coordinates. The wrenches that are applied keep their coordinates in their frames, {s} its
+/// body twist of a floating base, in its own coordinates. The wrenches that are applied keep their coordinates in their frames, {s} its
 /// motion. Friction adds d to the diagonal of ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
 ///
 /// Entries are 0 unless [`couples`](Model::couples) i and j.
@@ -53,10 +53,10 @@ use crate::spatial::{BodyCoriolis, Twist, Wrench};
 #[rustfmt::skip]
 pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
-    environment: &Environment<S>, workspace: &mut Workspace<S>, [by_theta, by_dtheta, M]: [&mut [S]; 3],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, [d_theta, d_dtheta, M]: [&mut [S]; 3],
 ) {
     joint_transforms(model, theta, workspace);
-    derivatives(model, theta, dtheta, ddtheta, environment, workspace, by_theta, Some([by_dtheta, M]));
+    derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some([d_dtheta, M]));
 }
 
 /// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
@@ -69,18 +69,18 @@ fn derivatives<S: Scalar + From<C>, C: Scalar>(
     ddtheta: &[S],
     environment: &Environment<S>,
     workspace: &mut Workspace<S>,
-    by_theta: &mut [S],
+    d_theta: &mut [S],
     by_rates: Option<[&mut [S]; 2]>,
 ) {
-    carry(model, theta, dtheta, ddtheta, environment, workspace);
-    let (by_dtheta, M) = by_rates.map_or((None, None), |[by_dtheta, M]| (Some(by_dtheta), Some(M)));
-    fill(model, theta, environment, workspace, true, [Some(by_theta), by_dtheta, M]);
+    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
+    let (d_dtheta, M) = by_rates.map_or((None, None), |[d_dtheta, M]| (Some(d_dtheta), Some(M)));
+    inward_pass(model, theta, environment, workspace, true, [Some(d_theta), d_dtheta, M]);
 }
 
 /// Axes with their rates, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
-pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
+pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>,
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
@@ -94,7 +94,7 @@ pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
     let G = model.base_inertia.map(S::from);
     let P = G * V[0];
     T[0] = SE3::identity();
-    (G_c[0], B[0]) = (G, BodyCoriolis::new(G, V[0], P));
+    (G_c[0], B[0]) = (G, CoriolisFactor::new(G, V[0], P));
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
 
     // base to tips: axes with their rates, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
@@ -109,7 +109,7 @@ pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
         (V[i], dV[i], axes[i]) = (V_i, dV_i, [A, dA, ddA]);
         let G = link.G().congruence(T[i].Ad());
         let P = G * V_i;
-        (G_c[i], B[i]) = (G, BodyCoriolis::new(G, V_i, P));
+        (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V_i, P));
         F[i]  = G * dV_i - V_i.ad().transpose() * P;
     }
     for &(frame, F_b) in environment.applied {
@@ -122,7 +122,7 @@ pub(super) fn carry<S: Scalar + From<C>, C: Scalar>(
 /// and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
-pub(super) fn accelerate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
+pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
     let Workspace { dV, F, U, axes, G_c, .. } = workspace;
     dV[0] = match ddtheta.first_chunk() {
         Some(&dV) if model.is_floating() => Twist::from_array(dV),
@@ -147,28 +147,28 @@ pub(super) fn accelerate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddthe
 /// says that they are so far those of links.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
-pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
+pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>, carried: bool,
-    [mut by_theta, mut by_dtheta, mut M]: [Option<&mut [S]>; 3],
+    [mut d_theta, mut d_dtheta, mut M]: [Option<&mut [S]>; 3],
 ) {
     let n = model.n();
     let Workspace { V, F, U, axes, G_c, B, .. } = workspace;
-    if let Some(by_theta) = &mut by_theta {
-        clear(model, by_theta);
+    if let Some(d_theta) = &mut d_theta {
+        zero(model, d_theta);
     }
-    if let Some(by_dtheta) = &mut by_dtheta {
-        clear(model, by_dtheta);
+    if let Some(d_dtheta) = &mut d_dtheta {
+        zero(model, d_dtheta);
         for j in 0..n {
-            by_dtheta[j * n + j] = S::from(model.damping[j]);
+            d_dtheta[j * n + j] = S::from(model.damping[j]);
         }
     }
     if let Some(M) = &mut M {
-        clear(model, M);
+        zero(model, M);
         for j in 0..n {
             M[j * n + j] = S::from(model.armature[j]);
         }
     }
-    // {s}, which carries the axes of a free base, seen from it
+    // {s}, which carries the axes of a floating base, seen from it
     let Ad = base_pose(model, theta).inverse().Ad();
     let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
 
@@ -178,11 +178,11 @@ pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
         let column  = G_i * ddA + B_i * dA - A.ad().transpose() * F[i];      // ∂𝓕 by θ_j, felt below joint i
         let dcolumn = GdA + GdA + B_i * A;                                   // by θ̇_j
         let BtA     = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
-        if let Some(by_theta) = &mut by_theta {
-            by_theta[j * n + j] += A.dot(column);
+        if let Some(d_theta) = &mut d_theta {
+            d_theta[j * n + j] += A.dot(column);
         }
-        if let Some(by_dtheta) = &mut by_dtheta {
-            by_dtheta[j * n + j] += A.dot(dcolumn);
+        if let Some(d_dtheta) = &mut d_dtheta {
+            d_dtheta[j * n + j] += A.dot(dcolumn);
         }
         if let Some(M) = &mut M {
             M[j * n + j] += A.dot(GA);
@@ -191,14 +191,14 @@ pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
         while k > 0 {
             let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
             let (ij, ji) = (below.j * n + j, j * n + below.j);
-            if let Some(by_theta) = &mut by_theta {
-                by_theta[ij] += A.dot(column);
-                by_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
+            if let Some(d_theta) = &mut d_theta {
+                d_theta[ij] += A.dot(column);
+                d_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
             }
-            if let Some(by_dtheta) = &mut by_dtheta {
+            if let Some(d_dtheta) = &mut d_dtheta {
                 let dAGA = dA.dot(GA);
-                by_dtheta[ij] += A.dot(dcolumn);
-                by_dtheta[ji] += dAGA + dAGA + A.w.dot(BtA);
+                d_dtheta[ij] += A.dot(dcolumn);
+                d_dtheta[ji] += dAGA + dAGA + A.w.dot(BtA);
             }
             if let Some(M) = &mut M {
                 let entry = A.dot(GA);
@@ -212,11 +212,11 @@ pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
             let (s_t, ds_t) = (V_s.ad().transpose(), dV_s.ad().transpose());
             let row  = ds_t * GA + s_t * (s_t * GA + BtA);                   // (𝒢A)ᵀÄ_e + (𝓑ᵀA)ᵀȦ_e for each e
             let drow = (V_s + V[0]).ad().transpose() * GA + BtA;
-            if let Some(by_theta) = &mut by_theta {
-                add_cross(by_theta, n, j, column, row);
+            if let Some(d_theta) = &mut d_theta {
+                add_cross(d_theta, n, j, column, row);
             }
-            if let Some(by_dtheta) = &mut by_dtheta {
-                add_cross(by_dtheta, n, j, dcolumn, drow);
+            if let Some(d_dtheta) = &mut d_dtheta {
+                add_cross(d_dtheta, n, j, dcolumn, drow);
             }
             if let Some(M) = &mut M {
                 add_cross(M, n, j, GA, GA);
@@ -231,16 +231,16 @@ pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
         }
     }
 
-    // a free base: the axes e
+    // a floating base: the axes e
     if model.is_floating() {
         let (G, B) = (G_c[0], B[0]);
         for (r, e) in Twist::axes().into_iter().enumerate() {
             let de = V_s.ad() * e;
-            if let Some(by_theta) = &mut by_theta {
-                set_column(by_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
+            if let Some(d_theta) = &mut d_theta {
+                set_column(d_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
             }
-            if let Some(by_dtheta) = &mut by_dtheta {
-                set_column(by_dtheta, n, r, G * (de + V[0].ad() * e) + B * e);
+            if let Some(d_dtheta) = &mut d_dtheta {
+                set_column(d_dtheta, n, r, G * (de + V[0].ad() * e) + B * e);
             }
             if let Some(M) = &mut M {
                 set_column(M, n, r, G * e);
@@ -249,9 +249,9 @@ pub(super) fn fill<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// What joints and a free base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
+/// What joints and a floating base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
 #[cfg_attr(not(test), inline(always))]
-pub(super) fn forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
+pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
     let Workspace { F, axes, .. } = workspace;
     tau.fill(S::zero());
     if model.is_floating() {
@@ -265,13 +265,13 @@ pub(super) fn forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace
 /// n × n zeros.
 #[cfg_attr(not(test), inline(always))]
 #[track_caller]
-fn clear<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
+fn zero<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
     let n = model.n();
     assert!(X.len() == n * n, "a derivative has {} entries, expected n² = {}", X.len(), n * n);
     X.fill(S::zero());
 }
 
-/// Column j and row j at a free base's six.
+/// Column j and row j at a floating base's six.
 #[cfg_attr(not(test), inline(always))]
 fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
     for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
@@ -280,7 +280,7 @@ fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row:
     }
 }
 
-/// A column of a free base's 6 × 6 block.
+/// A column of a floating base's 6 × 6 block.
 #[cfg_attr(not(test), inline(always))]
 fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     for (s, entry) in column.to_array().into_iter().enumerate() {
@@ -288,7 +288,7 @@ fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     }
 }
 
-/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is bolted: g is a gradient. Of a free base along its body
+/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is fixed: g is a gradient. Of a floating base along its body
 /// twist, as [`inverse_dynamics_derivatives`].
 ///
 /// Cost O(n · depth) beside n² zeros, no allocation.
@@ -345,10 +345,10 @@ fn at_rest<S: Scalar + From<C>, C: Scalar>(
     ddtheta: Option<&[S]>,
     environment: &Environment<S>,
     workspace: &mut Workspace<S>,
-    by_theta: &mut [S],
+    d_theta: &mut [S],
 ) {
     let zero = take_zeros(workspace);
     joint_transforms(model, theta, workspace);
-    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, by_theta, None);
+    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, d_theta, None);
     workspace.vector = zero;
 }

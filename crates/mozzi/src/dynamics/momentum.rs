@@ -8,7 +8,7 @@ use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist, Wrench};
 
-/// The spatial inertia of all that moves (the moving links, and a free base), about the origin of {s} in its coordinates: its
+/// The spatial inertia of all that moves (the moving links, and a floating base), about the origin of {s} in its coordinates: its
 /// `mass`, and its `mc`, the mass times the centre of mass.
 ///
 /// Cost O(n), no allocation.
@@ -19,7 +19,7 @@ use crate::spatial::{SpatialInertia, Twist, Wrench};
 #[rustfmt::skip]
 pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
     composite_inertias(model, theta, workspace);
-    workspace.G_c[0].seen_from(base_pose(model, theta))
+    workspace.G_c[0].transformed(base_pose(model, theta))
 }
 
 /// The momentum of all that moves, (angular, linear), about the origin of {s} in its coordinates, {s} at rest:
@@ -100,7 +100,7 @@ pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
     seen_from_space(model, theta, workspace.F[0])
 }
 
-/// 𝒢ᶜ of every slot; of a bolted base without its own.
+/// 𝒢ᶜ of every slot; of a fixed base without its own.
 #[rustfmt::skip]
 fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
     model.assert_lengths(theta.len(), []);

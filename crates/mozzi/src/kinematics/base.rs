@@ -1,4 +1,4 @@
-//! The base link's configuration and motion: slot 0 of the kernels, bolted to {s} or free in SE(3).
+//! The base link's configuration and motion: slot 0 of the kernels, fixed to {s} or free in SE(3).
 
 use crate::lie::SE3;
 use crate::model::{Environment, Model};

@@ -9,7 +9,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl<C: Scalar> Model<C> {
-    /// The positions at which every joint is at 0 and a free base at {s}: nq numbers.
+    /// The positions at which every joint is at 0 and a floating base at {s}: nq numbers.
     pub fn neutral_configuration<S: Scalar>(&self) -> Vec<S> {
         let mut theta = vec![S::zero(); self.nq()];
         if self.is_floating() {
@@ -19,7 +19,7 @@ impl<C: Scalar> Model<C> {
     }
 }
 
-/// θ ← θ ⊕ θ̇h: where the velocities θ̇, kept for the time h, lead to. θ + θ̇h for joints, `T_sb` e^{`[𝒱_b]`h} for a free base; its
+/// θ ← θ ⊕ θ̇h: where the velocities θ̇, kept for the time h, lead to. θ + θ̇h for joints, `T_sb` e^{`[𝒱_b]`h} for a floating base; its
 /// quaternion leaves with length 1, and with the sign that is nearer to the one it came with.
 ///
 /// Cost O(n), no allocation.
@@ -31,7 +31,7 @@ pub fn integrate<S: Real, C: Scalar>(model: &Model<C>, theta: &mut [S], dtheta: 
     advance(model.base(), theta, dtheta, h);
 }
 
-/// θ₁ ⊖ θ₀, n numbers: the velocities that lead from θ₀ to θ₁ in one second. θ₁ − θ₀ for joints, log(T₀⁻¹T₁) for a free base, by
+/// θ₁ ⊖ θ₀, n numbers: the velocities that lead from θ₀ to θ₁ in one second. θ₁ − θ₀ for joints, log(T₀⁻¹T₁) for a floating base, by
 /// the shorter way round.
 ///
 /// Cost O(n), no allocation.
@@ -56,7 +56,7 @@ pub fn difference<S: Real, C: Scalar>(model: &Model<C>, theta0: &[S], theta1: &[
 ///
 /// # Panics
 /// When θ is not nq long, or δθ not n.
-pub fn moving_along<S: Real, C: Scalar>(model: &Model<C>, theta: &[S], along: &[S]) -> Vec<Dual<S>> {
+pub fn seed_direction<S: Real, C: Scalar>(model: &Model<C>, theta: &[S], along: &[S]) -> Vec<Dual<S>> {
     let mut theta = Dual::constants(theta);
     integrate(model, &mut theta, &Dual::constants(along), Dual { value: S::zero(), derivative: S::one() });
     theta

@@ -47,7 +47,7 @@ pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S
 }
 
 /// The body Jacobian `J_b`(θ) of a frame {b}: 𝒱_b = `J_b` θ̇ in {b} coordinates (Modern Robotics 5.18). `J` takes its n
-/// columns; zero for joints that do not move the frame. A follower adds ratio × its own to its master's column.
+/// columns; zero for joints that do not move the frame. A mimic joint adds ratio × its own to its source joint's column.
 ///
 /// Cost O(depth), no allocation.
 ///

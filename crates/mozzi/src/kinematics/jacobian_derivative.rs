@@ -7,7 +7,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j where joint j is between joint i and the frame,
-/// else 0. The derivative by a free base's six is along its twist in its own coordinates.
+/// else 0. The derivative by a floating base's six is along its twist in its own coordinates.
 ///
 /// Cost O(n² + depth²), no allocation.
 ///
@@ -24,7 +24,7 @@ pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// ∂J_i/∂θ_j of the space Jacobian, at `H[i * n + j]`: `[ad_{J_j}]` J_i where joint j is between the base and joint i,
-/// else 0. The derivative by a free base's six is along its twist in its own coordinates.
+/// else 0. The derivative by a floating base's six is along its twist in its own coordinates.
 ///
 /// Cost O(n² + depth²), no allocation.
 ///
@@ -43,7 +43,7 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
         *entry = T_sb.Ad() * *entry;
     }
     if model.is_floating() {
-        // a free base's own columns turn and slide with it
+        // a floating base's own columns turn and slide with it
         let (n, Ad) = (model.n(), base_pose(model, theta).Ad());
         for (j, along) in Twist::axes().into_iter().enumerate() {
             for (i, axis) in Twist::axes().into_iter().enumerate() {

@@ -19,7 +19,7 @@ pub(crate) use jacobian::twist_of;
 pub(crate) use joint_transforms::{joint_sines, joint_transforms};
 pub(crate) use link_twists::link_twists;
 
-pub use configuration::{difference, integrate, moving_along, rate_of_logarithm};
+pub use configuration::{difference, integrate, rate_of_logarithm, seed_direction};
 pub use exponentials::{
     body_jacobian_of_screws, body_product_of_exponentials, product_of_exponentials, space_jacobian_of_screws,
 };

@@ -6,9 +6,9 @@ use crate::{Dual, FrameId, SE3, Twist, kinematics as kernel};
 use alloc::vec::Vec;
 
 fn models() -> impl Iterator<Item = (u64, Model, FrameId)> {
-    [(1, 0), (4, 0), (9, 0), (9, 3), (15, 4), (1, 0), (9, 2)].into_iter().enumerate().map(|(k, (links, followers))| {
+    [(1, 0), (4, 0), (9, 0), (9, 3), (15, 4), (1, 0), (9, 2)].into_iter().enumerate().map(|(k, (links, mimics))| {
         let make = if k < 5 { tree } else { floating_tree };
-        let model = make(100 + k as u64, links, followers);
+        let model = make(100 + k as u64, links, mimics);
         let tip = model.end_effector().expect("named");
         (k as u64, model, tip)
     })
@@ -127,8 +127,8 @@ fn the_books_lists_make_the_same_robot_in_every_form() {
     let A: Vec<_> = chain.iter().map(|link| link.1).collect();
     let mut home = relative.clone();
     (1..home.len()).for_each(|i| home[i] = home[i - 1] * home[i]);
-    let S: Vec<_> = A.iter().zip(&home).map(|(A, &M)| A.seen_from(M)).collect();
-    let B: Vec<_> = S.iter().map(|S| S.seen_from(home[5].inverse())).collect();
+    let S: Vec<_> = A.iter().zip(&home).map(|(A, &M)| A.transformed(M)).collect();
+    let B: Vec<_> = S.iter().map(|S| S.transformed(home[5].inverse())).collect();
 
     let build = |frames, screws| {
         Description::from_screws("chain", frames, &inertias, screws).expect("lengths").build().expect("a sound robot")

@@ -7,5 +7,5 @@ pub(crate) mod series;
 mod so3;
 
 pub use adjoint::{Adjoint, AdjointTranspose, LieBracket, LieBracketTranspose};
-pub use se3::{NotAConfiguration, SE3};
-pub use so3::{NotARotation, SO3};
+pub use se3::{InvalidConfiguration, SE3};
+pub use so3::{InvalidRotation, SO3};

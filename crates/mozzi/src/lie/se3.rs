@@ -1,6 +1,6 @@
 //! SE(3): rigid motions and configurations of frames.
 
-use super::{Adjoint, NotARotation, SO3};
+use super::{Adjoint, InvalidRotation, SO3};
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::{Real, Scalar};
 use crate::spatial::Twist;
@@ -69,10 +69,10 @@ impl<S: Scalar> SE3<S> {
 
 /// The matrix given for a configuration is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum NotAConfiguration {
+pub enum InvalidConfiguration {
     /// Its upper left 3 × 3 block.
     #[error(transparent)]
-    Rotation(#[from] NotARotation),
+    Rotation(#[from] InvalidRotation),
     /// Its last row.
     #[error("not a configuration: the last row is {0:?}, expected [0, 0, 0, 1]")]
     LastRow([f64; 4]),
@@ -83,9 +83,9 @@ impl SE3<f64> {
     ///
     /// # Errors
     /// When the rotation part is no rotation to 10⁻¹², or the last row is not (0, 0, 0, 1).
-    pub fn from_matrix(T: [[f64; 4]; 4]) -> Result<Self, NotAConfiguration> {
+    pub fn from_matrix(T: [[f64; 4]; 4]) -> Result<Self, InvalidConfiguration> {
         if T[3] != [0.0, 0.0, 0.0, 1.0] {
-            return Err(NotAConfiguration::LastRow(T[3]));
+            return Err(InvalidConfiguration::LastRow(T[3]));
         }
         let row = |i: usize| [T[i][0], T[i][1], T[i][2]];
         let R = SO3::from_matrix(Mat3::from_rows([row(0), row(1), row(2)]))?;
@@ -100,7 +100,7 @@ impl<S: Real> SE3<S> {
         SE3 { R: SO3::exp(xi.w), p: SO3::left_jacobian(xi.w) * xi.v }
     }
 
-    /// The unit quaternion (w, x, y, z) of the orientation, w ≥ 0, and the origin (x, y, z): how a free base's configuration stands
+    /// The unit quaternion (w, x, y, z) of the orientation, w ≥ 0, and the origin (x, y, z): how a floating base's configuration stands
     /// among the positions.
     pub fn to_pose(self) -> [S; 7] {
         let ((w, Vec3([x, y, z])), [px, py, pz]) = (self.R.quaternion(), self.p.0);

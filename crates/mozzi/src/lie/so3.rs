@@ -15,7 +15,7 @@ pub struct SO3<S = f64>(pub(crate) Mat3<S>);
 #[error(
     "not a rotation matrix: RᵀR differs from I by up to {deviation:.3e} (expected at most {tolerance:.0e}) and det R = {determinant:.6} (expected 1)"
 )]
-pub struct NotARotation {
+pub struct InvalidRotation {
     /// The largest entry of |RᵀR − I|.
     pub deviation: f64,
     /// What would have been accepted.
@@ -85,15 +85,15 @@ impl SO3<f64> {
     /// A rotation from its matrix.
     ///
     /// # Errors
-    /// When RᵀR = I and det R = 1 do not hold to 10⁻¹², [`NotARotation`] with the numbers: see [`SO3::nearest`].
-    pub fn from_matrix(R: Mat3) -> Result<Self, NotARotation> {
+    /// When RᵀR = I and det R = 1 do not hold to 10⁻¹², [`InvalidRotation`] with the numbers: see [`SO3::nearest`].
+    pub fn from_matrix(R: Mat3) -> Result<Self, InvalidRotation> {
         let (error, tolerance, determinant) = (R.transpose() * R - Mat3::identity(), 1e-12, R.determinant());
         let deviation = error.x.max_abs().max(error.y.max_abs()).max(error.z.max_abs());
         // written so that NaN is refused
         if deviation <= tolerance && determinant > 0.0 {
             Ok(SO3(R))
         } else {
-            Err(NotARotation { deviation, tolerance, determinant })
+            Err(InvalidRotation { deviation, tolerance, determinant })
         }
     }
 
@@ -102,11 +102,11 @@ impl SO3<f64> {
     ///
     /// # Errors
     /// When det B is not near 1 (in ½ … 2), so that no rotation can have been meant.
-    pub fn nearest(B: Mat3) -> Result<(Self, f64), NotARotation> {
+    pub fn nearest(B: Mat3) -> Result<(Self, f64), InvalidRotation> {
         let determinant = B.determinant();
         if !(0.5..=2.0).contains(&determinant) {
             let deviation = (B.transpose() * B - Mat3::identity()).x.max_abs();
-            return Err(NotARotation { deviation, tolerance: 0.5, determinant });
+            return Err(InvalidRotation { deviation, tolerance: 0.5, determinant });
         }
         let mut R = B;
         for _ in 0..20 {

@@ -15,7 +15,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// From the number of the base's own rows, which couple with all, and from each moving link's parent slot and row, base to
-    /// tips. In a plain tree the ancestors are the tree's; a follower couples its master's row with another path, and
+    /// tips. In a plain tree the ancestors are the tree's; a mimic joint couples its source joint's row with another path, and
     /// eliminating that row couples both paths.
     pub fn new(base: usize, n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
         let coupled = n < base + links.len();
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_follower_couples_two_paths() {
+    fn a_mimic_joint_couples_two_paths() {
         // slots 1 → 2 → 3 and 1 → 4; slot 4 follows joint 2 (of slot 3): joints 0, 1, 2, 2
         let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (2, 2), (1, 2)].into_iter());
         assert_eq!(pattern.ancestors(2).collect::<Vec<_>>(), [1, 0]);

@@ -7,7 +7,7 @@ use crate::spatial::SpatialInertia;
 /// How the base link is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Base {
-    /// Bolted: the base link's frame is the space frame {s}.
+    /// Fixed: the base link's frame is the space frame {s}.
     #[default]
     Fixed,
     /// Free in SE(3). The first seven positions are its configuration `T_sb`, as [`SE3::to_pose`](crate::SE3::to_pose) has it: the
@@ -45,23 +45,23 @@ impl<C: Scalar> Model<C> {
         self.base
     }
 
-    /// Is the base free?
+    /// Is the base floating?
     #[inline(always)]
     pub fn is_floating(&self) -> bool {
         self.base == Base::Floating
     }
 
-    /// 𝒢_b of the base link with all that is fixed to it, in its frame; it moves, and counts, where the base is free.
+    /// 𝒢_b of the base link with all that is fixed to it, in its frame; it moves, and counts, where the base floats.
     pub fn base_inertia(&self) -> SpatialInertia<C> {
         self.base_inertia
     }
 
-    /// The names of the nq positions: of a free base `base.qw` … `base.z`, then the independent joints.
+    /// The names of the nq positions: of a floating base `base.qw` … `base.z`, then the independent joints.
     pub fn position_names(&self) -> impl Iterator<Item = &str> {
         POSITIONS[..self.base.positions()].iter().copied().chain(self.joint_names())
     }
 
-    /// The names of the n velocities and forces: of a free base `base.wx` … `base.vz`, then the independent joints.
+    /// The names of the n velocities and forces: of a floating base `base.wx` … `base.vz`, then the independent joints.
     pub fn velocity_names(&self) -> impl Iterator<Item = &str> {
         VELOCITIES[..self.base.velocities()].iter().copied().chain(self.joint_names())
     }

@@ -11,7 +11,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl Description {
-    /// The model of this robot. Joints are numbered depth first, siblings in the order of the file; a follower takes no
+    /// The model of this robot. Joints are numbered depth first, siblings in the order of the file; a mimic joint takes no
     /// number. Fixed links are folded into the link that carries them.
     ///
     /// # Errors
@@ -61,7 +61,7 @@ pub(super) fn normal_form(description: Description) -> Model {
             };
         }
         let Frame { slot, T } = frames[link];
-        inertias[slot] += description.links[link].inertia.seen_from(T);
+        inertias[slot] += description.links[link].inertia.transformed(T);
         stack
             .extend(joints_of[link].iter().rev().map(|&i| (link_index[description.joints[i].child.as_str()], Some(i))));
     }
@@ -132,8 +132,8 @@ fn branches(description: &Description, link_index: &BTreeMap<&str, usize>) -> (V
     (joints_of, base)
 }
 
-/// Numbers the independent joints in the order of their links, and gives each follower its master's number, ratio and
-/// offset, through chains of followers. Returns the description's joint of each number.
+/// Numbers the independent joints in the order of their links, and gives each mimic joint its source joint's number, ratio and
+/// offset, through chains of mimic joints. Returns the description's joint of each number.
 fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<f64>]) -> Vec<usize> {
     let joint_index = index(description.joints.iter().map(|joint| joint.name.as_str()));
     let mimic = |i: usize| description.joints[i].mimic.as_ref();
@@ -143,15 +143,15 @@ fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<
         number[i] = j;
     }
     for (link, &i) in links.iter_mut().zip(moving_joints) {
-        let mut master = i;
-        while let Some(followed) = mimic(master) {
+        let mut source = i;
+        while let Some(followed) = mimic(source) {
             // ratio · (r θ + o) + offset
             link.offset += link.ratio * followed.offset;
             link.ratio *= followed.ratio;
-            master = joint_index[followed.joint.as_str()];
+            source = joint_index[followed.joint.as_str()];
         }
         let base = description.base;
-        (link.q, link.j) = (base.positions() + number[master], base.velocities() + number[master]);
+        (link.q, link.j) = (base.positions() + number[source], base.velocities() + number[source]);
     }
     joints
 }

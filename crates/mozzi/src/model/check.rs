@@ -1,7 +1,7 @@
 //! Is a description a robot? Everything that is wrong with it, each with its place.
 
 mod bodies;
-mod followers;
+mod mimic;
 mod numbers;
 mod overflow;
 mod tree;
@@ -120,7 +120,7 @@ impl Report<'_> {
 }
 
 impl Description {
-    /// All problems, errors and warnings: names, the tree, numbers, inertias, followers. Empty for a sound robot; of
+    /// All problems, errors and warnings: names, the tree, numbers, inertias, mimic joints. Empty for a sound robot; of
     /// robots that are wrong throughout, the first thousand of either severity. Time and memory grow as the robot does.
     pub fn check(&self) -> Vec<Problem> {
         let mut report = Report { description: self, problems: Vec::new(), errors: 0, warnings: 0 };
@@ -136,7 +136,7 @@ impl Description {
         report.numbers();
         let tree = report.tree(link);
         report.inertias(tree.as_ref());
-        report.followers(&joints);
+        report.mimics(&joints);
         report.units();
         for (i, frame) in self.frames.iter().enumerate() {
             if link(&frame.link).is_none() {

@@ -5,8 +5,8 @@ use crate::scalar::Scalar;
 
 impl<C: Scalar> Model<C> {
     /// Can the entry (i, j) of M(θ), C, ∂τ/∂θ or ∂τ/∂θ̇ be other than 0? It can where a link that velocity i moves carries one that
-    /// velocity j moves, or the other way round: where both joints are on one path from the base to a tip. A joint with its followers
-    /// is on the paths of all of them; the six of a free base are on every path. (i, j) and (j, i) are alike, (i, i) is always true.
+    /// velocity j moves, or the other way round: where both joints are on one path from the base to a tip. A joint with its mimic joints
+    /// is on the paths of all of them; the six of a floating base are on every path. (i, j) and (j, i) are alike, (i, i) is always true.
     ///
     /// M⁻¹ and ∂θ̈ are fuller: there, two joints couple that some third couples.
     ///

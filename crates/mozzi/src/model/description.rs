@@ -21,13 +21,13 @@ pub struct Description {
     pub end_effector: Option<String>,
     /// Gravity in {s} coordinates, m/s².
     pub gravity: [f64; 3],
-    /// Is the base link bolted to {s}, or free?
+    /// Is the base link fixed to {s}, or free?
     pub base: Base,
-    /// What a file calls that from which a free base is freed; says nothing about a bolted one.
+    /// What a file calls that from which a floating base is freed; says nothing about a fixed one.
     pub free_joint: FreeJoint,
 }
 
-/// The names of a free base's joint and of {s}, which are neither a joint nor a link of the robot: kept so that a file is written
+/// The names of a floating base's joint and of {s}, which are neither a joint nor a link of the robot: kept so that a file is written
 /// back as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeJoint {
@@ -123,7 +123,7 @@ pub struct Limits {
     pub effort: Option<f64>,
 }
 
-/// θ = ratio · θ_master + offset.
+/// θ = ratio · θ_source + offset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mimic {
     /// The joint that is followed.
@@ -160,7 +160,7 @@ impl Description {
         }
     }
 
-    /// The same robot with a free base.
+    /// The same robot with a floating base.
     pub fn floating(mut self) -> Self {
         self.base = Base::Floating;
         self

@@ -16,7 +16,7 @@ impl Model<f64> {
     pub fn with_payload(&self, frame: FrameId, inertia: SpatialInertia) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         let (link, T) = self.link_of(frame);
-        robot.links[link].inertia += inertia.seen_from(T);
+        robot.links[link].inertia += inertia.transformed(T);
         robot.build()
     }
 
@@ -48,7 +48,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with its base bolted or free.
+    /// The same robot with its base fixed or free.
     ///
     /// # Errors
     /// None that the model did not have before.
@@ -58,10 +58,10 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with joints held at these positions; their followers are held where they follow to.
+    /// The same robot with joints held at these positions; their mimic joints are held where they follow to.
     ///
     /// # Errors
-    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a follower or a position that is not finite.
+    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint or a position that is not finite.
     pub fn with_locked_joints(&self, positions: &[(&str, f64)]) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         for &(name, position) in positions {
@@ -78,7 +78,7 @@ impl Model<f64> {
                 let found = alloc::format!("{position} for `{name}`");
                 return Err(Error::BadArgument { what: "the position to lock at", found, expected: "a finite number" });
             }
-            // followers of followers too: each round locks those whose master was locked in the one before
+            // mimic joints of mimic joints too: each round locks those whose source joint was locked in the one before
             let mut locked = alloc::vec![(i, position)];
             while let Some((i, position)) = locked.pop() {
                 let joint = &mut robot.joints[i];
@@ -96,7 +96,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The part of the robot from one link, which becomes the base (bolted, unless it was a free base before), to another: what
+    /// The part of the robot from one link, which becomes the base (fixed, unless it was a floating base before), to another: what
     /// hangs from the links between, off the path, is left out. Gravity keeps its coordinates: give the part its own where its base is turned.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ impl Model<f64> {
                 return Err(Error::BadArgument {
                     what: "a joint of the sub-chain",
                     found,
-                    expected: "a master on the path",
+                    expected: "a source joint on the path",
                 });
             }
         }
@@ -173,8 +173,8 @@ mod tests {
 
     #[test]
     fn a_locked_joint_is_a_joint_that_does_not_move() {
-        for (followers, seed) in [(0, 1), (2, 2)] {
-            let model = tree(seed, 7, followers);
+        for (mimics, seed) in [(0, 1), (2, 2)] {
+            let model = tree(seed, 7, mimics);
             let [mut theta, mut dtheta, mut ddtheta] = state(&model, seed);
             (dtheta[1], ddtheta[1]) = (0.0, 0.0);
             let name = model.joint_names().nth(1).expect("a joint").to_string();

@@ -17,9 +17,9 @@ use crate::spatial::{Twist, Wrench};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Environment<'a, S = f64> {
-    /// Gravity g in {s} coordinates, m/s². A bolted base's frame is {s}.
+    /// Gravity g in {s} coordinates, m/s². A fixed base's frame is {s}.
     pub gravity: Vec3<S>,
-    /// The twist of {s} in its own coordinates: of a bolted base, or of what a free base's configuration is seen from.
+    /// The twist of {s} in its own coordinates: of a fixed base, or of what a floating base's configuration is seen from.
     pub base_twist: Twist<S>,
     /// Its acceleration in its own coordinates, gravity not included.
     pub base_acceleration: Twist<S>,

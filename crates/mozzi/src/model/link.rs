@@ -77,7 +77,7 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         self.link.G.map(S::from)
     }
 
-    /// The joint's rate by its master's.
+    /// The joint's rate by its source joint's.
     #[inline(always)]
     pub fn ratio(&self) -> S {
         S::from(self.link.ratio)

@@ -46,7 +46,7 @@ pub struct Model<C = f64> {
     pub(crate) links: Vec<Link<C>>,
     /// What the base link and all that is fixed to it weighs, in the base frame.
     pub(crate) base_inertia: SpatialInertia<C>,
-    /// Rotor inertia of each of the n velocities, 0 for a free base's; seen at the joint, followers included:
+    /// Rotor inertia of each of the n velocities, 0 for a floating base's; seen at the joint, mimic joints included:
     /// Σ ratio² · armature.
     pub(crate) armature: Vec<C>,
     /// Viscous friction likewise: Σ ratio² · d.
@@ -81,12 +81,12 @@ pub(crate) struct Structure {
 }
 
 impl<C: Scalar> Model<C> {
-    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, after six of a free base.
+    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, after six of a floating base.
     pub fn n(&self) -> usize {
         self.armature.len()
     }
 
-    /// The number of positions: the length of θ. n, and one more where the base is free: a quaternion has four entries.
+    /// The number of positions: the length of θ. n, and one more where the base floats: a quaternion has four entries.
     pub fn nq(&self) -> usize {
         self.base.positions() + self.structure.joints.len()
     }
@@ -97,7 +97,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// Does some joint follow another (mimic)?
-    pub fn is_coupled(&self) -> bool {
+    pub fn has_mimic_joints(&self) -> bool {
         self.structure.coupled
     }
 
@@ -121,7 +121,7 @@ impl<C: Scalar> Model<C> {
         self.structure.joints.iter().map(|&joint| &self.structure.description.joints[joint])
     }
 
-    /// The joint of each moving link as described, base to tips, followers included.
+    /// The joint of each moving link as described, base to tips, mimic joints included.
     pub fn moving_joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
         self.structure.moving_joints.iter().map(|&joint| &self.structure.description.joints[joint])
     }

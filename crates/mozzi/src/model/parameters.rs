@@ -13,17 +13,17 @@ const OF_BODY: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy
 const OF_JOINT: [&str; 3] = ["armature", "damping", "friction"];
 
 impl<C: Scalar> Model<C> {
-    /// The length of π: ten for each moving link and a free base, three for each independent joint.
+    /// The length of π: ten for each moving link and a floating base, three for each independent joint.
     pub fn parameter_count(&self) -> usize {
         10 * self.bodies().len() + 3 * self.structure.joints.len()
     }
 
     /// π, the parameters in which τ and the energies are linear:
     ///
-    /// - of a free base and then of each moving link, base to tips, ten numbers in the coordinates of that **link's frame in
+    /// - of a floating base and then of each moving link, base to tips, ten numbers in the coordinates of that **link's frame in
     ///   the file**: mass, m c, and the rotational inertia about the frame's origin, (m, m c_x, m c_y, m c_z, I_xx, I_xy,
     ///   I_xz, I_yy, I_yz, I_zz) in kg, kg m, kg m². What is fixed to the link is counted in;
-    /// - of each independent joint its armature, damping and Coulomb friction, those of its followers counted in as M and f
+    /// - of each independent joint its armature, damping and Coulomb friction, those of its mimic joints counted in as M and f
     ///   have them: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ.
     ///
     /// Names: [`parameter_names`](Self::parameter_names). Their matrix: [`regressor`](crate::dynamics::regressor()).
@@ -56,7 +56,7 @@ impl<C: Scalar> Model<C> {
         let mut model = self.map(U::from);
         let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().len());
         for (slot, parameters) in self.bodies().zip(of_bodies.as_chunks().0) {
-            let G = SpatialInertia::from_parameters(*parameters).seen_from(model.link_frame(slot));
+            let G = SpatialInertia::from_parameters(*parameters).transformed(model.link_frame(slot));
             match slot.checked_sub(1) {
                 None => model.base_inertia = G,
                 Some(i) => model.links[i].G = G,
@@ -68,7 +68,7 @@ impl<C: Scalar> Model<C> {
         model
     }
 
-    /// The slots of all that moves: of a free base, and of the moving links.
+    /// The slots of all that moves: of a floating base, and of the moving links.
     pub(crate) fn bodies(&self) -> core::ops::Range<usize> {
         usize::from(!self.is_floating())..self.links.len() + 1
     }

@@ -84,7 +84,7 @@ mod tests {
                     model
                         .inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment)
                         .expect("lengths")
-                        .by_theta
+                        .d_theta
                         .as_slice()
                         .to_vec(),
                 ]

@@ -63,8 +63,8 @@ impl Description {
                 HomeFrames::Base(_) => home[i - 1].inverse() * home[i],
             };
             let A = match screws {
-                Screws::Space(S) => S[i].seen_from(home[i].inverse()), // A_i = Ad_{M_i⁻¹} S_i
-                Screws::Body(B) => B[i].seen_from(home[i].inverse() * home[n]),
+                Screws::Space(S) => S[i].transformed(home[i].inverse()), // A_i = Ad_{M_i⁻¹} S_i
+                Screws::Body(B) => B[i].transformed(home[i].inverse() * home[n]),
                 Screws::Link(A) => A[i],
             };
             let link = format!("link{}", i + 1);
@@ -157,17 +157,17 @@ impl Model<f64> {
         let M: Vec<SE3> = (1..homes.len()).map(|i| homes[i] * bodies[i]).collect();
         let A: Vec<ScrewAxis> = (self.moving_joints().zip(&bodies[1..]).enumerate())
             .filter_map(|(k, (joint, &body))| match joint.kind {
-                JointKind::Screw(A) => Some(A.seen_from(body.inverse() * self.link_frame(k + 1))),
+                JointKind::Screw(A) => Some(A.transformed(body.inverse() * self.link_frame(k + 1))),
                 JointKind::Fixed => None,
             })
             .collect();
-        let S: Vec<ScrewAxis> = A.iter().zip(&M).map(|(A, &M)| A.seen_from(M)).collect();
+        let S: Vec<ScrewAxis> = A.iter().zip(&M).map(|(A, &M)| A.transformed(M)).collect();
         let end_effector = self.structure.end_effector.map(|id| {
             let frame = self.frames[id.0];
             (self.frame_name(id).into(), homes[frame.slot] * frame.T)
         });
         let B = match &end_effector {
-            Some((_, tip)) => S.iter().map(|S| S.seen_from(tip.inverse())).collect(),
+            Some((_, tip)) => S.iter().map(|S| S.transformed(tip.inverse())).collect(),
             None => Vec::new(),
         };
         ScrewLists {

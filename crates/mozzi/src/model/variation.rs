@@ -10,7 +10,7 @@ use alloc::format;
 use alloc::string::ToString;
 use alloc::vec;
 
-/// A change of a robot at the rate that it says, for [`Model::varying`]. With ε the size of the change:
+/// A change of a robot at the rate that it says, for [`Model::with_parameter_tangent`]. With ε the size of the change:
 #[derive(Clone, Copy, Debug)]
 pub enum Variation<'a> {
     /// π + δπ ε: of [`parameters`](Model::parameters), among them armature, damping and friction; p numbers.
@@ -71,11 +71,11 @@ impl Model<f64> {
     ///     .joint(Joint::new("pivot", "base", "bob", SE3::identity(), axis))
     ///     .build()?;
     /// let longer = Variation::CenterOfMass { link: "bob", rate: Vec3([0.0, 0.0, -1.0]) };
-    /// let varying = pendulum.varying(&[longer])?;
+    /// let with_parameter_tangent = pendulum.with_parameter_tangent(&[longer])?;
     ///
     /// let (theta, still) = (Dual::constants(&[0.3]), Dual::constants(&[0.0]));
-    /// let (mut workspace, mut tau) = (Workspace::new(&varying), Dual::constants(&[0.0]));
-    /// inverse_dynamics(&varying, &theta, &still, &still, &varying.environment(), &mut workspace, &mut tau);
+    /// let (mut workspace, mut tau) = (Workspace::new(&with_parameter_tangent), Dual::constants(&[0.0]));
+    /// inverse_dynamics(&with_parameter_tangent, &theta, &still, &still, &with_parameter_tangent.environment(), &mut workspace, &mut tau);
     /// assert!((tau[0].derivative - 2.0 * 9.81 * 0.3_f64.sin()).abs() < 1e-12); // τ = m g l sin θ
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -85,19 +85,19 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::NoSuchFrame`] or [`Error::NoSuchJoint`] with the names there are; [`Error::WrongLength`] of δπ;
     /// [`Error::BadArgument`] for the axis or pitch of a joint that has none.
-    pub fn varying(&self, changes: &[Variation]) -> Result<Model<Dual>, Error> {
+    pub fn with_parameter_tangent(&self, changes: &[Variation]) -> Result<Model<Dual>, Error> {
         let mut model = self.map(Dual::constant);
         for &change in changes {
             match change {
                 Variation::Parameters(rate) => self.vary_parameters(&mut model, rate)?,
                 Variation::Inertia { link, rate } => {
                     let T = self.frames[self.link_named(link)?];
-                    *inertia(&mut model, T.slot) += rate.seen_from(T.T).map(seed);
+                    *inertia(&mut model, T.slot) += rate.transformed(T.T).map(seed);
                 }
                 Variation::Mass { link } => {
                     let i = self.link_named(link)?;
                     let c = self.description().links[i].inertia.center_of_mass();
-                    let rate = SpatialInertia::point_mass(1.0, c).seen_from(self.frames[i].T);
+                    let rate = SpatialInertia::point_mass(1.0, c).transformed(self.frames[i].T);
                     *inertia(&mut model, self.frames[i].slot) += rate.map(seed);
                 }
                 Variation::CenterOfMass { link, rate } => {
@@ -105,7 +105,7 @@ impl Model<f64> {
                     let (G, T) = (self.description().links[i].inertia, self.frames[i].T.map(Dual::constant));
                     let (m, I_c) = (Dual::constant(G.mass), G.about_center_of_mass().map(Dual::constant));
                     let c = G.center_of_mass().map(Dual::constant) + rate.map(seed);
-                    let moved = SpatialInertia::new(m, c, I_c).seen_from(T).map(|x| seed(x.derivative));
+                    let moved = SpatialInertia::new(m, c, I_c).transformed(T).map(|x| seed(x.derivative));
                     *inertia(&mut model, self.frames[i].slot) += moved;
                 }
                 Variation::Axis { joint, motion } => {
@@ -135,7 +135,7 @@ impl Model<f64> {
         }
         let (of_bodies, of_joints) = rate.split_at(10 * self.bodies().len());
         for (slot, rate) in self.bodies().zip(of_bodies.as_chunks().0) {
-            let rate = SpatialInertia::from_parameters(*rate).seen_from(self.link_frame(slot));
+            let rate = SpatialInertia::from_parameters(*rate).transformed(self.link_frame(slot));
             *inertia(model, slot) += rate.map(seed);
         }
         for (j, &[armature, damping, friction]) in (self.base.velocities()..).zip(of_joints.as_chunks().0) {
@@ -173,7 +173,7 @@ impl Model<f64> {
         let E = small_motion(self.frames[moved[0]].T, motion);
         for &link in &moved {
             let (slot, T) = (self.frames[link].slot, E * self.frames[link].T.map(Dual::constant));
-            let G = robot.links[link].inertia.map(Dual::constant).seen_from(T);
+            let G = robot.links[link].inertia.map(Dual::constant).transformed(T);
             *inertia(model, slot) += G.map(|x| seed(x.derivative));
         }
         let of_frames = (0..).zip(&robot.frames).filter_map(|(k, frame)| {
@@ -222,7 +222,7 @@ fn inertia(model: &mut Model<Dual>, slot: usize) -> &mut SpatialInertia<Dual> {
 fn move_contents(model: &mut Model<Dual>, slot: usize, D: SE3<Dual>) {
     for (i, link) in (1..).zip(&mut model.links) {
         if i == slot {
-            (link.M, link.G) = (D * link.M, link.G.seen_from(D));
+            (link.M, link.G) = (D * link.M, link.G.transformed(D));
         } else if link.parent == slot {
             link.M = link.M * D.inverse();
         }
@@ -249,15 +249,15 @@ mod tests {
 
     /// τ, θ̈ and the tip's position, and their derivatives along the changes: by dual constants.
     fn by_duals(model: &Model, changes: &[Variation], seed: u64) -> Vec<Dual> {
-        let varying = model.varying(changes).expect("known names");
+        let with_parameter_tangent = model.with_parameter_tangent(changes).expect("known names");
         let [theta, dtheta, ddtheta] = state(model, seed).map(|x| Dual::constants(&x));
-        let (mut w, tip) = (Workspace::<Dual>::new(&varying), model.end_effector().expect("named"));
+        let (mut w, tip) = (Workspace::<Dual>::new(&with_parameter_tangent), model.end_effector().expect("named"));
         let applied = [(tip, Wrench::from_array(wrench(seed).to_array().map(Dual::constant)))];
-        let environment = Environment { applied: &applied, ..varying.environment() };
+        let environment = Environment { applied: &applied, ..with_parameter_tangent.environment() };
         let (mut tau, mut found) = (ddtheta.clone(), ddtheta.clone());
-        inverse_dynamics(&varying, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut tau);
-        forward_dynamics(&varying, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut found);
-        let p = forward_kinematics(&varying, &theta, tip).p;
+        inverse_dynamics(&with_parameter_tangent, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut tau);
+        forward_dynamics(&with_parameter_tangent, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut found);
+        let p = forward_kinematics(&with_parameter_tangent, &theta, tip).p;
         tau.into_iter().chain(found).chain(p.0).collect()
     }
 
@@ -356,7 +356,7 @@ mod tests {
     #[test]
     fn what_cannot_vary_is_refused() {
         let model = tree(1, 5, 0);
-        let fails = |change: Variation| model.varying(&[change]).expect_err("refused").to_string();
+        let fails = |change: Variation| model.with_parameter_tangent(&[change]).expect_err("refused").to_string();
         assert!(fails(Variation::Mass { link: "tip" }).contains("there is no frame `tip`"));
         assert!(fails(Variation::Axis { joint: "weld2", motion: twist(1) }).contains("`weld2`, which is fixed"));
         assert!(fails(Variation::Pitch { joint: "joint4" }).contains("`joint4`, which is prismatic"));

@@ -4,7 +4,7 @@ use super::Model;
 use crate::lie::SE3;
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
-use crate::spatial::{ArticulatedInertia, BodyCoriolis, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, CoriolisFactor, SpatialInertia, Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -26,7 +26,7 @@ pub struct Workspace<S = f64> {
     /// Its rate.
     pub(crate) dG_c: Vec<SpatialInertia<S>>,
     /// 𝓑 of the composite bodies.
-    pub(crate) B: Vec<BodyCoriolis<S>>,
+    pub(crate) B: Vec<CoriolisFactor<S>>,
     /// Articulated inertia Ĝ.
     pub(crate) G_hat: Vec<ArticulatedInertia<S>>,
     /// ĜA.
@@ -55,13 +55,13 @@ impl<S: Scalar> Workspace<S> {
             axes: vec![[Twist::zero(); 3]; slots],
             G_c: vec![SpatialInertia::zero(); slots],
             dG_c: vec![SpatialInertia::zero(); slots],
-            B: vec![BodyCoriolis { K: Mat3::zero(), f: Vec3::zero() }; slots],
+            B: vec![CoriolisFactor { K: Mat3::zero(), f: Vec3::zero() }; slots],
             G_hat: vec![SpatialInertia::zero().into(); slots],
             U: vec![Wrench::zero(); slots],
             u: vec![o; slots],
             pivots: vec![o; n],
             vector: vec![o; n],
-            matrix: if model.is_coupled() { vec![o; n * n] } else { Vec::new() },
+            matrix: if model.has_mimic_joints() { vec![o; n * n] } else { Vec::new() },
         }
     }
 
@@ -72,7 +72,7 @@ impl<S: Scalar> Workspace<S> {
     }
 
     /// Every number NaN: what stands here must not matter.
-    pub fn poison(&mut self) {
+    pub fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
         let (V, F, T) = (Twist::from_array([nan; 6]), Wrench::from_array([nan; 6]), SE3::identity().map(|_: S| nan));
         let G = SpatialInertia { mass: nan, mc: Vec3([nan; 3]), I: crate::Sym3::zero().map(|_: S| nan) };
@@ -85,7 +85,7 @@ impl<S: Scalar> Workspace<S> {
         self.axes.fill([V; 3]);
         self.G_c.fill(G);
         self.dG_c.fill(G);
-        self.B.fill(BodyCoriolis { K: Mat3::zero().map(|_: S| nan), f: V.v });
+        self.B.fill(CoriolisFactor { K: Mat3::zero().map(|_: S| nan), f: V.v });
         self.G_hat.fill(G.into());
         for list in [&mut self.u, &mut self.pivots, &mut self.vector, &mut self.matrix] {
             list.fill(nan);

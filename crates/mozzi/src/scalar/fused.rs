@@ -4,7 +4,7 @@ use super::{Scalar, assign_ops, float};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An `f64` with fused multiply-add, for entries compiled with `#[target_feature(enable = "fma")]` alone (see
-/// [`native`](crate::native)): elsewhere each `mul_add` is a slow library call.
+/// [`fast`](crate::fast)): elsewhere each `mul_add` is a slow library call.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);

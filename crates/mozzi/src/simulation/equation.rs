@@ -8,13 +8,13 @@ use super::{Friction, Input, Options};
 #[cfg(not(feature = "std"))]
 use crate::dynamics::forward_dynamics;
 use crate::dynamics::{kinetic_energy, potential_energy};
+#[cfg(feature = "std")]
+use crate::fast::{Workspace as Fast, forward_dynamics};
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
 #[cfg(not(feature = "std"))]
 use crate::model::Workspace as Fast;
 use crate::model::{Environment, Error, FrameId, Model, Workspace, are_regular};
-#[cfg(feature = "std")]
-use crate::native::{Workspace as Fast, forward_dynamics};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use alloc::format;
@@ -86,7 +86,7 @@ impl<'m, I: Input> Equation<'m, I> {
     ///
     /// # Errors
     /// [`Error::BadArgument`] where it is another robot's.
-    pub fn by(mut self, other: Option<&'m dyn ForwardDynamics>) -> Result<Self, Error> {
+    pub fn with_forward_dynamics(mut self, other: Option<&'m dyn ForwardDynamics>) -> Result<Self, Error> {
         let Some(other) = other else { return Ok(self) };
         let (mine, its) = (self.model.description(), other.model().description());
         check(mine == its, "the forward dynamics", format!("that of another robot, `{}`", its.name), "this robot's")?;

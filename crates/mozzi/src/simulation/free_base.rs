@@ -1,4 +1,4 @@
-//! Robots with a free base, simulated: against closed solutions, conservation laws and the methods' orders.
+//! Robots with a floating base, simulated: against closed solutions, conservation laws and the methods' orders.
 
 extern crate std;
 use super::{Method, Options, Zero, torque};

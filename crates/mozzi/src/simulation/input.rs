@@ -68,7 +68,7 @@ pub struct Zero;
 impl Input for Zero {}
 
 /// τ = g(θ), and nothing against friction: a robot at rest stays, a moving one coasts. (With Coulomb friction that is not
-/// smooth it trembles instead of staying, see [`Friction::Coulomb`](super::Friction::Coulomb).) A free base has no motors: it
+/// smooth it trembles instead of staying, see [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it
 /// falls.
 #[derive(Clone, Debug)]
 pub struct GravityCompensation<'m> {
@@ -145,8 +145,8 @@ mod tests {
 
     #[test]
     fn gravity_compensation_holds_the_robot() {
-        for (seed, followers) in [(1, 0), (2, 2)] {
-            let model = testing::tree(seed, 7, followers);
+        for (seed, mimics) in [(1, 0), (2, 2)] {
+            let model = testing::tree(seed, 7, mimics);
             let [theta, _, _] = testing::state(&model, 7);
             let rest = vec![0.0; model.n()];
             for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {

@@ -175,7 +175,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
     }
 
     /// x ⊕ h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts from
-    /// x again, along the k before it. A free base's k is the rate of log(T₀⁻¹T) (Munthe-Kaas).
+    /// x again, along the k before it. A floating base's k is the rate of log(T₀⁻¹T) (Munthe-Kaas).
     fn runge_kutta_4<E>(
         &mut self,
         h: f64,
@@ -230,7 +230,7 @@ mod tests {
     use crate::model::{Model, Workspace};
     use crate::simulation::robots::{difference, smooth_tree};
     use crate::simulation::{Options, torque};
-    use crate::{Dual, native, testing};
+    use crate::{Dual, fast, testing};
     use core::convert::Infallible;
 
     /// A smooth motor torque of t, θ and θ̇.
@@ -251,8 +251,8 @@ mod tests {
 
     #[test]
     fn errors_fall_with_the_order_of_the_method() {
-        for (seed, followers) in [(1, 0), (2, 2)] {
-            let model = smooth_tree(seed, 7, followers);
+        for (seed, mimics) in [(1, 0), (2, 2)] {
+            let model = smooth_tree(seed, 7, mimics);
             let reference = end(&model, Method::RungeKutta4, 8000);
             for (method, steps) in
                 [(Method::Euler, 2000), (Method::SemiImplicitEuler, 2000), (Method::RungeKutta4, 100)]
@@ -279,12 +279,12 @@ mod tests {
         let options = Options { method: Method::Euler, ..Options::new(t_f, N) };
         let motion = model.simulate(&theta, &dtheta, torque(motors), &options).expect("a motion");
         let dt = t_f / N as f64;
-        let mut workspace = native::Workspace::new(&model);
+        let mut workspace = fast::Workspace::new(&model);
         for k in 0..=N {
             let (mut tau, mut ddtheta) = (vec![0.0; model.n()], vec![0.0; model.n()]);
             motors(if k == N { t_f } else { k as f64 * dt }, &theta, &dtheta, &mut tau);
             let environment = model.environment();
-            native::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, &mut ddtheta);
+            fast::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, &mut ddtheta);
             let sample = motion.sample(k);
             assert_eq!((sample.theta, sample.dtheta), (theta.as_slice(), dtheta.as_slice()), "step {k}");
             assert_eq!((sample.ddtheta, sample.tau), (ddtheta.as_slice(), tau.as_slice()), "step {k}");

@@ -31,8 +31,8 @@ pub fn double_pendulum() -> Model {
 }
 
 /// A random tree with damping and armature, without Coulomb friction.
-pub fn smooth_tree(seed: u64, links: usize, followers: usize) -> Model {
-    let mut model = testing::tree(seed, links, followers);
+pub fn smooth_tree(seed: u64, links: usize, mimics: usize) -> Model {
+    let mut model = testing::tree(seed, links, mimics);
     model.friction.fill(0.0);
     model
 }

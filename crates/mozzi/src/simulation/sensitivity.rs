@@ -4,7 +4,7 @@
 use super::options::check;
 use super::{Friction, Motion, Options};
 use crate::dynamics::forward_dynamics;
-use crate::kinematics::{difference, moving_along};
+use crate::kinematics::{difference, seed_direction};
 use crate::model::{Environment, Error, Model, Variation, Workspace};
 use crate::scalar::{Dual, Real, Scalar};
 use alloc::format;
@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 /// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is told in n numbers, along
-/// θ ⊕ δθ (see [`integrate`](crate::integrate)): of a free base as a twist (ω, v) in its own coordinates, at either end of the
+/// θ ⊕ δθ (see [`integrate`](crate::integrate)): of a floating base as a twist (ω, v) in its own coordinates, at either end of the
 /// step.
 #[derive(Clone, Debug)]
 pub struct StepSensitivity {
@@ -85,7 +85,7 @@ impl Model<f64> {
     /// Cost: 3n steps on dual numbers, and one for each change.
     ///
     /// # Errors
-    /// Those of [`held_step`](Self::held_step) and of [`varying`](Self::varying).
+    /// Those of [`held_step`](Self::held_step) and of [`with_parameter_tangent`](Self::with_parameter_tangent).
     pub fn step_sensitivity(
         &self,
         theta: &[f64],
@@ -104,22 +104,22 @@ impl Model<f64> {
         };
         let mut along = |of: [&[f64]; 3]| {
             let (theta, dtheta, tau) =
-                (moving_along(self, theta, of[0]), Dual::list(dtheta, of[1]), Dual::list(tau, of[2]));
+                (seed_direction(self, theta, of[0]), Dual::list(dtheta, of[1]), Dual::list(tau, of[2]));
             column(self, &theta, &dtheta, &tau, options, &mut workspace)
         };
         let columns = |of: &mut dyn FnMut(&[f64]) -> DVector<f64>| -> Vec<_> { (0..n).map(|j| of(&unit(j))).collect() };
-        let by_theta = columns(&mut |e| along([e, &zero, &zero]));
-        let by_dtheta = columns(&mut |e| along([&zero, e, &zero]));
-        let by_tau = columns(&mut |e| along([&zero, &zero, e]));
+        let d_theta = columns(&mut |e| along([e, &zero, &zero]));
+        let d_dtheta = columns(&mut |e| along([&zero, e, &zero]));
+        let d_tau = columns(&mut |e| along([&zero, &zero, e]));
         let (theta, dtheta, tau) = (Dual::constants(theta), Dual::constants(dtheta), Dual::constants(tau));
         let mut P = DMatrix::zeros(2 * n, changes.len());
         for (k, &change) in changes.iter().enumerate() {
-            let varying = self.varying(&[change])?;
-            P.set_column(k, &column(&varying, &theta, &dtheta, &tau, options, &mut workspace));
+            let with_parameter_tangent = self.with_parameter_tangent(&[change])?;
+            P.set_column(k, &column(&with_parameter_tangent, &theta, &dtheta, &tau, options, &mut workspace));
         }
         let matrix = |columns: &[DVector<f64>]| DMatrix::from_fn(2 * n, columns.len(), |i, j| columns[j][i]);
-        let A = matrix(&[by_theta, by_dtheta].concat());
-        Ok(StepSensitivity { theta: end.0, dtheta: end.1, A, B: matrix(&by_tau), P })
+        let A = matrix(&[d_theta, d_dtheta].concat());
+        Ok(StepSensitivity { theta: end.0, dtheta: end.1, A, B: matrix(&d_tau), P })
     }
 
     /// [`step_sensitivity`](Self::step_sensitivity) along a trajectory of N steps, τ\[k\] held during step k: each step starts
@@ -254,24 +254,24 @@ mod tests {
                 for j in 0..n {
                     let mut e = vec![0.0; n];
                     e[j] = 1.0;
-                    let by_theta = |h: f64| {
+                    let d_theta = |h: f64| {
                         let mut moved = theta.clone();
                         integrate(&model, &mut moved, &e, h);
                         end(&model, (&moved, &dtheta), &tau, &options, last)
                     };
-                    close(whole.start.column(j).into(), by_theta(h), by_theta(-h), "by theta");
-                    let by_dtheta = |h: f64| {
+                    close(whole.start.column(j).into(), d_theta(h), d_theta(-h), "by theta");
+                    let d_dtheta = |h: f64| {
                         let mut moved = dtheta.clone();
                         moved[j] += h;
                         end(&model, (&theta, &moved), &tau, &options, last)
                     };
-                    close(whole.start.column(n + j).into(), by_dtheta(h), by_dtheta(-h), "by dtheta");
-                    let by_tau = |h: f64| {
+                    close(whole.start.column(n + j).into(), d_dtheta(h), d_dtheta(-h), "by dtheta");
+                    let d_tau = |h: f64| {
                         let mut moved = tau.clone();
                         moved[1][j] += h;
                         end(&model, (&theta, &dtheta), &moved, &options, last)
                     };
-                    close(whole.tau[1].column(j).into(), by_tau(h), by_tau(-h), "by tau");
+                    close(whole.tau[1].column(j).into(), d_tau(h), d_tau(-h), "by tau");
                 }
                 let by_mass = |h: f64| {
                     let mut robot = model.description().clone();
@@ -297,7 +297,7 @@ mod tests {
                 // all steps in one run of dual numbers, along one direction
                 let along = Random(9).vector(2 * model.n(), 1.0);
                 let (along_theta, along_dtheta) = along.split_at(model.n());
-                let (mut q, mut dq) = (moving_along(&model, &theta, along_theta), Dual::list(&dtheta, along_dtheta));
+                let (mut q, mut dq) = (seed_direction(&model, &theta, along_theta), Dual::list(&dtheta, along_dtheta));
                 let (tau, mut workspace) = (Dual::constants(&tau[0]), Workspace::<Dual>::new(&model));
                 for _ in 1..5 {
                     let fine = |_: &[Dual], _: &mut _| Ok::<_, Error>(());

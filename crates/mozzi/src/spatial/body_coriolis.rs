@@ -10,17 +10,17 @@ use core::ops::Mul;
 ///
 /// > 𝓑 = `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, with (m, f) = 𝒢𝒱
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BodyCoriolis<S> {
+pub(crate) struct CoriolisFactor<S> {
     pub K: Mat3<S>,
     pub f: Vec3<S>,
 }
-linear_space!(BodyCoriolis { K, f });
+linear_space!(CoriolisFactor { K, f });
 
-impl<S: Scalar> BodyCoriolis<S> {
+impl<S: Scalar> CoriolisFactor<S> {
     /// Of a body with the momentum P = 𝒢𝒱.
     #[inline(always)]
     pub fn new(G: SpatialInertia<S>, V: Twist<S>, P: Wrench<S>) -> Self {
-        BodyCoriolis { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
+        CoriolisFactor { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
     }
 
     /// 𝓑ᵀA, which has no force: Kᵀω + 2 f × v.
@@ -31,7 +31,7 @@ impl<S: Scalar> BodyCoriolis<S> {
 }
 
 /// 𝓑A.
-impl<S: Scalar> Mul<Twist<S>> for BodyCoriolis<S> {
+impl<S: Scalar> Mul<Twist<S>> for CoriolisFactor<S> {
     type Output = Wrench<S>;
     #[inline(always)]
     fn mul(self, A: Twist<S>) -> Wrench<S> {
@@ -48,7 +48,7 @@ mod tests {
     fn it_is_the_rate_of_the_inertia_and_the_bracket_of_the_momentum() {
         let (G, V, A, X) = (inertia(1), twist(1), twist(2), twist(3));
         let P = G * V;
-        let B = BodyCoriolis::new(G, V, P);
+        let B = CoriolisFactor::new(G, V, P);
         let defined = |A: Twist| -(G * (V.ad() * A)) - V.ad().transpose() * (G * A) - A.ad().transpose() * P;
         assert!((B * A - defined(A)).norm() < 1e-13);
         assert!((B.transpose_mul(A).dot(X.w) - A.dot(defined(X))).abs() < 1e-13);

@@ -63,7 +63,7 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// The same body's inertia seen from another frame {a}: with this one in {b}, T = `T_ab`.
-    pub fn seen_from(self, T_ab: SE3<S>) -> Self {
+    pub fn transformed(self, T_ab: SE3<S>) -> Self {
         self.congruence(T_ab.inverse().Ad())
     }
 

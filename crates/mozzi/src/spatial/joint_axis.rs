@@ -80,12 +80,12 @@ impl<S: Scalar> Add<JointTwist<S>> for Twist<S> {
 
 /// `[ad_V]` A θ̇, whose z-components are 0: not computed, nor added.
 #[derive(Clone, Copy)]
-pub(crate) struct JointBracket<S> {
+pub(crate) struct VelocityProduct<S> {
     V: Twist<S>,
     A: JointTwist<S>,
 }
 
-impl<S: Scalar> JointBracket<S> {
+impl<S: Scalar> VelocityProduct<S> {
     #[inline(always)]
     pub fn twist(self) -> Twist<S> {
         let ([wx, wy, _], [vx, vy, _], o) = (self.V.w.0, self.V.v.0, S::zero());
@@ -95,17 +95,17 @@ impl<S: Scalar> JointBracket<S> {
 }
 
 impl<S: Scalar> Mul<JointTwist<S>> for LieBracket<S> {
-    type Output = JointBracket<S>;
+    type Output = VelocityProduct<S>;
     #[inline(always)]
-    fn mul(self, A: JointTwist<S>) -> JointBracket<S> {
-        JointBracket { V: self.0, A }
+    fn mul(self, A: JointTwist<S>) -> VelocityProduct<S> {
+        VelocityProduct { V: self.0, A }
     }
 }
 
-impl<S: Scalar> Add<JointBracket<S>> for Twist<S> {
+impl<S: Scalar> Add<VelocityProduct<S>> for Twist<S> {
     type Output = Twist<S>;
     #[inline(always)]
-    fn add(self, o: JointBracket<S>) -> Twist<S> {
+    fn add(self, o: VelocityProduct<S>) -> Twist<S> {
         let ([wx, wy, _], [vx, vy, _], JointTwist { w, v }) = (o.V.w.0, o.V.v.0, o.A);
         let ([x, y, z], [a, b, c]) = (self.w.0, self.v.0);
         Twist {

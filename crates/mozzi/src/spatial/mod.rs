@@ -13,7 +13,7 @@ mod twist;
 mod wrench;
 
 pub use articulated_inertia::ArticulatedInertia;
-pub(crate) use body_coriolis::BodyCoriolis;
+pub(crate) use body_coriolis::CoriolisFactor;
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};

@@ -88,7 +88,7 @@ impl ScrewAxis<f64> {
     }
 
     /// Seen from another frame: A_s = `[Ad_T]` A_b with T = `T_sb`.
-    pub fn seen_from(self, T_sb: crate::SE3) -> Self {
+    pub fn transformed(self, T_sb: crate::SE3) -> Self {
         ScrewAxis(T_sb.Ad() * self.0)
     }
 }

@@ -5,7 +5,7 @@ use crate::linalg::{Sym3, Vec3};
 use core::f64::consts::PI;
 
 /// A homogeneous solid, centred at its frame's origin. Metres. Composites are sums of solids, each seen from the whole's
-/// frame: `solid.inertia(m).seen_from(T_whole_solid) + …`.
+/// frame: `solid.inertia(m).transformed(T_whole_solid) + …`.
 ///
 /// ```
 /// use mozzi::{SE3, Solid};
@@ -13,7 +13,7 @@ use core::f64::consts::PI;
 /// let ball = Solid::Sphere { radius: 0.1 }.of_density(7500.0);
 /// let bar = Solid::Cylinder { radius: 0.02, length: 0.2 }.of_density(7500.0);
 /// // the balls stand at z = ±0.2
-/// let [above, below] = [0.2, -0.2].map(|z| ball.seen_from(SE3::translation([0.0, 0.0, z])));
+/// let [above, below] = [0.2, -0.2].map(|z| ball.transformed(SE3::translation([0.0, 0.0, z])));
 /// let whole = bar + above + below;
 /// assert!((whole.mass - 64.717).abs() < 1e-3);
 /// ```

@@ -8,7 +8,7 @@ use core::ops::{Mul, Neg, Sub};
 
 /// (ω, 0): the twist of a body that turns about its frame's origin. Products with it cost no multiplication by its zeros.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spin<S>(pub Vec3<S>);
+pub(crate) struct AngularVelocity<S>(pub Vec3<S>);
 
 /// `[ad_V]`ᵀ of a spin.
 #[derive(Clone, Copy)]
@@ -16,12 +16,12 @@ pub(crate) struct SpinBracketTranspose<S>(Vec3<S>);
 
 /// `[ad_V]`ᵀP of a spin and a momentum, (m × ω, f × ω), before it is subtracted: so each product is fused with its difference.
 #[derive(Clone, Copy)]
-pub(crate) struct SpinBracketWrench<S> {
+pub(crate) struct GyroscopicWrench<S> {
     w: Vec3<S>,
     P: Wrench<S>,
 }
 
-impl<S: Scalar> Spin<S> {
+impl<S: Scalar> AngularVelocity<S> {
     #[inline(always)]
     pub fn twist(self) -> Twist<S> {
         Twist { w: self.0, v: Vec3::zero() }
@@ -37,45 +37,45 @@ impl<S: Scalar> Spin<S> {
 impl<S: Scalar> Twist<S> {
     /// ω alone.
     #[inline(always)]
-    pub(crate) fn spin(self) -> Spin<S> {
-        Spin(self.w)
+    pub(crate) fn spin(self) -> AngularVelocity<S> {
+        AngularVelocity(self.w)
     }
 
     /// A twist V = `self` and its rate V̇, as an observer sees them who at this moment moves along with the frame's origin, in a
     /// straight line at constant speed: (ω, 0), and (ω̇, v̇ + ω × v), the acceleration of the origin itself.
     #[inline(always)]
-    pub(crate) fn beside_origin(self, dV: Self) -> (Spin<S>, Self) {
+    pub(crate) fn classical_acceleration(self, dV: Self) -> (AngularVelocity<S>, Self) {
         (self.spin(), Twist { w: dV.w, v: self.w.cross_add(self.v, dV.v) })
     }
 }
 
-impl<S: Scalar> Mul<Spin<S>> for Adjoint<S> {
+impl<S: Scalar> Mul<AngularVelocity<S>> for Adjoint<S> {
     type Output = Twist<S>;
     #[inline(always)]
-    fn mul(self, V: Spin<S>) -> Twist<S> {
+    fn mul(self, V: AngularVelocity<S>) -> Twist<S> {
         let w = self.0.R * V.0;
         Twist { w, v: self.0.p.cross(w) }
     }
 }
 
 /// 𝒢V: the momentum.
-impl<S: Scalar> Mul<Spin<S>> for SpatialInertia<S> {
+impl<S: Scalar> Mul<AngularVelocity<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
     #[inline(always)]
-    fn mul(self, V: Spin<S>) -> Wrench<S> {
+    fn mul(self, V: AngularVelocity<S>) -> Wrench<S> {
         Wrench { m: self.I * V.0, f: V.0.cross(self.mc) }
     }
 }
 
 impl<S: Scalar> Mul<Wrench<S>> for SpinBracketTranspose<S> {
-    type Output = SpinBracketWrench<S>;
+    type Output = GyroscopicWrench<S>;
     #[inline(always)]
-    fn mul(self, P: Wrench<S>) -> SpinBracketWrench<S> {
-        SpinBracketWrench { w: self.0, P }
+    fn mul(self, P: Wrench<S>) -> GyroscopicWrench<S> {
+        GyroscopicWrench { w: self.0, P }
     }
 }
 
-impl<S: Scalar> Neg for SpinBracketWrench<S> {
+impl<S: Scalar> Neg for GyroscopicWrench<S> {
     type Output = Wrench<S>;
     #[inline(always)]
     fn neg(self) -> Wrench<S> {
@@ -83,10 +83,10 @@ impl<S: Scalar> Neg for SpinBracketWrench<S> {
     }
 }
 
-impl<S: Scalar> Sub<SpinBracketWrench<S>> for Wrench<S> {
+impl<S: Scalar> Sub<GyroscopicWrench<S>> for Wrench<S> {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, o: SpinBracketWrench<S>) -> Self {
+    fn sub(self, o: GyroscopicWrench<S>) -> Self {
         Wrench { m: o.w.cross_add(o.P.m, self.m), f: o.w.cross_add(o.P.f, self.f) }
     }
 }
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn an_observer_in_uniform_motion_sees_the_same_wrench() {
         let (V, dV, G) = (twist(1), twist(2), inertia(3));
-        let (spin, dV_0) = V.beside_origin(dV);
+        let (spin, dV_0) = V.classical_acceleration(dV);
         let F = G * dV - V.ad().transpose() * (G * V);
         assert!((G * dV_0 - spin.ad_transpose() * (G * spin) - F).norm() < 1e-13);
     }

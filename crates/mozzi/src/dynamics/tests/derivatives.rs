@@ -69,13 +69,13 @@ fn of_inverse_dynamics_equal_dual_numbers() {
         let applied = applied(&model, seed);
         for environment in [model.environment(), everything(&model, seed, &applied)] {
             let x = [&theta[..], &dtheta, &ddtheta];
-            let [by_theta, by_dtheta, M] = by_duals(kernel::inverse_dynamics, &model, x, &environment);
+            let [d_theta, d_dtheta, M] = by_duals(kernel::inverse_dynamics, &model, x, &environment);
             let found = model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
             let scale = M.amax() * dtheta.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-            close(&found.by_theta, &by_theta, 0.0, 1000.0, "∂τ/∂θ");
-            close(&found.by_dtheta, &by_dtheta, scale, 1000.0, "∂τ/∂θ̇");
-            close(&found.by_ddtheta, &M, 0.0, 1000.0, "∂τ/∂θ̈");
-            close(&found.by_ddtheta, &model.mass_matrix(&theta).expect("lengths"), 0.0, 300.0, "M");
+            close(&found.d_theta, &d_theta, 0.0, 1000.0, "∂τ/∂θ");
+            close(&found.d_dtheta, &d_dtheta, scale, 1000.0, "∂τ/∂θ̇");
+            close(&found.d_ddtheta, &M, 0.0, 1000.0, "∂τ/∂θ̈");
+            close(&found.d_ddtheta, &model.mass_matrix(&theta).expect("lengths"), 0.0, 300.0, "M");
         }
     }
 }
@@ -96,16 +96,16 @@ fn of_forward_dynamics_equal_dual_numbers() {
         let [mine, by_bodies] = [&found.ddtheta, &expected].map(|x| DMatrix::from_columns(&[&M * x]));
         close(&mine, &by_bodies, M.amax() * expected.amax().max(1.0) + tau.amax(), 1000.0, "θ̈");
         for (what, found, expected) in [
-            ("∂θ̈/∂θ", &found.by_theta, &by_dual[0]),
-            ("∂θ̈/∂θ̇", &found.by_dtheta, &by_dual[1]),
-            ("∂θ̈/∂τ", &found.by_tau, &by_dual[2]),
+            ("∂θ̈/∂θ", &found.d_theta, &by_dual[0]),
+            ("∂θ̈/∂θ̇", &found.d_dtheta, &by_dual[1]),
+            ("∂θ̈/∂τ", &found.d_tau, &by_dual[2]),
         ] {
             let scale = M.amax() * expected.amax().max(1.0);
             close(&(&M * found), &(&M * expected), scale, 1000.0, what);
         }
         let one = DMatrix::identity(model.n(), model.n());
-        close(&(&M * &found.by_tau), &one, M.amax() * found.by_tau.amax(), 100.0, "M ∂θ̈/∂τ = 1");
-        assert_eq!(found.by_tau, found.by_tau.transpose());
+        close(&(&M * &found.d_tau), &one, M.amax() * found.d_tau.amax(), 100.0, "M ∂θ̈/∂τ = 1");
+        assert_eq!(found.d_tau, found.d_tau.transpose());
     }
 }
 
@@ -124,8 +124,8 @@ fn central_differences_agree() {
             model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths")
         };
         let columns: Vec<_> = (0..n).map(|k| (tau(k, step) - tau(k, -step)) / (2.0 * step)).collect();
-        let error = (DMatrix::from_columns(&columns) - &found.by_theta).amax();
-        assert!(error < 1e-7 * found.by_theta.amax(), "{error:e} of {}", found.by_theta.amax());
+        let error = (DMatrix::from_columns(&columns) - &found.d_theta).amax();
+        assert!(error < 1e-7 * found.d_theta.amax(), "{error:e} of {}", found.d_theta.amax());
     }
 }
 
@@ -136,7 +136,7 @@ fn of_the_parts_equal_those_of_the_whole() {
         let (zero, applied) = (alloc::vec![0.0; model.n()], applied(&model, seed));
         let nothing = Environment::with_gravity(Vec3::zero());
         let at = |x: &[f64], environment: &Environment| {
-            model.inverse_dynamics_derivatives(&theta, &zero, x, environment).expect("lengths").by_theta
+            model.inverse_dynamics_derivatives(&theta, &zero, x, environment).expect("lengths").d_theta
         };
         let dg = model.gravity_forces_derivative(&theta).expect("lengths");
         assert_eq!(dg, at(&zero, &model.environment()));
@@ -204,7 +204,7 @@ fn second_derivatives_by_dual_numbers() {
         let at = |h: f64| {
             let mut theta = theta.clone();
             integrate(&model, &mut theta, &along, h);
-            model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths").by_theta
+            model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths").d_theta
         };
         let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
         assert!((&found - difference).amax() < 1e-6 * found.amax());
@@ -220,7 +220,7 @@ fn zeros_are_where_the_tree_says() {
         let found = model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
         for i in 0..model.n() {
             for j in 0..model.n() {
-                let entries = [&found.by_theta, &found.by_dtheta, &found.by_ddtheta].map(|X| X[(i, j)]);
+                let entries = [&found.d_theta, &found.d_dtheta, &found.d_ddtheta].map(|X| X[(i, j)]);
                 assert_eq!(model.couples(i, j), model.couples(j, i));
                 if !model.couples(i, j) {
                     assert_eq!(entries, [0.0; 3]);
@@ -244,10 +244,10 @@ fn extreme_masses_and_odd_arguments() {
         let [theta, dtheta, ddtheta] = state(&model, 8);
         let environment = model.environment();
         let x = [&theta[..], &dtheta, &ddtheta];
-        let [by_theta, by_dtheta, _] = by_duals(kernel::inverse_dynamics, &model, x, &environment);
+        let [d_theta, d_dtheta, _] = by_duals(kernel::inverse_dynamics, &model, x, &environment);
         let found = model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
-        close(&found.by_theta, &by_theta, 0.0, 1000.0, "∂τ/∂θ");
-        close(&found.by_dtheta, &by_dtheta, 0.0, 1000.0, "∂τ/∂θ̇");
+        close(&found.d_theta, &d_theta, 0.0, 1000.0, "∂τ/∂θ");
+        close(&found.d_dtheta, &d_dtheta, 0.0, 1000.0, "∂τ/∂θ̇");
         let short = model.inverse_dynamics_derivatives(&theta, &dtheta[1..], &ddtheta, &environment);
         assert_eq!(short.expect_err("nine rates").to_string(), "dtheta has 9 entries, expected 10");
         let short = model.forward_dynamics_derivatives(&theta, &dtheta, &theta[1..], &environment);
@@ -255,6 +255,6 @@ fn extreme_masses_and_odd_arguments() {
         let mut odd = theta.clone();
         odd[2] = f64::NAN;
         let found = model.forward_dynamics_derivatives(&odd, &dtheta, &ddtheta, &environment).expect("NaN is no error");
-        assert!(found.by_theta.iter().any(|x| x.is_nan()));
+        assert!(found.d_theta.iter().any(|x| x.is_nan()));
     }
 }

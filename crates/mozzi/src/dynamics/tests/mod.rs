@@ -12,10 +12,10 @@ use nalgebra::{DMatrix, DVector};
 const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12, 4), (20, 0)];
 
 pub fn models() -> impl Iterator<Item = (u64, Model)> {
-    TREES.iter().enumerate().flat_map(|(k, &(links, followers))| {
+    TREES.iter().enumerate().flat_map(|(k, &(links, mimics))| {
         (0..6).map(move |s| {
             let make = if s % 3 == 2 { floating_tree } else { tree };
-            (10 * k as u64 + s, make(10 * k as u64 + s, links, followers))
+            (10 * k as u64 + s, make(10 * k as u64 + s, links, mimics))
         })
     })
 }

@@ -15,36 +15,36 @@ fn the_workspace_has_no_meaning_between_calls() {
             let mut all = alloc::vec::Vec::new();
             let mut out = alloc::vec![0.0; n];
             let mut square = alloc::vec![0.0; n * n];
-            let poison = |w: &mut Workspace| {
+            let fill_nan = |w: &mut Workspace| {
                 if !clean {
-                    w.poison()
+                    w.fill_nan()
                 }
             };
-            poison(workspace);
+            fill_nan(workspace);
             kernel::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
             all.extend_from_slice(&out);
-            poison(workspace);
+            fill_nan(workspace);
             kernel::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
             all.extend_from_slice(&out);
-            poison(workspace);
+            fill_nan(workspace);
             kernel::gravity_forces(&model, &theta, environment.gravity, workspace, &mut out);
             all.extend_from_slice(&out);
-            poison(workspace);
+            fill_nan(workspace);
             kernel::mass_matrix(&model, &theta, workspace, &mut square);
             all.extend_from_slice(&square);
-            poison(workspace);
+            fill_nan(workspace);
             kernel::coriolis_matrix(&model, &theta, &dtheta, workspace, &mut square);
             all.extend_from_slice(&square);
-            poison(workspace);
+            fill_nan(workspace);
             all.push(kernel::kinetic_energy(&model, &theta, &dtheta, crate::Twist::zero(), workspace));
-            poison(workspace);
+            fill_nan(workspace);
             all.push(kernel::potential_energy(&model, &theta, environment.gravity, workspace));
             let mut three = [(); 3].map(|()| alloc::vec![f64::NAN; n * n]);
-            poison(workspace);
+            fill_nan(workspace);
             let slices = three.each_mut().map(|x| &mut x[..]);
             kernel::inverse_dynamics_derivatives(&model, &theta, &dtheta, &ddtheta, &environment, workspace, slices);
             three.iter().for_each(|x| all.extend_from_slice(x));
-            poison(workspace);
+            fill_nan(workspace);
             let slices = three.each_mut().map(|x| &mut x[..]);
             kernel::forward_dynamics_derivatives(
                 &model,
@@ -57,10 +57,10 @@ fn the_workspace_has_no_meaning_between_calls() {
                 slices,
             );
             three.iter().chain([&out]).for_each(|x| all.extend_from_slice(x));
-            poison(workspace);
+            fill_nan(workspace);
             kernel::gravity_forces_derivative(&model, &theta, environment.gravity, workspace, &mut square);
             all.extend_from_slice(&square);
-            poison(workspace);
+            fill_nan(workspace);
             kernel::mass_matrix_product_derivative(&model, &theta, &ddtheta, workspace, &mut square);
             all.extend_from_slice(&square);
             all
@@ -164,8 +164,8 @@ fn random_states_many() {
 #[test]
 fn a_recording_plays_back_bit_for_bit() {
     use crate::scalar::recorded::{Recorded, play};
-    for (seed, followers) in [(1, 0), (2, 2)] {
-        let model = tree(seed, 6, followers);
+    for (seed, mimics) in [(1, 0), (2, 2)] {
+        let model = tree(seed, 6, mimics);
         let n = model.n();
         let [theta, dtheta, ddtheta] = state(&model, seed);
         let input = |k: usize| (0..n).map(|j| Recorded::input(k * n + j)).collect::<alloc::vec::Vec<_>>();
@@ -196,10 +196,10 @@ fn a_recording_plays_back_bit_for_bit() {
         assert_eq!(played(&M), model.coriolis_matrix(&theta, &dtheta).expect("lengths").transpose().as_slice());
         let of_tau = model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
         let of_ddtheta = model.forward_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("regular");
-        assert_eq!(played(&by[0]), of_tau.by_theta.transpose().as_slice());
-        assert_eq!(played(&by[1]), of_tau.by_dtheta.transpose().as_slice());
-        assert_eq!(played(&by[3]), of_ddtheta.by_theta.transpose().as_slice());
-        assert_eq!(played(&by[5]), of_ddtheta.by_tau.as_slice());
+        assert_eq!(played(&by[0]), of_tau.d_theta.transpose().as_slice());
+        assert_eq!(played(&by[1]), of_tau.d_dtheta.transpose().as_slice());
+        assert_eq!(played(&by[3]), of_ddtheta.d_theta.transpose().as_slice());
+        assert_eq!(played(&by[5]), of_ddtheta.d_tau.as_slice());
     }
 }
 

@@ -14,7 +14,7 @@ fn forces_are_linear_in_the_parameters() {
             Environment { base_twist: twist(seed), base_acceleration: twist(seed + 1), ..model.environment() };
         let (n, p) = (model.n(), model.parameter_count());
         let (mut Y, mut workspace) = (vec![f64::NAN; n * p], Workspace::new(&model));
-        workspace.poison();
+        workspace.fill_nan();
         kernel::regressor(&model, &theta, &dtheta, &ddtheta, &environment, &mut workspace, &mut Y);
         let (Y, pi) = (DMatrix::from_row_slice(n, p, &Y), DVector::from_vec(model.parameters()));
         let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
@@ -31,7 +31,7 @@ fn energies_are_linear_in_the_parameters() {
         let mut workspace = Workspace::new(&model);
         let (mut y_k, mut y_p) = (vec![f64::NAN; model.parameter_count()], vec![f64::NAN; model.parameter_count()]);
         let (V_s, g) = (twist(seed), model.gravity());
-        workspace.poison();
+        workspace.fill_nan();
         kernel::energy_regressors(&model, &theta, &dtheta, V_s, g, &mut workspace, &mut y_k, &mut y_p);
         let K = kernel::kinetic_energy(&model, &theta, &dtheta, V_s, &mut workspace);
         let P = kernel::potential_energy(&model, &theta, g, &mut workspace);

@@ -100,8 +100,8 @@ impl Report<'_> {
         for &i in &tree.order {
             let Some(joint) = tree.joint[i].map(|joint| &d.joints[joint]) else { continue };
             let (JointKind::Screw(A), body) = (joint.kind, &bodies[body_of[i]]) else { continue };
-            let is_coupled = joint.mimic.is_some() || followed.contains(joint.name.as_str());
-            if !body.is_leaf || is_coupled || joint.armature != 0.0 {
+            let has_mimic_joints = joint.mimic.is_some() || followed.contains(joint.name.as_str());
+            if !body.is_leaf || has_mimic_joints || joint.armature != 0.0 {
                 continue;
             }
             // what motion about the axis weighs, against what any motion weighs

@@ -7,9 +7,9 @@ use crate::spatial::Rounded;
 use alloc::format;
 use core::cell::Cell;
 
-/// Below this, no constant of a model overflows, but for long chains of followers.
+/// Below this, no constant of a model overflows, but for long chains of mimic joints.
 const LARGE: f64 = 1e30;
-/// Ratios of followers multiply along their chains, and enter squared.
+/// Ratios of mimic joints multiply along their chains, and enter squared.
 const LARGE_RATIO: f64 = 1e100;
 
 impl Report<'_> {

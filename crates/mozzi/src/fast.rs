@@ -8,12 +8,12 @@
 //! compiled once more for each instruction set.
 //!
 //! ```
-//! # use mozzi::{Description, native};
+//! # use mozzi::{Description, fast};
 //! # fn example(model: &mozzi::Model) {
-//! let mut workspace = native::Workspace::new(model);
+//! let mut workspace = fast::Workspace::new(model);
 //! let (theta, dtheta, ddtheta) = (vec![0.1; model.nq()], vec![0.0; model.n()], vec![0.0; model.n()]);
 //! let mut tau = vec![0.0; model.n()];
-//! native::inverse_dynamics(model, &theta, &dtheta, &ddtheta, &model.environment(), &mut workspace, &mut tau);
+//! fast::inverse_dynamics(model, &theta, &dtheta, &ddtheta, &model.environment(), &mut workspace, &mut tau);
 //! # }
 //! ```
 
@@ -245,8 +245,8 @@ mod tests {
 
     #[test]
     fn the_instruction_set_changes_results_by_rounding_alone() {
-        for (seed, followers) in [(1, 0), (2, 3)] {
-            let model = tree(seed, 9, followers);
+        for (seed, mimics) in [(1, 0), (2, 3)] {
+            let model = tree(seed, 9, mimics);
             let [theta, dtheta, x] = state(&model, seed);
             let n = model.n();
             let applied = [(model.end_effector().expect("named"), wrench(1))];

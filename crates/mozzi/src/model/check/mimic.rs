@@ -1,4 +1,4 @@
-//! Every follower follows a joint that moves, and not itself.
+//! Every mimic joint follows a joint that moves, and not itself.
 
 use super::{Element, Report, Severity};
 use crate::model::description::{Joint, JointKind, Mimic};
@@ -10,31 +10,31 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl Report<'_> {
-    /// Every follower follows a joint that moves, and not itself.
-    pub(super) fn followers(&mut self, joints: &BTreeMap<&str, Element>) {
+    /// Every mimic joint follows a joint that moves, and not itself.
+    pub(super) fn mimics(&mut self, joints: &BTreeMap<&str, Element>) {
         let d = self.description;
-        let master = |i: usize| {
+        let source = |i: usize| {
             let mimic = d.joints[i].mimic.as_ref()?;
             match joints.get(mimic.joint.as_str()) {
                 Some(&Element::Joint(k)) => Some(k),
                 _ => None,
             }
         };
-        let circular = circular(d.joints.len(), master);
+        let circular = circular(d.joints.len(), source);
         for (i, joint) in d.joints.iter().enumerate() {
             let (Some(mimic), element) = (&joint.mimic, Element::Joint(i)) else { continue };
             if !(mimic.ratio.is_finite() && mimic.offset.is_finite()) {
                 let message = format!("ratio {} and offset {}, expected finite numbers", mimic.ratio, mimic.offset);
                 self.error(element, "mimic", "not_finite", message);
             }
-            let Some(k) = master(i) else {
+            let Some(k) = source(i) else {
                 let message = format!("there is no joint `{}`, expected one of {}", mimic.joint, names(&d.joints));
                 self.error(element, "mimic", "unknown_joint", message);
                 continue;
             };
             if joint.kind == JointKind::Fixed {
                 let message = format!("follows `{}`, but is fixed: it does not move", mimic.joint);
-                self.add(Severity::Warning, element, "mimic", "fixed_follower", message);
+                self.add(Severity::Warning, element, "mimic", "fixed_mimic", message);
             } else if d.joints[k].kind == JointKind::Fixed {
                 self.error(
                     element,
@@ -58,7 +58,7 @@ impl Report<'_> {
 }
 
 /// Which joints lead into a circle; each joint is walked over twice at most.
-fn circular(n: usize, master: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
+fn circular(n: usize, source: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
     let (mut known, mut circular) = (vec![false; n], vec![false; n]);
     let mut walked = vec![n; n]; // from which joint this one was last walked over
     for start in 0..n {
@@ -70,7 +70,7 @@ fn circular(n: usize, master: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
             }
             walked[i] = start;
             path.push(i);
-            at = master(i);
+            at = source(i);
         }
         for i in path {
             (known[i], circular[i]) = (true, in_circle);
@@ -79,9 +79,9 @@ fn circular(n: usize, master: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
     circular
 }
 
-/// Says that no position of the master keeps both joints within their limits.
-fn contradiction(joint: &Joint, mimic: &Mimic, master: &Joint) -> Option<String> {
-    let ([low, high], [a, b]) = (joint.limits.position?, master.limits.position?);
+/// Says that no position of the source joint keeps both joints within their limits.
+fn contradiction(joint: &Joint, mimic: &Mimic, source: &Joint) -> Option<String> {
+    let ([low, high], [a, b]) = (joint.limits.position?, source.limits.position?);
     let (x, y) = (mimic.ratio * a + mimic.offset, mimic.ratio * b + mimic.offset);
     let (x, y) = (x.min(y), x.max(y));
     (y < low || high < x).then(|| {

@@ -17,7 +17,7 @@ impl<'a> Quantity<'a> {
     }
 }
 
-/// Lines of quantities below the joints' numbers; where the base is free, columns beside the names of their entries, for then
+/// Lines of quantities below the joints' numbers; where the base floats, columns beside the names of their entries, for then
 /// positions are more than velocities.
 pub fn quantities(model: &Model, list: &[Quantity], common: bool) -> Vec<String> {
     if !model.is_floating() {

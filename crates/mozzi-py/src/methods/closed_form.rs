@@ -3,10 +3,10 @@
 use crate::array::{Numbers, wrong_shape};
 use crate::call::named;
 use crate::describe::refused;
+use crate::environment::{Arguments, Around, Given};
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::quantity::rows;
-use crate::surroundings::{Arguments, Around, Given};
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{BodyFrame, Twist, Wrench};
 use pyo3::prelude::*;
@@ -62,7 +62,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// ClosedForm
-    ///     Matrices over N bodies, the moving links and a free base: `A` (6N, n), `G`, `W`, `L`, `ad_V`, `ad_Adtheta` (6N, 6N); `V`,
+    ///     Matrices over N bodies, the moving links and a floating base: `A` (6N, n), `G`, `W`, `L`, `ad_V`, `ad_Adtheta` (6N, 6N); `V`,
     ///     `V_base`, `dV_base`, `F_tip` (6N,); `M` (n, n); `c`, `g`, `tip_forces`, `friction`, `armature` (n,).
     ///
     /// Examples

@@ -4,7 +4,7 @@ use crate::array::{Numbers, wrong_shape};
 use crate::failure::of_model;
 use crate::numpy::Element;
 use mozzi::{Environment, FrameId, Twist, Vec3, Wrench};
-use mozzi_batch::Surroundings;
+use mozzi_batch::BatchEnvironment;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -120,8 +120,8 @@ impl<'py> Around<'py> {
     }
 
     /// With the tables, spread before to all states.
-    pub fn surroundings<'a, T: Element>(&'a self, tables: &'a [(FrameId, &'a [T])]) -> Surroundings<'a, T> {
-        Surroundings { environment: self.environment(), wrenches: tables }
+    pub fn surroundings<'a, T: Element>(&'a self, tables: &'a [(FrameId, &'a [T])]) -> BatchEnvironment<'a, T> {
+        BatchEnvironment { environment: self.environment(), wrenches: tables }
     }
 
     pub fn slices<T: Element>(&self) -> PyResult<Vec<(FrameId, &[T])>> {

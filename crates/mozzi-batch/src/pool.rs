@@ -6,23 +6,23 @@ use std::sync::{Arc, Mutex};
 
 /// What is not in use. Clones share it.
 #[derive(Clone, Default)]
-pub(crate) struct Shelf(Arc<Mutex<Vec<Box<dyn Any + Send>>>>);
+pub(crate) struct Pool(Arc<Mutex<Vec<Box<dyn Any + Send>>>>);
 
-impl fmt::Debug for Shelf {
+impl fmt::Debug for Pool {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Shelf")
+        f.write_str("Pool")
     }
 }
 
-/// Memory of one kind, from a shelf if it has any; it returns there, but not from a panic.
-pub(crate) struct Lent<'s, M: Any + Send> {
-    shelf: &'s Shelf,
+/// Memory of one kind, from a pool if it has any; it returns there, but not from a panic.
+pub(crate) struct Pooled<'s, M: Any + Send> {
+    pool: &'s Pool,
     memory: Option<Box<M>>,
 }
 
-impl Shelf {
-    pub fn lend<M: Any + Send>(&self) -> Lent<'_, M> {
-        Lent { shelf: self, memory: None }
+impl Pool {
+    pub fn lend<M: Any + Send>(&self) -> Pooled<'_, M> {
+        Pooled { pool: self, memory: None }
     }
 
     fn find<M: Any + Send>(&self) -> Option<Box<M>> {
@@ -32,16 +32,16 @@ impl Shelf {
     }
 }
 
-impl<M: Any + Send> Lent<'_, M> {
+impl<M: Any + Send> Pooled<'_, M> {
     /// The memory, made if there is none.
     pub fn get(&mut self, make: impl FnOnce() -> M) -> &mut M {
-        self.memory.get_or_insert_with(|| self.shelf.find().unwrap_or_else(|| Box::new(make())))
+        self.memory.get_or_insert_with(|| self.pool.find().unwrap_or_else(|| Box::new(make())))
     }
 }
 
-impl<M: Any + Send> Drop for Lent<'_, M> {
+impl<M: Any + Send> Drop for Pooled<'_, M> {
     fn drop(&mut self) {
-        if let (Some(memory), Ok(mut list), false) = (self.memory.take(), self.shelf.0.lock(), std::thread::panicking())
+        if let (Some(memory), Ok(mut list), false) = (self.memory.take(), self.pool.0.lock(), std::thread::panicking())
         {
             list.push(memory);
         }
@@ -50,18 +50,18 @@ impl<M: Any + Send> Drop for Lent<'_, M> {
 
 #[cfg(test)]
 mod tests {
-    use super::Shelf;
+    use super::Pool;
 
     #[test]
     fn what_was_lent_comes_back_to_its_kind() {
-        let shelf = Shelf::default();
-        shelf.lend::<Vec<u8>>().get(Vec::new).push(1);
+        let pool = Pool::default();
+        pool.lend::<Vec<u8>>().get(Vec::new).push(1);
         let (mut first, mut second, mut other) =
-            (shelf.lend::<Vec<u8>>(), shelf.lend::<Vec<u8>>(), shelf.lend::<String>());
+            (pool.lend::<Vec<u8>>(), pool.lend::<Vec<u8>>(), pool.lend::<String>());
         assert_eq!(first.get(Vec::new), &[1]);
         assert!(second.get(Vec::new).is_empty(), "one at a time");
         assert!(other.get(String::new).is_empty());
         drop((first, second, other));
-        assert_eq!(shelf.0.lock().map(|list| list.len()).ok(), Some(3));
+        assert_eq!(pool.0.lock().map(|list| list.len()).ok(), Some(3));
     }
 }

@@ -1,6 +1,6 @@
 //! Causes in words.
 
-use crate::answer::{Answer, Remedy, Silence};
+use crate::answer::{Answer, Unavailable, Workaround};
 use crate::bodies::{BodyChange, Reason};
 use crate::cause::{Cause, Change};
 use mozzi_text::{about, scalar, tuple};
@@ -21,16 +21,16 @@ pub fn some<T>(list: &[T], say: impl Fn(&T) -> String) -> String {
 pub fn cause(cause: &Cause, answer: &Answer) -> String {
     let library = answer.library;
     match cause {
-        Cause::Followers(list) => {
-            let names = some(list, |freed| format!("`{}` follows `{}`", freed.joint, freed.master));
+        Cause::Mimics(list) => {
+            let names = some(list, |freed| format!("`{}` follows `{}`", freed.joint, freed.source));
             let there = if list.iter().all(|freed| freed.constrained) {
-                "is a joint of its own, which the force of a constraint (equality) pulls after its master"
+                "is a joint of its own, which the force of a constraint (equality) pulls after its source joint"
             } else if library == "Pinocchio" {
                 "is a joint of its own: its reader drops <mimic> unless it is told mimic=True"
             } else {
                 "is a joint of its own"
             };
-            format!("followers: {names} here; in {library} each {there}")
+            format!("mimic joints: {names} here; in {library} each {there}")
         }
         Cause::Held(list) => {
             format!("joints: {} move here and not in {library}; held at 0", some(list, |name| format!("`{name}`")))
@@ -117,20 +117,20 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
 }
 
 /// What was done that the library takes the file.
-pub fn remedy(remedy: Remedy) -> &'static str {
-    match remedy {
-        Remedy::Geometry => "without <visual> and <collision>",
-        Remedy::Fixed => "without the <inertial> of links that no joint moves",
-        Remedy::Balance => "with balanceinertia=\"true\"",
-        Remedy::Bound => "with boundmass and boundinertia = 1e-9",
+pub fn workaround(workaround: Workaround) -> &'static str {
+    match workaround {
+        Workaround::Geometry => "without <visual> and <collision>",
+        Workaround::Fixed => "without the <inertial> of links that no joint moves",
+        Workaround::Balance => "with balanceinertia=\"true\"",
+        Workaround::Bound => "with boundmass and boundinertia = 1e-9",
     }
 }
 
-pub fn silence(silence: &Silence, library: &str) -> String {
+pub fn unavailable(unavailable: &Unavailable, library: &str) -> String {
     let package = if library == "Pinocchio" { "pin" } else { "mujoco" };
-    match silence {
-        Silence::NotInstalled(message) => format!("not installed: {message}; pip install {package}"),
-        Silence::Refuses(message) => format!("refuses the file: {message}"),
-        Silence::Died(message) => format!("gave no answer: {message}"),
+    match unavailable {
+        Unavailable::NotInstalled(message) => format!("not installed: {message}; pip install {package}"),
+        Unavailable::Refuses(message) => format!("refuses the file: {message}"),
+        Unavailable::Died(message) => format!("gave no answer: {message}"),
     }
 }

@@ -1,8 +1,8 @@
 //! Tables of numbers in CSV files: one row for each time, columns by name.
 //!
 //! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…` with the number of an entry (from 1) or its
-//! name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a free base), or `m_x m_y m_z f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a
-//! free base's wrench may be left out alone, and are then 0: no motor drives it.
+//! name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a
+//! floating base's wrench may be left out alone, and are then 0: no motor drives it.
 
 use crate::columns;
 use crate::failure::{Failure, Result};
@@ -38,13 +38,13 @@ impl Samples {
         Self::read_by(file, |_| model)
     }
 
-    /// As of a robot or, where the header has as many positions as joints, as of the same robot bolted down. Was it that?
-    pub fn read_joints(file: &str, model: &Model, bolted: &Model) -> Result<(Self, bool)> {
+    /// As of a robot or, where the header has as many positions as joints, as of the same robot on a fixed base. Was it that?
+    pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Self, bool)> {
         let is_of_joints = Cell::new(false);
         let choose = |header: &[String]| {
             let positions = header.iter().filter(|name| name.starts_with("theta_")).count();
-            is_of_joints.set(positions == bolted.nq() && !header.iter().any(|name| name.starts_with("theta_base.")));
-            if is_of_joints.get() { bolted } else { model }
+            is_of_joints.set(positions == fixed.nq() && !header.iter().any(|name| name.starts_with("theta_base.")));
+            if is_of_joints.get() { fixed } else { model }
         };
         Ok((Self::read_by(file, choose)?, is_of_joints.get()))
     }
