@@ -1,14 +1,18 @@
 //! The quantities of a model at many states.
 
-use crate::chunk::{Chunk, Table, TableMut, Worker};
+use crate::chunk::{Chunk, Table, TableMut};
 use crate::columns::{Layout, place};
-use crate::instruction_set::{Entry, InstructionSet, Number, OnLanes, choose};
-use crate::lanes::Lane;
+use crate::engine::Engine;
 use crate::pool::Pool;
-use crate::quantity::Quantity;
+use crate::programmed::{Cache, Key, Programmed};
+use crate::registers::has_registers;
+use crate::request::Request;
+use crate::run::Run;
 use crate::threads::Threads;
-use crate::{BatchEnvironment, Error};
-use mozzi::{Environment, FrameId, Model, Wrench};
+use crate::{BatchEnvironment, Error, InstructionSet, Number};
+use mozzi::quantities::Query;
+use mozzi::{Environment, FrameId, Model};
+use mozzi_codegen::{Arguments, Refusal};
 use std::sync::Arc;
 
 /// A chunk's tables fill about half of a core's second cache.
@@ -27,6 +31,10 @@ pub struct Batch<T: Number = f64> {
     threads: Threads,
     /// Workers of earlier calls.
     pool: Pool,
+    /// The quantities that were asked for as machine code.
+    compiled: Cache,
+    /// Programs of earlier calls.
+    programs: Cache,
 }
 
 impl Batch {
@@ -46,15 +54,22 @@ impl<T: Number> Batch<T> {
             layout: Layout::Rows,
             threads: Threads::All,
             pool: Pool::default(),
+            compiled: Cache::default(),
+            programs: Cache::default(),
         }
     }
 
-    /// On registers of this kind.
+    /// On registers of this kind; what was [compiled](Self::compile) is forgotten.
     ///
     /// # Errors
     /// [`Error::UnsupportedInstructionSet`].
     pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, Error> {
-        if set.is_available() { Ok(Batch { set, ..self }) } else { Err(Error::UnsupportedInstructionSet { set }) }
+        let (compiled, programs) = (Cache::default(), Cache::default());
+        if set.is_available() {
+            Ok(Batch { set, compiled, programs, ..self })
+        } else {
+            Err(Error::UnsupportedInstructionSet { set })
+        }
     }
 
     /// On this many threads; on one, on the caller's. Results are the same to the bit for any number.
@@ -122,12 +137,13 @@ impl<T: Number> Batch<T> {
         (0..states).flat_map(|state| (0..width).map(move |column| blocks[place(state, column, width, lanes)])).collect()
     }
 
-    fn states(&self, theta: &[T]) -> Result<usize, Error> {
-        let (width, lanes) = (self.model.nq(), self.block());
-        match theta.len() {
+    /// By the length of the first table.
+    fn states(&self, what: &'static str, (table, width): Table<T>) -> Result<usize, Error> {
+        let lanes = self.block();
+        match table.len() {
             0 => Ok(0),
             found if width == 0 || !found.is_multiple_of(width * lanes) => {
-                Err(Error::IncompleteState { found, width, lanes })
+                Err(Error::IncompleteState { what, found, width, lanes })
             }
             found => Ok(found / width),
         }
@@ -141,20 +157,22 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// The number at this state's place in a table.
+    /// The numbers of this state in a table.
     fn at(&self, (table, width): Table<T>, state: usize) -> Vec<f64> {
         (0..width).map(|column| table[place(state, column, width, self.block())].into()).collect()
     }
 
-    /// The number of states; an error for tables that do not go with it, frames of other models, and quaternions that are none.
+    /// The number of states; an error for tables that do not go with it, and frames of other models.
     pub(crate) fn check(
         &self,
         inputs: &[(&'static str, Table<T>)],
         outputs: &[(&'static str, usize, usize)],
-        surroundings: &BatchEnvironment<T>,
+        environment: &Environment,
+        frames: impl Iterator<Item = FrameId>,
     ) -> Result<usize, Error> {
         let (model, lanes) = (&*self.model, self.block());
-        let states = self.states(inputs[0].1.0)?;
+        let (first, table) = inputs[0];
+        let states = self.states(first, table)?;
         let wrong = |what, found, width| {
             let expected = states * width;
             if found == expected {
@@ -169,54 +187,124 @@ impl<T: Number> Batch<T> {
         for &(what, length, width) in outputs {
             wrong(what, length, width)?;
         }
-        for &(frame, table) in surroundings.wrenches {
-            model.check_frame(frame)?;
-            wrong("wrenches", table.len(), 6)?;
-        }
-        model.check_environment(&surroundings.environment)?;
-        if model.is_floating() {
-            self.check_quaternions(inputs[0].1, states)?;
+        frames.into_iter().try_for_each(|frame| model.check_frame(frame))?;
+        model.check_environment(environment)?;
+        if model.is_floating() && first == "theta" {
+            self.check_quaternions(table, states)?;
         }
         Ok(states)
     }
 
-    pub(crate) fn run<Q: Quantity>(
+    /// A quantity at many states: the outputs, from tables of its inputs in their order. The length of the first tells the number N of states.
+    /// What the quantity does not use of the environment has no effect. See [`LIST`](mozzi::quantities::LIST).
+    ///
+    /// # Errors
+    /// Tables of a wrong length, named; a frame that is missing or another model's; a state's error with its number: of a singular mass
+    /// matrix or a singular task the first, after all states are computed.
+    ///
+    /// # Panics
+    /// On another number of inputs or outputs than the quantity has.
+    pub fn compute<'q>(
         &self,
-        quantity: &Q,
-        inputs: &[(&'static str, Table<T>)],
-        outputs: Vec<(&'static str, TableMut<T>)>,
-        surroundings: BatchEnvironment<T>,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[T]],
+        environment: &BatchEnvironment<T>,
+        outputs: &mut [&mut [T]],
     ) -> Result<(), Error> {
-        let sizes: Vec<_> = outputs.iter().map(|(what, (table, width))| (*what, table.len(), *width)).collect();
-        let states = self.check(inputs, &sizes, &surroundings)?;
-        let frames: Vec<FrameId> = surroundings.wrenches.iter().map(|&(frame, _)| frame).collect();
-        let tables: Vec<Table<T>> = inputs
-            .iter()
-            .map(|&(_, table)| table)
-            .chain(surroundings.wrenches.iter().map(|&(_, table)| (table, 6)))
-            .collect();
-        let outputs = outputs.into_iter().map(|(_, table)| table).collect();
-        let chunks = self.cut(states, &tables, outputs, &surroundings, &frames);
-        let mut suspects = choose(self.set, Run { batch: self, quantity, chunks });
-        suspects.sort_unstable();
-        suspects.dedup();
-        for index in suspects {
-            self.ask_again(quantity, index, inputs, &surroundings)?;
+        let query = query.into();
+        query.check_subject(&self.model)?;
+        let declaration = query.declaration();
+        assert!(inputs.len() == declaration.inputs.len(), "{} takes {} inputs", query.name(), declaration.inputs.len());
+        assert!(
+            outputs.len() == declaration.outputs.len(),
+            "{} has {} outputs",
+            query.name(),
+            declaration.outputs.len()
+        );
+        let request = Request::new(query, &self.model, environment);
+        let state = declaration.inputs.iter().zip(inputs).zip(query.input_lengths(&*self.model));
+        let mut tables: Vec<(&'static str, Table<T>)> =
+            state.map(|((input, &table), width)| (input.name, (table, width))).collect();
+        tables.extend(request.further());
+        let widths: Vec<usize> = query.output_lengths(&*self.model).collect();
+        let sizes = declaration.outputs.iter().zip(&*outputs).zip(&widths);
+        let sizes: Vec<_> = sizes.map(|((output, table), &width)| (output.name, table.len(), width)).collect();
+        let frames = request.wrenches.iter().map(|&(frame, _)| frame);
+        let states = self.check(&tables, &sizes, &request.environment, frames)?;
+        let tables: Vec<Table<T>> = tables.into_iter().map(|(_, table)| table).collect();
+        let outputs = outputs.iter_mut().zip(widths).map(|(table, width)| (&mut **table, width)).collect();
+        let chunks = self.cut(states, &tables, outputs);
+        let mut frames = Vec::new();
+        let arguments = request.arguments(&mut frames);
+        let programmed = self.programmed(&request, arguments)?;
+        let run = Run { model: &self.constants, threads: &self.threads, pool: &self.pool, request: &request, chunks };
+        let errors = match programmed {
+            Some(programmed) => T::run_program(self.set, (&programmed, &request.constants(&arguments)), run),
+            None => T::run_kernel(self.set, query.index(), run),
+        };
+        match errors.into_iter().min_by_key(|(index, _)| *index) {
+            Some((index, source)) => Err(Error::State { index, source }),
+            None => Ok(()),
         }
-        Ok(())
+    }
+
+    /// The program that computes this: of a compiled quantity in the robot's own environment, of inertial parameters that differ from state to
+    /// state, of a quantity without a kernel on registers.
+    fn programmed(&self, request: &Request<T>, arguments: Arguments) -> Result<Option<Arc<Programmed>>, Error> {
+        let key = Key::new(request.query, arguments);
+        if request.is_own()
+            && let Some(programmed) = self.compiled.get(&key)
+        {
+            return Ok(programmed.code.is_ok().then_some(programmed).or(self.rare(request, key, arguments)?));
+        }
+        self.rare(request, key, arguments)
+    }
+
+    fn rare(&self, request: &Request<T>, key: Key, arguments: Arguments) -> Result<Option<Arc<Programmed>>, Error> {
+        if has_registers(request.query.index()) && request.parameters.is_none() {
+            return Ok(None);
+        }
+        let make = || Programmed::new::<T>(&self.model, request.query, arguments, self.set);
+        Ok(Some(self.programs.get_or_make(key, make)?))
+    }
+
+    /// The same, these quantities of it as machine code in the robot's own environment, where there is code for this machine: see
+    /// [`engine`](Self::engine). Clones share the code.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for a frame that is missing or another model's.
+    pub fn compile(self, queries: &[Query]) -> Result<Self, Error> {
+        let compiled = self.compiled.copy();
+        for &query in queries {
+            let arguments = alone(query);
+            let make = || Programmed::new::<T>(&self.model, query, arguments, self.set);
+            compiled.get_or_make(Key::new(query, arguments), make)?;
+        }
+        Ok(Batch { compiled, ..self })
+    }
+
+    /// What computes this quantity in the robot's own environment.
+    pub fn engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
+        let query = query.into();
+        let key = Key::new(query, alone(query));
+        match (self.compiled.get(&key), has_registers(query.index())) {
+            (Some(programmed), true) => Engine::of(&programmed.code),
+            (None, true) => Engine::Kernels(Refusal::NotAsked),
+            (compiled, false) => match compiled.or_else(|| self.programs.get(&key)) {
+                Some(programmed) => Engine::of_program(&programmed.code),
+                None => {
+                    let make = || Programmed::new::<T>(&self.model, query, alone(query), self.set);
+                    let made = self.programs.get_or_make(key, make);
+                    made.map_or(Engine::Kernels(Refusal::NotAsked), |programmed| Engine::of_program(&programmed.code))
+                }
+            },
+        }
     }
 
     /// Cuts the tables into pieces for the cache, and for the threads.
-    fn cut<'a>(
-        &self,
-        states: usize,
-        inputs: &[Table<'a, T>],
-        mut outputs: Vec<TableMut<'a, T>>,
-        surroundings: &'a BatchEnvironment<'a, T>,
-        frames: &'a [FrameId],
-    ) -> Vec<Chunk<'a, T>> {
+    fn cut<'a>(&self, states: usize, inputs: &[Table<'a, T>], mut outputs: Vec<TableMut<'a, T>>) -> Vec<Chunk<'a, T>> {
         let width: usize = inputs.iter().map(|&(_, w)| w).chain(outputs.iter().map(|&(_, w)| w)).sum();
-        let most = (CHUNK_BYTES / (width * size_of::<T>()).max(1)).max(1).next_multiple_of(self.lanes());
+        let most = (CHUNK_BYTES / (width * size_of::<T>()).max(1)).max(1).next_multiple_of(self.lanes().max(32));
         let mut chunks = Vec::with_capacity(states.div_ceil(most));
         for first in (0..states).step_by(most) {
             let count = most.min(states - first);
@@ -227,15 +315,8 @@ impl<T: Number> Batch<T> {
                 own.push((this, *width));
             }
             let part = |&(table, width): &Table<'a, T>| (&table[first * width..][..count * width], width);
-            chunks.push(Chunk {
-                first,
-                states: count,
-                layout: self.layout,
-                inputs: inputs.iter().map(part).collect(),
-                outputs: own,
-                environment: &surroundings.environment,
-                frames,
-            });
+            let (layout, inputs) = (self.layout, inputs.iter().map(part).collect());
+            chunks.push(Chunk { first, states: count, layout, inputs, outputs: own });
         }
         chunks
     }
@@ -254,46 +335,9 @@ impl<T: Number> Batch<T> {
         }
         Ok(())
     }
-
-    /// A state whose pivots spread far, at one state and in f64: the error that names the joint or the task, if there is one.
-    fn ask_again<Q: Quantity>(
-        &self,
-        quantity: &Q,
-        index: usize,
-        inputs: &[(&'static str, Table<T>)],
-        surroundings: &BatchEnvironment<T>,
-    ) -> Result<(), Error> {
-        let mut applied = surroundings.environment.applied.to_vec();
-        for &(frame, table) in surroundings.wrenches {
-            let F = self.at((table, 6), index);
-            applied.push((frame, Wrench::from_array(core::array::from_fn(|k| F[k]))));
-        }
-        let environment = Environment { applied: &applied, ..surroundings.environment };
-        let state: Vec<Vec<f64>> = inputs.iter().map(|&(_, table)| self.at(table, index)).collect();
-        quantity.again(&self.model, &state, &environment).map_err(|source| Error::State { index, source })
-    }
 }
 
-/// Runs every chunk on the registers chosen.
-struct Run<'r, 'a, T: Number, Q> {
-    batch: &'r Batch<T>,
-    quantity: &'r Q,
-    chunks: Vec<Chunk<'a, T>>,
-}
-
-impl<T: Number, Q: Quantity> OnLanes<T, Q> for Run<'_, '_, T, Q> {
-    type Output = Vec<usize>;
-    fn on<L: Lane<Number = T>>(self, entry: Entry<Q, L>) -> Vec<usize> {
-        let model = &*self.batch.constants;
-        let suspects = self.batch.threads.map(
-            self.chunks,
-            || self.batch.pool.lend::<Worker<L>>(),
-            |lent, chunk| {
-                let worker = lent.get(|| Worker::new(model));
-                entry(self.quantity, model, worker, chunk);
-                core::mem::take(&mut worker.suspects)
-            },
-        );
-        suspects.concat()
-    }
+/// The arguments of a quantity's program in the robot's own environment: the point alone, where there is one.
+fn alone(query: Query) -> Arguments<'static> {
+    Arguments { about: query.subject.point != mozzi::Vec3([0.0; 3]), ..Arguments::default() }
 }

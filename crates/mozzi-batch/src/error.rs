@@ -22,12 +22,14 @@ pub enum Error {
         /// States in a block, where the layout is in blocks; else 1.
         lanes: usize,
     },
-    /// θ is not a whole number of states.
-    #[error("theta has {found} numbers, expected a multiple of {width}: {width} positions a state{}", padded(*lanes))]
+    /// The first table, such as θ, is not a whole number of states.
+    #[error("{what} has {found} numbers, expected a multiple of {width}: {width} numbers a state{}", padded(*lanes))]
     IncompleteState {
+        /// Which table: the first.
+        what: &'static str,
         /// Its length.
         found: usize,
-        /// Positions a state.
+        /// Numbers a state.
         width: usize,
         /// States in a block, where the layout is in blocks; else 1.
         lanes: usize,

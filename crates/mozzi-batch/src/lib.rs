@@ -1,6 +1,7 @@
 //! The dynamics of many states at once: [`mozzi`]'s kernels, unchanged, on registers that hold one number of 4 to 16 states, and on all cores.
 //!
 //! ```
+//! use mozzi::quantities::InverseDynamics;
 //! use mozzi_batch::Batch;
 //! # use mozzi::{Description, HomeFrames, SE3, ScrewAxis, Screws, Solid};
 //! # let rod = Solid::Box([1.0, 0.02, 0.02]).inertia(1.0);
@@ -12,7 +13,7 @@
 //! let theta: Vec<f64> = (0..states * model.nq()).map(|k| (k as f64).sin()).collect(); // row-major: (1000, 2)
 //! let (dtheta, ddtheta) = (vec![0.5; states * model.n()], vec![0.0; states * model.n()]);
 //! let mut tau = vec![0.0; states * model.n()];
-//! batch.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment().into(), &mut tau)?;
+//! batch.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], &model.environment().into(), &mut [&mut tau])?;
 //! let one = model.inverse_dynamics(&theta[8..10], &dtheta[8..10], &ddtheta[8..10], &model.environment())?;
 //! assert!((tau[8] - one[0]).abs() < 1e-13 && (tau[9] - one[1]).abs() < 1e-13);
 //! # Ok::<(), mozzi_batch::Error>(())
@@ -25,23 +26,31 @@
 //! `[profile.dev.package]`, or the variable `RUST_MIN_STACK=16777216`.
 
 mod batch;
-mod blocks;
 mod chunk;
 mod columns;
+mod compiled;
+mod engine;
 mod environment;
 mod error;
 mod instruction_set;
+mod interpreter;
 mod lanes;
-mod methods;
+mod number;
 mod pool;
-mod quantity;
+mod programmed;
+mod registers;
+mod request;
+mod run;
 mod simulate;
 mod threads;
+mod worker;
 
 pub use batch::Batch;
-pub use blocks::BlockKernel;
 pub use columns::Layout;
+pub use compiled::{Compiled, compile};
+pub use engine::Engine;
 pub use environment::BatchEnvironment;
 pub use error::Error;
-pub use instruction_set::{InstructionSet, Number};
+pub use instruction_set::InstructionSet;
 pub use lanes::Lane;
+pub use number::Number;

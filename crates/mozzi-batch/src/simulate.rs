@@ -1,26 +1,38 @@
 //! Many robots of one model in time.
 
-use crate::quantity::ForwardDynamics;
+use crate::request::Request;
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout, Number};
+use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{Method, Motion};
 
 /// Robots that one thread moves together: their states and the method's stages stay in its cache.
 const TOGETHER: usize = 512;
 
 impl<T: Number> Batch<T> {
-    /// (θ, θ̇) of every robot after `steps` steps of `duration` / `steps` seconds, in place, under torques τ that stay as they are:
-    /// a controller's interval. Robots move by pieces that fit the cache; each piece's accelerations are the batch's.
-    pub(crate) fn simulate_all(
+    /// (θ, θ̇) (N, nq) and (N, n) of every robot after `steps` steps of a method over `duration` seconds, in place, under torques τ (N, n)
+    /// and an environment that stay as they are: a controller's interval. Robots move by pieces that fit the cache. See
+    /// [`mozzi::simulation`].
+    ///
+    /// # Errors
+    /// Tables of a wrong length; a state's error with its number: of a singular mass matrix, or of one that became infinite or NaN, after
+    /// its neighbours were computed.
+    #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
+    pub fn simulate(
         &self,
-        [theta, dtheta]: [&mut [T]; 2],
+        theta: &mut [T],
+        dtheta: &mut [T],
         tau: &[T],
-        surroundings: &BatchEnvironment<T>,
-        (method, duration, steps): (Method, f64, usize),
+        environment: &BatchEnvironment<T>,
+        method: Method,
+        duration: f64,
+        steps: usize,
     ) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n());
-        let inputs = [("theta", (&*theta, nq)), ("dtheta", (&*dtheta, n)), ("tau", (tau, n))];
-        let states = self.check(&inputs, &[], surroundings)?;
+        let mut inputs = vec![("theta", (&*theta, nq)), ("dtheta", (&*dtheta, n)), ("tau", (tau, n))];
+        inputs.extend(Request::new(ForwardDynamics.into(), self.model(), environment).further());
+        let frames = environment.wrenches.iter().map(|&(frame, _)| frame);
+        let states = self.check(&inputs, &[], &environment.environment, frames)?;
         let h = duration / steps as f64;
         if !(h.is_finite() && h >= 0.0) {
             let found = format!("{steps} steps in {duration} s");
@@ -33,13 +45,15 @@ impl<T: Number> Batch<T> {
         if self.layout() == Layout::Blocks {
             // robots move in rows: their quaternions are turned one by one
             let rows = |table: &[T], width| self.to_rows(table, width, states);
-            let wrenches: Vec<_> =
-                surroundings.wrenches.iter().map(|&(frame, table)| (frame, rows(table, 6))).collect();
+            let wrenches: Vec<_> = environment.wrenches.iter().map(|&(frame, table)| (frame, rows(table, 6))).collect();
             let wrenches: Vec<_> = wrenches.iter().map(|(frame, table)| (*frame, &table[..])).collect();
-            let surroundings = BatchEnvironment { wrenches: &wrenches, ..*surroundings };
+            let gravity = environment.gravity.map(|table| rows(table, 3));
+            let parameters = environment.parameters.map(|table| rows(table, self.model().parameter_count()));
+            let (gravity, parameters) = (gravity.as_deref(), parameters.as_deref());
+            let environment = BatchEnvironment { wrenches: &wrenches, gravity, parameters, ..*environment };
             let (mut q, mut v, tau) = (rows(theta, nq), rows(dtheta, n), rows(tau, n));
             let by_rows = self.clone().with_layout(Layout::Rows);
-            by_rows.simulate_all([&mut q, &mut v], &tau, &surroundings, (method, duration, steps))?;
+            by_rows.simulate(&mut q, &mut v, &tau, &environment, method, duration, steps)?;
             theta.copy_from_slice(&self.to_blocks(&q, nq));
             dtheta.copy_from_slice(&self.to_blocks(&v, n));
             return Ok(());
@@ -52,18 +66,19 @@ impl<T: Number> Batch<T> {
             || (),
             |(), (k, (theta, dtheta))| {
                 let (first, robots) = (k * TOGETHER, dtheta.len() / n);
-                let wrenches: Vec<_> = surroundings
+                let wrenches: Vec<_> = environment
                     .wrenches
                     .iter()
                     .map(|&(frame, table)| (frame, &table[first * 6..][..robots * 6]))
                     .collect();
-                let surroundings = BatchEnvironment { wrenches: &wrenches, ..*surroundings };
+                let p = self.model().parameter_count();
+                let gravity = environment.gravity.map(|table| &table[first * 3..][..robots * 3]);
+                let parameters = environment.parameters.map(|table| &table[first * p..][..robots * p]);
+                let environment = BatchEnvironment { wrenches: &wrenches, gravity, parameters, ..*environment };
                 let tau = &tau[first * n..][..robots * n];
                 let accelerations = |_t: f64, theta: &[T], dtheta: &[T], ddtheta: &mut [T]| {
-                    let inputs = [("theta", (theta, nq)), ("dtheta", (dtheta, n)), ("tau", (tau, n))];
-                    let outputs = vec![("ddtheta", (ddtheta, n))];
                     alone
-                        .run(&ForwardDynamics, &inputs, outputs, surroundings)
+                        .compute(ForwardDynamics, &[theta, dtheta, tau], &environment, &mut [ddtheta])
                         .map(|()| [])
                         .map_err(|error| error.after(first))
                 };

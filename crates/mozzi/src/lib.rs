@@ -39,27 +39,29 @@ pub mod accuracy;
 mod api;
 pub mod conventions;
 pub mod dynamics;
-#[cfg(feature = "std")]
 pub mod fast;
 pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
+pub mod quantities;
+mod quantity;
 pub mod scalar;
 pub mod simulation;
 pub mod spatial;
-mod task_space;
 pub mod testing;
 
-pub use api::{BodyFrame, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, NewtonEuler};
+pub use api::{BodyFrame, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, NewtonEuler, TaskSpaceDynamics};
 pub use dynamics::*;
 pub use kinematics::*;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
-pub use model::{Base, Description, Environment, Error, Frame, FrameId, HomeFrames, Model, Screws, Workspace};
+pub use model::{
+    Base, Description, Environment, Error, Frame, FrameId, HomeFrames, Model, Pivots, Screws, Task, TaskFrame,
+    TaskMemory, Workspace, least_is_clear,
+};
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
 pub use simulation::Trajectory;
 pub use spatial::solids::Solid;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
-pub use task_space::{Task, TaskFrame, TaskSpaceDynamics};

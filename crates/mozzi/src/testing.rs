@@ -11,13 +11,21 @@ use alloc::format;
 pub struct Random(pub u64);
 
 impl Random {
-    /// One number.
-    #[allow(clippy::should_implement_trait)] // no iterator: it never ends
-    pub fn next(&mut self) -> f64 {
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        z ^ (z >> 31)
+    }
+    /// A whole number below n.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() >> 16) as usize % n
+    }
+    /// One number.
+    #[allow(clippy::should_implement_trait)] // no iterator: it never ends
+    pub fn next(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
     /// K numbers.
     pub fn array<const K: usize>(&mut self) -> [f64; K] {

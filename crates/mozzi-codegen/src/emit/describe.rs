@@ -2,12 +2,13 @@
 
 use super::Precision;
 use super::names::in_comment;
+use crate::arguments::Arguments;
 use crate::program::Program;
-use crate::quantity::{Arguments, Quantity};
+use mozzi::quantities::Query;
 use mozzi::{FrameId, Model};
 
 /// The head of a text.
-pub(super) fn robot(model: &Model, open: Arguments, precision: Precision) -> Vec<String> {
+pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -> Vec<String> {
     let mut lines = vec![
         format!("The dynamics of the robot `{}` as straight-line code.", in_comment(&model.description().name)),
         format!("Made by mozzi {}; make it anew instead of changing it.", env!("CARGO_PKG_VERSION")),
@@ -17,28 +18,31 @@ pub(super) fn robot(model: &Model, open: Arguments, precision: Precision) -> Vec
     lines.push(format!(
         "Numbers are {numbers} floats in SI units: m, rad, kg, s, N. Six numbers are angular first: twists (w, v), wrenches (m, f)."
     ));
-    lines.push("Arrays must not overlap. A matrix is written by rows, where nothing else is said.".to_string());
+    lines.push("Arrays must not overlap. Matrices are by rows.".to_string());
     lines.push(
         "Frames: {s} is where the robot is fixed to, or what a floating base is seen from; a link's frame is its file's."
             .to_string(),
     );
-    let gravity = match open.gravity {
+    let gravity = match arguments.gravity {
         true => "an argument".to_string(),
         false => {
             let [x, y, z] = model.gravity().0;
             format!("({x}, {y}, {z}) m/s^2")
         }
     };
-    lines.push(format!("In these functions gravity is {gravity}, in {{s}}, which does not move."));
-    match open.wrench {
-        Some(frame) => lines.push(format!("The frame `{}` applies a wrench, an argument.", frame_name(model, frame))),
-        None => lines.push("The robot touches nothing.".to_string()),
+    lines.push(format!("In these functions gravity is {gravity}, in {{s}}."));
+    match arguments.wrenches {
+        [] => lines.push("The robot touches nothing.".to_string()),
+        frames => {
+            let names: Vec<String> = frames.iter().map(|&frame| format!("`{}`", frame_name(model, frame))).collect();
+            lines.push(format!("Wrenches that these frames apply are arguments: {}.", names.join(", ")));
+        }
     }
-    if open.parameters {
+    if arguments.parameters {
         lines.push("Masses, inertias and frictions are an argument; geometry is built in.".to_string());
     }
     lines.push(format!(
-        "Of an angle beyond {:?} rad, or NaN, all that depends on it is NaN; nothing else is checked.",
+        "Results that depend on NaN or an angle beyond {:?} rad are NaN; nothing else is checked.",
         precision.largest_angle()
     ));
     lines.push(String::new());
@@ -71,67 +75,116 @@ fn frame_name(model: &Model, frame: FrameId) -> String {
 }
 
 /// A quantity in words, and how much of it was left.
-pub(super) fn quantity(model: &Model, quantity: Quantity, open: Arguments, program: &Program) -> Vec<String> {
-    let frame = quantity.frame().map(|frame| frame_name(model, frame)).unwrap_or_default();
-    let wrench = if open.wrench.is_some() { " + J^T F" } else { "" };
-    let words = match quantity {
-        Quantity::InverseDynamics => {
-            format!("Forces: tau = M(theta) ddtheta + c(theta, dtheta) + g(theta){wrench} + friction.")
-        }
-        Quantity::MassMatrix => "Mass matrix M(theta), symmetric.".to_string(),
-        Quantity::ForwardDynamics => {
-            "Accelerations ddtheta, from M(theta) ddtheta = tau - what inverse_dynamics has beside.".to_string()
-        }
-        Quantity::BiasForces => format!("h = c(theta, dtheta) + g(theta){wrench}, without friction."),
-        Quantity::VelocityProduct => "Coriolis and centrifugal forces c(theta, dtheta).".to_string(),
-        Quantity::GravityForces => "Forces g(theta) that hold the robot against gravity.".to_string(),
-        Quantity::ForwardKinematics(_) => format!("Pose of the frame `{frame}` in {{s}}: p_s = R p_b + p."),
-        Quantity::BodyJacobian(_) => {
-            format!("Body Jacobian of the frame `{frame}`: its twist, in its own coordinates, is J dtheta.")
-        }
-        Quantity::SpaceJacobian(_) => {
-            format!("Space Jacobian of the frame `{frame}`: its spatial twist, in {{s}}, is J dtheta.")
-        }
-        Quantity::InverseDynamicsDerivatives => "Derivatives of inverse_dynamics.".to_string(),
-        Quantity::ForwardDynamicsDerivatives => "Accelerations ddtheta and their derivatives.".to_string(),
-    };
+pub(super) fn quantity(model: &Model, query: Query, program: &Program) -> Vec<String> {
+    let frame = query.subject.frame.map(|frame| format!(" Frame: `{}`.", frame_name(model, frame)));
+    let words = format!("{}.{}", ascii(query.declaration().formula), frame.unwrap_or_default());
     let before =
         program.count_before_folding().map(|count| format!("Of {} flops of the recursive algorithm:", count.flops()));
     [words].into_iter().chain(before).collect()
 }
 
 /// Shape, meaning and unit of an array.
-pub(super) fn array(model: &Model, quantity: Quantity, open: Arguments, name: &str) -> String {
-    let (n, nq) = (model.n(), model.nq());
-    let free = if model.is_floating() { "base and " } else { "" };
+pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &str) -> String {
+    let declaration = query.declaration();
+    let base = if model.is_floating() { "base and " } else { "" };
+    if let Some(input) = declaration.inputs.iter().find(|input| input.name == name) {
+        let units = if name == "theta" { "units above".to_string() } else { ascii(input.unit) };
+        return format!("{}; {} of {base}joints, {units}", input.dim.size(model, &query.subject), input.about);
+    }
+    if let Some(output) = declaration.outputs.iter().find(|output| output.name == name) {
+        let sizes: Vec<String> = output.shape(model, &query.subject).map(|size| size.to_string()).collect();
+        let shape = if sizes.is_empty() { "1".to_string() } else { sizes.join(" x ") };
+        return format!("{shape}; {}", ascii(output.unit));
+    }
+    let twist = |what: &str| format!("6; the {what} of {{s}}, in its own coordinates, angular first");
     match name {
-        "theta" => format!("{nq}; positions of {free}joints, units above"),
-        "dtheta" => format!("{n}; velocities"),
-        "ddtheta" => format!("{n}; accelerations"),
-        "tau" => format!("{n}; forces"),
-        "h" | "c" | "g" => format!("{n}; forces, N m of turning joints, N of sliding ones"),
-        "M" => format!("{n} x {n}; kg m^2, kg m, kg"),
-        "R" => "3 x 3; orientation of the frame in {s}".to_string(),
-        "p" => "3; origin of the frame in {s}, m".to_string(),
-        "J" => format!("{n} columns of six, one after the other: (w, v) of each unit velocity"),
-        "pivots" => format!(
-            "{n}; what was divided by. One that is not positive, or below 1e-8 of the largest: the mass matrix is singular, results mean nothing"
-        ),
+        "pivots" | "task_pivots" => {
+            "what was divided by. One that is not positive, or below 4e-9 of their sum: the matrix may be \
+             singular, and results mean nothing"
+                .to_string()
+        }
         "parameters" => format!(
-            "{}; of {free}moving links (m, m c, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) in their frames, kg, kg m, kg m^2; of joints armature, damping, friction",
+            "{}; of {base}moving links (m, m c, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) in their frames, kg, kg m, kg m^2; of joints armature, damping, friction",
             model.parameter_count()
         ),
         "gravity" => "3; in {s}, m/s^2".to_string(),
-        "wrench" => format!(
-            "6; (m, f) that the frame `{}` applies to what it touches, in its own coordinates, N m, N",
-            open.wrench.map(|frame| frame_name(model, frame)).unwrap_or_default()
-        ),
-        "d_tau" => format!("{n} x {n}; d ddtheta_i / d tau_j, the inverse of the mass matrix"),
+        "about" => "3; a point in {s}, m".to_string(),
+        "base_twist" => twist("twist"),
+        "base_acceleration" => twist("acceleration"),
         _ => {
-            let of = if quantity == Quantity::InverseDynamicsDerivatives { "tau" } else { "ddtheta" };
-            let by = name.trim_start_matches("by_");
-            let base = if model.is_floating() && by == "theta" { "; of the base along its twist" } else { "" };
-            format!("{n} x {n}; d {of}_i / d {by}_j{base}")
+            let of_name = |frame: &&FrameId| arguments.wrench_name(model, **frame) == name;
+            let frame = arguments.wrenches.iter().find(of_name).map(|&frame| frame_name(model, frame));
+            let frame = frame.unwrap_or_default();
+            format!("6; (m, f) that the frame `{frame}` applies to what it touches, in its own coordinates, N m, N")
         }
+    }
+}
+
+/// Symbols and what they are in plain letters, longer ones first.
+const LETTERS: [(&str, &str); 44] = [
+    ("θ̈", "ddtheta"),
+    ("θ̇", "dtheta"),
+    ("θ_j", "theta_j"),
+    ("θ", "theta"),
+    ("τ", "tau"),
+    ("Ṁ", "dM"),
+    ("M⁻¹", "M^-1"),
+    ("ḣ", "dh"),
+    ("ċ", "dc"),
+    ("c̈", "ddc"),
+    ("Ȧ", "dA"),
+    ("𝒱̇", "dV"),
+    ("𝒱", "V"),
+    ("𝓕", "F"),
+    ("Λ", "Lambda"),
+    ("η", "eta"),
+    ("μ", "mu"),
+    ("π", "pi"),
+    ("ω", "w"),
+    ("½", "1/2 "),
+    ("ᵀ", "^T "),
+    ("²", "^2"),
+    ("⁻¹", "^-1"),
+    ("∂", "d"),
+    ("−", "-"),
+    ("Σ", "sum"),
+    ("·", " "),
+    ("₁", "1"),
+    ("₂", "2"),
+    ("ü", "ue"),
+    ("é", "e"),
+    ("–", "-"),
+    ("×", "x"),
+    ("√", "sqrt "),
+    ("ℒ", "L"),
+    ("𝒢", "G"),
+    ("𝒜", "A"),
+    ("𝒲", "W"),
+    ("≤", "<="),
+    ("≥", ">="),
+    ("°", " deg"),
+    ("…", "..."),
+    ("„", "'"),
+    ("“", "'"),
+];
+
+/// A formula or a unit in ASCII, which every compiler reads in a comment.
+fn ascii(text: &str) -> String {
+    let plain = LETTERS.iter().fold(text.to_string(), |text, (symbol, letters)| text.replace(symbol, letters));
+    plain.chars().map(|c| if c.is_ascii() { c } else { '_' }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_formula_has_plain_letters() {
+        for declaration in mozzi::quantities::LIST {
+            let units = declaration.outputs.iter().map(|output| output.unit);
+            let units = units.chain(declaration.inputs.iter().map(|input| input.unit));
+            for text in units.chain([declaration.formula]) {
+                assert!(text.contains('_') || !super::ascii(text).contains('_'), "{text}: {}", super::ascii(text));
+            }
+        }
+        assert_eq!(super::ascii("τ = M(θ)θ̈ + JᵀF"), "tau = M(theta)ddtheta + J^T F");
     }
 }

@@ -12,11 +12,12 @@ mod names;
 mod rust;
 mod sin_cos;
 
+use crate::arguments::{Arguments, record_quantity};
 use crate::function::Function;
 use crate::program::{Program, Step};
-use crate::quantity::{Arguments, Quantity};
 use dialect::{Argument, Emitted, Source};
 use mozzi::Model;
+use mozzi::quantities::Query;
 use mozzi::scalar::Float;
 use std::collections::BTreeSet;
 use std::fmt;
@@ -110,15 +111,16 @@ impl fmt::Display for EmitError {
 }
 impl std::error::Error for EmitError {}
 
-/// The text of a robot's quantities, in its own gravity, its base at rest, where `open` leaves nothing else. Each becomes a function named
+/// The text of a robot's quantities; what is not one of the `arguments` is constant: its own gravity, its base at rest, nothing touched. Each becomes a function named
 /// for the quantity, of a frame for both; in C and CUDA the robot's name stands before. Names are made valid, and each once. The text's
 /// first lines tell the robot, its joints and units, frames and gravity; each function's, its arguments and its work.
 ///
 /// ```
-/// use mozzi_codegen::{Language, Arguments, Precision, Quantity, emit};
+/// use mozzi::quantities::GravityForces;
+/// use mozzi_codegen::{Arguments, Language, Precision, emit};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let model = mozzi_urdf::open("ur5")?.build()?;
-/// let files = emit(&model, &[Quantity::GravityForces], Arguments::default(), Language::C, Precision::F32)?;
+/// let files = emit(&model, &[GravityForces.into()], Arguments::default(), Language::C, Precision::F32)?;
 /// assert!(files[0].name == "ur5.h" && files[0].text.contains("void ur5_gravity_forces(const float theta[6], float g[6]);"));
 /// assert!(files[1].name == "ur5.c");
 /// # Ok(()) }
@@ -131,26 +133,25 @@ impl std::error::Error for EmitError {}
 /// [`EmitError`].
 pub fn emit(
     model: &Model,
-    quantities: &[Quantity],
-    open: Arguments,
+    quantities: &[Query],
+    arguments: Arguments,
     language: Language,
     precision: Precision,
 ) -> Result<Vec<SourceFile>, EmitError> {
-    let frames = quantities.iter().filter_map(|quantity| quantity.frame()).chain(open.wrench);
-    frames.into_iter().try_for_each(|frame| model.check_frame(frame)).map_err(EmitError::Frame)?;
-    let programs: Vec<Program> = quantities.iter().map(|quantity| quantity.record(model, open)).collect();
+    let programs = quantities.iter().map(|&query| record_quantity(model, query, arguments));
+    let programs: Vec<Program> = programs.collect::<Result<_, _>>().map_err(EmitError::Frame)?;
     let mut functions = Vec::new();
     let mut taken = BTreeSet::new();
     for (quantity, program) in quantities.iter().zip(&programs) {
-        let frame = quantity.frame().map(|frame| format!("_{}", model.frame_name(frame))).unwrap_or_default();
+        let frame = quantity.subject.frame.map(|frame| format!("_{}", model.frame_name(frame))).unwrap_or_default();
         let mut function = written(&format!("{}{frame}", quantity.name()), program, &mut taken);
-        function.about = describe::quantity(model, *quantity, open, program);
+        function.about = describe::quantity(model, *quantity, program);
         for argument in function.inputs.iter_mut().chain(&mut function.outputs) {
-            argument.about = describe::array(model, *quantity, open, &argument.name);
+            argument.about = describe::array(model, *quantity, arguments, &argument.name);
         }
         functions.push(function);
     }
-    let about = describe::robot(model, open, precision);
+    let about = describe::robot(model, arguments, precision);
     files(&model.description().name, about, functions, language, precision)
 }
 
@@ -162,12 +163,12 @@ pub fn emit(
 pub fn emit_into(
     folder: &Path,
     model: &Model,
-    quantities: &[Quantity],
-    open: Arguments,
+    quantities: &[Query],
+    arguments: Arguments,
     language: Language,
     precision: Precision,
 ) -> Result<Vec<PathBuf>, EmitError> {
-    emit(model, quantities, open, language, precision)?.iter().map(|file| file.write(folder)).collect()
+    emit(model, quantities, arguments, language, precision)?.iter().map(|file| file.write(folder)).collect()
 }
 
 /// The text of programs, each a function of its own name; `name` is the file's. See [`emit`] for robots.

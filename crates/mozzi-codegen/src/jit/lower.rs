@@ -84,9 +84,9 @@ impl Builder {
     }
 }
 
-/// None where the program has a function that there is no machine code for: tanh. In the place of the output `condensed` stand its least
-/// entry and the sum of its entries, which is not finite where an entry is not.
-pub(crate) fn lower(program: &Program, shape: Shape, condensed: Option<usize>) -> Option<Lowered> {
+/// None where the program has a function that there is no machine code for: tanh. In the place of each output from
+/// `condensed` on stand its least entry and the sum of its entries, which is not finite where an entry is not.
+pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option<Lowered> {
     let is_f64 = shape.is_f64();
     let windows = if shape == Shape::OneF64 { windows(program) } else { Vec::new() };
     let mut builder = Builder { is_f64, nodes: Vec::with_capacity(2 * program.steps.len()), constants: HashMap::new() };
@@ -141,7 +141,7 @@ pub(crate) fn lower(program: &Program, shape: Shape, condensed: Option<usize>) -
     }
     let of = |values: &Vec<u32>| values.iter().map(|&value| place[value as usize]).collect();
     let mut outputs: Vec<Vec<Value>> = program.outputs.iter().map(|output| of(&output.values)).collect();
-    for output in outputs.iter_mut().skip(condensed.unwrap_or(usize::MAX)).take(1) {
+    for output in outputs.iter_mut().skip(condensed) {
         let by = |builder: &mut Builder, operation| {
             output
                 .iter()

@@ -65,15 +65,19 @@ impl Kernel {
     /// # Errors
     /// [`Refusal`] with the reason why there is none.
     pub fn new(program: &Program, shape: Shape) -> Result<Self, Refusal> {
-        Self::condensing(program, shape, None)
+        Self::condensing(program, shape, usize::MAX)
     }
 
-    /// Likewise; in the place of one output stand its least entry and the sum of its entries.
-    pub(crate) fn condensing(program: &Program, shape: Shape, output: Option<usize>) -> Result<Self, Refusal> {
+    /// Likewise; in the place of each output from number `condensed` on stand its least entry and the sum of its entries: all that the quick
+    /// test of pivots needs.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn condensing(program: &Program, shape: Shape, condensed: usize) -> Result<Self, Refusal> {
         if !shape.is_supported() {
             return Err(Refusal::Processor);
         }
-        let lowered = lower::lower(program, shape, output).ok_or(Refusal::Program)?;
+        let lowered = lower::lower(program, shape, condensed).ok_or(Refusal::Program)?;
         let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
         let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
         let flops = lowered.flops();

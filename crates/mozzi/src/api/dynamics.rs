@@ -1,13 +1,13 @@
 //! Inverse dynamics, its parts, and energies as methods.
 
-use crate::dynamics as kernel;
-use crate::model::{Environment, Error, FrameId, Model, Workspace};
-use crate::spatial::{Twist, Wrench};
-use alloc::vec;
+use crate::model::{Environment, Error, FrameId, Model};
+use crate::quantities::{self as q, Query};
+use crate::spatial::Wrench;
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
-    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ̇): see [`inverse_dynamics`](kernel::inverse_dynamics()).
+    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ̇): see [`inverse_dynamics`](crate::inverse_dynamics()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -18,47 +18,39 @@ impl Model<f64> {
         ddtheta: &[f64],
         environment: &Environment,
     ) -> Result<DVector<f64>, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
-        self.check_environment(environment)?;
-        Ok(self.vector(|w, tau| kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, w, tau)))
+        self.vector(q::InverseDynamics, &[theta, dtheta, ddtheta], environment)
     }
 
-    /// h = c + g (+ JᵀF + the base's terms, where given): see [`bias_forces`](kernel::bias_forces()).
+    /// h = c + g (+ JᵀF + the base's terms, where given): see [`bias_forces`](crate::bias_forces()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn bias_forces(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<DVector<f64>, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        self.check_environment(environment)?;
-        Ok(self.vector(|w, h| kernel::bias_forces(self, theta, dtheta, environment, w, h)))
+        self.vector(q::BiasForces, &[theta, dtheta], environment)
     }
 
-    /// c(θ, θ̇): see [`velocity_product`](kernel::velocity_product).
+    /// c(θ, θ̇): see [`velocity_product`](crate::velocity_product).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn velocity_product(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        Ok(self.vector(|w, c| kernel::velocity_product(self, theta, dtheta, w, c)))
+        self.vector(q::VelocityProduct, &[theta, dtheta], &self.environment())
     }
 
-    /// g(θ) under the model's gravity: see [`gravity_forces`](kernel::gravity_forces).
+    /// g(θ) under the model's gravity: see [`gravity_forces`](crate::gravity_forces).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn gravity_forces(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
-        self.check_lengths(theta, [])?;
-        Ok(self.vector(|w, g| kernel::gravity_forces(self, theta, self.gravity(), w, g)))
+        self.vector(q::GravityForces, &[theta], &self.environment())
     }
 
-    /// JᵀF of wrenches that frames apply to the environment: see [`tip_forces`](kernel::tip_forces).
+    /// JᵀF of wrenches that frames apply to the environment: see [`tip_forces`](crate::tip_forces).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn tip_forces(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DVector<f64>, Error> {
-        self.check_lengths(theta, [])?;
-        applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))?;
-        Ok(self.vector(|w, tau| kernel::tip_forces(self, theta, applied, w, tau)))
+        self.vector(q::TipForces, &[theta], &Environment { applied, ..self.environment() })
     }
 
     /// f(θ̇) = d θ̇ + μ sgn θ̇ of each joint, with sgn 0 = 0.
@@ -66,65 +58,81 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn joint_friction(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
-        self.check_velocities([("dtheta", dtheta)])?;
-        Ok(DVector::from_fn(self.n(), |j, _| kernel::joint_friction(self, j, dtheta[j])))
+        self.vector(q::JointFriction, &[dtheta], &self.environment())
     }
 
-    /// M(θ): see [`mass_matrix`](kernel::mass_matrix()).
+    /// M(θ): see [`mass_matrix`](crate::mass_matrix()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn mass_matrix(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
-        self.check_lengths(theta, [])?;
-        Ok(self.matrix(|w, M| kernel::mass_matrix(self, theta, w, M)))
+        self.matrix(q::MassMatrix, &[theta], &self.environment())
     }
 
-    /// Ṁ(θ, θ̇): see [`mass_matrix_rate`](kernel::mass_matrix_rate).
+    /// Ṁ(θ, θ̇): see [`mass_matrix_rate`](crate::mass_matrix_rate).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn mass_matrix_rate(&self, theta: &[f64], dtheta: &[f64]) -> Result<DMatrix<f64>, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        Ok(self.matrix(|w, dM| kernel::mass_matrix_rate(self, theta, dtheta, w, dM)))
+        self.matrix(q::MassMatrixRate, &[theta, dtheta], &self.environment())
     }
 
-    /// C(θ, θ̇) of the Christoffel symbols: see [`coriolis_matrix`](kernel::coriolis_matrix()).
+    /// C(θ, θ̇) of the Christoffel symbols: see [`coriolis_matrix`](crate::coriolis_matrix()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn coriolis_matrix(&self, theta: &[f64], dtheta: &[f64]) -> Result<DMatrix<f64>, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        Ok(self.matrix(|w, C| kernel::coriolis_matrix(self, theta, dtheta, w, C)))
+        self.matrix(q::CoriolisMatrix, &[theta, dtheta], &self.environment())
     }
 
-    /// ½ θ̇ᵀMθ̇, base at rest: see [`kinetic_energy`](kernel::kinetic_energy).
+    /// ½ θ̇ᵀMθ̇, base at rest: see [`kinetic_energy`](crate::kinetic_energy).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn kinetic_energy(&self, theta: &[f64], dtheta: &[f64]) -> Result<f64, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        Ok(kernel::kinetic_energy(self, theta, dtheta, Twist::zero(), &mut Workspace::new(self)))
+        Ok(self.first(q::KineticEnergy, &[theta, dtheta], &self.environment())?[0])
     }
 
-    /// −Σ m gᵀp under the model's gravity: see [`potential_energy`](kernel::potential_energy).
+    /// −Σ m gᵀp under the model's gravity: see [`potential_energy`](crate::potential_energy).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn potential_energy(&self, theta: &[f64]) -> Result<f64, Error> {
-        self.check_lengths(theta, [])?;
-        Ok(kernel::potential_energy(self, theta, self.gravity(), &mut Workspace::new(self)))
+        Ok(self.first(q::PotentialEnergy, &[theta], &self.environment())?[0])
     }
 
-    pub(super) fn vector(&self, fill: impl FnOnce(&mut Workspace, &mut [f64])) -> DVector<f64> {
-        let mut entries = vec![0.0; self.n()];
-        fill(&mut Workspace::new(self), &mut entries);
-        DVector::from_vec(entries)
+    /// The first output of a quantity.
+    pub(super) fn first<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<Vec<f64>, Error> {
+        Ok(self.compute(query, inputs, environment)?.swap_remove(0))
     }
 
-    pub(super) fn matrix(&self, fill: impl FnOnce(&mut Workspace, &mut [f64])) -> DMatrix<f64> {
-        let n = self.n();
-        let mut entries = vec![0.0; n * n];
-        fill(&mut Workspace::new(self), &mut entries);
-        DMatrix::from_row_slice(n, n, &entries)
+    pub(super) fn vector<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<DVector<f64>, Error> {
+        Ok(DVector::from_vec(self.first(query, inputs, environment)?))
+    }
+
+    /// The first output, with n columns.
+    pub(super) fn matrix<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<DMatrix<f64>, Error> {
+        Ok(self.rows(&self.first(query, inputs, environment)?))
+    }
+
+    /// A matrix of n columns from its rows.
+    pub(super) fn rows(&self, entries: &[f64]) -> DMatrix<f64> {
+        let columns = self.n();
+        DMatrix::from_row_slice(entries.len().checked_div(columns).unwrap_or(0), columns, entries)
     }
 }

@@ -4,6 +4,7 @@ use crate::kinematics as kernel;
 use crate::kinematics::Jacobian;
 use crate::lie::SE3;
 use crate::model::{Error, FrameId, Model, Workspace};
+use crate::quantities::{self as q, Query};
 use crate::spatial::Twist;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -35,9 +36,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn space_jacobian(&self, theta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
-        self.check_lengths(theta, [])?;
-        self.check_frame(frame)?;
-        Ok(self.columns(|J| kernel::space_jacobian(self, theta, frame, J)))
+        self.jacobian(Query::from(q::SpaceJacobian).of(frame), &[theta])
     }
 
     /// `J_b`(θ), in the frame's coordinates: see [`body_jacobian`](kernel::body_jacobian).
@@ -45,9 +44,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn body_jacobian(&self, theta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
-        self.check_lengths(theta, [])?;
-        self.check_frame(frame)?;
-        Ok(self.columns(|J| kernel::body_jacobian(self, theta, frame, J)))
+        self.jacobian(Query::from(q::BodyJacobian).of(frame), &[theta])
     }
 
     /// d`J_s`/dt: see [`space_jacobian_rate`](kernel::space_jacobian_rate).
@@ -55,9 +52,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn space_jacobian_rate(&self, theta: &[f64], dtheta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        self.check_frame(frame)?;
-        Ok(self.columns(|dJ| kernel::space_jacobian_rate(self, theta, dtheta, frame, &mut Workspace::new(self), dJ)))
+        self.jacobian(Query::from(q::SpaceJacobianRate).of(frame), &[theta, dtheta])
     }
 
     /// d`J_b`/dt: see [`body_jacobian_rate`](kernel::body_jacobian_rate).
@@ -65,9 +60,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn body_jacobian_rate(&self, theta: &[f64], dtheta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        self.check_frame(frame)?;
-        Ok(self.columns(|dJ| kernel::body_jacobian_rate(self, theta, dtheta, frame, dJ)))
+        self.jacobian(Query::from(q::BodyJacobianRate).of(frame), &[theta, dtheta])
     }
 
     /// ∂`J_s`/∂θ_j for each joint j: see [`space_jacobian_derivative`](kernel::space_jacobian_derivative).
@@ -75,9 +68,8 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn space_jacobian_derivative(&self, theta: &[f64], frame: FrameId) -> Result<Vec<Jacobian>, Error> {
-        self.check_lengths(theta, [])?;
-        self.check_frame(frame)?;
-        Ok(self.by_joint(|H| kernel::space_jacobian_derivative(self, theta, frame, &mut Workspace::new(self), H)))
+        let H = self.first(Query::from(q::SpaceJacobianDerivative).of(frame), &[theta], &self.environment())?;
+        Ok(H.chunks_exact(6 * self.n().max(1)).map(from_rows).collect())
     }
 
     /// ∂`J_b`/∂θ_j for each joint j: see [`body_jacobian_derivative`](kernel::body_jacobian_derivative).
@@ -85,22 +77,17 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn body_jacobian_derivative(&self, theta: &[f64], frame: FrameId) -> Result<Vec<Jacobian>, Error> {
-        self.check_lengths(theta, [])?;
-        self.check_frame(frame)?;
-        Ok(self.by_joint(|H| kernel::body_jacobian_derivative(self, theta, frame, &mut Workspace::new(self), H)))
+        let H = self.first(Query::from(q::BodyJacobianDerivative).of(frame), &[theta], &self.environment())?;
+        Ok(H.chunks_exact(6 * self.n().max(1)).map(from_rows).collect())
     }
 
-    fn columns(&self, fill: impl FnOnce(&mut [Twist])) -> Jacobian {
-        let mut columns = vec![Twist::zero(); self.n()];
-        fill(&mut columns);
-        Jacobian(columns)
+    fn jacobian(&self, query: Query, inputs: &[&[f64]]) -> Result<Jacobian, Error> {
+        Ok(from_rows(&self.first(query, inputs, &self.environment())?))
     }
+}
 
-    /// From H[i n + j] = ∂J_i/∂θ_j to one Jacobian for each j.
-    fn by_joint(&self, fill: impl FnOnce(&mut [Twist])) -> Vec<Jacobian> {
-        let n = self.n();
-        let mut H = vec![Twist::zero(); n * n];
-        fill(&mut H);
-        (0..n).map(|j| Jacobian((0..n).map(|i| H[i * n + j]).collect())).collect()
-    }
+/// A Jacobian from its six rows.
+fn from_rows(rows: &[f64]) -> Jacobian {
+    let n = rows.len() / 6;
+    Jacobian((0..n).map(|j| Twist::from_array(core::array::from_fn(|row| rows[row * n + j]))).collect())
 }

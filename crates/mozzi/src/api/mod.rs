@@ -9,9 +9,11 @@ mod kinematics;
 mod momentum;
 mod newton_euler;
 mod regressor;
+mod task_space;
 
 pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
+pub use task_space::TaskSpaceDynamics;
 
 use crate::model::{Environment, Error, FrameId, Model};
 use crate::scalar::Scalar;

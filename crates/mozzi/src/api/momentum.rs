@@ -1,28 +1,18 @@
 //! Centre of mass and momentum as methods.
 
-use crate::dynamics as kernel;
 use crate::linalg::Vec3;
-use crate::model::{Error, Model, Workspace};
+use crate::model::{Error, Model};
+use crate::quantities::{self as q, Query};
 use crate::spatial::Wrench;
-use alloc::vec;
-use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
-    /// The mass of all that moves, kg: of the moving links, and of a floating base.
-    pub fn mass(&self) -> f64 {
-        let base = if self.is_floating() { self.base_inertia.mass } else { 0.0 };
-        self.links.iter().fold(base, |sum, link| sum + link.G.mass)
-    }
-
     /// The centre of mass of all that moves, in {s}.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] where nothing that moves has a mass.
     pub fn center_of_mass(&self, theta: &[f64]) -> Result<Vec3, Error> {
-        self.check_lengths(theta, [])?;
-        let G = kernel::total_inertia(self, theta, &mut Workspace::new(self));
-        Ok(G.mc * (1.0 / self.check_mass()?))
+        self.point(q::CenterOfMass, &[theta])
     }
 
     /// ċ of the centre of mass, {s} coordinates.
@@ -30,8 +20,7 @@ impl Model<f64> {
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).
     pub fn center_of_mass_velocity(&self, theta: &[f64], dtheta: &[f64]) -> Result<Vec3, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        Ok(kernel::momentum(self, theta, dtheta, &mut Workspace::new(self)).f * (1.0 / self.check_mass()?))
+        self.point(q::CenterOfMassVelocity, &[theta, dtheta])
     }
 
     /// c̈ of the centre of mass, {s} coordinates.
@@ -39,9 +28,7 @@ impl Model<f64> {
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).
     pub fn center_of_mass_acceleration(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64]) -> Result<Vec3, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
-        let rate = kernel::momentum_rate(self, theta, dtheta, ddtheta, &mut Workspace::new(self));
-        Ok(rate.f * (1.0 / self.check_mass()?))
+        self.point(q::CenterOfMassAcceleration, &[theta, dtheta, ddtheta])
     }
 
     /// The 3 × n Jacobian of the centre of mass: ċ = Jθ̇ in {s} coordinates.
@@ -49,28 +36,25 @@ impl Model<f64> {
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).
     pub fn center_of_mass_jacobian(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
-        let (columns, one_over_mass) = (self.momentum_columns(theta)?, 1.0 / self.check_mass()?);
-        Ok(DMatrix::from_fn(3, self.n(), |row, j| columns[j].f.0[row] * one_over_mass))
+        self.matrix(q::CenterOfMassJacobian, &[theta], &self.environment())
     }
 
     /// The momentum of all that moves, (angular, linear) in kg m²/s and kg m/s, about a point of {s}, in {s} coordinates: see
-    /// [`momentum`](kernel::momentum()).
+    /// [`momentum`](crate::momentum()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn momentum(&self, theta: &[f64], dtheta: &[f64], about: Vec3) -> Result<Wrench, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        Ok(kernel::momentum(self, theta, dtheta, &mut Workspace::new(self)).about(about))
+        self.wrench(Query::from(q::Momentum).about(about), &[theta, dtheta])
     }
 
     /// ḣ of the momentum about a fixed point of {s} along a motion; or, about where the centre of mass is now, of the centroidal
-    /// momentum. See [`momentum_rate`](kernel::momentum_rate).
+    /// momentum. See [`momentum_rate`](crate::momentum_rate).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
     pub fn momentum_rate(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64], about: Vec3) -> Result<Wrench, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
-        Ok(kernel::momentum_rate(self, theta, dtheta, ddtheta, &mut Workspace::new(self)).about(about))
+        self.wrench(Query::from(q::MomentumRate).about(about), &[theta, dtheta, ddtheta])
     }
 
     /// The 6 × n centroidal momentum matrix A_G, angular rows first: `h_G` = A_G θ̇ is the momentum about the centre of mass, in
@@ -79,8 +63,7 @@ impl Model<f64> {
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).
     pub fn centroidal_momentum_matrix(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
-        let (columns, c) = (self.momentum_columns(theta)?, self.center_of_mass(theta)?);
-        Ok(DMatrix::from_fn(6, self.n(), |row, j| columns[j].about(c).to_array()[row]))
+        self.matrix(q::CentroidalMomentumMatrix, &[theta], &self.environment())
     }
 
     /// Ȧ_G θ̇: what [`centroidal_momentum_matrix`](Self::centroidal_momentum_matrix) leaves out of the rate
@@ -89,33 +72,28 @@ impl Model<f64> {
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).
     pub fn centroidal_momentum_bias(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
-        let c = self.center_of_mass(theta)?;
-        let rate = self.momentum_rate(theta, dtheta, &vec![0.0; self.n()], c)?;
-        Ok(DVector::from_column_slice(&rate.to_array()))
+        self.vector(q::CentroidalMomentumBias, &[theta, dtheta], &self.environment())
     }
 
-    fn momentum_columns(&self, theta: &[f64]) -> Result<Vec<Wrench>, Error> {
-        self.check_lengths(theta, [])?;
-        let mut columns = vec![Wrench::zero(); self.n()];
-        kernel::momentum_matrix(self, theta, &mut Workspace::new(self), &mut columns);
-        Ok(columns)
+    fn point(&self, query: impl Into<Query<'static>>, inputs: &[&[f64]]) -> Result<Vec3, Error> {
+        let found = self.first(query, inputs, &self.environment())?;
+        Ok(Vec3(core::array::from_fn(|k| found[k])))
     }
 
-    fn check_mass(&self) -> Result<f64, Error> {
-        let mass = self.mass();
-        if mass > 0.0 {
-            return Ok(mass);
-        }
-        let found = alloc::format!("{mass} kg");
-        Err(Error::BadArgument { what: "the mass of all that moves", found, expected: "more, to have a centre" })
+    fn wrench(&self, query: Query, inputs: &[&[f64]]) -> Result<Wrench, Error> {
+        let found = self.first(query, inputs, &self.environment())?;
+        Ok(Wrench::from_array(core::array::from_fn(|k| found[k])))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics as kernel;
+    use crate::model::Workspace;
     use crate::testing::{floating_tree, moving, state, tree, wrench};
     use crate::{Dual, Environment};
+    use alloc::vec::Vec;
 
     fn models() -> impl Iterator<Item = (u64, Model)> {
         [(5, 0), (9, 2), (14, 3)].into_iter().enumerate().flat_map(|(k, (links, mimics))| {
@@ -210,6 +188,6 @@ mod tests {
         let empty =
             crate::Description::new("empty").link("base", crate::SpatialInertia::zero()).build().expect("sound");
         let message = empty.center_of_mass(&[]).expect_err("no mass").to_string();
-        assert_eq!(message, "the mass of all that moves is 0 kg, expected more, to have a centre");
+        assert_eq!(message, "the robot's total mass is 0 kg; the centre of mass is undefined");
     }
 }

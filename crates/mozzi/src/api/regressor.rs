@@ -1,13 +1,11 @@
 //! Regressors as methods.
 
-use crate::dynamics as kernel;
-use crate::model::{Environment, Error, Model, Workspace};
-use crate::spatial::Twist;
-use alloc::vec;
+use crate::model::{Environment, Error, Model};
+use crate::quantities as q;
 use nalgebra::{DMatrix, RowDVector};
 
 impl Model<f64> {
-    /// Y(θ, θ̇, θ̈), n × p: see [`regressor`](kernel::regressor()). τ = Y π + JᵀF with π = [`parameters`](Model::parameters).
+    /// Y(θ, θ̇, θ̈), n × p: see [`regressor`](crate::regressor()). τ = Y π + JᵀF with π = [`parameters`](Model::parameters).
     ///
     /// ```
     /// use mozzi::{Description, HomeFrames, SE3, ScrewAxis, Screws, Solid, nalgebra::DVector};
@@ -34,16 +32,12 @@ impl Model<f64> {
         ddtheta: &[f64],
         environment: &Environment,
     ) -> Result<DMatrix<f64>, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", ddtheta)])?;
-        self.check_environment(environment)?;
-        let (n, p) = (self.n(), self.parameter_count());
-        let mut Y = vec![0.0; n * p];
-        kernel::regressor(self, theta, dtheta, ddtheta, environment, &mut Workspace::new(self), &mut Y);
-        Ok(DMatrix::from_row_slice(n, p, &Y))
+        let Y = self.compute(q::Regressor, &[theta, dtheta, ddtheta], environment)?;
+        Ok(DMatrix::from_row_slice(self.n(), self.parameter_count(), &Y[0]))
     }
 
     /// (y_𝒦, y_𝒫) with 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π, under the model's gravity and with {s} at rest: see
-    /// [`energy_regressors`](kernel::energy_regressors).
+    /// [`energy_regressors`](crate::energy_regressors).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -52,19 +46,9 @@ impl Model<f64> {
         theta: &[f64],
         dtheta: &[f64],
     ) -> Result<(RowDVector<f64>, RowDVector<f64>), Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        let (mut kinetic, mut potential) = (vec![0.0; self.parameter_count()], vec![0.0; self.parameter_count()]);
-        let mut workspace = Workspace::new(self);
-        kernel::energy_regressors(
-            self,
-            theta,
-            dtheta,
-            Twist::zero(),
-            self.gravity(),
-            &mut workspace,
-            &mut kinetic,
-            &mut potential,
-        );
-        Ok((RowDVector::from_vec(kinetic), RowDVector::from_vec(potential)))
+        let found = self.compute(q::EnergyRegressors, &[theta, dtheta], &self.environment())?;
+        let mut found = found.into_iter().map(RowDVector::from_vec);
+        let mut next = || found.next().expect("two rows");
+        Ok((next(), next()))
     }
 }

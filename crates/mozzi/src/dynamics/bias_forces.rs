@@ -3,6 +3,7 @@
 use super::inverse_dynamics::newton_euler;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
@@ -103,4 +104,70 @@ pub(super) fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
     let mut zero = core::mem::take(&mut workspace.vector);
     zero.fill(S::zero());
     zero
+}
+
+/// See [`bias_forces`].
+#[derive(Clone, Copy, Debug)]
+pub struct BiasForces;
+impl Quantity for BiasForces {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "bias_forces",
+        "h(θ, θ̇) = c + g, with JᵀF and the base's terms where they are given; without friction",
+        &[THETA, DTHETA],
+        &[output("h", VECTOR, FORCE)],
+    )
+    .uses(Uses::ALL);
+}
+impl Kernel for BiasForces {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [h, ..]) = (c.inputs, c.outputs);
+        bias_forces(c.model, theta, dtheta, c.environment, &mut c.memory.workspace, h);
+    }
+}
+
+/// See [`velocity_product`].
+#[derive(Clone, Copy, Debug)]
+pub struct VelocityProduct;
+impl Quantity for VelocityProduct {
+    type Kernel = BiasForces;
+    type Registers = BiasForces;
+    const DECLARATION: Declaration = Declaration::new(
+        "velocity_product",
+        "c(θ, θ̇) = Cθ̇, the Coriolis and centripetal forces",
+        &[THETA, DTHETA],
+        &[output("c", VECTOR, FORCE)],
+    );
+}
+
+/// See [`gravity_forces`].
+#[derive(Clone, Copy, Debug)]
+pub struct GravityForces;
+impl Quantity for GravityForces {
+    type Kernel = BiasForces;
+    type Registers = BiasForces;
+    const DECLARATION: Declaration = Declaration::new(
+        "gravity_forces",
+        "g(θ), the joint forces that hold the robot against gravity",
+        &[THETA],
+        &[output("g", VECTOR, FORCE)],
+    )
+    .uses(Uses::GRAVITY);
+}
+
+/// See [`tip_forces`].
+#[derive(Clone, Copy, Debug)]
+pub struct TipForces;
+impl Quantity for TipForces {
+    type Kernel = BiasForces;
+    type Registers = BiasForces;
+    const DECLARATION: Declaration = Declaration::new(
+        "tip_forces",
+        "JᵀF of the wrenches that frames apply to the environment",
+        &[THETA],
+        &[output("tau", VECTOR, FORCE)],
+    )
+    .uses(Uses::WRENCHES);
 }

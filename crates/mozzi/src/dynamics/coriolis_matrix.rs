@@ -3,6 +3,7 @@
 use crate::kinematics::{base_twist, joint_transforms};
 use crate::linalg::add_transpose;
 use crate::model::{Model, Workspace};
+use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 
@@ -101,4 +102,43 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
 ) {
     coriolis_matrix(model, theta, dtheta, workspace, dM);
     add_transpose(model.n(), dM);
+}
+
+/// See [`coriolis_matrix`]. The kernel answers Ṁ where that is kept.
+#[derive(Clone, Copy, Debug)]
+pub struct CoriolisMatrix;
+impl Quantity for CoriolisMatrix {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "coriolis_matrix",
+        "C(θ, θ̇) of the Christoffel symbols: c = Cθ̇, and Ṁ − 2C is skew-symmetric",
+        &[THETA, DTHETA],
+        &[output("C", MATRIX, "N m s or N s")],
+    );
+}
+impl Kernel for CoriolisMatrix {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [C, dM, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
+        coriolis_matrix(c.model, theta, dtheta, w, if dM.is_empty() { C } else { &mut *dM });
+        if !dM.is_empty() {
+            add_transpose(c.model.n(), dM); // Ṁ = C + Cᵀ
+        }
+    }
+}
+
+/// See [`mass_matrix_rate`].
+#[derive(Clone, Copy, Debug)]
+pub struct MassMatrixRate;
+impl Quantity for MassMatrixRate {
+    type Kernel = CoriolisMatrix;
+    type Registers = CoriolisMatrix;
+    const DECLARATION: Declaration = Declaration::new(
+        "mass_matrix_rate",
+        "Ṁ(θ, θ̇) = C + Cᵀ",
+        &[THETA, DTHETA],
+        &[output("dM", MATRIX, "kg m²/s, kg m/s or kg/s")],
+    )
+    .with_first_output(1);
 }

@@ -3,6 +3,7 @@
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
+use crate::quantity::{Call, DTHETA, Declaration, Kernel, NUMBER, Quantity, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
@@ -59,4 +60,50 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
         first_moment += T[i].R * link.G().mc + T[i].p * link.G().mass;
     }
     -gravity.dot(first_moment)
+}
+
+/// See [`kinetic_energy`].
+#[derive(Clone, Copy, Debug)]
+pub struct KineticEnergy;
+impl Quantity for KineticEnergy {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "kinetic_energy",
+        "½θ̇ᵀMθ̇, of all that moves",
+        &[THETA, DTHETA],
+        &[output("energy", NUMBER, "J")],
+    )
+    .uses(Uses::BASE_TWIST)
+    .is_of_masses();
+}
+impl Kernel for KineticEnergy {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [energy, ..]) = (c.inputs, c.outputs);
+        energy[0] = kinetic_energy(c.model, theta, dtheta, c.environment.base_twist, &mut c.memory.workspace);
+    }
+}
+
+/// See [`potential_energy`].
+#[derive(Clone, Copy, Debug)]
+pub struct PotentialEnergy;
+impl Quantity for PotentialEnergy {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "potential_energy",
+        "−Σ m gᵀp, p seen from the origin of {s}",
+        &[THETA],
+        &[output("energy", NUMBER, "J")],
+    )
+    .uses(Uses::GRAVITY)
+    .is_of_masses();
+}
+impl Kernel for PotentialEnergy {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [energy, ..]) = (c.inputs, c.outputs);
+        energy[0] = potential_energy(c.model, theta, c.environment.gravity, &mut c.memory.workspace);
+    }
 }

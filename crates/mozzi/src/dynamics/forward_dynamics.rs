@@ -5,6 +5,7 @@ use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{ACCELERATION, Call, DTHETA, Declaration, Kernel, Quantity, TAU, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 
@@ -108,5 +109,28 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         let dV_i = T[i].Ad() * dV[link.parent] + dV[i];
         ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
         dV[i] = dV_i + link.A() * ddtheta[link.j];
+    }
+}
+
+/// See [`forward_dynamics`].
+#[derive(Clone, Copy, Debug)]
+pub struct ForwardDynamics;
+impl Quantity for ForwardDynamics {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "forward_dynamics",
+        "θ̈ = M⁻¹(τ − c − g − JᵀF − f), the accelerations that joint forces produce",
+        &[THETA, DTHETA, TAU],
+        &[output("ddtheta", VECTOR, ACCELERATION)],
+    )
+    .uses(Uses::ALL)
+    .divides();
+}
+impl Kernel for ForwardDynamics {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, tau], [ddtheta, ..]) = (c.inputs, c.outputs);
+        forward_dynamics(c.model, theta, dtheta, tau, c.environment, &mut c.memory.workspace, ddtheta);
     }
 }

@@ -6,6 +6,9 @@ use super::joint_friction::joint_friction;
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{
+    ACCELERATION, Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR, output,
+};
 use crate::scalar::Scalar;
 
 /// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n × n, row-major: row i is
@@ -52,4 +55,32 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     inward_pass(model, theta, environment, workspace, false, [Some(d_theta), Some(d_dtheta), None]);
     ldlt::solve_rows(pattern, d_tau, [d_theta, d_dtheta]);
     ldlt::invert(pattern, d_tau, &mut workspace.vector);
+}
+
+/// See [`forward_dynamics_derivatives`].
+#[derive(Clone, Copy, Debug)]
+pub struct ForwardDynamicsDerivatives;
+impl Quantity for ForwardDynamicsDerivatives {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "forward_dynamics_derivatives",
+        "θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹, row i of θ̈_i; by θ along the velocities",
+        &[THETA, DTHETA, TAU],
+        &[
+            output("ddtheta", VECTOR, ACCELERATION),
+            output("d_theta", MATRIX, "rad/s² or m/s², each per unit of its column"),
+            output("d_dtheta", MATRIX, "rad/s² or m/s², each per unit of its column"),
+            output("d_tau", MATRIX, "rad/s² or m/s², each per unit of its column"),
+        ],
+    )
+    .uses(Uses::ALL)
+    .divides();
+}
+impl Kernel for ForwardDynamicsDerivatives {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, tau], [ddtheta, a, b, d_tau], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
+        forward_dynamics_derivatives(c.model, theta, dtheta, tau, c.environment, w, ddtheta, [a, b, d_tau]);
+    }
 }

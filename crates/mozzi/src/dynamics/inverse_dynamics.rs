@@ -3,6 +3,7 @@
 use super::joint_friction::joint_friction;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
@@ -89,5 +90,27 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     }
     if model.is_floating() {
         for (tau, F) in tau.iter_mut().zip(F[0].to_array()) { *tau += F; }                // (8.54) with A = I
+    }
+}
+
+/// See [`inverse_dynamics`].
+#[derive(Clone, Copy, Debug)]
+pub struct InverseDynamics;
+impl Quantity for InverseDynamics {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "inverse_dynamics",
+        "τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇), the joint forces of a motion",
+        &[THETA, DTHETA, DDTHETA],
+        &[output("tau", VECTOR, FORCE)],
+    )
+    .uses(Uses::ALL);
+}
+impl Kernel for InverseDynamics {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, ddtheta], [tau, ..]) = (c.inputs, c.outputs);
+        inverse_dynamics(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, tau);
     }
 }

@@ -34,6 +34,9 @@ use crate::kinematics::{base_motion, base_pose, joint_transforms};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::quantity::{
+    CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, Rare, THETA, Uses, output,
+};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
@@ -295,6 +298,7 @@ fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
 ///
 /// # Panics
 /// When θ is not nq long, or `dg` not n².
+#[cfg_attr(not(test), inline(always))]
 pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -311,6 +315,7 @@ pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `dtau` not n².
+#[cfg_attr(not(test), inline(always))]
 pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -328,6 +333,7 @@ pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, x not n, or `dMx` not n².
+#[cfg_attr(not(test), inline(always))]
 pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -339,6 +345,7 @@ pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// ∂τ/∂θ of inverse dynamics at θ̇ = 0, and θ̈ = 0 or as given.
+#[cfg_attr(not(test), inline(always))]
 fn at_rest<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -351,4 +358,103 @@ fn at_rest<S: Scalar + From<C>, C: Scalar>(
     joint_transforms(model, theta, workspace);
     derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, d_theta, None);
     workspace.vector = zero;
+}
+
+/// See [`inverse_dynamics_derivatives`].
+#[derive(Clone, Copy, Debug)]
+pub struct InverseDynamicsDerivatives;
+impl Quantity for InverseDynamicsDerivatives {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "inverse_dynamics_derivatives",
+        "∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M, row i of τ_i; by θ along the velocities",
+        &[THETA, DTHETA, DDTHETA],
+        &[
+            output("d_theta", MATRIX, "N m or N, each per unit of its column"),
+            output("d_dtheta", MATRIX, "N m or N, each per unit of its column"),
+            output("d_ddtheta", MATRIX, "N m or N, each per unit of its column"),
+        ],
+    )
+    .uses(Uses::ALL);
+}
+impl Kernel for InverseDynamicsDerivatives {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, ddtheta], [a, b, M, _]) = (c.inputs, c.outputs);
+        inverse_dynamics_derivatives(
+            c.model,
+            theta,
+            dtheta,
+            ddtheta,
+            c.environment,
+            &mut c.memory.workspace,
+            [a, b, M],
+        );
+    }
+}
+
+/// See [`gravity_forces_derivative`].
+#[derive(Clone, Copy, Debug)]
+pub struct GravityForcesDerivative;
+impl Quantity for GravityForcesDerivative {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "gravity_forces_derivative",
+        "∂g/∂θ",
+        &[THETA],
+        &[output("dg", MATRIX, "N m or N, each per unit of its column")],
+    )
+    .uses(Uses::GRAVITY);
+}
+impl Kernel for GravityForcesDerivative {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [dg, ..]) = (c.inputs, c.outputs);
+        gravity_forces_derivative(c.model, theta, c.environment.gravity, &mut c.memory.workspace, dg);
+    }
+}
+
+/// See [`tip_forces_derivative`].
+#[derive(Clone, Copy, Debug)]
+pub struct TipForcesDerivative;
+impl Quantity for TipForcesDerivative {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "tip_forces_derivative",
+        "∂(JᵀF)/∂θ of the wrenches that frames apply to the environment",
+        &[THETA],
+        &[output("dtau", MATRIX, "N m or N, each per unit of its column")],
+    )
+    .uses(Uses::WRENCHES);
+}
+impl Kernel for TipForcesDerivative {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [dtau, ..]) = (c.inputs, c.outputs);
+        tip_forces_derivative(c.model, theta, c.environment.applied, &mut c.memory.workspace, dtau);
+    }
+}
+
+/// See [`mass_matrix_product_derivative`].
+#[derive(Clone, Copy, Debug)]
+pub struct MassMatrixProductDerivative;
+impl Quantity for MassMatrixProductDerivative {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "mass_matrix_product_derivative",
+        "∂(M(θ)x)/∂θ for a constant x",
+        &[THETA, CONSTANT_VECTOR],
+        &[output("dMx", MATRIX, "that of M x, each per unit of its column")],
+    );
+}
+impl Kernel for MassMatrixProductDerivative {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, x, _], [dMx, ..]) = (c.inputs, c.outputs);
+        mass_matrix_product_derivative(c.model, theta, x, &mut c.memory.workspace, dMx);
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
+use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
 /// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal. kg m², kg m or kg.
@@ -60,5 +61,26 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
         for (row, entries) in M.chunks_exact_mut(n).zip(G_c[0].to_matrix()) {
             row[..6].copy_from_slice(&entries);
         }
+    }
+}
+
+/// See [`mass_matrix`].
+#[derive(Clone, Copy, Debug)]
+pub struct MassMatrix;
+impl Quantity for MassMatrix {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "mass_matrix",
+        "M(θ), symmetric, with the rotors' inertia on its diagonal",
+        &[THETA],
+        &[output("M", MATRIX, INERTIA)],
+    );
+}
+impl Kernel for MassMatrix {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [M, ..]) = (c.inputs, c.outputs);
+        mass_matrix(c.model, theta, &mut c.memory.workspace, M);
     }
 }

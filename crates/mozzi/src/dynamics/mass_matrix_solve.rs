@@ -5,6 +5,9 @@ use super::joint_friction::joint_friction;
 use super::mass_matrix::mass_matrix;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{
+    ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, Rare, TAU, THETA, Uses, VECTOR, output, sized,
+};
 use crate::scalar::Scalar;
 
 /// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ̇), with h by one call of inverse dynamics. `M` is
@@ -37,5 +40,30 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     ldlt::solve(pattern, M, ddtheta);
     for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
         *pivot = M[j * n + j];
+    }
+}
+
+/// See [`forward_dynamics_by_mass_matrix`].
+#[derive(Clone, Copy, Debug)]
+pub struct ForwardDynamicsByMassMatrix;
+impl Quantity for ForwardDynamicsByMassMatrix {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "forward_dynamics_by_mass_matrix",
+        "θ̈ = M⁻¹(τ − c − g − JᵀF − f), by composite bodies and the factors of M along the tree",
+        &[THETA, DTHETA, TAU],
+        &[output("ddtheta", VECTOR, ACCELERATION)],
+    )
+    .uses(Uses::ALL)
+    .divides();
+}
+impl Kernel for ForwardDynamicsByMassMatrix {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, tau], [ddtheta, ..], n) = (c.inputs, c.outputs, c.model.n());
+        let Memory { workspace, matrix, .. } = c.memory;
+        let M = sized(matrix, n * n, S::zero());
+        forward_dynamics_by_mass_matrix(c.model, theta, dtheta, tau, c.environment, workspace, M, ddtheta);
     }
 }

@@ -2,10 +2,13 @@
 
 mod base_parameters;
 mod bias_forces;
+mod center_of_mass;
+mod centroidal_momentum;
 mod closed_form;
 mod coriolis_matrix;
 mod energy;
 mod forward_dynamics;
+mod forward_dynamics_by_inverse_dynamics;
 mod forward_dynamics_derivatives;
 mod inverse_dynamics;
 mod inverse_dynamics_derivatives;
@@ -20,19 +23,27 @@ mod task_space_dynamics;
 pub(crate) mod tests;
 
 pub use base_parameters::BaseParameters;
-pub use bias_forces::{bias_forces, gravity_forces, tip_forces, velocity_product};
+pub use bias_forces::{
+    BiasForces, GravityForces, TipForces, VelocityProduct, bias_forces, gravity_forces, tip_forces, velocity_product,
+};
+pub use center_of_mass::{
+    CenterOfMass, CenterOfMassAcceleration, CenterOfMassJacobian, CenterOfMassVelocity, center_of_mass,
+};
+pub use centroidal_momentum::{CentroidalMomentumBias, CentroidalMomentumMatrix};
 pub use closed_form::ClosedForm;
-pub use coriolis_matrix::{coriolis_matrix, mass_matrix_rate};
-pub use energy::{kinetic_energy, potential_energy};
-pub use forward_dynamics::forward_dynamics;
-pub use forward_dynamics_derivatives::forward_dynamics_derivatives;
-pub use inverse_dynamics::inverse_dynamics;
+pub use coriolis_matrix::{CoriolisMatrix, MassMatrixRate, coriolis_matrix, mass_matrix_rate};
+pub use energy::{KineticEnergy, PotentialEnergy, kinetic_energy, potential_energy};
+pub use forward_dynamics::{ForwardDynamics, forward_dynamics};
+pub use forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics;
+pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynamics_derivatives};
+pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
 pub use inverse_dynamics_derivatives::{
+    GravityForcesDerivative, InverseDynamicsDerivatives, MassMatrixProductDerivative, TipForcesDerivative,
     gravity_forces_derivative, inverse_dynamics_derivatives, mass_matrix_product_derivative, tip_forces_derivative,
 };
-pub use joint_friction::joint_friction;
-pub use mass_matrix::mass_matrix;
-pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;
-pub use momentum::{momentum, momentum_matrix, momentum_rate, total_inertia};
-pub use regressor::{energy_regressors, regressor};
-pub use task_space_dynamics::{TaskMemory, task_space_dynamics};
+pub use joint_friction::{JointFriction, joint_friction};
+pub use mass_matrix::{MassMatrix, mass_matrix};
+pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};
+pub use momentum::{Momentum, MomentumRate, momentum, momentum_matrix, momentum_rate, total_inertia};
+pub use regressor::{EnergyRegressors, Regressor, energy_regressors, regressor};
+pub use task_space_dynamics::{TaskSpaceDynamics, task_space_dynamics};

@@ -5,6 +5,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, Rare, SIX, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist, Wrench};
 
@@ -101,6 +102,7 @@ pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// 𝒢ᶜ of every slot; of a fixed base without its own.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
     model.assert_lengths(theta.len(), []);
@@ -117,10 +119,59 @@ fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &
 }
 
 /// 𝒢 of the base as far as it moves.
+#[cfg_attr(not(test), inline(always))]
 fn base_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> SpatialInertia<S> {
     if model.is_floating() { model.base_inertia.map(S::from) } else { SpatialInertia::zero() }
 }
 
+#[cfg_attr(not(test), inline(always))]
 fn seen_from_space<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], P: Wrench<S>) -> Wrench<S> {
     base_pose(model, theta).inverse().Ad().transpose() * P
+}
+
+/// See [`momentum`].
+#[derive(Clone, Copy, Debug)]
+pub struct Momentum;
+impl Quantity for Momentum {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "momentum",
+        "h, the momentum (angular, linear) of all that moves, about a point of {s}, in the axes of {s}",
+        &[THETA, DTHETA],
+        &[output("h", SIX, "kg m²/s, kg m/s")],
+    )
+    .of(Of::Point)
+    .is_of_masses();
+}
+impl Kernel for Momentum {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [h, ..], point) = (c.inputs, c.outputs, c.point);
+        h.copy_from_slice(&momentum(c.model, theta, dtheta, &mut c.memory.workspace).about(point).to_array());
+    }
+}
+
+/// See [`momentum_rate`].
+#[derive(Clone, Copy, Debug)]
+pub struct MomentumRate;
+impl Quantity for MomentumRate {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "momentum_rate",
+        "ḣ of the momentum about a fixed point of {s}, along a motion",
+        &[THETA, DTHETA, DDTHETA],
+        &[output("dh", SIX, "N m, N")],
+    )
+    .of(Of::Point)
+    .is_of_masses();
+}
+impl Kernel for MomentumRate {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, ddtheta], [dh, ..], point) = (c.inputs, c.outputs, c.point);
+        let rate = momentum_rate(c.model, theta, dtheta, ddtheta, &mut c.memory.workspace);
+        dh.copy_from_slice(&rate.about(point).to_array());
+    }
 }

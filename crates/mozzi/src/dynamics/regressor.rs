@@ -5,6 +5,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, Rare, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist};
 
@@ -27,6 +28,7 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or `Y` not n p.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn regressor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
@@ -75,6 +77,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `kinetic` or `potential` not p.
+#[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 #[allow(clippy::too_many_arguments)] // the energies' five, memory and two answers
 pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
@@ -106,5 +109,53 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
     }
     for (armature, &rate) in kinetic[10 * model.bodies().len()..].iter_mut().step_by(3).zip(&dtheta[model.base().velocities()..]) {
         *armature = half * rate * rate;
+    }
+}
+
+/// See [`regressor`].
+#[derive(Clone, Copy, Debug)]
+pub struct Regressor;
+impl Quantity for Regressor {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "regressor",
+        "Y(θ, θ̇, θ̈): τ = Yπ + JᵀF, with π the robot's parameters",
+        &[THETA, DTHETA, DDTHETA],
+        &[output("Y", &[Dim::N, Dim::Parameters], "N m or N, each per unit of its parameter")],
+    )
+    .uses(Uses::GRAVITY.and(Uses::BASE_TWIST).and(Uses::BASE_ACCELERATION));
+}
+impl Kernel for Regressor {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, ddtheta], [Y, ..]) = (c.inputs, c.outputs);
+        regressor(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, Y);
+    }
+}
+
+/// See [`energy_regressors`].
+#[derive(Clone, Copy, Debug)]
+pub struct EnergyRegressors;
+impl Quantity for EnergyRegressors {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "energy_regressors",
+        "the rows that give the kinetic and the potential energy of the parameters π",
+        &[THETA, DTHETA],
+        &[
+            output("kinetic", &[Dim::Parameters], "J, each per unit of its parameter"),
+            output("potential", &[Dim::Parameters], "J, each per unit of its parameter"),
+        ],
+    )
+    .uses(Uses::GRAVITY.and(Uses::BASE_TWIST))
+    .is_of_masses();
+}
+impl Kernel for EnergyRegressors {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [kinetic, potential, ..], e) = (c.inputs, c.outputs, c.environment);
+        energy_regressors(c.model, theta, dtheta, e.base_twist, e.gravity, &mut c.memory.workspace, kinetic, potential);
     }
 }

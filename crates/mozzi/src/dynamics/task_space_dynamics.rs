@@ -3,49 +3,10 @@
 use super::bias_forces::bias_forces;
 use super::mass_matrix::mass_matrix;
 use crate::kinematics::{body_jacobian, body_jacobian_rate, space_jacobian, space_jacobian_rate, twist_of};
-use crate::linalg::ldlt::{self, Pattern};
-use crate::model::{Environment, Model, Workspace};
+use crate::linalg::ldlt;
+use crate::model::{Environment, Model, Task, TaskFrame, TaskMemory, Workspace};
+use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quantity, THETA, Uses, output};
 use crate::scalar::Scalar;
-use crate::spatial::Twist;
-use crate::task_space::{Task, TaskFrame};
-use alloc::vec;
-use alloc::vec::Vec;
-
-/// Memory of [`task_space_dynamics`] for k rows, and what it finds on its way.
-#[derive(Clone, Debug)]
-pub struct TaskMemory<S = f64> {
-    /// J, k × n by rows.
-    pub J: Vec<S>,
-    /// J̇θ̇, k.
-    pub dJ_dtheta: Vec<S>,
-    /// What Λ⁻¹ divided by: where one is not above rounding of the others, the task is singular. Those of M are the workspace's.
-    pub pivots: Vec<S>,
-    /// Λ⁻¹ has no zeros to use.
-    dense: Pattern,
-    M: Vec<S>,
-    /// M⁻¹h.
-    h: Vec<S>,
-    /// A row of J M⁻¹.
-    row: Vec<S>,
-    columns: Vec<Twist<S>>,
-}
-
-impl<S: Scalar> TaskMemory<S> {
-    /// For a task of this many rows.
-    pub fn new<C: Scalar>(model: &Model<C>, rows: usize) -> Self {
-        let (n, o) = (model.n(), S::zero());
-        TaskMemory {
-            J: vec![o; rows * n],
-            dJ_dtheta: vec![o; rows],
-            pivots: vec![o; rows],
-            dense: Pattern::new(rows, rows, core::iter::empty()),
-            M: vec![o; n * n],
-            h: vec![o; n],
-            row: vec![o; n.max(rows)],
-            columns: vec![Twist::zero(); n],
-        }
-    }
-}
 
 /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k, and η = Λ(J M⁻¹h − J̇θ̇), k, of the k rows of a task: 𝓕 = Λ𝒱̇ + η. h as
 /// [`bias_forces`] in this environment, without friction.
@@ -113,4 +74,31 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     }
     ldlt::solve(dense, Lambda, eta);
     ldlt::invert(dense, Lambda, &mut row[..k]);
+}
+
+/// See [`task_space_dynamics`].
+#[derive(Clone, Copy, Debug)]
+pub struct TaskSpaceDynamics;
+impl Quantity for TaskSpaceDynamics {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "task_space_dynamics",
+        "Λ and η of 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱), the dynamics as the rows of a frame's twist show them",
+        &[THETA, DTHETA],
+        &[output("Lambda", &[Dim::Rows, Dim::Rows], "kg m², kg m, kg"), output("eta", &[Dim::Rows], "N m, N")],
+    )
+    .of(Of::Task)
+    .uses(Uses::ALL)
+    .divides();
+}
+impl Kernel for TaskSpaceDynamics {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [Lambda, eta, ..], task) = (c.inputs, c.outputs, c.of.task());
+        let Memory { workspace, task: memory, .. } = c.memory;
+        memory.take_if(|(rows, _)| *rows != task.rows.len());
+        let (_, own) = memory.get_or_insert_with(|| (task.rows.len(), TaskMemory::new(c.model, task.rows.len())));
+        task_space_dynamics(c.model, theta, dtheta, task, c.environment, workspace, own, Lambda, eta);
+    }
 }

@@ -3,6 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model, Workspace};
+use crate::quantity::{Call, Declaration, Dim, Kernel, Of, Quantity, Rare, THETA, output, sized};
 use crate::scalar::Scalar;
 
 /// The configuration `T_sb` of a frame {b} seen from {s}, at the positions θ.
@@ -42,5 +43,52 @@ pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     for (pose, (id, _)) in poses.iter_mut().zip(model.frames()) {
         let frame = model.frame_at::<S>(id);
         *pose = T[frame.slot] * frame.T;
+    }
+}
+
+/// See [`forward_kinematics`].
+#[derive(Clone, Copy, Debug)]
+pub struct ForwardKinematics;
+impl Quantity for ForwardKinematics {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "forward_kinematics",
+        "T_sb(θ), the configuration of a frame {b} seen from {s}",
+        &[THETA],
+        &[output("T", &[Dim::Is(4), Dim::Is(4)], "m")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for ForwardKinematics {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [T, ..]) = (c.inputs, c.outputs);
+        T.copy_from_slice(forward_kinematics(c.model, theta, c.of.frame()).to_matrix().as_flattened());
+    }
+}
+
+/// See [`frame_poses`].
+#[derive(Clone, Copy, Debug)]
+pub struct FramePoses;
+impl Quantity for FramePoses {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "frame_poses",
+        "T_sb(θ) of all frames, in the order of the model's list",
+        &[THETA],
+        &[output("T", &[Dim::Frames, Dim::Is(4), Dim::Is(4)], "m")],
+    );
+}
+impl Kernel for FramePoses {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [T, ..]) = (c.inputs, c.outputs);
+        let poses = sized(&mut c.memory.poses, c.model.frames().len(), SE3::identity());
+        frame_poses(c.model, theta, &mut c.memory.workspace, poses);
+        for (T, pose) in T.chunks_exact_mut(16).zip(poses) {
+            T.copy_from_slice(pose.to_matrix().as_flattened());
+        }
     }
 }

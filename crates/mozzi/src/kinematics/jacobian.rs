@@ -3,6 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
+use crate::quantity::{Call, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
@@ -101,4 +102,52 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
         }
     }
     base_pose(model, theta) * T.inverse()
+}
+
+/// See [`space_jacobian`].
+#[derive(Clone, Copy, Debug)]
+pub struct SpaceJacobian;
+impl Quantity for SpaceJacobian {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "space_jacobian",
+        "J_s(θ) of a frame: its twist in {s} is J_sθ̇, (ω, v)",
+        &[THETA],
+        &[output("J", JACOBIAN, "1 or m")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for SpaceJacobian {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [J, ..], frame) = (c.inputs, c.outputs, c.of.frame());
+        let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
+        space_jacobian(c.model, theta, frame, columns);
+        by_rows(columns.iter().map(|column| column.to_array()), J);
+    }
+}
+
+/// See [`body_jacobian`].
+#[derive(Clone, Copy, Debug)]
+pub struct BodyJacobian;
+impl Quantity for BodyJacobian {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "body_jacobian",
+        "J_b(θ) of a frame: its twist in its own coordinates is J_bθ̇, (ω, v)",
+        &[THETA],
+        &[output("J", JACOBIAN, "1 or m")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for BodyJacobian {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [J, ..], frame) = (c.inputs, c.outputs, c.of.frame());
+        let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
+        body_jacobian(c.model, theta, frame, columns);
+        by_rows(columns.iter().map(|column| column.to_array()), J);
+    }
 }

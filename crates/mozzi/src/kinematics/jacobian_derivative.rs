@@ -3,6 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model, Workspace};
+use crate::quantity::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, Rare, THETA, by_rows, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
@@ -13,6 +14,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or `H` not n².
+#[cfg_attr(not(test), inline(always))]
 pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -30,6 +32,7 @@ pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `H` not n².
+#[cfg_attr(not(test), inline(always))]
 pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -54,6 +57,7 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of joints on the frame's path; returns `T_sb`.
+#[cfg_attr(not(test), inline(always))]
 fn brackets<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -85,4 +89,60 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
         }
     }
     base_pose(model, theta) * T.inverse()
+}
+
+/// See [`space_jacobian_derivative`].
+#[derive(Clone, Copy, Debug)]
+pub struct SpaceJacobianDerivative;
+impl Quantity for SpaceJacobianDerivative {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "space_jacobian_derivative",
+        "∂J_s/∂θ_j of a frame for each velocity j",
+        &[THETA],
+        &[output("H", JACOBIANS, "1 or m, each per unit of θ_j")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for SpaceJacobianDerivative {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [H, ..], n) = (c.inputs, c.outputs, c.model.n());
+        let columns = sized(&mut c.memory.twists, n * n, Twist::zero());
+        space_jacobian_derivative(c.model, theta, c.of.frame(), &mut c.memory.workspace, columns);
+        by_velocity(columns, n, H);
+    }
+}
+
+/// See [`body_jacobian_derivative`].
+#[derive(Clone, Copy, Debug)]
+pub struct BodyJacobianDerivative;
+impl Quantity for BodyJacobianDerivative {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "body_jacobian_derivative",
+        "∂J_b/∂θ_j of a frame for each velocity j",
+        &[THETA],
+        &[output("H", JACOBIANS, "1 or m, each per unit of θ_j")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for BodyJacobianDerivative {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [H, ..], n) = (c.inputs, c.outputs, c.model.n());
+        let columns = sized(&mut c.memory.twists, n * n, Twist::zero());
+        body_jacobian_derivative(c.model, theta, c.of.frame(), &mut c.memory.workspace, columns);
+        by_velocity(columns, n, H);
+    }
+}
+
+/// From H[i n + j] = ∂J_i/∂θ_j to one 6 × n matrix for each j.
+#[inline(always)]
+fn by_velocity<S: Scalar>(columns: &[Twist<S>], n: usize, H: &mut [S]) {
+    for (j, matrix) in H.chunks_exact_mut(6 * n).enumerate() {
+        by_rows((0..n).map(|i| columns[i * n + j].to_array()), matrix);
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::jacobian::{body_columns, twist_of};
 use crate::model::{FrameId, Model, Workspace};
+use crate::quantity::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
@@ -55,5 +56,53 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
     let V_b = twist_of(J, dtheta);
     for (dJ_i, &J_i) in dJ.iter_mut().zip(&*J) {
         *dJ_i = T_sb.Ad() * (V_b.ad() * J_i + *dJ_i);
+    }
+}
+
+/// See [`space_jacobian_rate`].
+#[derive(Clone, Copy, Debug)]
+pub struct SpaceJacobianRate;
+impl Quantity for SpaceJacobianRate {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "space_jacobian_rate",
+        "dJ_s/dt of a frame",
+        &[THETA, DTHETA],
+        &[output("dJ", JACOBIAN, "1/s or m/s")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for SpaceJacobianRate {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
+        let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
+        space_jacobian_rate(c.model, theta, dtheta, frame, &mut c.memory.workspace, columns);
+        by_rows(columns.iter().map(|column| column.to_array()), dJ);
+    }
+}
+
+/// See [`body_jacobian_rate`].
+#[derive(Clone, Copy, Debug)]
+pub struct BodyJacobianRate;
+impl Quantity for BodyJacobianRate {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "body_jacobian_rate",
+        "dJ_b/dt of a frame",
+        &[THETA, DTHETA],
+        &[output("dJ", JACOBIAN, "1/s or m/s")],
+    )
+    .of(Of::Frame);
+}
+impl Kernel for BodyJacobianRate {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, _], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
+        let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
+        body_jacobian_rate(c.model, theta, dtheta, frame, columns);
+        by_rows(columns.iter().map(|column| column.to_array()), dJ);
     }
 }

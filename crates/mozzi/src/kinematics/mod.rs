@@ -23,7 +23,9 @@ pub use configuration::{difference, integrate, rate_of_logarithm, seed_direction
 pub use exponentials::{
     body_jacobian_of_screws, body_product_of_exponentials, product_of_exponentials, space_jacobian_of_screws,
 };
-pub use forward::{forward_kinematics, frame_poses};
-pub use jacobian::{Jacobian, body_jacobian, space_jacobian};
-pub use jacobian_derivative::{body_jacobian_derivative, space_jacobian_derivative};
-pub use jacobian_rate::{body_jacobian_rate, space_jacobian_rate};
+pub use forward::{ForwardKinematics, FramePoses, forward_kinematics, frame_poses};
+pub use jacobian::{BodyJacobian, Jacobian, SpaceJacobian, body_jacobian, space_jacobian};
+pub use jacobian_derivative::{
+    BodyJacobianDerivative, SpaceJacobianDerivative, body_jacobian_derivative, space_jacobian_derivative,
+};
+pub use jacobian_rate::{BodyJacobianRate, SpaceJacobianRate, body_jacobian_rate, space_jacobian_rate};

@@ -43,6 +43,14 @@ pub enum Error {
         /// What there is.
         known: Vec<String>,
     },
+    /// No quantity has this name.
+    #[error("there is no quantity `{name}`; expected one of {}", all_names(known))]
+    NoSuchQuantity {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
     /// The end effector is not obvious.
     #[error("the end effector has to be named: this robot ends in {}", names(leaves))]
     NoEndEffector {
@@ -95,6 +103,12 @@ pub enum Error {
         /// Seconds.
         step_size: f64,
     },
+    /// Nothing that moves has mass.
+    #[error("the robot's total mass is {mass} kg; the centre of mass is undefined")]
+    NoMass {
+        /// kg.
+        mass: f64,
+    },
     /// An argument outside its domain.
     #[error("{what} is {found}, expected {expected}")]
     BadArgument {
@@ -114,6 +128,10 @@ fn list(problems: &[Problem]) -> String {
         let _ = write!(text, "\n  {problem}");
         text
     })
+}
+
+fn all_names(names: &[&str]) -> String {
+    names.join(", ")
 }
 
 pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {

@@ -11,9 +11,11 @@ mod error;
 mod frame;
 mod link;
 mod parameters;
+mod pivots;
 mod provenance;
 mod reduced;
 mod screws;
+mod task;
 mod traverse;
 mod variation;
 mod workspace;
@@ -31,10 +33,12 @@ pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
 pub(crate) use link::{Lifted, Link};
+pub use pivots::{Pivots, least_is_clear};
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
+pub use task::{Task, TaskFrame, TaskMemory};
 pub use variation::Variation;
-pub use workspace::{Workspace, are_regular};
+pub use workspace::Workspace;
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
 /// fixed joints are folded away, and every frame of the file survives as a [`Frame`].
@@ -89,6 +93,12 @@ impl<C: Scalar> Model<C> {
     /// The number of positions: the length of θ. n, and one more where the base floats: a quaternion has four entries.
     pub fn nq(&self) -> usize {
         self.base.positions() + self.structure.joints.len()
+    }
+
+    /// The mass of all that moves, kg: of the moving links, and of a floating base.
+    pub fn mass(&self) -> C {
+        let base = if self.is_floating() { self.base_inertia.mass } else { C::zero() };
+        self.links.iter().fold(base, |sum, link| sum + link.G.mass)
     }
 
     /// The number N of moving links; larger than n where joints follow others.

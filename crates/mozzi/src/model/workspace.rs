@@ -65,8 +65,8 @@ impl<S: Scalar> Workspace<S> {
         }
     }
 
-    /// What the last forward dynamics, or its derivatives, divided by, joint by joint: where a pivot is not above rounding of the
-    /// others, the mass matrix is singular. A kernel cannot compare numbers; the methods of [`Model`] do.
+    /// What the last forward dynamics, or its derivatives, divided by, joint by joint: see [`Pivots`](super::Pivots), which judges them. A
+    /// kernel cannot compare numbers; the methods of [`Model`] do.
     pub fn pivots(&self) -> &[S] {
         &self.pivots
     }
@@ -91,19 +91,4 @@ impl<S: Scalar> Workspace<S> {
             list.fill(nan);
         }
     }
-}
-
-impl<S: Copy + Into<f64>> Workspace<S> {
-    /// Was all that the last forward dynamics, or its derivatives, divided by far from rounding of the largest? Where not,
-    /// [`Model::forward_dynamics`] looks closer, and says which joint's inertia is too small.
-    pub fn is_regular(&self) -> bool {
-        are_regular(&self.pivots)
-    }
-}
-
-/// Are these pivots of a mass matrix far from rounding of the largest?
-pub fn are_regular<S: Copy + Into<f64>>(pivots: &[S]) -> bool {
-    let pivots = pivots.iter().map(|&pivot| pivot.into());
-    let largest = pivots.clone().fold(0.0_f64, f64::max);
-    pivots.fold(true, |fine, d| fine & (d > 1e-8 * largest) & (d < f64::INFINITY))
 }

@@ -1,20 +1,16 @@
 //! The differential equation of a driven robot: θ̈ = FD(θ, θ̇, τ, F), and the powers beside it.
 //!
-//! Forward dynamics is asked with the machine's fused multiply-add, where there is `std` to find it, or [by another](ForwardDynamics).
+//! Forward dynamics is computed with the machine's fused multiply-add, where there is `std` to find it, or [by another](ForwardDynamics).
 
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
-#[cfg(not(feature = "std"))]
-use crate::dynamics::forward_dynamics;
 use crate::dynamics::{kinetic_energy, potential_energy};
-#[cfg(feature = "std")]
-use crate::fast::{Workspace as Fast, forward_dynamics};
+use crate::fast;
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
-#[cfg(not(feature = "std"))]
-use crate::model::Workspace as Fast;
-use crate::model::{Environment, Error, FrameId, Model, Workspace, are_regular};
+use crate::model::{Environment, Error, FrameId, Model, Workspace};
+use crate::quantities;
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use alloc::format;
@@ -25,17 +21,17 @@ use alloc::vec::Vec;
 /// Powers in watts: of the motors, of friction, and what the environment takes.
 pub type Powers = [f64; 3];
 
-/// Another way to θ̈ than the kernels: a program for the one robot, in its own gravity, touching nothing, such as `mozzi_codegen::Compiled`.
+/// Another way to θ̈ than the kernels: a program for the one robot, in its own gravity, touching nothing, such as `mozzi_batch::Compiled`.
 /// Elsewhere the kernels are asked.
 pub trait ForwardDynamics {
     /// The robot.
     fn model(&self) -> &Model;
 
-    /// Writes θ̈, and the pivots of M that it was divided by, n numbers each, as [`Workspace::pivots`] has them.
+    /// Writes θ̈. Are the pivots of M that it was divided by clear of rounding? See [`Pivots`](crate::Pivots).
     ///
     /// # Panics
     /// On slices of a wrong length.
-    fn write(&self, theta: &[f64], dtheta: &[f64], tau: &[f64], ddtheta: &mut [f64], pivots: &mut [f64]);
+    fn write(&self, theta: &[f64], dtheta: &[f64], tau: &[f64], ddtheta: &mut [f64]) -> bool;
 }
 
 /// A robot, its input, and memory: what a method of integration asks, [`Method`](super::Method)'s or one's own.
@@ -49,15 +45,15 @@ pub struct Equation<'m, I> {
     /// δt and the step that is being taken, for errors.
     step_size: f64,
     step: usize,
-    /// Asked in place of the kernels, with memory for its pivots.
-    other: Option<(&'m dyn ForwardDynamics, Vec<f64>)>,
+    /// In place of the kernels.
+    other: Option<&'m dyn ForwardDynamics>,
     /// The motors' τ of the last evaluation.
     tau: Vec<f64>,
     /// τ as forward dynamics gets it.
     force: Vec<f64>,
     wrenches: Vec<(FrameId, Wrench)>,
     columns: Vec<Twist>,
-    fast: Fast,
+    fast: fast::Workspace,
     workspace: Workspace,
 }
 
@@ -77,7 +73,7 @@ impl<'m, I: Input> Equation<'m, I> {
             force: vec![0.0; model.n()],
             wrenches: Vec::new(),
             columns: vec![Twist::zero(); model.n()],
-            fast: Fast::new(model),
+            fast: fast::Workspace::new(model),
             workspace: Workspace::new(model),
         }
     }
@@ -91,7 +87,7 @@ impl<'m, I: Input> Equation<'m, I> {
         let (mine, its) = (self.model.description(), other.model().description());
         check(mine == its, "the forward dynamics", format!("that of another robot, `{}`", its.name), "this robot's")?;
         if self.gravity == self.model.gravity() {
-            self.other = Some((other, vec![0.0; self.model.n()]));
+            self.other = Some(other);
         }
         Ok(self)
     }
@@ -125,18 +121,17 @@ impl<'m, I: Input> Equation<'m, I> {
         self.ask_input(t, theta, dtheta)?;
         let friction_power = self.friction(dtheta);
         let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
-        let is_regular = match &mut self.other {
-            Some((other, pivots)) if self.wrenches.is_empty() => {
-                other.write(theta, dtheta, &self.force, ddtheta, pivots);
-                are_regular(pivots)
-            }
+        let state = [theta, dtheta, &self.force];
+        let is_clear = match &mut self.other {
+            Some(other) if self.wrenches.is_empty() => other.write(theta, dtheta, &self.force, ddtheta),
             _ => {
-                forward_dynamics(self.model, theta, dtheta, &self.force, &environment, &mut self.fast, ddtheta);
-                self.fast.is_regular()
+                let query = quantities::ForwardDynamics.into();
+                fast::evaluate(query, self.model, &state, &environment, &mut self.fast, &mut [ddtheta]);
+                self.fast.are_pivots_clear(query)
             }
         };
-        if !is_regular {
-            self.model.forward_dynamics(theta, dtheta, &self.force, &environment)?; // looks closer
+        if !is_clear {
+            self.model.compute(quantities::ForwardDynamics, &state, &environment)?; // names what is singular, if anything is
         }
         let applied_power = self.applied_power(theta, dtheta);
         self.bounded("ddtheta", t, ddtheta)?;

@@ -5,7 +5,7 @@ use super::options::check;
 use super::{Friction, Motion, Options};
 use crate::dynamics::forward_dynamics;
 use crate::kinematics::{difference, seed_direction};
-use crate::model::{Environment, Error, Model, Variation, Workspace};
+use crate::model::{Environment, Error, Model, Pivots, Variation, Workspace};
 use crate::scalar::{Dual, Real, Scalar};
 use alloc::format;
 use alloc::vec;
@@ -74,7 +74,9 @@ impl Model<f64> {
     ) -> Result<(Vec<f64>, Vec<f64>), Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("tau", tau)])?;
         options.check()?;
-        let fine = |theta: &[f64], workspace: &mut Workspace| self.check_pivots(theta, workspace);
+        let fine = |theta: &[f64], workspace: &mut Workspace| {
+            Pivots::new(workspace.pivots()).check(self, theta, || self.mass_matrix_rows(theta))
+        };
         let end = step(self, theta, dtheta, tau, options, &mut Workspace::new(self), fine)?;
         Ok((end.theta, end.dtheta))
     }

@@ -1,55 +1,9 @@
 //! Dynamics in the task space (Modern Robotics, section 8.6; for redundant robots Khatib 1987).
 
-use crate::dynamics::{self as kernel, TaskMemory};
-use crate::model::{Environment, Error, FrameId, Model, Workspace};
-use alloc::vec;
+use crate::model::{Environment, Error, Model, Task};
+use crate::quantities::{self as q, Memory, Query};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
-
-/// In whose coordinates the task's twist and wrench are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TaskFrame {
-    /// The frame's own: 𝒱_b, with v the velocity of the frame's origin.
-    Body,
-    /// The base's: 𝒱_s, with v the velocity of the point of the body that is at the base's origin.
-    Space,
-}
-
-/// What the task is: a frame, whose coordinates, and which of the six rows (ω, v), by index.
-#[derive(Clone, Copy, Debug)]
-pub struct Task<'a> {
-    /// The frame that is to move.
-    pub frame: FrameId,
-    /// In whose coordinates.
-    pub coordinates: TaskFrame,
-    /// Rows of (ω_x, ω_y, ω_z, v_x, v_y, v_z), each once.
-    pub rows: &'a [usize],
-}
-
-impl Task<'_> {
-    /// All six rows.
-    pub fn all(frame: FrameId, coordinates: TaskFrame) -> Self {
-        Task { frame, coordinates, rows: &[0, 1, 2, 3, 4, 5] }
-    }
-
-    /// Is the frame one of this model, and are the rows some of six, each once?
-    ///
-    /// # Errors
-    /// [`Error::BadArgument`].
-    pub fn check(&self, model: &Model) -> Result<(), Error> {
-        model.check_frame(self.frame)?;
-        let distinct = (1..self.rows.len()).all(|k| !self.rows[..k].contains(&self.rows[k]));
-        if self.rows.is_empty() || self.rows.iter().any(|&row| row > 5) || !distinct {
-            let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
-            return Err(Error::BadArgument {
-                what: "the task's rows",
-                found: alloc::format!("{:?}", self.rows),
-                expected,
-            });
-        }
-        Ok(())
-    }
-}
 
 /// 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱) for the k rows of a task.
 #[derive(Clone, Debug)]
@@ -87,35 +41,14 @@ impl Model<f64> {
         task: Task,
         environment: &Environment,
     ) -> Result<TaskSpaceDynamics, Error> {
-        self.check_lengths(theta, [("dtheta", dtheta)])?;
-        self.check_environment(environment)?;
-        task.check(self)?;
-        let (n, k) = (self.n(), task.rows.len());
-        let (mut workspace, mut memory) = (Workspace::new(self), TaskMemory::new(self, k));
-        let (mut Lambda, mut eta) = (vec![0.0; k * k], vec![0.0; k]);
-        kernel::task_space_dynamics(
-            self,
-            theta,
-            dtheta,
-            task,
-            environment,
-            &mut workspace,
-            &mut memory,
-            &mut Lambda,
-            &mut eta,
-        );
-        self.check_pivots(theta, &mut workspace)?;
+        let (n, k, memory) = (self.n(), task.rows.len(), &mut Memory::new(self));
+        let query = Query::from(q::TaskSpaceDynamics).of_task(task);
+        let found = self.compute_in(memory, query, &[theta, dtheta], environment)?;
+        let [Lambda, eta] = <[Vec<f64>; 2]>::try_from(found).expect("two outputs");
+        let memory = memory.task().expect("of this task");
         let J = DMatrix::from_row_slice(k, n, &memory.J);
-        // nothing can be decomposed where no joint moves
-        let mut singular_values: Vec<f64> =
-            if n == 0 { Vec::new() } else { J.singular_values().iter().copied().collect() };
-        singular_values.resize(k, 0.0); // more rows than joints
-        let tolerance = 1e-12 * singular_values[0];
-        if singular_values.iter().any(|&s| s <= tolerance) || memory.pivots.iter().any(|&pivot| pivot <= 0.0) {
-            return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
-        }
         let (Lambda, eta) = (DMatrix::from_vec(k, k, Lambda), DVector::from_vec(eta)); // symmetric
-        let dJ_dtheta = DVector::from_vec(memory.dJ_dtheta);
+        let dJ_dtheta = DVector::from_column_slice(&memory.dJ_dtheta);
         Ok(TaskSpaceDynamics { Lambda, eta, J, dJ_dtheta })
     }
 }
@@ -123,6 +56,7 @@ impl Model<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::TaskFrame;
     use crate::testing::{state, tree};
 
     /// A chain of this many joints whose tip can move in all six directions.

@@ -1,0 +1,285 @@
+//! A robot whose quantities are machine code.
+
+use crate::{Batch, Engine, Layout};
+use mozzi::quantities::{ForwardDynamics, Query};
+use mozzi::simulation::{self, Equation, Input, Options};
+use mozzi::{Error, Model, Pivots, Trajectory, fast};
+use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest, touching nothing. Results
+/// are the model's to rounding, errors the same. What was not asked for, or has no machine code here (see [`engine`](Self::engine)),
+/// the kernels compute.
+///
+/// It is constant and belongs to no thread: share it. Clones share the code.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    batch: Batch,
+    machines: Arc<Vec<Machine>>,
+    /// Memory for the kernels; a call that finds it in use makes its own.
+    workspace: Arc<Mutex<fast::Workspace>>,
+}
+
+/// A quantity at one state.
+#[derive(Debug)]
+struct Machine {
+    index: usize,
+    /// With its rows owned.
+    rows: Vec<usize>,
+    subject: (Option<mozzi::FrameId>, mozzi::TaskFrame, mozzi::Vec3),
+    code: Result<Kernel, Refusal>,
+    /// The lengths of the pivots behind its outputs.
+    pivots: Vec<usize>,
+}
+
+impl Machine {
+    fn new(model: &Model, query: Query) -> Result<Self, Error> {
+        let program = record_quantity(model, query, Arguments::default())?;
+        let lengths: Vec<usize> = program.outputs().iter().map(|output| output.values.len()).collect();
+        let own = lengths.len() - pivot_names(&query).len();
+        let subject = query.subject;
+        Ok(Machine {
+            index: query.index(),
+            rows: subject.rows.to_vec(),
+            subject: (subject.frame, subject.coordinates, subject.point),
+            code: Kernel::new(&program, Shape::OneF64),
+            pivots: lengths[own..].to_vec(),
+        })
+    }
+
+    fn is_of(&self, query: Query) -> bool {
+        let subject = query.subject;
+        self.index == query.index()
+            && self.subject == (subject.frame, subject.coordinates, subject.point)
+            && self.rows == subject.rows
+    }
+}
+
+/// The machine code of these quantities of a robot. About a quarter of a millisecond for an arm's inverse dynamics.
+///
+/// ```
+/// use mozzi::quantities::{InverseDynamics, MassMatrix, Query};
+/// use mozzi_batch::compile;
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let model = mozzi_urdf::open("panda")?.build()?;
+/// let robot = compile(&model, &[InverseDynamics.into(), MassMatrix.into()])?;
+///
+/// let (theta, dtheta, ddtheta, mut tau) = (vec![0.3; 8], vec![0.1; 8], vec![0.2; 8], vec![0.0; 8]);
+/// robot.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], &mut [&mut tau])?;
+/// let reference = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment())?;
+/// assert!(tau.iter().zip(&reference).all(|(a, b)| (a - b).abs() < 1e-12));
+/// println!("{}; arrays: {}", robot.engine(InverseDynamics), robot.batch().engine(InverseDynamics));
+/// # Ok(()) }
+/// ```
+///
+/// # Errors
+/// [`Error::BadArgument`] for a frame that is missing or another model's.
+pub fn compile(model: &Model, queries: &[Query]) -> Result<Compiled, Error> {
+    Compiled::of(Batch::new(model), queries)
+}
+
+impl Compiled {
+    /// Many states as this batch has them: its instructions, its threads, its layout. See [`compile`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of(batch: Batch, queries: &[Query]) -> Result<Self, Error> {
+        let machines = queries.iter().map(|&query| Machine::new(batch.model(), query)).collect::<Result<_, _>>()?;
+        let batch = batch.compile(queries).map_err(|error| match error {
+            crate::Error::Model(error) => error,
+            other => unreachable!("of the quantity alone: {other}"),
+        })?;
+        let workspace = Arc::new(Mutex::new(fast::Workspace::new(batch.model())));
+        Ok(Compiled { batch, machines: Arc::new(machines), workspace })
+    }
+
+    /// The robot.
+    pub fn model(&self) -> &Model {
+        self.batch.model()
+    }
+
+    /// Many states: a batch that goes by the machine code of these quantities in the robot's own environment.
+    pub fn batch(&self) -> &Batch {
+        &self.batch
+    }
+
+    /// On this many threads; by default on all cores.
+    ///
+    /// # Errors
+    /// [`Error::Threads`](crate::Error::Threads) for none, or where the system gives no more.
+    pub fn with_threads(self, threads: usize) -> Result<Self, crate::Error> {
+        Ok(Compiled { batch: self.batch.with_threads(threads)?, ..self })
+    }
+
+    /// With the tables of many states in this layout; by default in rows.
+    pub fn with_layout(self, layout: Layout) -> Self {
+        Compiled { batch: self.batch.with_layout(layout), ..self }
+    }
+
+    /// What computes this quantity at one state.
+    pub fn engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
+        self.machine(query.into()).map_or(Engine::Kernels(Refusal::NotAsked), |machine| Engine::of(&machine.code))
+    }
+
+    /// What computes this quantity at many states.
+    pub fn batch_engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
+        self.batch.engine(query)
+    }
+
+    fn machine(&self, query: Query) -> Option<&Machine> {
+        self.machines.iter().find(|machine| machine.is_of(query))
+    }
+
+    /// The outputs of a quantity at one state, for control loops: where there is machine code nothing is allocated. Arguments are not
+    /// checked beyond their lengths: singular matrices and quaternions of any length go through. Are the pivots clear of rounding?
+    ///
+    /// # Panics
+    /// On another number of arrays, or one of a wrong length.
+    #[inline]
+    pub fn evaluate<'q>(&self, query: impl Into<Query<'q>>, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> bool {
+        let query = query.into();
+        if let Some(machine) = self.machine(query)
+            && let Ok(kernel) = &machine.code
+            && let Some(are_clear) = machine.run(kernel, state, outputs)
+        {
+            return are_clear;
+        }
+        self.evaluate_by_kernels(query, state, outputs)
+    }
+
+    #[cold]
+    fn evaluate_by_kernels(&self, query: Query, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> bool {
+        let mut shared = match self.workspace.try_lock() {
+            Ok(workspace) => Some(workspace),
+            Err(std::sync::TryLockError::Poisoned(poisoned)) => Some(PoisonError::into_inner(poisoned)),
+            Err(std::sync::TryLockError::WouldBlock) => None,
+        };
+        let mut own = None;
+        let workspace = match &mut shared {
+            Some(workspace) => &mut **workspace,
+            None => own.insert(fast::Workspace::new(self.model())),
+        };
+        fast::evaluate(query, self.model(), state, &self.model().environment(), workspace, outputs);
+        workspace.are_pivots_clear(query)
+    }
+
+    /// [`evaluate`](Self::evaluate) with checked arguments and judged pivots: see [`Model::compute`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn compute<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        outputs: &mut [&mut [f64]],
+    ) -> Result<(), Error> {
+        let (query, environment) = (query.into(), self.model().environment());
+        query.check(self.model(), inputs, &environment)?;
+        if !self.evaluate(query, inputs, outputs) {
+            for (output, values) in outputs.iter_mut().zip(self.model().compute(query, inputs, &environment)?) {
+                output.copy_from_slice(&values);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The most pivots that fit on the stack: of larger robots they go to the heap.
+const PIVOTS: usize = 64;
+
+impl Machine {
+    /// None where an angle is beyond the reduction, or NaN; else, are the pivots clear of rounding?
+    #[inline]
+    fn run(&self, kernel: &Kernel, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> Option<bool> {
+        let mut squares = [0.0];
+        if self.pivots.is_empty() {
+            kernel.call(state, outputs, &mut squares);
+            return kernel.is_exact(squares[0]).then_some(true);
+        }
+        let (mut few, mut many) = ([0.0; PIVOTS], Vec::new());
+        let count: usize = self.pivots.iter().sum();
+        let mut rest: &mut [f64] = if count <= PIVOTS {
+            &mut few[..count]
+        } else {
+            many.resize(count, 0.0);
+            &mut many
+        };
+        let mut all: [&mut [f64]; MOST_OUTPUTS] = Default::default();
+        let own = outputs.len();
+        for (place, output) in all.iter_mut().zip(outputs) {
+            *place = output;
+        }
+        for (place, &length) in all[own..].iter_mut().zip(&self.pivots) {
+            (*place, rest) = rest.split_at_mut(length);
+        }
+        let last = own + self.pivots.len();
+        kernel.call(state, &mut all[..last], &mut squares);
+        let are_clear = all[own..last].iter().all(|pivots| Pivots::new(pivots).are_clear());
+        kernel.is_exact(squares[0]).then_some(are_clear)
+    }
+}
+
+/// The most outputs of a program: a quantity's, and two kinds of pivots.
+const MOST_OUTPUTS: usize = mozzi::quantities::MOST_OUTPUTS + 2;
+
+impl simulation::ForwardDynamics for Compiled {
+    fn model(&self) -> &Model {
+        self.model()
+    }
+
+    fn write(&self, theta: &[f64], dtheta: &[f64], tau: &[f64], ddtheta: &mut [f64]) -> bool {
+        self.evaluate(ForwardDynamics, &[theta, dtheta, tau], &mut [ddtheta])
+    }
+}
+
+impl Compiled {
+    /// Machine code for θ̈, where there is some.
+    pub fn simulator(&self) -> Option<&dyn simulation::ForwardDynamics> {
+        let is_code = matches!(self.engine(ForwardDynamics), Engine::MachineCode(..));
+        is_code.then_some(self as &dyn simulation::ForwardDynamics)
+    }
+
+    /// The motion from (θ(0), θ̇(0)): see [`Model::simulate`], with forward dynamics by machine code where it was asked for, nothing is
+    /// touched and gravity is the robot's own.
+    ///
+    /// ```
+    /// use mozzi::quantities::ForwardDynamics;
+    /// use mozzi::simulation::{Options, Zero};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let model = mozzi_urdf::open("ur5")?.build()?;
+    /// let robot = mozzi_batch::compile(&model, &[ForwardDynamics.into()])?;
+    /// let fall = robot.simulate(&[0.1; 6], &[0.0; 6], Zero, &Options::new(0.2, 200))?;
+    /// assert!(fall.largest_drift() < 1e-6);
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    /// As there.
+    pub fn simulate(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        input: impl Input,
+        options: &Options,
+    ) -> Result<Trajectory, Error> {
+        self.simulate_with_progress(theta, dtheta, input, options, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// As [`simulate`](Self::simulate), telling `progress` as [`Model::simulate_with_progress`] does.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn simulate_with_progress(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        input: impl Input,
+        options: &Options,
+        progress: impl FnMut(usize, usize) -> ControlFlow<()>,
+    ) -> Result<Trajectory, Error> {
+        Equation::new(self.model(), input, options)
+            .with_forward_dynamics(self.simulator())?
+            .simulate(theta, dtheta, progress)
+    }
+}

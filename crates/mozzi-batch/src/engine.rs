@@ -1,0 +1,42 @@
+//! What computes a quantity.
+
+use mozzi_codegen::{Kernel, Refusal, Shape};
+use std::fmt;
+
+/// What computes a quantity, at one state or in arrays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Engine {
+    /// Machine code of this shape, and its length in bytes.
+    MachineCode(Shape, usize),
+    /// The kernels, and why there is no machine code.
+    Kernels(Refusal),
+    /// The recorded program, step by step on registers, and why it is no machine code.
+    Interpreter(Refusal),
+}
+
+impl Engine {
+    pub(crate) fn of(code: &Result<Kernel, Refusal>) -> Self {
+        match code {
+            Ok(kernel) => Engine::MachineCode(kernel.shape(), kernel.code_bytes()),
+            Err(refusal) => Engine::Kernels(*refusal),
+        }
+    }
+
+    /// Of a quantity that has no kernel on registers.
+    pub(crate) fn of_program(code: &Result<Kernel, Refusal>) -> Self {
+        match Engine::of(code) {
+            Engine::Kernels(refusal) => Engine::Interpreter(refusal),
+            engine => engine,
+        }
+    }
+}
+
+impl fmt::Display for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Engine::MachineCode(shape, bytes) => write!(f, "machine code ({}), {bytes} bytes", shape.instruction_set()),
+            Engine::Kernels(refusal) => write!(f, "kernels: {refusal}"),
+            Engine::Interpreter(refusal) => write!(f, "interpreter: {refusal}"),
+        }
+    }
+}

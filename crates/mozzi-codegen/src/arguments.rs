@@ -1,0 +1,127 @@
+//! A robot's quantities as programs.
+
+use crate::program::Program;
+use crate::record::record;
+use crate::traced::Traced;
+use mozzi::quantities::{ForwardDynamics, ForwardDynamicsByMassMatrix, Memory, Of, Query};
+use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};
+
+/// What stays an argument of the program instead of a constant in it: further inputs after the state, in this order. By default nothing
+/// does: all numbers of the robot are in the program, its base is at rest and it touches nothing, and what is multiplied by a zero falls
+/// away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Arguments<'a> {
+    /// `parameters`: [`Model::parameters`], the masses, inertias and frictions. Geometry stays constant.
+    pub parameters: bool,
+    /// `gravity`: three numbers, in {s}.
+    pub gravity: bool,
+    /// `base_twist`: six numbers, (ω, v) of {s}.
+    pub base_twist: bool,
+    /// `base_acceleration`: six numbers, (ω̇, v̇) of {s}.
+    pub base_acceleration: bool,
+    /// `about`: three numbers, the point of {s} that a momentum is about.
+    pub about: bool,
+    /// `wrench`, or of several frames `wrench_FRAME`: six numbers (m, f), what this frame applies to the environment, in its own
+    /// coordinates: a tool's load, a push.
+    pub wrenches: &'a [FrameId],
+}
+
+impl Arguments<'_> {
+    /// Names and lengths.
+    pub(crate) fn inputs(&self, model: &Model) -> Vec<(String, usize)> {
+        let plain = [
+            ("parameters", self.parameters, model.parameter_count()),
+            ("gravity", self.gravity, 3),
+            ("base_twist", self.base_twist, 6),
+            ("base_acceleration", self.base_acceleration, 6),
+            ("about", self.about, 3),
+        ];
+        let plain = plain.into_iter().filter(|(_, is_argument, _)| *is_argument);
+        let wrench = |&frame: &FrameId| (self.wrench_name(model, frame), 6);
+        plain.map(|(name, _, length)| (name.to_string(), length)).chain(self.wrenches.iter().map(wrench)).collect()
+    }
+
+    /// The input of this frame's wrench.
+    pub(crate) fn wrench_name(&self, model: &Model, frame: FrameId) -> String {
+        match self.wrenches.len() {
+            1 => "wrench".to_string(),
+            _ => format!("wrench_{}", model.frame_name(frame)),
+        }
+    }
+}
+
+/// The program of a quantity of this robot: `mozzi`'s kernel, recorded. Its inputs are the quantity's, then the [`Arguments`]; its outputs
+/// the quantity's by their names, matrices by rows, then `pivots` where it divides by the mass matrix and `task_pivots` of a task.
+/// Forward dynamics is recorded by articulated bodies and by the mass matrix, and the shorter program kept.
+///
+/// # Errors
+/// [`Error::BadArgument`] for a frame that is missing or another model's; [`Error::NoMass`].
+pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments: Arguments) -> Result<Program, Error> {
+    let query = query.into();
+    query.check_subject(model)?;
+    arguments.wrenches.iter().try_for_each(|&frame| model.check_frame(frame))?;
+    let by = |kernel: Query| recorded(model, query, kernel, arguments);
+    if query == ForwardDynamics.into() && !model.has_mimic_joints() {
+        let (bodies, matrix) = (by(query), by(ForwardDynamicsByMassMatrix.into()));
+        return Ok(if work(&matrix) < work(&bodies) { matrix } else { bodies });
+    }
+    Ok(by(query))
+}
+
+/// The program of a query by a kernel that computes the same.
+fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) -> Program {
+    let declaration = query.declaration();
+    let reduced = declaration.is_of_forces.then(|| model.reduced());
+    let model = reduced.as_ref().unwrap_or(model);
+    let further = arguments.inputs(model);
+    let state = declaration.inputs.iter().map(|input| input.name).zip(query.input_lengths(model));
+    let inputs: Vec<(&str, usize)> =
+        state.chain(further.iter().map(|(name, length)| (name.as_str(), *length))).collect();
+    record(query.name(), &inputs, |arrays| {
+        let (state, rest) = arrays.split_at(declaration.inputs.len());
+        let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
+        let mut rest = rest.iter().map(Vec::as_slice);
+        let mut next = |is_argument: bool| if is_argument { rest.next() } else { None };
+        let traced = match next(arguments.parameters) {
+            Some(parameters) => model.with_parameters(parameters),
+            None => model.map(Traced::from),
+        };
+        fn fixed<const K: usize>(numbers: &[Traced]) -> [Traced; K] {
+            std::array::from_fn(|k| numbers[k])
+        }
+        let gravity = next(arguments.gravity).map_or(traced.gravity(), |g| Vec3(fixed(g)));
+        let twist = |x: Option<&[Traced]>| x.map_or(Twist::zero(), |x| Twist::from_array(fixed(x)));
+        let base_twist = twist(next(arguments.base_twist));
+        let base_acceleration = twist(next(arguments.base_acceleration));
+        let point = next(arguments.about).map(|p| Vec3(fixed(p)));
+        let wrenches = arguments.wrenches.iter().filter_map(|&frame| Some((frame, next(true)?)));
+        let applied: Vec<_> = wrenches.map(|(frame, F)| (frame, Wrench::from_array(fixed(F)))).collect();
+        let environment = Environment { gravity, base_twist, base_acceleration, applied: &applied };
+
+        let mut memory = Memory::new(&traced);
+        if let Some(point) = point {
+            memory = memory.with_point(point);
+        }
+        let zero = Traced::from(0.0);
+        let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
+        let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+        kernel.evaluate(&traced, &state, &environment, &mut memory, &mut slices);
+        let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
+        names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
+    })
+}
+
+/// The outputs of a program after the quantity's own: what it divides by.
+pub fn pivot_names(query: &Query) -> &'static [&'static str] {
+    match query.declaration() {
+        declaration if !declaration.divides => &[],
+        declaration if declaration.of == Of::Task => &["pivots", "task_pivots"],
+        _ => &["pivots"],
+    }
+}
+
+/// Instructions, a division being as long as eight.
+fn work(program: &Program) -> usize {
+    let count = program.count();
+    count.instructions() + 7 * (count.div + count.sqrt)
+}

@@ -1,0 +1,57 @@
+//! The momentum about the centre of mass (Orin, Goswami and Lee 2013).
+
+use super::center_of_mass::center_of_mass;
+use super::momentum::{momentum_matrix, momentum_rate};
+use crate::quantity::{
+    Call, DTHETA, Declaration, JACOBIAN, Kernel, Memory, Quantity, Rare, SIX, THETA, by_rows, output, sized,
+};
+use crate::scalar::Scalar;
+use crate::spatial::Wrench;
+
+/// See [`momentum_matrix`].
+#[derive(Clone, Copy, Debug)]
+pub struct CentroidalMomentumMatrix;
+impl Quantity for CentroidalMomentumMatrix {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "centroidal_momentum_matrix",
+        "A_G(θ), angular rows first: h_G = A_Gθ̇ is the momentum about the centre of mass",
+        &[THETA],
+        &[output("A", JACOBIAN, "kg m² or kg m, kg m or kg")],
+    )
+    .needs_mass();
+}
+impl Kernel for CentroidalMomentumMatrix {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [A, ..], Memory { workspace, wrenches, .. }) = (c.inputs, c.outputs, c.memory);
+        let center = center_of_mass(c.model, theta, workspace);
+        let columns = sized(wrenches, c.model.n(), Wrench::zero());
+        momentum_matrix(c.model, theta, workspace, columns);
+        by_rows(columns.iter().map(|column| column.about(center).to_array()), A);
+    }
+}
+
+/// See [`momentum_rate`].
+#[derive(Clone, Copy, Debug)]
+pub struct CentroidalMomentumBias;
+impl Quantity for CentroidalMomentumBias {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "centroidal_momentum_bias",
+        "Ȧ_Gθ̇, of ḣ_G = A_Gθ̈ + Ȧ_Gθ̇",
+        &[THETA, DTHETA],
+        &[output("b", SIX, "N m, N")],
+    )
+    .needs_mass();
+}
+impl Kernel for CentroidalMomentumBias {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, dtheta, zero], [b, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
+        let center = center_of_mass(c.model, theta, w);
+        b.copy_from_slice(&momentum_rate(c.model, theta, dtheta, zero, w).about(center).to_array());
+    }
+}

@@ -1,0 +1,64 @@
+//! What a factorization of the mass matrix divided by, and the one rule that judges it.
+
+use super::{Error, Model};
+use crate::scalar::Float;
+use alloc::string::ToString;
+use alloc::vec::Vec;
+
+/// The pivots of LᵀDL or of articulated bodies, one for each velocity. A pivot is a joint's inertia with the joints beyond it free.
+///
+/// The rule: a pivot is regular where it is above 64 ε of M_jj, the joint's inertia with the joints beyond it locked. M is
+/// computed for that only if the pivots spread widely: see [`are_clear`](Self::are_clear).
+#[derive(Clone, Copy, Debug)]
+pub struct Pivots<'a, S = f64>(&'a [S]);
+
+impl<'a, S: Copy + Into<f64>> Pivots<'a, S> {
+    /// Of these numbers.
+    pub fn new(pivots: &'a [S]) -> Self {
+        Pivots(pivots)
+    }
+
+    /// The quick test, without M: is every pivot far above rounding of the largest?
+    #[inline]
+    pub fn are_clear(&self) -> bool {
+        let (mut least, mut sum) = (f64::INFINITY, 0.0);
+        for &pivot in self.0 {
+            let pivot = pivot.into();
+            // NaN is kept
+            (least, sum) = (if pivot < least || pivot.is_nan() { pivot } else { least }, sum + pivot);
+        }
+        self.0.is_empty() || least_is_clear(least, sum)
+    }
+}
+
+impl Pivots<'_> {
+    /// The rule. `mass_matrix` is asked for M(θ), n × n, only if the pivots are not [clear](Self::are_clear).
+    ///
+    /// # Errors
+    /// [`Error::SingularMassMatrix`] naming the joint, the outermost first: what it divided by spoils those below.
+    pub(crate) fn check(
+        &self,
+        model: &Model,
+        theta: &[f64],
+        mass_matrix: impl FnOnce() -> Vec<f64>,
+    ) -> Result<(), Error> {
+        if self.are_clear() || theta.iter().any(|x| !x.is_finite()) {
+            return Ok(());
+        }
+        let (n, M) = (model.n(), mass_matrix());
+        for (j, &pivot) in self.0.iter().enumerate().rev() {
+            let diagonal = M[j * n + j];
+            if !(pivot > 64.0 * f64::EPSILON * diagonal && pivot.is_finite()) {
+                let joint = model.velocity_names().nth(j).unwrap_or_default().to_string();
+                return Err(Error::SingularMassMatrix { joint, pivot, diagonal, theta: theta.to_vec() });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The quick test by the least pivot and the sum of all: least > √ε/4 · sum. No for NaN and infinity.
+#[inline(always)]
+pub fn least_is_clear<T: Float>(least: T, sum: T) -> bool {
+    least > T::EPSILON.sqrt() * T::from_f64(0.25) * sum && sum * T::zero() == T::zero()
+}

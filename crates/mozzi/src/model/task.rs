@@ -1,0 +1,123 @@
+//! A task: rows of a frame's twist.
+
+use super::{Error, FrameId, Model, Pivots};
+use crate::linalg::ldlt::Pattern;
+use crate::scalar::Scalar;
+use crate::spatial::Twist;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::DMatrix;
+
+/// In whose coordinates the task's twist and wrench are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaskFrame {
+    /// The frame's own: 𝒱_b, with v the velocity of the frame's origin.
+    Body,
+    /// The base's: 𝒱_s, with v the velocity of the point of the body that is at the base's origin.
+    Space,
+}
+
+/// What the task is: a frame, whose coordinates, and which of the six rows (ω, v), by index.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'a> {
+    /// The frame that is to move.
+    pub frame: FrameId,
+    /// In whose coordinates.
+    pub coordinates: TaskFrame,
+    /// Rows of (ω_x, ω_y, ω_z, v_x, v_y, v_z), each once.
+    pub rows: &'a [usize],
+}
+
+impl Task<'_> {
+    /// All six rows.
+    pub fn all(frame: FrameId, coordinates: TaskFrame) -> Self {
+        Task { frame, coordinates, rows: &[0, 1, 2, 3, 4, 5] }
+    }
+
+    /// Is the frame one of this model, and are the rows some of six, each once?
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`].
+    pub fn check(&self, model: &Model) -> Result<(), Error> {
+        model.check_frame(self.frame)?;
+        let distinct = (1..self.rows.len()).all(|k| !self.rows[..k].contains(&self.rows[k]));
+        if self.rows.is_empty() || self.rows.iter().any(|&row| row > 5) || !distinct {
+            let expected = "distinct row numbers from 0 to 5 (ω_x, ω_y, ω_z, v_x, v_y, v_z)";
+            return Err(Error::BadArgument {
+                what: "the task's rows",
+                found: alloc::format!("{:?}", self.rows),
+                expected,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Memory of [`task_space_dynamics`](crate::task_space_dynamics) for k rows, and what it finds on its way.
+#[derive(Clone, Debug)]
+pub struct TaskMemory<S = f64> {
+    /// J, k × n by rows.
+    pub J: Vec<S>,
+    /// J̇θ̇, k.
+    pub dJ_dtheta: Vec<S>,
+    /// What Λ⁻¹ divided by: where one is not above rounding of the others, the task is singular. Those of M are the workspace's.
+    pub pivots: Vec<S>,
+    /// Λ⁻¹ has no zeros to use.
+    pub(crate) dense: Pattern,
+    pub(crate) M: Vec<S>,
+    /// M⁻¹h.
+    pub(crate) h: Vec<S>,
+    /// A row of J M⁻¹.
+    pub(crate) row: Vec<S>,
+    pub(crate) columns: Vec<Twist<S>>,
+}
+
+impl<S: Scalar> TaskMemory<S> {
+    /// For a task of this many rows.
+    pub fn new<C: Scalar>(model: &Model<C>, rows: usize) -> Self {
+        let (n, o) = (model.n(), S::zero());
+        TaskMemory {
+            J: vec![o; rows * n],
+            dJ_dtheta: vec![o; rows],
+            pivots: vec![o; rows],
+            dense: Pattern::new(rows, rows, core::iter::empty()),
+            M: vec![o; n * n],
+            h: vec![o; n],
+            row: vec![o; n.max(rows)],
+            columns: vec![Twist::zero(); n],
+        }
+    }
+
+    /// Every number NaN.
+    pub(crate) fn fill_nan(&mut self) {
+        let nan = S::from_f64(f64::NAN);
+        for list in [&mut self.J, &mut self.dJ_dtheta, &mut self.pivots, &mut self.M, &mut self.h, &mut self.row] {
+            list.fill(nan);
+        }
+        self.columns.fill(Twist::from_array([nan; 6]));
+    }
+}
+
+impl TaskMemory {
+    /// Can the rows be moved independently? The rule: the smallest singular value of J is above 10⁻¹² of the largest. They are
+    /// computed only if the pivots spread widely.
+    ///
+    /// # Errors
+    /// [`Error::SingularTask`] with the singular values.
+    pub(crate) fn check(&self, n: usize, theta: &[f64]) -> Result<(), Error> {
+        if Pivots::new(&self.pivots).are_clear() || theta.iter().any(|x| !x.is_finite()) {
+            return Ok(());
+        }
+        let k = self.pivots.len();
+        let J = DMatrix::from_row_slice(k, n, &self.J);
+        // nothing can be decomposed where no joint moves
+        let mut singular_values: Vec<f64> =
+            if n == 0 { Vec::new() } else { J.singular_values().iter().copied().collect() };
+        singular_values.resize(k, 0.0); // more rows than joints
+        let tolerance = 1e-12 * singular_values[0];
+        if singular_values.iter().any(|&s| !(s > tolerance)) || self.pivots.iter().any(|&pivot| !(pivot > 0.0)) {
+            return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
+        }
+        Ok(())
+    }
+}

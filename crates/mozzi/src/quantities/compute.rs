@@ -1,0 +1,86 @@
+//! Quantities at one state: checked, computed, pivots judged.
+
+use super::{Declaration, MassMatrix, Memory, Of, Query};
+use crate::model::{Environment, Error, Model, Pivots};
+use crate::scalar::Scalar;
+use alloc::vec;
+use alloc::vec::Vec;
+
+impl Model<f64> {
+    /// Any quantity at one state: its outputs in their order, matrices by rows. What the quantity does not use of the environment has no
+    /// effect.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`] and [`Error::BadArgument`] naming the argument; [`Error::SingularMassMatrix`] naming the joint,
+    /// [`Error::SingularTask`].
+    ///
+    /// # Panics
+    /// On another number of inputs than its [declaration](Query::declaration) has.
+    pub fn compute<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        self.compute_in(&mut Memory::new(self), query.into(), inputs, environment)
+    }
+
+    /// [`compute`](Self::compute) with this memory.
+    pub(crate) fn compute_in(
+        &self,
+        memory: &mut Memory,
+        query: Query,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        query.check(self, inputs, environment)?;
+        let mut outputs: Vec<Vec<f64>> = query.output_lengths(self).map(|length| vec![0.0; length]).collect();
+        let mut slices: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+        query.evaluate_f64(self, inputs, environment, memory, &mut slices);
+        query.check_pivots(self, inputs[0], memory)?;
+        Ok(outputs)
+    }
+
+    /// M(θ) by rows, lengths being checked.
+    pub(crate) fn mass_matrix_rows(&self, theta: &[f64]) -> Vec<f64> {
+        let mut M = vec![0.0; self.n() * self.n()];
+        let (memory, environment) = (&mut Memory::new(self), self.environment());
+        Query::from(MassMatrix).evaluate_f64(self, &[theta], &environment, memory, &mut [&mut M]);
+        M
+    }
+}
+
+impl Query<'_> {
+    /// On plain `f64`, compiled in this crate.
+    pub(crate) fn evaluate_f64(
+        &self,
+        model: &Model,
+        inputs: &[&[f64]],
+        environment: &Environment,
+        memory: &mut Memory,
+        outputs: &mut [&mut [f64]],
+    ) {
+        self.evaluate(model, inputs, environment, memory, outputs);
+    }
+
+    /// Is what the quantity divided by far from rounding? Else the joint or the task that is singular, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::SingularMassMatrix`], [`Error::SingularTask`].
+    pub(crate) fn check_pivots(&self, model: &Model, theta: &[f64], memory: &Memory) -> Result<(), Error> {
+        let Declaration { divides, of, .. } = self.declaration();
+        if !divides {
+            return Ok(());
+        }
+        Pivots::new(memory.workspace.pivots()).check(model, theta, || model.mass_matrix_rows(theta))?;
+        match &memory.task {
+            Some((_, task)) if *of == Of::Task => task.check(model.n(), theta),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Are the pivots of the last call of a quantity far from rounding? Where not, [`Model::compute`] says what is singular, if anything is.
+pub(crate) fn are_clear<S: Scalar + Into<f64>>(declaration: &Declaration, memory: &Memory<S>) -> bool {
+    !declaration.divides || memory.pivots().all(|pivots| Pivots::new(pivots).are_clear())
+}

@@ -1,0 +1,112 @@
+//! The list of all quantities.
+//!
+//! A [`Kernel`](crate::quantity::Kernel) is code, compiled for every kind of number. A [`Quantity`] is a declaration at the foot of its
+//! kernel's file: a name, what goes in, what comes out. [`quantities!`](crate::quantities!) lists them, once; from that list come the fast
+//! functions on `f64` ([`fast`](crate::fast)), batches, recorded programs, machine code, emitted text, `mozzi compute`, Python's
+//! methods and `docs/quantities.md`.
+//!
+//! ```
+//! use mozzi::quantities::{BodyJacobian, Query};
+//! # fn example(model: &mozzi::Model, theta: &[f64]) -> Result<(), mozzi::Error> {
+//! let tip = model.end_effector()?;
+//! let J = model.compute(BodyJacobian.of(tip), &[theta], &model.environment())?.remove(0); // 6 × n, by rows
+//! let again = model.compute(Query::named("body-jacobian")?.of(tip), &[theta], &model.environment())?.remove(0);
+//! assert_eq!(J, again);
+//! # Ok(()) }
+//! ```
+
+mod compute;
+mod query;
+
+pub use crate::quantity::*;
+pub(crate) use compute::are_clear;
+pub use query::Query;
+
+use crate::model::{Environment, Model};
+use crate::scalar::Scalar;
+
+/// Every quantity there is, in the order of documentation: `quantities!(callback)` becomes `callback! { InverseDynamics … }`.
+#[macro_export]
+macro_rules! quantities {
+    ($callback:ident) => {
+        $callback! {
+            InverseDynamics ForwardDynamics ForwardDynamicsByMassMatrix ForwardDynamicsByInverseDynamics
+            MassMatrix MassMatrixRate CoriolisMatrix VelocityProduct GravityForces BiasForces TipForces JointFriction
+            KineticEnergy PotentialEnergy
+            ForwardKinematics FramePoses SpaceJacobian BodyJacobian SpaceJacobianRate BodyJacobianRate
+            SpaceJacobianDerivative BodyJacobianDerivative TaskSpaceDynamics
+            InverseDynamicsDerivatives ForwardDynamicsDerivatives
+            GravityForcesDerivative TipForcesDerivative MassMatrixProductDerivative
+            CenterOfMass CenterOfMassVelocity CenterOfMassAcceleration CenterOfMassJacobian
+            Momentum MomentumRate CentroidalMomentumMatrix CentroidalMomentumBias
+            Regressor EnergyRegressors
+        }
+    };
+}
+
+mod kernels {
+    pub use crate::dynamics::*;
+    pub use crate::kinematics::*;
+}
+
+macro_rules! exports {
+    ($($Q:ident)*) => { pub use kernels::{$($Q),*}; };
+}
+quantities!(exports);
+
+/// The declarations, in the order of the list.
+pub const LIST: &[Declaration] = {
+    macro_rules! declarations {
+        ($($Q:ident)*) => { &[$($Q::DECLARATION),*] };
+    }
+    quantities!(declarations)
+};
+
+pub(crate) const fn place_of(name: &str) -> usize {
+    let mut place = 0;
+    while place < LIST.len() {
+        if are_equal(LIST[place].name.as_bytes(), name.as_bytes()) {
+            return place;
+        }
+        place += 1;
+    }
+    panic!("a quantity that is not in the list")
+}
+
+const fn are_equal(a: &[u8], b: &[u8]) -> bool {
+    let mut k = 0;
+    while k < a.len() && k < b.len() && a[k] == b[k] {
+        k += 1;
+    }
+    k == a.len() && k == b.len()
+}
+
+/// The entries of all quantities on one kind of number.
+pub(crate) struct Entries<S, C>(core::marker::PhantomData<(S, C)>);
+
+impl<S: Scalar + From<C> + 'static, C: Scalar + 'static> Entries<S, C> {
+    pub const LIST: &'static [Entry<S, C>] = {
+        macro_rules! entries {
+            ($($Q:ident)*) => { &[$(evaluate::<$Q, S, C>),*] };
+        }
+        quantities!(entries)
+    };
+}
+
+impl Query<'_> {
+    /// The quantity on any kind of number, by its kernel. Each kind of number compiles all kernels where this is called: on `f64` use
+    /// [`fast`](crate::fast) or [`Model::compute`].
+    ///
+    /// # Panics
+    /// On slices of a wrong number or length.
+    pub fn evaluate<S: Scalar + From<C> + 'static, C: Scalar + 'static>(
+        &self,
+        model: &Model<C>,
+        inputs: &[&[S]],
+        environment: &Environment<S>,
+        memory: &mut Memory<S>,
+        outputs: &mut [&mut [S]],
+    ) {
+        Entries::<S, C>::LIST[self.index](&self.subject, model, inputs, environment, memory, outputs);
+    }
+}

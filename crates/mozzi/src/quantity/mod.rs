@@ -1,0 +1,103 @@
+//! What a quantity is: a declaration at the foot of its kernel's file. The list of all is [`quantities`](crate::quantities).
+
+mod declaration;
+mod memory;
+mod subject;
+
+pub(crate) use declaration::*;
+pub use declaration::{Declaration, Dim, INPUTS, Input, Of, Output, Uses};
+pub use memory::Memory;
+pub(crate) use memory::{by_rows, sized};
+pub use subject::Subject;
+
+use crate::linalg::Vec3;
+use crate::model::{Environment, Model};
+use crate::scalar::Scalar;
+
+/// A function of a robot and its state: a name, the kernel that computes it, what goes in, what comes out.
+pub trait Quantity: Copy + Send + Sync + 'static {
+    /// What computes it.
+    type Kernel: Kernel;
+    /// What is compiled for registers of several states: the kernel, or [`Rare`].
+    type Registers: Kernel;
+    /// Everything else.
+    const DECLARATION: Declaration;
+}
+
+/// Code that computes one or several quantities on any numbers. Inlined into whatever is compiled for an instruction set.
+pub trait Kernel: 'static {
+    /// There is code for registers of several states.
+    const HAS_REGISTERS: bool = true;
+
+    /// Fills the outputs.
+    fn run<S: Scalar + From<C>, C: Scalar>(call: Call<S, C>);
+}
+
+/// No code for registers: many states of a rare quantity go through its recorded program.
+#[derive(Clone, Copy, Debug)]
+pub struct Rare;
+
+impl Kernel for Rare {
+    const HAS_REGISTERS: bool = false;
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(_call: Call<S, C>) {}
+}
+
+/// The most inputs of a kernel.
+pub const MOST_INPUTS: usize = 3;
+/// The most outputs of a kernel.
+pub const MOST_OUTPUTS: usize = 4;
+
+/// What a kernel is called with.
+#[derive(Debug)]
+pub struct Call<'a, S, C> {
+    /// The frame, task or point.
+    pub of: &'a Subject<'a>,
+    /// The robot.
+    pub model: &'a Model<C>,
+    /// The point of {s}.
+    pub point: Vec3<S>,
+    /// The inputs in their order; zeros after them.
+    pub inputs: [&'a [S]; MOST_INPUTS],
+    /// The parts of the environment that the quantity uses.
+    pub environment: &'a Environment<'a, S>,
+    /// Memory.
+    pub memory: &'a mut Memory<S>,
+    /// The kernel's outputs; those that the quantity does not keep are empty.
+    pub outputs: [&'a mut [S]; MOST_OUTPUTS],
+}
+
+/// One quantity, at one state or at as many as a number holds.
+pub(crate) type Entry<S, C> = fn(&Subject, &Model<C>, &[&[S]], &Environment<S>, &mut Memory<S>, &mut [&mut [S]]);
+
+/// A quantity's inputs, environment and outputs, routed to its kernel: missing inputs are zeros, unused parts of the environment absent.
+#[inline(always)]
+pub(crate) fn evaluate<Q: Quantity, S: Scalar + From<C>, C: Scalar>(
+    of: &Subject,
+    model: &Model<C>,
+    inputs: &[&[S]],
+    environment: &Environment<S>,
+    memory: &mut Memory<S>,
+    outputs: &mut [&mut [S]],
+) {
+    let zeros = core::mem::take(&mut memory.zeros);
+    let environment = Q::DECLARATION.uses.of(environment);
+    let (inputs, outputs) = (routed_inputs(inputs, &zeros[..model.n()]), routed_outputs(&Q::DECLARATION, outputs));
+    let point = memory.point.take().unwrap_or_else(|| of.point.map(S::from_f64));
+    Q::Kernel::run(Call { of, model, point, inputs, environment: &environment, memory, outputs });
+    memory.zeros = zeros;
+}
+
+#[inline(always)]
+fn routed_inputs<'a, S>(given: &[&'a [S]], zeros: &'a [S]) -> [&'a [S]; MOST_INPUTS] {
+    core::array::from_fn(|k| given.get(k).copied().unwrap_or(zeros))
+}
+
+#[inline(always)]
+fn routed_outputs<'a, S>(declaration: &Declaration, given: &'a mut [&mut [S]]) -> [&'a mut [S]; MOST_OUTPUTS] {
+    let mut outputs: [&mut [S]; MOST_OUTPUTS] = Default::default();
+    for (output, given) in outputs[declaration.first_output()..].iter_mut().zip(given) {
+        *output = given;
+    }
+    outputs
+}

@@ -1,0 +1,29 @@
+//! What a quantity is of, besides the robot.
+
+use crate::linalg::Vec3;
+use crate::model::{FrameId, Task, TaskFrame};
+
+/// The frame, task or point that a quantity is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subject<'a> {
+    /// The frame, where there is one.
+    pub frame: Option<FrameId>,
+    /// In whose coordinates a task's twist and wrench are.
+    pub coordinates: TaskFrame,
+    /// A task's rows of (ω_x, ω_y, ω_z, v_x, v_y, v_z).
+    pub rows: &'a [usize],
+    /// A point of {s}.
+    pub point: Vec3,
+}
+
+impl Subject<'_> {
+    /// The frame, which [`Query::check`] has seen.
+    #[inline(always)]
+    pub(crate) fn frame(&self) -> FrameId {
+        self.frame.expect("a frame: checked by Query::check")
+    }
+    #[inline(always)]
+    pub(crate) fn task(&self) -> Task<'_> {
+        Task { frame: self.frame(), coordinates: self.coordinates, rows: self.rows }
+    }
+}
