@@ -7,10 +7,10 @@ use crate::tests::give;
 use crate::workspace::Workspace;
 
 /// The tests that write pages.
-const PAGES: [&str; 3] = ["reports", "published", "oracles"];
+const PAGES: [&str; 4] = ["reports", "published", "oracles", "quantities_page"];
 
 pub fn write(workspace: &Workspace) -> Outcome {
-    let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf"]);
+    let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf", "--package", "mozzi-batch"]);
     for page in PAGES {
         cargo.args(["--test", page]);
     }

@@ -23,7 +23,6 @@ mod error;
 mod numbers;
 mod python;
 mod question;
-mod random;
 mod report_json;
 mod report_text;
 mod source;
@@ -36,7 +35,6 @@ pub use comparison::{Comparison, Options, ask, compare};
 pub use error::Error;
 pub use numbers::BOUND;
 pub use python::find as find_python;
-pub use random::Random;
 pub use source::Source;
 
 type Result<T> = std::result::Result<T, Error>;

@@ -1,8 +1,8 @@
 //! What a library is asked: the file, and states of every joint by name.
 
 use crate::constants::Constants;
-use crate::random::Random;
 use crate::{Result, Source};
+use mozzi::random::Random;
 use mozzi::{Base, Description};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -64,18 +64,14 @@ impl State {
             // limits that exclude 0 by far are kept to; half a per mille off the stops themselves
             let (low, high) =
                 if low > reach || high < -reach { (low, high) } else { (low.max(-reach), high.min(reach)) };
-            let at = 0.0005 + 0.999 * (0.5 + 0.5 * random.number());
-            values.insert(name, [low + (high - low) * at, random.number(), 2.0 * random.number()]);
+            let at = 0.0005 + 0.999 * (0.5 + 0.5 * random.next());
+            values.insert(name, [low + (high - low) * at, random.next(), 2.0 * random.next()]);
         }
         let of = |name: &String| {
-            let (mut name, mut ratio, mut offset) = (name.as_str(), 1.0, 0.0);
-            while let Some(mimic) = joints.get(name).and_then(|joint| joint.mimic.as_ref()) {
-                offset += ratio * mimic.offset;
-                ratio *= mimic.ratio;
-                name = &mimic.joint;
-            }
-            let [theta, dtheta, ddtheta] = values.get(name).copied().unwrap_or_default();
-            [ratio * theta + offset, ratio * dtheta, ratio * ddtheta]
+            let Some(followed) = robot.source_of(name) else { return [0.0; 3] };
+            let name = &robot.joints[followed.joint].name;
+            let [theta, dtheta, ddtheta] = values.get(name.as_str()).copied().unwrap_or_default();
+            [followed.ratio * theta + followed.offset, followed.ratio * dtheta, followed.ratio * ddtheta]
         };
         let all: Vec<[f64; 3]> = names.iter().map(of).collect();
         let column = |k: usize| all.iter().map(|values| values[k]).collect();

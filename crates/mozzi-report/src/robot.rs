@@ -1,7 +1,7 @@
 //! The robot as the page reads it: each body in the frame of its link in the file.
 
 use crate::drawing::Drawing;
-use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::description::{JointKind, Source};
 use mozzi::{Error, Model, SE3, Twist};
 use serde_json::{Value, json};
 
@@ -38,12 +38,10 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
     };
     let armature: Vec<f64> =
         std::iter::repeat_n(0.0, model.base().velocities()).chain(of_joints.chunks(3).map(|joint| joint[0])).collect();
-    let names: Vec<&str> = model.joint_names().collect();
-    let bodies: Value = (model.moving_joints().zip(inertias).enumerate())
-        .map(|(k, (joint, inertia))| {
+    let joints = model.moving_joints().zip(model.sources());
+    let bodies: Value = (joints.zip(inertias).enumerate())
+        .map(|(k, ((joint, Source { joint: j, ratio, offset }), inertia))| {
             let parent = body_of(&joint.parent).unwrap_or(0);
-            let (source, ratio, offset) = followed(model, joint);
-            let j = names.iter().position(|name| *name == source).unwrap_or(0);
             let A = match joint.kind {
                 JointKind::Screw(A) => A.twist(),
                 JointKind::Fixed => Twist::from_array([0.0; 6]), // which no moving joint is
@@ -73,19 +71,6 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         "endEffector": model.end_effector().ok().and_then(|frame| frame_of(model.frame_name(frame))),
         "shapes": drawing.shapes_to_json(&|link| frame_of(link)),
     }))
-}
-
-/// The independent joint that a joint follows in the end, and by which θ = ratio · θ_source + offset.
-fn followed<'m>(model: &'m Model, joint: &'m Joint) -> (&'m str, f64, f64) {
-    let (mut joint, mut ratio, mut offset) = (joint, 1.0, 0.0);
-    while let Some(mimic) = &joint.mimic {
-        (ratio, offset) = (ratio * mimic.ratio, ratio * mimic.offset + offset);
-        match model.moving_joints().find(|other| other.name == mimic.joint) {
-            Some(source) => joint = source,
-            None => break,
-        }
-    }
-    (&joint.name, ratio, offset)
 }
 
 /// The first three rows of a configuration's matrix.

@@ -46,6 +46,7 @@ pub mod linalg;
 pub mod model;
 pub mod quantities;
 mod quantity;
+pub mod random;
 pub mod scalar;
 pub mod simulation;
 pub mod spatial;

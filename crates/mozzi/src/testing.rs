@@ -7,35 +7,7 @@ use crate::model::{Base, Description, Model};
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
 
-/// Numbers in [−1, 1) from a seed (Steele and Vigna's SplitMix64).
-pub struct Random(pub u64);
-
-impl Random {
-    /// 64 bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-    /// A whole number below n.
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() >> 16) as usize % n
-    }
-    /// One number.
-    #[allow(clippy::should_implement_trait)] // no iterator: it never ends
-    pub fn next(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    /// K numbers.
-    pub fn array<const K: usize>(&mut self) -> [f64; K] {
-        core::array::from_fn(|_| self.next())
-    }
-    /// n numbers in [−size, size).
-    pub fn vector(&mut self, n: usize, size: f64) -> alloc::vec::Vec<f64> {
-        (0..n).map(|_| size * self.next()).collect()
-    }
-}
+pub use crate::random::Random;
 
 /// A twist with entries in [−1, 1).
 pub fn twist(seed: u64) -> Twist {

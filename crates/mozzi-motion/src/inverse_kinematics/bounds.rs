@@ -1,7 +1,8 @@
 //! How far the joints may go.
 
 use mozzi::Model;
-use mozzi::testing::Random;
+use mozzi::model::description::Source;
+use mozzi::random::Random;
 use std::f64::consts::PI;
 
 /// Lowest and highest value of each independent joint, as many as there are joints: −∞ and ∞ where there is no limit. A mimic joint's
@@ -19,14 +20,8 @@ pub(crate) struct Bounds {
 impl Bounds {
     pub fn of(model: &Model) -> Self {
         let free = [f64::NEG_INFINITY, f64::INFINITY];
-        let names: Vec<&str> = model.joint_names().collect();
-        let mut joints = vec![free; names.len()];
-        for joint in model.moving_joints() {
-            let (source, ratio, offset) = match &joint.mimic {
-                None => (&joint.name, 1.0, 0.0),
-                Some(mimic) => (&mimic.joint, mimic.ratio, mimic.offset),
-            };
-            let Some(j) = names.iter().position(|name| name == source) else { continue };
+        let mut joints = vec![free; model.joint_names().len()];
+        for (joint, Source { joint: j, ratio, offset }) in model.moving_joints().zip(model.sources()) {
             let (Some(limits), true) = (joint.limits.position, ratio != 0.0) else { continue };
             let [a, b] = limits.map(|x| (x - offset) / ratio);
             let [low, high] = joints[j];

@@ -3,6 +3,7 @@
 use super::regressor;
 use crate::kinematics::integrate;
 use crate::model::{Model, Workspace};
+use crate::random::Random;
 use crate::spatial::Rounded;
 use alloc::format;
 use alloc::string::String;
@@ -116,25 +117,16 @@ impl Model<f64> {
 fn stacked_regressor(model: &Model) -> DMatrix<f64> {
     let (n, p) = (model.n(), model.parameter_count());
     let states = (2 * p).checked_div(n).map_or(0, |enough| enough + 10);
-    let mut seed = 1;
-    let mut random = |size: f64, count: usize| -> Vec<f64> { (0..count).map(|_| size * splitmix(&mut seed)).collect() };
+    let mut random = Random(1);
     let (mut workspace, mut Y, mut rows) = (Workspace::new(model), vec![0.0; n * p], Vec::new());
     for _ in 0..states {
         let mut theta = model.neutral_configuration();
-        integrate(model, &mut theta, &random(3.0, n), 1.0);
-        let (dtheta, ddtheta) = (random(2.0, n), random(4.0, n));
+        integrate(model, &mut theta, &random.vector(n, 3.0), 1.0);
+        let (dtheta, ddtheta) = (random.vector(n, 2.0), random.vector(n, 4.0));
         regressor(model, &theta, &dtheta, &ddtheta, &model.environment(), &mut workspace, &mut Y);
         rows.extend_from_slice(&Y);
     }
     DMatrix::from_row_slice(states * n, p, &rows)
-}
-
-/// Numbers in [−1, 1) (Steele and Vigna 2014).
-fn splitmix(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (*seed ^ (*seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The adjoint maps, each its own type: [Ad_T] and [ad_V] move twists, their transposes move wrenches.
 
 use super::SE3;
+use super::{Twist, Wrench};
 use crate::scalar::Scalar;
-use crate::spatial::{Twist, Wrench};
 use core::ops::Mul;
 
 /// `[Ad_T]` : se(3) → se(3). With T = `T_sb`, V_s = `[Ad_T]` V_b (Modern Robotics 3.83).

@@ -1,11 +1,15 @@
-//! The groups SO(3) and SE(3), their adjoint maps, and the only small-angle code.
+//! The groups SO(3) and SE(3), twists and wrenches, the adjoint maps between them, and the only small-angle code.
 
 mod adjoint;
 mod rpy;
 mod se3;
 pub(crate) mod series;
 mod so3;
+mod twist;
+mod wrench;
 
 pub use adjoint::{Adjoint, AdjointTranspose, LieBracket, LieBracketTranspose};
 pub use se3::{InvalidConfiguration, SE3};
 pub use so3::{InvalidRotation, SO3};
+pub use twist::Twist;
+pub use wrench::Wrench;

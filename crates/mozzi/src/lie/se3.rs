@@ -1,9 +1,9 @@
 //! SE(3): rigid motions and configurations of frames.
 
+use super::Twist;
 use super::{Adjoint, InvalidRotation, SO3};
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::{Real, Scalar};
-use crate::spatial::Twist;
 use core::ops::Mul;
 
 /// T = (R, p): `T_sb` is the configuration of frame {b} seen from frame {s}.

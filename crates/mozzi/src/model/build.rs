@@ -143,15 +143,10 @@ fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<
         number[i] = j;
     }
     for (link, &i) in links.iter_mut().zip(moving_joints) {
-        let mut source = i;
-        while let Some(followed) = mimic(source) {
-            // ratio · (r θ + o) + offset
-            link.offset += link.ratio * followed.offset;
-            link.ratio *= followed.ratio;
-            source = joint_index[followed.joint.as_str()];
-        }
+        let source = description.source_by(i, |name| joint_index.get(name).copied());
+        (link.ratio, link.offset) = (source.ratio, source.offset);
         let base = description.base;
-        (link.q, link.j) = (base.positions() + number[source], base.velocities() + number[source]);
+        (link.q, link.j) = (base.positions() + number[source.joint], base.velocities() + number[source.joint]);
     }
     joints
 }

@@ -191,6 +191,38 @@ impl Description {
     }
 }
 
+/// The independent joint that a joint follows in the end, itself where it follows none: θ = ratio · θ_source + offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source<C = f64> {
+    /// Its place among the joints.
+    pub joint: usize,
+    /// The ratio, of the whole chain of mimic joints.
+    pub ratio: C,
+    /// The offset likewise.
+    pub offset: C,
+}
+
+impl Description {
+    /// The source joint of the joint at this place, by its place; `find` is the place of the joint of a name.
+    pub(crate) fn source_by(&self, joint: usize, find: impl Fn(&str) -> Option<usize>) -> Source {
+        let mut source = Source { joint, ratio: 1.0, offset: 0.0 };
+        // ratio · (r θ + o) + offset
+        while let Some(mimic) = &self.joints[source.joint].mimic {
+            let Some(next) = find(&mimic.joint) else { break };
+            let offset = source.offset + source.ratio * mimic.offset;
+            source = Source { joint: next, ratio: source.ratio * mimic.ratio, offset };
+        }
+        source
+    }
+
+    /// The source joint of the joint of this name, by its place in [`joints`](Self::joints), through chains of mimic joints. None where there
+    /// is no such joint. Of a robot that [`check`](Self::check) passes; where mimic joints follow each other in a circle it does not end.
+    pub fn source_of(&self, name: &str) -> Option<Source> {
+        let find = |name: &str| self.joints.iter().position(|joint| joint.name == name);
+        Some(self.source_by(find(name)?, find))
+    }
+}
+
 impl Joint {
     /// A joint without limits, friction or armature. `origin` is the child's frame seen from the parent's at 0.
     pub fn new(

@@ -136,6 +136,23 @@ impl<C: Scalar> Model<C> {
         self.structure.moving_joints.iter().map(|&joint| &self.structure.description.joints[joint])
     }
 
+    /// The independent joint that each moving joint follows in the end, itself where it follows none, by its place in
+    /// [`joint_names`](Self::joint_names); in the order of [`moving_joints`](Self::moving_joints).
+    pub fn sources(&self) -> impl ExactSizeIterator<Item = description::Source<C>> {
+        let first = self.base.velocities();
+        self.links.iter().map(move |link| description::Source {
+            joint: link.j - first,
+            ratio: link.ratio,
+            offset: link.offset,
+        })
+    }
+
+    /// The source joint of the moving joint of this name: see [`sources`](Self::sources).
+    pub fn source_of(&self, name: &str) -> Option<description::Source<C>> {
+        let joint = self.moving_joints().position(|joint| joint.name == name)?;
+        self.sources().nth(joint)
+    }
+
     /// The same robot with constants of another type: `model.map(f32::from_f64)`, `model.map(Dual::constant)`.
     pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Model<U> {
         let list = |constants: &[C]| constants.iter().map(|&c| f(c)).collect();

@@ -284,7 +284,8 @@ mod tests {
             let (mut tau, mut ddtheta) = (vec![0.0; model.n()], vec![0.0; model.n()]);
             motors(if k == N { t_f } else { k as f64 * dt }, &theta, &dtheta, &mut tau);
             let environment = model.environment();
-            fast::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, &mut ddtheta);
+            let (query, state) = (crate::quantities::ForwardDynamics.into(), [&theta[..], &dtheta, &tau]);
+            fast::evaluate(query, &model, &state, &environment, &mut workspace, &mut [&mut ddtheta]);
             let sample = motion.sample(k);
             assert_eq!((sample.theta, sample.dtheta), (theta.as_slice(), dtheta.as_slice()), "step {k}");
             assert_eq!((sample.ddtheta, sample.tau), (ddtheta.as_slice(), tau.as_slice()), "step {k}");

@@ -1,75 +1,10 @@
 //! The kernels on odd numbers and odd robots: NaN, f32, recordings, poisoned memory, singular and extreme masses.
 
-use super::{close, column, models};
+use super::{close, column};
 use crate::model::{Environment, Workspace};
 use crate::testing::{Random, state, tree, twist, wrench};
 use crate::{Scalar, dynamics as kernel};
 use nalgebra::DVector;
-
-#[test]
-fn the_workspace_has_no_meaning_between_calls() {
-    for (seed, model) in models() {
-        let [theta, dtheta, ddtheta] = state(&model, seed);
-        let (n, environment) = (model.n(), model.environment());
-        let run = |workspace: &mut Workspace, clean: bool| {
-            let mut all = alloc::vec::Vec::new();
-            let mut out = alloc::vec![0.0; n];
-            let mut square = alloc::vec![0.0; n * n];
-            let fill_nan = |w: &mut Workspace| {
-                if !clean {
-                    w.fill_nan()
-                }
-            };
-            fill_nan(workspace);
-            kernel::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
-            all.extend_from_slice(&out);
-            fill_nan(workspace);
-            kernel::forward_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, workspace, &mut out);
-            all.extend_from_slice(&out);
-            fill_nan(workspace);
-            kernel::gravity_forces(&model, &theta, environment.gravity, workspace, &mut out);
-            all.extend_from_slice(&out);
-            fill_nan(workspace);
-            kernel::mass_matrix(&model, &theta, workspace, &mut square);
-            all.extend_from_slice(&square);
-            fill_nan(workspace);
-            kernel::coriolis_matrix(&model, &theta, &dtheta, workspace, &mut square);
-            all.extend_from_slice(&square);
-            fill_nan(workspace);
-            all.push(kernel::kinetic_energy(&model, &theta, &dtheta, crate::Twist::zero(), workspace));
-            fill_nan(workspace);
-            all.push(kernel::potential_energy(&model, &theta, environment.gravity, workspace));
-            let mut three = [(); 3].map(|()| alloc::vec![f64::NAN; n * n]);
-            fill_nan(workspace);
-            let slices = three.each_mut().map(|x| &mut x[..]);
-            kernel::inverse_dynamics_derivatives(&model, &theta, &dtheta, &ddtheta, &environment, workspace, slices);
-            three.iter().for_each(|x| all.extend_from_slice(x));
-            fill_nan(workspace);
-            let slices = three.each_mut().map(|x| &mut x[..]);
-            kernel::forward_dynamics_derivatives(
-                &model,
-                &theta,
-                &dtheta,
-                &ddtheta,
-                &environment,
-                workspace,
-                &mut out,
-                slices,
-            );
-            three.iter().chain([&out]).for_each(|x| all.extend_from_slice(x));
-            fill_nan(workspace);
-            kernel::gravity_forces_derivative(&model, &theta, environment.gravity, workspace, &mut square);
-            all.extend_from_slice(&square);
-            fill_nan(workspace);
-            kernel::mass_matrix_product_derivative(&model, &theta, &ddtheta, workspace, &mut square);
-            all.extend_from_slice(&square);
-            all
-        };
-        let clean = run(&mut Workspace::new(&model), true);
-        assert_eq!(clean, run(&mut Workspace::new(&model), false));
-        assert!(clean.iter().all(|x| x.is_finite()));
-    }
-}
 
 #[test]
 fn nan_in_nan_out() {

@@ -1,7 +1,6 @@
 //! Twists: elements of se(3).
 
-use super::Wrench;
-use crate::lie::LieBracket;
+use super::{LieBracket, Wrench};
 use crate::linalg::{Mat3, Vec3, linear_space};
 use crate::scalar::Scalar;
 

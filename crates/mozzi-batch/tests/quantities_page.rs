@@ -1,0 +1,113 @@
+//! `docs/quantities.md`: every quantity of the list, with its formula, inputs, outputs and what computes arrays of it.
+#![allow(missing_docs)]
+
+use mozzi::quantities::{Declaration, Input, LIST, Of, Output, Query, Uses};
+use mozzi::testing::tree;
+use mozzi::{Task, TaskFrame};
+use mozzi_batch::{Batch, Engine, InstructionSet};
+use std::fmt::Write;
+use std::path::Path;
+
+const HEAD: &str = "\
+# Quantities
+
+Every quantity is declared once, at the foot of its kernel's file in `crates/mozzi/src/`, and listed once, in
+`crates/mozzi/src/quantities/mod.rs`. This page is written from that list by `cargo xtask docs`; a test holds it current.
+
+n is the number of velocities, nq of positions (one more on a floating base), p of inertial parameters, k of a task's rows. Units are
+those of turning joints, then of sliding ones; six-vectors are angular first; matrices are by rows everywhere. \"Environment\" lists what
+else a quantity depends on: gravity g, wrenches F that frames apply, the twist 𝒱_s and the acceleration 𝒱̇_s of {s}. What is not listed has
+no effect on it.
+
+## Ways
+
+Each quantity works in each of these ways:
+
+| way | call |
+|---|---|
+| one state, checked | `model.compute(query, inputs, &environment)`, or the typed methods of `Model` |
+| one state, no allocation, fused multiply-add | `mozzi::fast::evaluate`, `mozzi::fast::compute` |
+| any number type: `f32`, dual numbers, your own | `query.evaluate(…)`, or the kernel itself |
+| many states, `f64` and `f32`, all cores; wrenches, gravity and inertial parameters of each state | `mozzi_batch::Batch::compute` |
+| a recorded program, printed, read and counted | `mozzi_codegen::record_quantity` |
+| machine code at one state and at many (x86-64 with AVX2 and FMA, or AVX-512) | `mozzi_batch::compile` |
+| Rust, C and CUDA source text | `mozzi_codegen::emit`, `mozzi codegen` |
+| the command line | `mozzi compute MODEL QUANTITY` |
+| Python, one state and arrays | `model.quantity(…)`, `model.compile(\"quantity\")` |
+
+Arrays go through one of two engines. *Registers*: the kernel is compiled for registers of 4 to 16 states. *Program*: the kernel is recorded for
+the robot, and the program runs as machine code, or in an interpreter over 32 states where there is none: on other processors, and where
+the code would be longer than 64 kB, as of large robots' derivatives and regressors. Inertial parameters of each state always go through a
+program. A compiled quantity whose code would be longer than 64 kB is computed by the kernels, and `engine` reports that.
+Source text does not judge pivots: its functions have them as further outputs.
+
+## The list
+
+";
+
+fn inputs(list: &[Input]) -> String {
+    list.iter().map(|input| format!("{} ({})", input.symbol, input.dim)).collect::<Vec<_>>().join(", ")
+}
+
+fn outputs(list: &[Output]) -> String {
+    let shown = |output: &Output| {
+        let dims: Vec<String> = output.dims.iter().map(ToString::to_string).collect();
+        let shape = if dims.is_empty() { "1".to_string() } else { dims.join(" × ") };
+        format!("`{}` ({shape}), {}", output.name, output.unit)
+    };
+    list.iter().map(shown).collect::<Vec<_>>().join("; ")
+}
+
+fn of(declaration: &Declaration) -> &'static str {
+    match declaration.of {
+        Of::Robot => "",
+        Of::Frame => "frame",
+        Of::Task => "frame, rows, coordinates",
+        Of::Point => "point",
+    }
+}
+
+fn environment(uses: Uses) -> String {
+    let parts = [
+        (Uses::GRAVITY, "g"),
+        (Uses::WRENCHES, "F"),
+        (Uses::BASE_TWIST, "𝒱_s"),
+        (Uses::BASE_ACCELERATION, "𝒱̇_s"),
+    ];
+    parts.into_iter().filter(|(part, _)| uses.has(*part)).map(|(_, name)| name).collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn page_of_quantities() {
+    let model = tree(1, 7, 0);
+    let portable = Batch::new(&model).with_instruction_set(InstructionSet::Portable).expect("everywhere");
+    let frame = model.end_effector().expect("named");
+    let engine = |index: usize| {
+        let query = match LIST[index].of {
+            Of::Task => Query::at(index).of_task(Task { frame, coordinates: TaskFrame::Body, rows: &[0] }),
+            _ => Query::at(index).of(frame),
+        };
+        if matches!(portable.engine(query), Engine::Kernels(_)) { "registers" } else { "program" }
+    };
+    let mut page = String::from(HEAD);
+    page.push_str("| name | formula | inputs | of | environment | outputs | arrays |\n|---|---|---|---|---|---|---|\n");
+    for (index, declaration) in LIST.iter().enumerate() {
+        let Declaration { name, formula, .. } = declaration;
+        writeln!(
+            page,
+            "| `{name}` | {formula} | {} | {} | {} | {} | {} |",
+            inputs(declaration.inputs),
+            of(declaration),
+            environment(declaration.uses),
+            outputs(declaration.outputs),
+            engine(index)
+        )
+        .expect("a string");
+    }
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/quantities.md");
+    if std::env::var_os("MOZZI_BLESS").is_some() {
+        std::fs::write(&file, &page).expect("a page");
+    }
+    let written = std::fs::read_to_string(&file).unwrap_or_default();
+    assert!(written == page, "docs/quantities.md is not current: run `cargo xtask docs`");
+}

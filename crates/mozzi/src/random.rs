@@ -1,0 +1,38 @@
+//! Numbers that are the same on every machine.
+
+use alloc::vec::Vec;
+
+/// Evenly spread numbers from a seed (Steele, Lea and Flood's SplitMix64).
+#[derive(Clone, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number in [−1, 1).
+    #[allow(clippy::should_implement_trait)] // no iterator: it never ends
+    pub fn next(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// A whole number below n.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() >> 16) as usize % n
+    }
+
+    /// K numbers in [−1, 1).
+    pub fn array<const K: usize>(&mut self) -> [f64; K] {
+        core::array::from_fn(|_| self.next())
+    }
+
+    /// n numbers in [−size, size).
+    pub fn vector(&mut self, n: usize, size: f64) -> Vec<f64> {
+        (0..n).map(|_| size * self.next()).collect()
+    }
+}
