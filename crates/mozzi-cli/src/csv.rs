@@ -1,124 +1,91 @@
 //! Tables of numbers in CSV files: one row for each time, columns by name.
 //!
-//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…` with the number of an entry (from 1) or its
-//! name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a
-//! floating base's wrench may be left out alone, and are then 0: no motor drives it.
+//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry (from 1) or its
+//! name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z f_x f_y f_z` of the tip's
+//! wrench. Of each group all columns are there or none, in any order; the six of a floating base's wrench may be left out alone, and are
+//! then 0: no motor drives it.
 
 use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, number};
 use crate::progress::Progress;
-use mozzi::{Model, Wrench};
+use crate::tables::samples::Samples;
+use mozzi::Model;
+use mozzi::quantities::INPUTS;
 use std::cell::Cell;
 use std::io::Read;
 
 /// What `mozzi simulate` writes beside the groups; read and not used.
 pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_work", "friction_loss", "applied_work"];
 
-/// The groups of columns.
-pub const GROUPS: [&str; 4] = ["theta", "dtheta", "ddtheta", "tau"];
+/// The groups of columns: the inputs of quantities.
+pub const GROUPS: [&str; INPUTS.len()] = {
+    let mut names = [""; INPUTS.len()];
+    let mut k = 0;
+    while k < names.len() {
+        names[k] = INPUTS[k].name;
+        k += 1;
+    }
+    names
+};
 
-/// A file's numbers by group; each `None` where the file has no such columns.
-#[derive(Debug, Default)]
-pub struct Samples {
-    pub file: String,
-    /// The line of each row in the file.
-    pub lines: Vec<u64>,
-    pub t: Option<Vec<f64>>,
-    pub theta: Option<Vec<Vec<f64>>>,
-    pub dtheta: Option<Vec<Vec<f64>>>,
-    pub ddtheta: Option<Vec<Vec<f64>>>,
-    pub tau: Option<Vec<Vec<f64>>>,
-    pub tip_wrench: Option<Vec<Wrench>>,
+/// Reads a file, or standard input where it is called `-`.
+pub fn read(file: &str, model: &Model) -> Result<Samples> {
+    read_by(file, |_| model)
 }
 
-impl Samples {
-    /// Reads a file, or standard input where it is called `-`.
-    pub fn read(file: &str, model: &Model) -> Result<Self> {
-        Self::read_by(file, |_| model)
-    }
-
-    /// As of a robot or, where the header has as many positions as joints, as of the same robot on a fixed base. Was it that?
-    pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Self, bool)> {
-        let is_of_joints = Cell::new(false);
-        let choose = |header: &[String]| {
-            let positions = header.iter().filter(|name| name.starts_with("theta_")).count();
-            is_of_joints.set(positions == fixed.nq() && !header.iter().any(|name| name.starts_with("theta_base.")));
-            if is_of_joints.get() { fixed } else { model }
-        };
-        Ok((Self::read_by(file, choose)?, is_of_joints.get()))
-    }
-
-    /// The robot is chosen by the header.
-    fn read_by<'m>(file: &str, choose: impl FnOnce(&[String]) -> &'m Model) -> Result<Self> {
-        let cannot = |error: std::io::Error| Failure::wrong(format!("{file} cannot be read: {error}"));
-        let input: Box<dyn Read> = match file {
-            "-" => Box::new(std::io::stdin().lock()),
-            path => Box::new(std::fs::File::open(path).map_err(cannot)?),
-        };
-        let name = if file == "-" { "standard input" } else { file };
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
-        let header: Vec<String> = match reader.headers() {
-            Ok(header) => header.iter().map(|cell| cell.trim_start_matches('\u{feff}').to_string()).collect(),
-            Err(error) => return Err(csv_failure(name, &error)),
-        };
-        let places = Places::find(&format!("{name}:1"), &header, choose(&header))?;
-        let mut samples = Samples { file: name.to_string(), ..Samples::default() };
-        let mut rows: Vec<Vec<f64>> = Vec::new();
-        let kilobytes = std::fs::metadata(file).map_or(0, |found| found.len() / 1000) as usize;
-        let progress = Progress::new("reading", kilobytes, "kB");
-        for record in reader.records() {
-            let record = record.map_err(|error| csv_failure(name, &error))?;
-            let line = record.position().map_or(0, |position| position.line());
-            progress.at(record.position().map_or(0, |position| position.byte() / 1000) as usize);
-            let mut row = vec![0.0; header.len()];
-            for column in places.all() {
-                let place = format!("{name}:{line}: column {} (`{}`)", column + 1, header[column]);
-                row[column] = number(place, record.get(column).unwrap_or_default())?;
-            }
-            rows.push(row);
-            samples.lines.push(line);
-        }
-        if rows.is_empty() {
-            return Err(Failure::wrong(format!("{name} has no rows below its header")));
-        }
-        let pick = |columns: &Vec<Option<usize>>| {
-            let entry = |row: &[f64], column: Option<usize>| column.map_or(0.0, |c| row[c]);
-            rows.iter().map(|row| columns.iter().map(|&c| entry(row, c)).collect()).collect()
-        };
-        samples.t = places.t.map(|c| rows.iter().map(|row| row[c]).collect());
-        [samples.theta, samples.dtheta, samples.ddtheta, samples.tau] =
-            places.groups.each_ref().map(|g| g.as_ref().map(pick));
-        samples.tip_wrench =
-            places.wrench.map(|columns| rows.iter().map(|row| Wrench::from_array(columns.map(|c| row[c]))).collect());
-        Ok(samples)
-    }
-
-    /// "table.csv:7", the place of a row.
-    pub fn place(&self, row: usize) -> String {
-        format!("{}:{}", self.file, self.lines.get(row).copied().unwrap_or(0))
-    }
-
-    /// A group that a command cannot do without.
-    pub fn need<'a, T>(&self, group: &'a Option<T>, columns: &str) -> Result<&'a T> {
-        group
-            .as_ref()
-            .ok_or_else(|| Failure::wrong(format!("{} has no column {columns}, which is needed here", self.file)))
-    }
+/// As of a robot or, where the header has as many positions as joints, as of the same robot on a fixed base. Was it that?
+pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Samples, bool)> {
+    let is_of_joints = Cell::new(false);
+    let choose = |header: &[String]| {
+        let positions = header.iter().filter(|name| name.starts_with("theta_")).count();
+        is_of_joints.set(positions == fixed.nq() && !header.iter().any(|name| name.starts_with("theta_base.")));
+        if is_of_joints.get() { fixed } else { model }
+    };
+    Ok((read_by(file, choose)?, is_of_joints.get()))
 }
 
-/// How a message names the columns of a group.
-pub fn first_column(model: &Model, group: &str) -> String {
-    let names = columns::names(model, group);
-    format!("{} …", names.first().map_or(group, |name| name))
+/// The robot is chosen by the header.
+fn read_by<'m>(file: &str, choose: impl FnOnce(&[String]) -> &'m Model) -> Result<Samples> {
+    let cannot = |error: std::io::Error| Failure::wrong(format!("{file} cannot be read: {error}"));
+    let input: Box<dyn Read> = match file {
+        "-" => Box::new(std::io::stdin().lock()),
+        path => Box::new(std::fs::File::open(path).map_err(cannot)?),
+    };
+    let name = if file == "-" { "standard input" } else { file };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
+    let header: Vec<String> = match reader.headers() {
+        Ok(header) => header.iter().map(|cell| cell.trim_start_matches('\u{feff}').to_string()).collect(),
+        Err(error) => return Err(csv_failure(name, &error)),
+    };
+    let places = Places::find(&format!("{name}:1"), &header, choose(&header))?;
+    let (mut lines, mut rows): (Vec<u64>, Vec<Vec<f64>>) = Default::default();
+    let kilobytes = std::fs::metadata(file).map_or(0, |found| found.len() / 1000) as usize;
+    let progress = Progress::new("reading", kilobytes, "kB");
+    for record in reader.records() {
+        let record = record.map_err(|error| csv_failure(name, &error))?;
+        let line = record.position().map_or(0, |position| position.line());
+        progress.at(record.position().map_or(0, |position| position.byte() / 1000) as usize);
+        let mut row = vec![0.0; header.len()];
+        for column in places.all() {
+            let place = format!("{name}:{line}: column {} (`{}`)", column + 1, header[column]);
+            row[column] = number(place, record.get(column).unwrap_or_default())?;
+        }
+        rows.push(row);
+        lines.push(line);
+    }
+    if rows.is_empty() {
+        return Err(Failure::wrong(format!("{name} has no rows below its header")));
+    }
+    Ok(Samples { lines, ..places.samples(name, rows.len(), |row, column| rows[row][column]) })
 }
 
 /// Which column is what.
 pub struct Places {
     t: Option<usize>,
     /// As [`GROUPS`]. None of an entry: its column was left out, and it is 0.
-    pub groups: [Option<Vec<Option<usize>>>; 4],
-    pub wrench: Option<[usize; 6]>,
+    groups: [Option<Vec<Option<usize>>>; GROUPS.len()],
+    wrench: Option<[usize; 6]>,
 }
 
 impl Places {
@@ -128,7 +95,7 @@ impl Places {
             if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() }
         };
         let names = GROUPS.map(names);
-        let mut groups: [Vec<Option<usize>>; 4] = names.each_ref().map(|names| vec![None; names.len()]);
+        let mut groups: [Vec<Option<usize>>; GROUPS.len()] = names.each_ref().map(|names| vec![None; names.len()]);
         let (mut t, mut wrench) = ([None], [None; 6]);
         for (column, name) in header.iter().enumerate() {
             let entry: Option<&mut Option<usize>> = if name == "t" {
@@ -161,7 +128,7 @@ impl Places {
         let missing = |name: &str, of: usize, found: usize| {
             Failure::wrong(format!("{place}: column {name} is missing; of its group there are {found} of {of}"))
         };
-        let mut found = [const { None }; 4];
+        let mut found = [const { None }; GROUPS.len()];
         for ((found, group), places) in found.iter_mut().zip(GROUPS).zip(groups) {
             let optional = if group == "tau" { model.base().velocities() } else { 0 };
             let count = places.iter().flatten().count();
@@ -182,6 +149,23 @@ impl Places {
             None => columns.try_into().ok(),
         };
         Ok(Places { t: t[0], groups: found, wrench })
+    }
+
+    /// What the columns hold, by the number in a row and a column.
+    pub fn samples(&self, file: &str, count: usize, number: impl Fn(usize, usize) -> f64) -> Samples {
+        let table = |columns: &[Option<usize>]| -> Vec<f64> {
+            let entry = |row: usize, column: &Option<usize>| column.map_or(0.0, |column| number(row, column));
+            (0..count)
+                .flat_map(|row| columns.iter().map(move |column| (row, column)))
+                .map(|(r, c)| entry(r, c))
+                .collect()
+        };
+        let groups = GROUPS.into_iter().zip(&self.groups);
+        let groups = groups.filter_map(|(name, columns)| Some((name, table(columns.as_ref()?))));
+        let wrench = self.wrench.map(|columns| ("wrench", table(&columns.map(Some))));
+        let tables = groups.chain(wrench).map(|(name, table)| (name.to_string(), table)).collect();
+        let t = self.t.map(|column| table(&[Some(column)]));
+        Samples { file: file.to_string(), count, t, tables, ..Samples::default() }
     }
 
     pub fn all(&self) -> impl Iterator<Item = usize> {

@@ -15,7 +15,7 @@ pub enum Failure {
     Stopped(String),
 }
 
-pub type Result<T> = std::result::Result<T, Failure>;
+pub type Result<T, E = Failure> = std::result::Result<T, E>;
 
 impl Failure {
     pub fn wrong(sentence: impl Into<String>) -> Self {
@@ -56,6 +56,12 @@ pub fn note(text: &str) {
 
 impl From<mozzi::Error> for Failure {
     fn from(error: mozzi::Error) -> Self {
+        Failure::Wrong(error.to_string())
+    }
+}
+
+impl From<mozzi_batch::Error> for Failure {
+    fn from(error: mozzi_batch::Error) -> Self {
         Failure::Wrong(error.to_string())
     }
 }

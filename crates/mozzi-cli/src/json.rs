@@ -1,11 +1,23 @@
 //! Values as JSON. Matrices are lists of rows; a number that is none (NaN, infinity) is null, as JSON has no name for it.
 
-use mozzi::{Base, Jacobian, Model, SE3};
+use mozzi::model::ScrewLists;
+use mozzi::{Base, Model, SE3};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
 pub fn vector(values: &[f64]) -> Value {
     values.iter().copied().map(Value::from).collect()
+}
+
+/// An array by rows: a number, a list, or lists of lists.
+pub fn nested(shape: &[usize], values: &[f64]) -> Value {
+    match shape {
+        [] => values.first().copied().into(),
+        [_] => vector(values),
+        [_, rest @ ..] => {
+            values.chunks_exact(rest.iter().product::<usize>().max(1)).map(|entry| nested(rest, entry)).collect()
+        }
+    }
 }
 
 pub fn dvector(values: &DVector<f64>) -> Value {
@@ -22,10 +34,6 @@ pub fn rows<const R: usize, const C: usize>(rows: [[f64; C]; R]) -> Value {
 
 pub fn pose(T: SE3) -> Value {
     rows(T.to_matrix())
-}
-
-pub fn jacobian(J: &Jacobian) -> Value {
-    matrix(&J.matrix())
 }
 
 /// "fixed" or "floating".
@@ -53,6 +61,23 @@ pub fn of_robot(model: &Model, entries: Value) -> Value {
         object.extend(entries);
     }
     object
+}
+
+/// The book's lists.
+pub fn screws(lists: &ScrewLists) -> Value {
+    let axes = |list: &[mozzi::ScrewAxis]| list.iter().map(|A| vector(&A.twist().to_array())).collect::<Value>();
+    json!({
+        "joints": lists.joints,
+        "links": lists.links,
+        "parents": lists.parents,
+        "M": lists.M.iter().map(|&T| pose(T)).collect::<Value>(),
+        "M_relative": lists.M_relative.iter().map(|&T| pose(T)).collect::<Value>(),
+        "S": axes(&lists.S),
+        "B": lists.end_effector.as_ref().map(|_| axes(&lists.B)),
+        "A": axes(&lists.A),
+        "G": lists.G.iter().map(|G| rows(G.to_matrix())).collect::<Value>(),
+        "end_effector": lists.end_effector.as_ref().map(|(name, T)| json!({ "name": name, "M": pose(*T) })),
+    })
 }
 
 /// An object over lines: a list without lists or objects in it is one line.

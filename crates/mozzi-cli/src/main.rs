@@ -1,7 +1,6 @@
 //! `mozzi`: the dynamics of open-chain robots on the command line. Converts, checks, calls, names the error; every
 //! formula is the library's.
 
-mod batch;
 mod columns;
 mod commands;
 mod conditions;
@@ -9,6 +8,7 @@ mod controller;
 mod csv;
 mod failure;
 mod goals;
+mod inputs;
 mod interrupt;
 mod json;
 mod json_file;
@@ -16,15 +16,18 @@ mod log;
 mod motors;
 mod numbers;
 mod progress;
+mod quantity;
 mod report;
 mod robot;
 mod robot_json;
 mod serve;
 mod state;
 mod table;
+mod tables;
+mod task;
 
 use clap::{Parser, Subcommand};
-use commands::{check, convert, explain, forward_dynamics, info, inverse_dynamics, screws, simulate, terms, tour};
+use commands::{check, compute, convert, explain, info, screws, simulate, terms, tour};
 use failure::{Failure, Result};
 use mozzi_text as text;
 use std::io::Write;
@@ -49,17 +52,9 @@ enum Command {
     Screws(screws::ScrewsArguments),
     /// Every quantity at one state: T, J, M, C, c, g, h, JᵀF, τ, θ̈, energies, Λ, η, …
     Terms(terms::TermsArguments),
-    /// τ from θ, θ̇, θ̈: one state, or a table of states
-    #[command(after_help = TABLES)]
-    InverseDynamics(inverse_dynamics::InverseArguments),
-    /// θ̈ from θ, θ̇, τ: one state, or a table of states
-    #[command(after_help = TABLES)]
-    ForwardDynamics(forward_dynamics::ForwardArguments),
-    /// ∂τ and ∂θ̈ with respect to θ, θ̇, θ̈ and τ, exact, at one state
-    Derivatives(commands::derivatives::DerivativesArguments),
-    /// A quantity at every state of a file (.npy, .npz, .arrow, .csv), on all cores
-    #[command(after_help = BATCHES)]
-    Batch(commands::batch::BatchArguments),
+    /// Any quantity, at one state or at every state of a table: τ, θ̈, M, Jacobians, derivatives, …
+    #[command(after_help = format!("{COMPUTE}\n\n{TABLES}"), mut_arg("model", compute::model))]
+    Compute(compute::ComputeArguments),
     /// How long each quantity takes on this machine, at one state and at many
     Bench(commands::bench::BenchArguments),
     /// Positions at which the end effector is where it is to be: one pose, or a table of poses
@@ -101,11 +96,11 @@ Examples:
   mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
   mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
   mozzi terms two_link_planar --theta 0.3,0.8 --task vx,vz
-  mozzi inverse-dynamics panda --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
-  mozzi inverse-dynamics ur5 --in motion.csv --out torques.csv
-  mozzi forward-dynamics ur5 --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
-  mozzi derivatives ur5 --theta 0,-1.2,1.5,0.3,1.1,0    exact derivatives of τ and θ̈
-  mozzi batch ur5 --quantity mass-matrix --in states.npy --out M.npy
+  mozzi compute --list                                  every quantity: its formula, what it takes, what it gives
+  mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
+  mozzi compute ur5 forward-dynamics --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
+  mozzi compute ur5 inverse-dynamics --in motion.csv --out torques.csv
+  mozzi compute ur5 mass-matrix --in states.npy --out M.npy
   mozzi bench panda                                     nanoseconds a state on your machine
   mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
   mozzi codegen panda --explain                         the work before and after folding
@@ -125,7 +120,7 @@ Exit codes: 0 done, 1 wrong input or no answer, 2 wrong usage, 130 ended by Ctrl
 const TABLES: &str = "\
 CSV files have a header and one row for each state; columns in any order:
   t                                     time, s
-  theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_;
+  theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_, x_;
                                         a joint by its number, or by its name: theta_elbow_joint;
                                         of a floating base theta_base.qw qx qy qz x y z, and
                                         dtheta_base.wx wy wz vx vy vz, likewise ddtheta_, tau_
@@ -151,7 +146,7 @@ Examples:
 A condition counts where it becomes true, at the zero of the polynomial between two steps: as exact as the method. One that is
 true for less than a quarter of a step may be overlooked.
 
-CSV files are as of `mozzi inverse-dynamics --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
+CSV files are as of `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
 
 A controller is a JSON object; gains are one number for all, or lists:
   {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + p e + d ė; N m/rad, N m s/rad
@@ -161,18 +156,29 @@ A controller is a JSON object; gains are one number for all, or lists:
    \"posture_p\": 25, \"posture_d\": 10}
 \"model\": \"FILE or embedded robot\" beside them is what the controller believes the robot to be.";
 
-const BATCHES: &str = "\
-The states, N of them:
-  .npy             one array (N, columns): theta | dtheta | ddtheta or tau, as far as the quantity needs
-                   them, then the tip's wrench m_x m_y m_z f_x f_y f_z where there are six columns more
-  .npz             arrays theta (N, nq), dtheta, ddtheta, tau (N, n), wrench (N, 6)
+const COMPUTE: &str = "\
+Examples:
+  mozzi compute --list                                          every quantity: its formula, what it takes, what it gives
+  mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02
+  mozzi compute ur5 body-jacobian --frame forearm_link
+  mozzi compute two_link_planar task-space-dynamics --theta 0.3,0.8 --task vx,vz
+  mozzi compute ur5 inverse-dynamics --wrench tool0=0,0,0,0,0,20 --wrench forearm_link=0,0,0,1,0,0 --json
+  mozzi compute ur5 inverse-dynamics --in motion.csv --out torques.csv
+  mozzi compute ur5 mass-matrix --in states.npy --out M.npz --precision f32
+A flag that has no effect on the quantity is an error.
+
+Files with N states:
+  .npy             one array (N, columns): the quantity's inputs side by side, such as theta | dtheta | ddtheta,
+                   then the tip's wrench m_x m_y m_z f_x f_y f_z if there are six more columns
+  .npz             arrays theta (N, nq), dtheta, ddtheta, tau, x (N, n), wrench (N, 6) of the tip; also
+                   gravity (N, 3), parameters (N, p) and wrench_FRAME (N, 6), different in each state
   .arrow .feather  Arrow's IPC file (pandas.to_feather, polars.write_ipc) with columns as in CSV
-  .csv             columns theta_1 …; see mozzi inverse-dynamics --help
-Numbers are float64 or float32. Of named tables, dtheta, ddtheta and wrench may be left out: they are 0.
-The results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
+  .csv             columns theta_1 …, see below
+Numbers are float64 or float32. Wrenches given by flags are the same in all states.
+Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
   .npy             one array; .npz: each by its name
-  .arrow .csv      a column for each entry: tau_1 …, M_1_1, M_1_2 …
-A state with a NaN gives NaN in its own results and in no other's.";
+  .arrow .csv      a column for each entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
+NaN in a state gives NaN in the results of that state only.";
 
 fn main() -> ExitCode {
     let answer = run(&Arguments::parse());
@@ -205,10 +211,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Info(arguments)) => info::run(arguments),
         Some(Command::Screws(arguments)) => screws::run(arguments),
         Some(Command::Terms(arguments)) => terms::run(arguments),
-        Some(Command::InverseDynamics(arguments)) => inverse_dynamics::run(arguments),
-        Some(Command::ForwardDynamics(arguments)) => forward_dynamics::run(arguments),
-        Some(Command::Derivatives(arguments)) => commands::derivatives::run(arguments),
-        Some(Command::Batch(arguments)) => commands::batch::run(arguments),
+        Some(Command::Compute(arguments)) => compute::run(arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
         Some(Command::Ik(arguments)) => commands::ik::run(arguments),
         Some(Command::Trajectory(arguments)) => commands::trajectory::run(arguments),

@@ -1,10 +1,11 @@
 //! What drives a simulated robot: the flags of `mozzi simulate` as inputs.
 
 use crate::controller::Controller;
-use crate::csv::{Samples, first_column};
+use crate::csv;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{WRENCH, array};
 use crate::robot::RobotArguments;
+use crate::tables::samples::Samples;
 use clap::{Args, ValueEnum};
 use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi::{Base, Model, Wrench};
@@ -70,18 +71,19 @@ impl MotorArguments {
     pub fn followed(&self, model: &Model) -> Result<Option<Followed>> {
         let Some(file) = &self.follow else { return Ok(None) };
         let fixed = model.with_base(Base::Fixed)?;
-        let (samples, is_of_joints) = Samples::read_joints(file, model, &fixed)?;
-        let times = samples.need(&samples.t, "t")?;
+        let (samples, is_of_joints) = csv::read_joints(file, model, &fixed)?;
+        let times = samples.times()?;
         check_times(&samples, times)?;
-        let theta = samples.need(&samples.theta, &first_column(model, "theta"))?;
+        let theta = samples.need("theta", model)?;
         // what the rows say of the base, and of the joints
         let whole = if is_of_joints { Base::Fixed } else { model.base() };
-        let joints =
-            |rows: &Vec<Vec<f64>>, base: usize| rows.iter().map(|row| row[base..].to_vec()).collect::<Vec<_>>();
+        let joints = |table: &[f64], base: usize| -> Vec<Vec<f64>> {
+            table.chunks(table.len() / samples.count).map(|row| row[base..].to_vec()).collect()
+        };
         let [dtheta, ddtheta] =
-            [&samples.dtheta, &samples.ddtheta].map(|rows| rows.as_ref().map(|rows| joints(rows, whole.velocities())));
+            ["dtheta", "ddtheta"].map(|name| samples.tables.get(name).map(|table| joints(table, whole.velocities())));
         let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
-        let (theta, pose) = (joints(theta, whole.positions()), theta[0].first_chunk().copied());
+        let (theta, pose) = (joints(theta, whole.positions()), theta.first_chunk().copied());
         let recorded = Recorded::new(&fixed, times, &theta, dtheta.as_deref(), ddtheta.as_deref()).map_err(place)?;
         if !model.is_floating() {
             let start = recorded.at(0.0);
@@ -91,8 +93,8 @@ impl MotorArguments {
         let pose = if is_of_joints { home } else { pose }.unwrap_or_default();
         let reference = OfJoints { joints: recorded, pose };
         let mut start = reference.at(0.0);
-        if let (false, Some(rows)) = (is_of_joints, &samples.dtheta) {
-            start.dtheta[..6].copy_from_slice(&rows[0][..6]);
+        if let (false, Some(table)) = (is_of_joints, samples.tables.get("dtheta")) {
+            start.dtheta[..6].copy_from_slice(&table[..6]);
         }
         failure::note(&format!(
             "{file}: the joints are followed; nothing drives the base, which begins {}",
@@ -117,8 +119,8 @@ impl MotorArguments {
             "zero" => Box::new(Zero),
             "gravity-compensation" => Box::new(GravityCompensation::new(model)),
             file => {
-                let samples = Samples::read(file, model)?;
-                let values = samples.need(&samples.tau, &first_column(model, "tau"))?.concat();
+                let samples = csv::read(file, model)?;
+                let values = samples.need("tau", model)?.to_vec();
                 Box::new(TorqueTable(self.table(&samples, values, end)?))
             }
         };
@@ -135,9 +137,8 @@ impl MotorArguments {
             let F = Wrench::from_array(array("--tip-wrench", text, WRENCH)?);
             return Ok(Box::new(simulation::applied(tip, move |_, _, _| F)));
         }
-        let samples = Samples::read(text, model)?;
-        let list = samples.need(&samples.tip_wrench, "m_x m_y m_z f_x f_y f_z")?;
-        let values = list.iter().flat_map(|F| F.to_array()).collect();
+        let samples = csv::read(text, model)?;
+        let values = samples.need("wrench", model)?.to_vec();
         Ok(Box::new(WrenchTable(tip, self.table(&samples, values, end)?)))
     }
 
@@ -147,7 +148,7 @@ impl MotorArguments {
             Beyond::Hold => Outside::Hold,
             Beyond::Zero => Outside::Zero,
         };
-        let times = samples.need(&samples.t, "t")?;
+        let times = samples.times()?;
         check_times(samples, times)?;
         let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
         if matches!(self.extrapolate, Beyond::Error) && (first > 0.0 || last < end * (1.0 - 1e-12)) {
@@ -156,7 +157,7 @@ impl MotorArguments {
                 samples.file
             )));
         }
-        Ok(Table::new(times.clone(), values)?.outside(outside))
+        Ok(Table::new(times.to_vec(), values)?.outside(outside))
     }
 }
 

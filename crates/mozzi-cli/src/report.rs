@@ -1,7 +1,7 @@
 //! A robot and its motion as a page.
 
 use crate::columns::save;
-use crate::csv::{Samples, first_column};
+use crate::csv;
 use crate::failure::{self, Failure, Result};
 use clap::{Args, ValueEnum};
 use mozzi::simulation::Input;
@@ -69,18 +69,17 @@ pub fn simulated(title: String, motion: &Trajectory, mut wrench: impl Input) -> 
 
 /// A table's motion; energies follow from it.
 pub fn read(file: &str, model: &Model) -> Result<Motion> {
-    let samples = Samples::read(file, model)?;
-    let t = samples.need(&samples.t, "t")?.clone();
-    let theta = samples.need(&samples.theta, &first_column(model, "theta"))?.concat();
-    let list = |rows: &Option<Vec<Vec<f64>>>| rows.as_ref().map(|rows| rows.concat());
+    let mut samples = csv::read(file, model)?;
+    let (t, theta) = (samples.times()?.to_vec(), samples.need("theta", model)?.to_vec());
+    let mut take = |name| samples.tables.remove(name);
     let motion = Motion {
         title: samples.file.clone(),
         t,
         theta,
-        dtheta: list(&samples.dtheta),
-        ddtheta: list(&samples.ddtheta),
-        tau: list(&samples.tau),
-        tip_wrench: samples.tip_wrench.clone(),
+        dtheta: take("dtheta"),
+        ddtheta: take("ddtheta"),
+        tau: take("tau"),
+        tip_wrench: take("wrench").map(|table| table.as_chunks().0.iter().copied().map(Wrench::from_array).collect()),
         ..Motion::default()
     };
     motion.with_energies(model).map_err(|error| Failure::wrong(format!("{file}: {error}")))

@@ -5,6 +5,7 @@ use crate::numbers::array;
 use crate::robot_json;
 use clap::Args;
 use mozzi::model::Problem;
+use mozzi::quantities::INPUTS;
 use mozzi::{Description, FrameId, Model};
 use mozzi_urdf::{LoadError, Loaded, Policy, Severity};
 
@@ -138,15 +139,12 @@ pub fn end_effector(model: &Model) -> Option<FrameId> {
     }
 }
 
-/// "rad" and "N m", "m" and "N", or both where the robot has joints of both kinds.
-pub struct Units {
-    pub position: &'static str,
-    pub force: &'static str,
-    pub inertia: &'static str,
+/// Which of a unit's alternatives this robot's joints have: those of turning joints, of sliding ones, or both.
+pub enum Units {
+    Turning,
+    Sliding,
+    Both,
 }
-
-/// A floating base turns and slides, too.
-const MIXED: Units = Units { position: "rad, m", force: "N m, N", inertia: "kg m², kg m, kg" };
 
 /// What {s} is to this robot.
 pub fn space_frame(model: &Model) -> &'static str {
@@ -154,19 +152,30 @@ pub fn space_frame(model: &Model) -> &'static str {
 }
 
 impl Units {
+    /// A floating base turns and slides, too.
     pub fn of(model: &Model) -> Self {
-        let slides = model.joints().filter(|joint| joint.kind.name() == "prismatic").count();
-        match slides {
-            _ if model.is_floating() => MIXED,
-            0 => Units { position: "rad", force: "N m", inertia: "kg m²" },
-            all if all == model.n() => Units { position: "m", force: "N", inertia: "kg" },
-            _ => MIXED,
+        match model.joints().filter(|joint| joint.kind.name() == "prismatic").count() {
+            _ if model.is_floating() => Units::Both,
+            0 => Units::Turning,
+            all if all == model.n() => Units::Sliding,
+            _ => Units::Both,
         }
     }
 
-    /// Per second, per second squared.
-    pub fn rate(&self, order: usize) -> String {
-        let per = ["", "/s", "/s²"][order.min(2)];
-        self.position.split(", ").map(|unit| format!("{unit}{per}")).collect::<Vec<_>>().join(", ")
+    /// "N m" of "N m or N", the unit of turning joints before that of sliding ones.
+    pub fn own(&self, unit: &str) -> String {
+        let (units, each) = unit.split_at(unit.find(", each").unwrap_or(unit.len()));
+        let mut alternatives = units.split(", ").flat_map(|part| part.split(" or "));
+        let own = match self {
+            Units::Turning => alternatives.next(),
+            Units::Sliding => alternatives.last(),
+            Units::Both => None,
+        };
+        format!("{}{each}", own.unwrap_or(units))
+    }
+
+    /// Of positions, velocities, accelerations, forces: the first inputs of [`INPUTS`].
+    pub fn input(&self, index: usize) -> String {
+        self.own(INPUTS[index].unit)
     }
 }

@@ -1,6 +1,5 @@
 //! A robot as JSON: its links and joints, which are read back, and the book's lists, which follow from them.
 
-use crate::commands::terms_json;
 use crate::failure::{Failure, Result};
 use crate::{json, json_file};
 use mozzi::model::description::{FreeJoint, Joint, JointKind, Limits, Mimic, NamedFrame};
@@ -36,7 +35,7 @@ pub fn write(model: &Model) -> String {
         "frames": robot.frames.iter().map(|frame| json!({
             "name": frame.name, "link": frame.link, "T": json::pose(frame.T),
         })).collect::<Value>(),
-        "lists": terms_json::screws(&model.screws()),
+        "lists": json::screws(&model.screws()),
     }))
 }
 
@@ -166,7 +165,7 @@ fn lists_agree(at: &At, robot: &Description) -> Read<()> {
         return Ok(());
     }
     let model = robot.clone().build().map_err(|error| error.to_string())?;
-    let expected = terms_json::screws(&model.screws());
+    let expected = json::screws(&model.screws());
     for key in ["joints", "links", "parents", "M", "M_relative", "S", "A", "B", "G", "end_effector"] {
         let found = at.get(key);
         if !found.value.is_null() && !alike(found.value, &expected[key]) {

@@ -1,6 +1,6 @@
 //! One state of a robot, by flags.
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, array, numbers, numbers_for, wrong_count};
 use clap::Args;
 use mozzi::{Environment, FrameId, Model, Wrench};
@@ -20,6 +20,16 @@ pub struct TipArguments {
     /// What the end effector applies to the environment, in its own frame, moment first: N m, N [default: 0]
     #[arg(long, value_name = "mx,my,mz,fx,fy,fz", allow_hyphen_values = true)]
     pub tip_wrench: Option<String>,
+}
+
+/// Wrenches on the environment, of the end effector and of any frames.
+#[derive(Args, Debug, Default)]
+pub struct WrenchArguments {
+    #[command(flatten)]
+    pub tip: TipArguments,
+    /// What a frame applies to the environment, in its own coordinates, moment first: N m, N; may be repeated
+    #[arg(long, value_name = "FRAME=mx,my,mz,fx,fy,fz")]
+    pub wrench: Vec<String>,
 }
 
 /// A state of motion and what the tip applies: θ, θ̇, and θ̈ or the τ that makes it.
@@ -78,6 +88,35 @@ impl TipArguments {
     }
 }
 
+impl WrenchArguments {
+    /// Each frame's wrench.
+    pub fn read(&self, model: &Model) -> Result<Vec<(FrameId, Wrench)>> {
+        let mut applied = self.tip.read(model)?;
+        for text in &self.wrench {
+            let Some((name, numbers)) = text.rsplit_once('=') else {
+                return Err(Failure::wrong(format!("--wrench is `{text}`, expected FRAME=mx,my,mz,fx,fy,fz")));
+            };
+            let numbers = array(&format!("--wrench {name}"), numbers, WRENCH)?;
+            applied.push((model.frame(name)?, Wrench::from_array(numbers)));
+        }
+        check_frames(model, applied.iter().map(|(frame, _)| *frame))?;
+        Ok(applied)
+    }
+}
+
+/// Each frame's wrench is given once.
+pub fn check_frames(model: &Model, frames: impl Iterator<Item = FrameId>) -> Result<()> {
+    let mut seen = Vec::new();
+    for frame in frames {
+        if seen.contains(&frame) {
+            let name = model.frame_name(frame);
+            return Err(Failure::wrong(format!("the wrench of the frame `{name}` is given twice, expected once")));
+        }
+        seen.push(frame);
+    }
+    Ok(())
+}
+
 /// nq numbers; the neutral configuration where the flag is not given.
 pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
     match text {
@@ -93,6 +132,7 @@ pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f
     let base = match flag {
         "--tau" => "base wrench (m, f)",
         "--ddtheta" => "base acceleration (ω̇, v̇)",
+        "--x" => "the base's entries",
         _ => "base twist (ω, v)",
     };
     match text {

@@ -1,7 +1,9 @@
 //! Rows of quantities, one entry for each joint.
 
+use crate::robot::Units;
 use crate::text::{Decimals, page_width, rows_of, table, width};
 use mozzi::Model;
+use mozzi::quantities::Input;
 
 /// A vector over the joints: its symbol, what it is, its unit.
 pub struct Quantity<'a> {
@@ -12,6 +14,11 @@ pub struct Quantity<'a> {
 }
 
 impl<'a> Quantity<'a> {
+    /// An input.
+    pub fn of(input: &'a Input, units: &Units, values: &'a [f64]) -> Self {
+        Quantity::new(input.symbol, input.about, units.own(input.unit), values)
+    }
+
     pub fn new(symbol: &'a str, name: &'a str, unit: impl Into<String>, values: &'a [f64]) -> Self {
         Quantity { symbol, name, unit: unit.into(), values }
     }
@@ -102,4 +109,11 @@ fn tail(cell: &str) -> usize {
         Some(point) => cell.len() - point,
         None => cell.len() - cell.trim_end().len(),
     }
+}
+
+/// A tuple with few digits, for what was computed.
+pub fn short(values: &[f64]) -> String {
+    let decimals = Decimals::of(values);
+    let entries: Vec<String> = values.iter().map(|&x| decimals.show(x).trim().to_string()).collect();
+    format!("({})", entries.join(", "))
 }

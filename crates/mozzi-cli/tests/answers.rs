@@ -19,16 +19,16 @@ const STATE: [&str; 8] = [
 #[test]
 fn help_names_every_subcommand_and_gives_examples() {
     let help = text(&["--help"]);
-    let all = ["info", "screws", "terms", "inverse-dynamics", "forward-dynamics", "derivatives", "simulate", "check"];
+    let all = ["info", "screws", "terms", "compute", "simulate", "check"];
     for name in all {
         assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
         assert!(help.contains(&format!("mozzi {name} ")), "an example of {name}");
         assert!(text(&[name, "--help"]).contains("MODEL"));
     }
-    for name in ["convert", "explain", "batch", "bench", "codegen", "view", "plot"] {
+    for name in ["convert", "explain", "bench", "codegen", "view", "plot"] {
         assert!(help.contains(&format!("\n  {name} ")) && help.contains(&format!("mozzi {name} ")), "{name} in {help}");
     }
-    assert!(text(&["inverse-dynamics", "--help"]).contains("theta_1 … theta_n"));
+    assert!(text(&["compute", "--help"]).contains("theta_1 … theta_n"));
 }
 
 #[test]
@@ -100,43 +100,49 @@ fn terms_satisfy_the_equation_of_motion() {
     assert_close(&numbers(&d_tau["ddtheta"]), &ddtheta, 1e-10);
 }
 
+const DDTHETA: &str = "1,0.5,-1,2,0,-0.5";
+
 #[test]
 fn derivatives_are_what_small_steps_make_of_the_answers() {
     let h = 1e-6;
     let tau = |theta: f64, dtheta: f64| {
         let (theta, dtheta) =
             (format!("0,{},1.5,0.3,1.1,0", -1.2 + theta), format!("0.5,{},0.4,0.2,-0.6,1", -0.3 + dtheta));
-        let found = json(&[
-            "inverse-dynamics",
-            "ur5",
-            "--theta",
-            &theta,
-            "--dtheta",
-            &dtheta,
-            "--ddtheta",
-            "1,0.5,-1,2,0,-0.5",
-        ]);
-        numbers(&found["inverse_dynamics"])
+        let state = ["--theta", &theta, "--dtheta", &dtheta, "--ddtheta", DDTHETA];
+        numbers(&json(&[&["compute", "ur5", "inverse-dynamics"][..], &state].concat())["tau"])
     };
-    let arguments = ["derivatives", "ur5", "--theta", "0,-1.2,1.5,0.3,1.1,0", "--dtheta", "0.5,-0.3,0.4,0.2,-0.6,1"];
-    let found = json(&[&arguments[..], &["--ddtheta", "1,0.5,-1,2,0,-0.5"]].concat());
-    let derivatives = &found["derivatives"];
-    let column = |key: &str| rows(&derivatives["inverse_dynamics"][key]).iter().map(|row| row[1]).collect::<Vec<_>>();
+    let state = ["--theta", "0,-1.2,1.5,0.3,1.1,0", "--dtheta", "0.5,-0.3,0.4,0.2,-0.6,1"];
+    let compute = |quantity: &str, more: &[&str]| json(&[&["compute", "ur5", quantity], &state[..], more].concat());
+    let inverse = compute("inverse-dynamics-derivatives", &["--ddtheta", DDTHETA]);
+    let column = |key: &str| rows(&inverse[key]).iter().map(|row| row[1]).collect::<Vec<_>>();
     let slope = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<_>>();
     assert_close(&column("d_theta"), &slope(tau(h, 0.0), tau(-h, 0.0)), 1e-7);
     assert_close(&column("d_dtheta"), &slope(tau(0.0, h), tau(0.0, -h)), 1e-7);
     // M and its inverse; `terms` has the same
-    let (M, inverse) = (&derivatives["inverse_dynamics"]["d_ddtheta"], &derivatives["forward_dynamics"]["d_tau"]);
-    let columns = rows(inverse);
-    for (j, row) in columns.iter().enumerate() {
-        let product = times(&rows(M), row);
+    let tau: Vec<String> = tau(0.0, 0.0).iter().map(f64::to_string).collect();
+    let forward = compute("forward-dynamics-derivatives", &["--tau", &tau.join(",")]);
+    for (j, row) in rows(&forward["d_tau"]).iter().enumerate() {
+        let product = times(&rows(&inverse["d_ddtheta"]), row);
         let unit: Vec<f64> = (0..6).map(|i| f64::from(u8::from(i == j))).collect();
         assert_close(&product, &unit, 1e-10);
     }
-    let terms = json(&[&["terms"], &arguments[1..], &["--ddtheta", "1,0.5,-1,2,0,-0.5"]].concat());
-    assert_eq!(&terms["derivatives"], derivatives);
-    let page = text(&["derivatives", "anymal", "--floating"]);
-    for word in ["∂τ/∂θ̇", "∂θ̈/∂τ = M⁻¹", "base.wx", "along its twist"] {
+    let terms = json(&[&["terms", "ur5"], &state[..], &["--ddtheta", DDTHETA]].concat());
+    for key in ["d_theta", "d_dtheta", "d_ddtheta"] {
+        assert_eq!(terms["inverse_dynamics_derivatives"][key], inverse[key], "{key}");
+    }
+    for key in ["d_theta", "d_dtheta", "d_tau"] {
+        // τ went through the test's JSON reader, which is off by an ulp
+        let (a, b) = (rows(&terms["forward_dynamics_derivatives"][key]).concat(), rows(&forward[key]).concat());
+        assert_close(&a, &b, 1e-13 * a.iter().fold(1.0, |m: f64, x| m.max(x.abs())));
+    }
+    let gravity = json(&["compute", "ur5", "gravity-forces-derivative", "--theta", state[1]]);
+    assert_eq!(terms["gravity_forces_derivative"], gravity["dg"]);
+    let page = text(&["compute", "anymal", "forward-dynamics-derivatives", "--floating"]);
+    for word in ["∂θ̈/∂θ̇", "∂θ̈/∂τ = M⁻¹", "base.wx", "along the velocities", "d_tau ["] {
+        assert!(page.contains(word), "{word} in {page}");
+    }
+    let page = text(&["terms", "anymal", "--floating"]);
+    for word in ["∂τ/∂θ̇", "∂θ̈/∂τ = M⁻¹", "base.wx"] {
         assert!(page.contains(word), "{word} in {page}");
     }
 }
@@ -184,16 +190,15 @@ fn a_planar_task_has_its_rows() {
 
 #[test]
 fn forward_dynamics_undoes_inverse_dynamics_in_three_ways() {
-    let inverse = json(&[&["inverse-dynamics", "ur5"], &STATE[..]].concat());
-    let tau: Vec<String> = numbers(&inverse["inverse_dynamics"]).iter().map(f64::to_string).collect();
-    for by in ["articulated-body", "mass-matrix", "inverse-dynamics"] {
-        let tau = tau.join(",");
-        let arguments =
-            [&["forward-dynamics", "ur5", "--algorithm", by], &STATE[..4], &STATE[6..], &["--tau", &tau]].concat();
-        assert_close(&numbers(&json(&arguments)["forward_dynamics"]), &[1.0, 0.5, -1.0, 2.0, 0.0, -0.5], 1e-10);
+    let inverse = json(&[&["compute", "ur5", "inverse-dynamics"], &STATE[..]].concat());
+    let tau: Vec<String> = numbers(&inverse["tau"]).iter().map(f64::to_string).collect();
+    for by in ["", "-by-mass-matrix", "_by_inverse_dynamics"] {
+        let (tau, quantity) = (tau.join(","), format!("forward-dynamics{by}").replace("-dynamics_", "_dynamics_"));
+        let arguments = [&["compute", "ur5", &quantity], &STATE[..4], &STATE[6..], &["--tau", &tau]].concat();
+        assert_close(&numbers(&json(&arguments)["ddtheta"]), &[1.0, 0.5, -1.0, 2.0, 0.0, -0.5], 1e-10);
     }
-    assert!(text(&["inverse-dynamics", "ur5"]).contains("inverse_dynamics"));
-    assert!(text(&["forward-dynamics", "ur5"]).contains("forward_dynamics"));
+    assert!(text(&["compute", "ur5", "inverse-dynamics"]).contains("inverse_dynamics"));
+    assert!(text(&["compute", "ur5", "forward-dynamics"]).contains("forward_dynamics"));
 }
 
 #[test]

@@ -61,9 +61,10 @@ fn policies_are_of_every_command() {
     let joint = "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>";
     let text = format!("<robot name='odd'><link name='a'/><link name='b'>{inertia}</link>{joint}</robot>");
     let robot = file(&folder, "odd.urdf", &text);
-    for command in ["check", "info", "terms", "inverse-dynamics"] {
+    for command in ["check", "info", "terms", "compute"] {
         let said = |flag: &str| {
-            let output = mozzi(&[command, &robot, flag]);
+            let quantity = (command == "compute").then_some("inverse-dynamics");
+            let output = mozzi(&[&[command, &robot], quantity.as_slice(), &[flag]].concat());
             (output.status.code(), String::from_utf8(output.stderr).expect("text"))
         };
         let (code, message) = said("--strict");
@@ -103,7 +104,7 @@ fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
     assert!(output.status.success() && String::from_utf8_lossy(&output.stderr).contains("2 warnings"), "{output:?}");
     assert_eq!(mozzi(&["check", &robot, "--strict"]).status.code(), Some(1));
     assert!(output.stderr.len() > said.len());
-    wrong(&["forward-dynamics", &robot], &["the mass matrix is singular at joint `j`"]);
+    wrong(&["compute", &robot, "forward-dynamics"], &["the mass matrix is singular at joint `j`"]);
     let output = mozzi(&["terms", &robot, "--json"]);
     let terms: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(terms["forward_dynamics"].is_null() && terms["inverse_dynamics"][0] == 0.0, "{terms}");
@@ -116,7 +117,10 @@ fn wrong_numbers() {
     wrong(&["terms", "ur5", "--dtheta", "0,0,0,NaN,0,0"], &["--dtheta: entry 4 is `NaN`, expected a finite number"]);
     wrong(&["terms", "ur5", "--theta", "0,0,,0,0,0"], &["--theta: entry 3 is ``, expected a number"]);
     wrong(&["terms", "ur5", "--gravity", "0,-9.81"], &["--gravity has 2 entries, expected 3: x, y, z"]);
-    wrong(&["inverse-dynamics", "ur5", "--tip-wrench", "1"], &["--tip-wrench has 1 entry, expected 6", "m_x"]);
+    wrong(
+        &["compute", "ur5", "inverse-dynamics", "--tip-wrench", "1"],
+        &["--tip-wrench has 1 entry, expected 6", "m_x"],
+    );
     wrong(&["simulate", "ur5", "--step", "-0.1"], &["step is -0.1", "positive"]);
     wrong(&["simulate", "ur5", "--time", "soon"], &["--time is `soon`, expected a number"]);
 }
@@ -135,7 +139,8 @@ fn wrong_frames_and_tasks() {
 fn wrong_tables() {
     let folder = folder("wrong_tables");
     let table = |name: &str, text: &str| file(&folder, name, text);
-    let with = |path: &str, words: &[&str]| wrong(&["inverse-dynamics", "two_link_planar", "--in", path], words);
+    let with =
+        |path: &str, words: &[&str]| wrong(&["compute", "two_link_planar", "inverse-dynamics", "--in", path], words);
     with("no/such/file.csv", &["no/such/file.csv cannot be read"]);
     with(&table("a.csv", "theta_1,theta_2\n0,0\n1,x\n"), &["a.csv:3: column 2 (`theta_2`) is `x`, expected a number"]);
     with(&table("b.csv", "theta_1,theta_2\n0,inf\n"), &["b.csv:2: column 2 (`theta_2`)", "finite"]);
@@ -144,15 +149,18 @@ fn wrong_tables() {
     with(&table("e.csv", "theta_1,theta_2,speed\n0,0,0\n"), &["e.csv:1: column 3 is called `speed`", "dtheta_1"]);
     with(&table("f.csv", "theta_1,theta_2,theta_joint2\n0,0,0\n"), &["f.csv:1", "columns 2 and 3"]);
     with(&table("g.csv", "theta_1,theta_2\n"), &["g.csv has no rows"]);
-    with(&table("h.csv", "t\n0\n"), &["h.csv has no column theta_1"]);
+    with(&table("h.csv", "t\n0\n"), &["h.csv has no columns theta_1 …"]);
     with(&table("i.csv", "theta_1,theta_3\n0,0\n"), &["i.csv:1: column 2 is called `theta_3`"]);
     let torque = table("j.csv", "t,tau_1,tau_2\n0,0,0\n0,1,1\n");
     wrong(&["simulate", "two_link_planar", "--torque", &torque], &["j.csv:3: t is 0 after 0"]);
     let states = table("k.csv", "theta_1,theta_2\n0,0\n");
-    wrong(&["forward-dynamics", "two_link_planar", "--in", &states], &["no column tau_1"]);
+    wrong(&["compute", "two_link_planar", "forward-dynamics", "--in", &states], &["k.csv has no columns tau_1 …"]);
     let nowhere = folder.join("none").join("x.csv");
     let nowhere = nowhere.to_str().expect("text");
-    wrong(&["inverse-dynamics", "two_link_planar", "--in", &states, "--out", nowhere], &["cannot be written"]);
+    wrong(
+        &["compute", "two_link_planar", "inverse-dynamics", "--in", &states, "--out", nowhere],
+        &["cannot be written"],
+    );
 }
 
 #[test]
@@ -162,8 +170,10 @@ fn wrong_usage_is_told_apart() {
         &["terms"],
         &["simulate", "ur5", "--method", "verlet"],
         &["terms", "ur5", "--tau", "0", "--ddtheta", "0"],
-        &["inverse-dynamics", "ur5", "--in", "a.csv", "--theta", "0"],
-        &["inverse-dynamics", "ur5", "--out", "a.csv"],
+        &["compute", "ur5"],
+        &["compute", "ur5", "inverse-dynamics", "--in", "a.csv", "--theta", "0"],
+        &["compute", "ur5", "inverse-dynamics", "--out", "a.csv"],
+        &["compute", "ur5", "inverse-dynamics", "--precision", "f32"],
     ] {
         let (code, message) = complaint(arguments);
         assert_eq!(code, 2, "{arguments:?}: {message}");

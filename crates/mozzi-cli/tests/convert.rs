@@ -73,9 +73,11 @@ fn mjcf_is_read_by_every_command() {
     let (code, message) = complaint(&["convert", robot, &path("springs.urdf")]);
     assert!(code == 1 && message.contains("armature 0.01; .json has words for all"), "{message}");
     let at = ["--theta", "0.3,0.1", "--dtheta", "1,2"];
-    for command in ["terms", "inverse-dynamics", "forward-dynamics"] {
-        let run = |robot: &str| json(&[&[command, robot][..], &at].concat());
-        assert_eq!(run(robot), run(&path("springs.json")), "{command}");
+    for (command, quantity) in
+        [("terms", None), ("compute", Some("inverse-dynamics")), ("compute", Some("forward-dynamics"))]
+    {
+        let run = |robot: &str| json(&[&[command, robot], quantity.as_slice(), &at].concat());
+        assert_eq!(run(robot), run(&path("springs.json")), "{command} {quantity:?}");
     }
     assert_eq!(json(&["info", robot])["n"], 2);
     assert_eq!(json(&["screws", robot]), json(&["screws", &path("springs.json")]));

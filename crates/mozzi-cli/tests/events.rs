@@ -104,5 +104,5 @@ fn wrong_conditions() {
         assert!(code == 1 && said.contains(words), "{said}");
     }
     let table = file(&folder("wrong_conditions"), "t.csv", "t,theta_1\n");
-    assert_eq!(mozzi(&["inverse-dynamics", "ur5", "--in", &table, "--until", "x"]).status.code(), Some(2));
+    assert_eq!(mozzi(&["compute", "ur5", "inverse-dynamics", "--in", &table, "--until", "x"]).status.code(), Some(2));
 }

@@ -34,13 +34,14 @@ fn the_layout_is_told_by_names() {
 #[test]
 fn inverse_and_forward_dynamics_at_a_pose() {
     let state = [TREE, "--floating", "--theta", THETA, "--dtheta", DTHETA];
+    let compute = |quantity: &str, more: &[&str]| json(&[&["compute", TREE, quantity], &state[1..], more].concat());
     let ddtheta = "1,2,3,-1,-2,-3,0.5,0.4,0.3,0.2,0.1";
-    let inverse = json(&[&["inverse-dynamics"][..], &state, &["--ddtheta", ddtheta]].concat());
-    let tau = numbers(&inverse["inverse_dynamics"]);
+    let inverse = compute("inverse-dynamics", &["--ddtheta", ddtheta]);
+    let tau = numbers(&inverse["tau"]);
     let list = tau.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-    for by in ["articulated-body", "mass-matrix", "inverse-dynamics"] {
-        let forward = json(&[&["forward-dynamics"][..], &state, &["--tau", &list, "--algorithm", by]].concat());
-        assert_close(&numbers(&forward["forward_dynamics"]), &numbers(&inverse["ddtheta"]), 1e-10);
+    for by in ["", "-by-mass-matrix", "-by-inverse-dynamics"] {
+        let forward = compute(&format!("forward-dynamics{by}"), &["--tau", &list]);
+        assert_close(&numbers(&forward["ddtheta"]), &numbers(&inverse["ddtheta"]), 1e-10);
     }
     let terms = json(&[&["terms"][..], &state, &["--ddtheta", ddtheta, "--stacked"]].concat());
     assert_close(&numbers(&terms["inverse_dynamics"]), &tau, 0.0);
@@ -66,7 +67,7 @@ fn nothing_given_is_the_neutral_pose() {
     let terms = json(&["terms", "ur5", "--floating"]);
     assert_eq!(numbers(&terms["theta"])[..7], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     // all falls together
-    let fall = numbers(&json(&["forward-dynamics", "ur5", "--floating"])["forward_dynamics"]);
+    let fall = numbers(&json(&["compute", "ur5", "forward-dynamics", "--floating"])["ddtheta"]);
     assert_close(&fall, &[0.0, 0.0, 0.0, 0.0, 0.0, -9.81, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 1e-9);
 }
 
@@ -79,10 +80,10 @@ fn tables_name_their_columns() {
     text(&[&["simulate"][..], &state, &["--time", "0.02", "--out", &fall]].concat());
     let read = |path: &str| std::fs::read_to_string(path).expect("a file");
     assert!(read(&fall).starts_with("t,theta_base.qw,theta_base.qx,"), "{}", read(&fall));
-    text(&["inverse-dynamics", TREE, "--floating", "--in", &fall, "--out", &torques]);
+    text(&["compute", TREE, "inverse-dynamics", "--floating", "--in", &fall, "--out", &torques]);
     // what was simulated without torques needs none
-    let needed = json(&["inverse-dynamics", TREE, "--floating", "--in", &torques]);
-    for tau in rows(&needed["inverse_dynamics"]) {
+    let needed = json(&["compute", TREE, "inverse-dynamics", "--floating", "--in", &torques]);
+    for tau in rows(&needed["tau"]) {
         assert_close(&tau, &[0.0; 11], 1e-9);
     }
     let shown = text(&[&["simulate"][..], &state, &["--time", "0.02"]].concat());
@@ -99,7 +100,7 @@ fn tables_name_their_columns() {
         "{message}"
     );
     let odd = file(&folder, "odd.csv", "theta_base.qq\n0\n");
-    let (_, message) = complaint(&["inverse-dynamics", TREE, "--floating", "--in", &odd]);
+    let (_, message) = complaint(&["compute", TREE, "inverse-dynamics", "--floating", "--in", &odd]);
     assert!(message.contains("theta: base.qw, base.qx") && message.contains("theta from 1 to 12"), "{message}");
 }
 
@@ -124,7 +125,10 @@ fn wrong_layouts() {
         &["terms", "ur5", "--floating", "--dtheta", "0"],
         "--dtheta has 1 entry, expected 12: base twist (ω, v), then 6 joints",
     );
-    wrong(&["forward-dynamics", "ur5", "--floating", "--tau", "0,1"], "expected 12: base wrench (m, f), then 6 joints");
+    wrong(
+        &["compute", "ur5", "forward-dynamics", "--floating", "--tau", "0,1"],
+        "expected 12: base wrench (m, f), then 6 joints",
+    );
     wrong(
         &["terms", "ur5", "--floating", "--theta", "0,0,0,0,0,0,0,0,0,0,0,0,0"],
         "the base's orientation in theta is [0.0, 0.0, 0.0, 0.0], of length 0, expected a unit quaternion (w, x, y, z)",

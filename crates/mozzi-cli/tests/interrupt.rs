@@ -26,7 +26,7 @@ fn states(folder: &Path, count: usize) -> String {
 
 fn batch<'a>(input: &'a str, output: &'a str) -> Vec<&'a str> {
     let flags = ["--threads", "1", "--instruction-set", "portable"];
-    [&["batch", "ur5", "--quantity", "coriolis-matrix", "--in", input, "--out", output][..], &flags].concat()
+    [&["compute", "ur5", "coriolis-matrix", "--in", input, "--out", output][..], &flags].concat()
 }
 
 /// What it leaves after a SIGINT; nothing where it was done before.

@@ -2,8 +2,7 @@
 
 mod common;
 
-use common::{assert_close, complaint, file, folder, mozzi, numbers, rows, text};
-use serde_json::Value;
+use common::{assert_close, complaint, file, folder, json, mozzi, numbers, rows, text};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -32,18 +31,18 @@ t, ddtheta_1, ddtheta_2, ddtheta_3, ddtheta_4, ddtheta_5, ddtheta_6, theta_1, th
 fn inverse_then_forward_dynamics_returns_the_accelerations() {
     let folder = folder("round_trip");
     let (states, torques) = (file(&folder, "states.csv", STATES), file(&folder, "torques.csv", ""));
-    let said = text(&["inverse-dynamics", "ur5", "--in", &states, "--out", &torques]);
-    assert!(said.starts_with("2 states written to "), "{said}");
-    let table = text(&["forward-dynamics", "ur5", "--in", &torques]);
+    let output = mozzi(&["compute", "ur5", "inverse-dynamics", "--in", &states, "--out", &torques]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.starts_with("2 states in ") && said.contains(&torques), "{said}");
+    let table = text(&["compute", "ur5", "forward-dynamics", "--in", &torques]);
     let expected = [[1.0, 0.5, -1.0, 2.0, 0.0, -0.5], [-1.0, 0.25, 3.0, 1.0, 2.0, 1e-3]];
     for (found, expected) in group(&table, "ddtheta").iter().zip(&expected) {
         assert_close(found, expected, 1e-10);
     }
     assert_eq!(group(&table, "f"), [[0.0, 0.0, 20.0], [0.0; 3]]);
 
-    let json: Value =
-        serde_json::from_str(&text(&["forward-dynamics", "ur5", "--in", &torques, "--json"])).expect("JSON");
-    for (found, expected) in rows(&json["forward_dynamics"]).iter().zip(group(&table, "ddtheta")) {
+    let json = json(&["compute", "ur5", "forward-dynamics", "--in", &torques]);
+    for (found, expected) in rows(&json["ddtheta"]).iter().zip(group(&table, "ddtheta")) {
         assert_close(found, &expected, 1e-14); // the test's JSON reader is off by an ulp
     }
     assert_eq!(numbers(&json["t"]), [0.0, 0.1]);
@@ -52,7 +51,7 @@ fn inverse_then_forward_dynamics_returns_the_accelerations() {
 #[test]
 fn tables_go_through_pipes() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_mozzi"))
-        .args(["inverse-dynamics", "two_link_planar", "--in", "-"])
+        .args(["compute", "two_link_planar", "inverse-dynamics", "--in", "-"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -88,7 +87,7 @@ fn a_simulation_is_driven_by_tables_and_read_by_inverse_dynamics() {
     assert!(said.contains("201 rows written to"), "{said}");
     let motion = std::fs::read_to_string(&out).expect("a table");
     assert_close(&group(&motion, "tau")[100], &[0.0, 0.375], 1e-12);
-    let again = text(&["inverse-dynamics", "two_link_planar", "--in", &out]);
+    let again = text(&["compute", "two_link_planar", "inverse-dynamics", "--in", &out]);
     for (given, found) in group(&motion, "tau").iter().zip(group(&again, "tau")) {
         assert_close(given, &found, 1e-11);
     }

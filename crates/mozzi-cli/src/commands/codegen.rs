@@ -3,13 +3,15 @@
 use super::info;
 use crate::failure::{Failure, Result};
 use crate::json;
-use crate::robot::RobotArguments;
+use crate::quantity::{hyphenated, is_of_a_frame, of_end_effector, quantity};
+use crate::robot::{RobotArguments, end_effector};
+use crate::state::check_frames;
 use crate::text::{Page, table};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
-use mozzi_codegen::{
-    Arguments, Count, Kernel, Language, Precision, Program, Quantity, Refusal, Shape, SourceFile, emit,
-};
+use mozzi::quantities::{LIST, Query};
+use mozzi_codegen::{Arguments, Count, Kernel, Language, Precision, Refusal, Shape, SourceFile, emit, record_quantity};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -18,132 +20,109 @@ pub struct CodegenArguments {
     #[command(flatten)]
     robot: RobotArguments,
     /// What is computed; may be repeated [default with --explain: all]
-    #[arg(long, value_name = "NAME", required_unless_present = "explain")]
-    quantity: Vec<Name>,
+    #[arg(long, value_name = "NAME", value_parser = quantity(), required_unless_present = "explain")]
+    quantity: Vec<Query<'static>>,
     /// The language of the text
-    #[arg(long, value_name = "LANGUAGE", requires = "out", required_unless_present = "explain")]
-    lang: Option<Lang>,
+    #[arg(long, value_name = "LANGUAGE", value_parser = language(), requires = "out", required_unless_present = "explain")]
+    lang: Option<Language>,
     /// Of the text's numbers, and of the machine code that is measured
-    #[arg(long, default_value = "f64")]
-    precision: Bits,
+    #[arg(long, default_value = "f64", value_parser = precision())]
+    precision: Precision,
     /// The folder of the files, made where there is none
     #[arg(long, value_name = "DIR", requires = "lang")]
     out: Option<PathBuf>,
-    /// An argument of the functions instead of numbers in them; may be repeated
-    #[arg(long, value_name = "WHAT")]
-    argument: Vec<OpenArgument>,
+    /// An argument of the functions instead of numbers in them: parameters (masses, inertias, frictions), gravity, base-twist,
+    /// base-acceleration, about (the point of a momentum), wrench (what the end effector applies) or wrench=FRAME; may be repeated
+    #[arg(long, value_name = "WHAT", value_parser = argument)]
+    argument: Vec<Argument>,
     /// Tell the work before and after folding, and the length of machine code
     #[arg(long)]
     explain: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Name {
-    /// τ of θ, θ̇, θ̈
-    InverseDynamics,
-    /// M of θ
-    MassMatrix,
-    /// θ̈ of θ, θ̇, τ
-    ForwardDynamics,
-    /// h = c + g of θ, θ̇
-    BiasForces,
-    /// c = C θ̇ of θ, θ̇
-    VelocityProduct,
-    /// g of θ
-    GravityForces,
-    /// T_sb of θ, of the end effector
-    ForwardKinematics,
-    /// J_b of θ, of the end effector
-    BodyJacobian,
-    /// J_s of θ, of the end effector
-    SpaceJacobian,
-    /// ∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M of θ, θ̇, θ̈
-    InverseDynamicsDerivatives,
-    /// θ̈ and ∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹ of θ, θ̇, τ
-    ForwardDynamicsDerivatives,
+fn language() -> impl TypedValueParser<Value = Language> {
+    let value = |name, help| PossibleValue::new(name).help(help);
+    let values = [
+        value("rust", "One file without std, allocation or panic"),
+        value("c", "C99, a header and a source"),
+        value("cuda", "CUDA C, a thread a state"),
+    ];
+    PossibleValuesParser::new(values).map(|name| match name.as_str() {
+        "rust" => Language::Rust,
+        "c" => Language::C,
+        _ => Language::Cuda,
+    })
 }
 
-impl Name {
-    fn of(self, model: &Model) -> Result<Quantity> {
-        Ok(match self {
-            Name::InverseDynamics => Quantity::InverseDynamics,
-            Name::MassMatrix => Quantity::MassMatrix,
-            Name::ForwardDynamics => Quantity::ForwardDynamics,
-            Name::BiasForces => Quantity::BiasForces,
-            Name::VelocityProduct => Quantity::VelocityProduct,
-            Name::GravityForces => Quantity::GravityForces,
-            Name::ForwardKinematics => Quantity::ForwardKinematics(model.end_effector()?),
-            Name::BodyJacobian => Quantity::BodyJacobian(model.end_effector()?),
-            Name::SpaceJacobian => Quantity::SpaceJacobian(model.end_effector()?),
-            Name::InverseDynamicsDerivatives => Quantity::InverseDynamicsDerivatives,
-            Name::ForwardDynamicsDerivatives => Quantity::ForwardDynamicsDerivatives,
-        })
-    }
-
-    fn is_of_a_frame(self) -> bool {
-        matches!(self, Name::ForwardKinematics | Name::BodyJacobian | Name::SpaceJacobian)
-    }
+fn precision() -> impl TypedValueParser<Value = Precision> {
+    PossibleValuesParser::new(["f64", "f32"]).map(|name| if name == "f64" { Precision::F64 } else { Precision::F32 })
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Lang {
-    /// One file without std, allocation or panic
-    Rust,
-    /// C99, a header and a source
-    C,
-    /// CUDA C, a thread a state
-    Cuda,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Bits {
-    F64,
-    F32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum OpenArgument {
-    /// Masses, inertias, frictions
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Argument {
     Parameters,
-    /// Gravity in {s}
     Gravity,
-    /// What the end effector applies to the environment
-    Wrench,
+    BaseTwist,
+    BaseAcceleration,
+    About,
+    /// Of this frame, or of the end effector.
+    Wrench(Option<String>),
+}
+
+fn argument(text: &str) -> Result<Argument, String> {
+    Ok(match text {
+        "parameters" => Argument::Parameters,
+        "gravity" => Argument::Gravity,
+        "base-twist" => Argument::BaseTwist,
+        "base-acceleration" => Argument::BaseAcceleration,
+        "about" => Argument::About,
+        "wrench" => Argument::Wrench(None),
+        _ => match text.strip_prefix("wrench=") {
+            Some(frame) => Argument::Wrench(Some(frame.to_string())),
+            None => {
+                let names = "parameters, gravity, base-twist, base-acceleration, about, wrench, wrench=FRAME";
+                return Err(format!("expected one of {names}"));
+            }
+        },
+    })
 }
 
 pub fn run(arguments: &CodegenArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let is_open = |what: OpenArgument| arguments.argument.contains(&what);
-    let open = Arguments {
-        parameters: is_open(OpenArgument::Parameters),
-        gravity: is_open(OpenArgument::Gravity),
-        wrench: if is_open(OpenArgument::Wrench) { Some(model.end_effector()?) } else { None },
-    };
-    let mut names = arguments.quantity.clone();
-    if names.is_empty() {
-        let has_end = crate::robot::end_effector(&model).is_some();
-        names = Name::value_variants().iter().copied().filter(|name| has_end || !name.is_of_a_frame()).collect();
+    let mut frames = Vec::new();
+    for argument in &arguments.argument {
+        if let Argument::Wrench(name) = argument {
+            frames.push(name.as_ref().map_or_else(|| model.end_effector(), |name| model.frame(name))?);
+        }
     }
-    let quantities = names.iter().map(|name| name.of(&model)).collect::<Result<Vec<Quantity>>>()?;
-    let precision = match arguments.precision {
-        Bits::F64 => Precision::F64,
-        Bits::F32 => Precision::F32,
+    check_frames(&model, frames.iter().copied())?;
+    let is_argument = |what: Argument| arguments.argument.contains(&what);
+    let further = Arguments {
+        parameters: is_argument(Argument::Parameters),
+        gravity: is_argument(Argument::Gravity),
+        base_twist: is_argument(Argument::BaseTwist),
+        base_acceleration: is_argument(Argument::BaseAcceleration),
+        about: is_argument(Argument::About),
+        wrenches: &frames,
     };
+    let mut queries = arguments.quantity.clone();
+    if queries.is_empty() {
+        let has_end = end_effector(&model).is_some();
+        queries = (0..LIST.len()).map(Query::at).filter(|query| has_end || !is_of_a_frame(*query)).collect();
+    }
+    let queries = queries.into_iter().map(|query| of_end_effector(query, &model)).collect::<Result<Vec<Query>>>()?;
+    let precision = arguments.precision;
     let files = match (arguments.lang, &arguments.out) {
-        (Some(lang), Some(folder)) => {
-            let language = match lang {
-                Lang::Rust => Language::Rust,
-                Lang::C => Language::C,
-                Lang::Cuda => Language::Cuda,
-            };
-            let emitted = emit(&model, &quantities, open, language, precision);
-            let emitted = emitted.map_err(|error| Failure::wrong(error.to_string()))?;
-            write(folder, &emitted)?
+        (Some(language), Some(folder)) => {
+            let emitted = emit(&model, &queries, further, language, precision);
+            write(folder, &emitted.map_err(|error| Failure::wrong(error.to_string()))?)?
         }
         _ => Vec::new(),
     };
-    let works: Vec<Work> = match arguments.explain {
-        true => quantities.iter().map(|&quantity| Work::of(&model, quantity, open, precision)).collect(),
+    let works = match arguments.explain {
+        true => {
+            queries.iter().map(|&query| Work::of(&model, query, further, precision)).collect::<Result<Vec<Work>>>()?
+        }
         false => Vec::new(),
     };
     if arguments.robot.json {
@@ -174,23 +153,23 @@ struct Work {
     before: Option<Count>,
     after: Count,
     /// At one state, and at as many as registers hold.
-    code: [(Shape, std::result::Result<Kernel, Refusal>); 2],
+    code: [(Shape, Result<Kernel, Refusal>); 2],
 }
 
 impl Work {
-    fn of(model: &Model, quantity: Quantity, open: Arguments, precision: Precision) -> Self {
-        let program: Program = quantity.record(model, open);
+    fn of(model: &Model, query: Query, further: Arguments, precision: Precision) -> Result<Self> {
+        let program = record_quantity(model, query, further)?;
         let (one, widest, narrower) = match precision {
             Precision::F64 => (Shape::OneF64, Shape::EightF64, Shape::FourF64),
             Precision::F32 => (Shape::OneF32, Shape::SixteenF32, Shape::EightF32),
         };
         let lanes = if widest.is_supported() { widest } else { narrower };
-        Work {
-            name: quantity.name().replace('_', "-"),
+        Ok(Work {
+            name: hyphenated(query.name()),
             before: program.count_before_folding(),
             after: program.count(),
             code: [one, lanes].map(|shape| (shape, Kernel::new(&program, shape))),
-        }
+        })
     }
 }
 
@@ -230,7 +209,7 @@ fn object(model: &Model, precision: Precision, files: &[(String, usize)], works:
             "flops": count.flops(), "add": add, "mul": mul, "fma": fma, "div": div, "sqrt": sqrt, "sin_cos": sin_cos, "other": other,
         })
     };
-    let code = |(shape, kernel): &(Shape, std::result::Result<Kernel, Refusal>)| {
+    let code = |(shape, kernel): &(Shape, Result<Kernel, Refusal>)| {
         json!({
             "states": shape.lanes(), "instruction_set": shape.instruction_set(),
             "bytes": kernel.as_ref().ok().map(Kernel::code_bytes),

@@ -205,7 +205,7 @@ fn page(model: &Model, found: &Solution) -> Result<String> {
     ));
     let names = model.position_names().map(str::to_string);
     let rows: Vec<Vec<String>> = names.zip(column(&found.theta)).map(|(name, value)| vec![name, value]).collect();
-    page.blank().line(format!("θ in {}", Units::of(model).position)).lines(&table(&rows, "lr"));
+    page.blank().line(format!("θ in {}", Units::of(model).input(0))).lines(&table(&rows, "lr"));
     let T = model.forward_kinematics(&found.theta, frame)?.to_matrix();
     page.blank().line(format!("T of it, seen from {}", space_frame(model))).lines(&crate::text::constants(T));
     let list: Vec<String> = found.theta.iter().map(|x| format!("{x:?}")).collect();

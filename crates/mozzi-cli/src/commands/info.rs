@@ -70,7 +70,7 @@ fn page(model: &Model, poses: &[SE3]) -> String {
         page.title("the base, free").lines(&base(model));
     }
     page.title("joints").lines(&joints(model));
-    page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.position, units.rate(1), units.force)]);
+    page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.input(0), units.input(1), units.input(3))]);
     let folded = folded(model);
     if !folded.is_empty() {
         page.title("links that fixed joints fold into the body that carries them [kg]").lines(&folded);

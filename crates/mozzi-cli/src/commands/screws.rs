@@ -1,7 +1,7 @@
 //! `mozzi screws`: the robot as the book's lists.
 
+use super::info;
 use super::python::literals;
-use super::{info, terms_json};
 use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::TWIST;
@@ -24,7 +24,7 @@ pub fn run(arguments: &ScrewsArguments) -> Result<String> {
     let model = arguments.robot.load()?;
     let lists = model.screws();
     if arguments.robot.json {
-        let mut object = terms_json::screws(&lists);
+        let mut object = json::screws(&lists);
         object["base"] = json::base(&model).into();
         if model.is_floating() {
             object["G_base"] = json::rows(model.base_inertia().to_matrix());

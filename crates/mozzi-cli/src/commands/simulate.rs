@@ -1,5 +1,6 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
+use super::outcome::Outcome;
 use super::simulate_page::{columns, object, page, told};
 use crate::conditions::{EventArguments, happened};
 use crate::controller::Controller;
@@ -13,11 +14,12 @@ use crate::state::StartArguments;
 use crate::text::scalar;
 use crate::{interrupt, json, log};
 use clap::{Args, ValueEnum};
+use mozzi::Model;
+use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{Friction, Input, Method, Options};
-use mozzi::{Model, Trajectory};
-use mozzi_codegen::{Compiled, Engine, Quantity, compile};
-use mozzi_motion::controllers::{Overload, Saturated, TrackingError, tracking_error};
-use mozzi_motion::integrators::{Event, Integrator, Occurrence, Run, Simulation, Stopped};
+use mozzi_batch::{Compiled, Engine, compile};
+use mozzi_motion::controllers::{Saturated, tracking_error};
+use mozzi_motion::integrators::{Event, Integrator, Run, Simulation};
 use mozzi_motion::trajectories::Hold;
 use std::ops::ControlFlow;
 
@@ -78,30 +80,6 @@ enum Way {
     Dopri,
     /// Implicit midpoint in (θ, p): order 2, symplectic, energy stays bounded
     Midpoint,
-}
-
-/// A motion, and what is to be said of it.
-pub struct Outcome {
-    pub motion: Trajectory,
-    /// The method's name, and its step in seconds or its tolerance.
-    pub method: &'static str,
-    pub step: f64,
-    pub duration: f64,
-    pub motors: String,
-    pub overloads: Vec<Overload>,
-    pub stops: Vec<Stopped>,
-    /// What `--until` and `--report-event` found, in the order of time.
-    pub events: Vec<Occurrence>,
-    /// The conditions that were looked for and not found.
-    pub missed: Vec<String>,
-    pub tracking: Option<TrackingError>,
-}
-
-impl Outcome {
-    /// Did a condition end it?
-    pub fn is_ended(&self) -> bool {
-        self.events.last().is_some_and(|event| event.stop)
-    }
 }
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
@@ -176,8 +154,8 @@ impl SimulateArguments {
         if !self.compiled {
             return Ok(None);
         }
-        let robot = compile(model, &[Quantity::ForwardDynamics])?;
-        if let Engine::Kernels(refusal) = robot.engine(Quantity::ForwardDynamics) {
+        let robot = compile(model, &[ForwardDynamics.into()])?;
+        if let Engine::Kernels(refusal) = robot.engine(ForwardDynamics) {
             failure::note(&format!("--compiled: not by machine code: {refusal}"));
         } else if self.motors.tip_wrench.is_some() {
             failure::note("--compiled: machine code knows no tip wrench; where there is one, the kernels compute");

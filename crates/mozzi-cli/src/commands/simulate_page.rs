@@ -1,6 +1,6 @@
 //! What `mozzi simulate` answers: a table for a file, JSON, or a page.
 
-use super::simulate::Outcome;
+use super::outcome::Outcome;
 use crate::columns::Columns;
 use crate::conditions::happened;
 use crate::csv::ENERGIES;
@@ -134,7 +134,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         page.lines(&[format!("… the first {shown} of {} {what}; --out FILE.csv or --json gives all", model.nq())]);
     }
     let end = motion.last().energy;
-    page.blank().line(format!("θ in {}; K kinetic, P potential energy", Units::of(model).position));
+    page.blank().line(format!("θ in {}; K kinetic, P potential energy", Units::of(model).input(0)));
     page.line(format!(
         "work since the start: motors {} J, lost in friction {} J, given to the environment {} J",
         scalar(end.motor_work),
@@ -151,7 +151,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
             "tracking error θ_d ⊖ θ: at most {}, root of the mean square at most {} ({})",
             about(error.worst()),
             about(error.worst_rms()),
-            Units::of(model).position
+            Units::of(model).input(0)
         ));
     }
     told(outcome).iter().for_each(|line| {

@@ -1,13 +1,18 @@
 //! `mozzi` alone: a tour of the library on the UR5, whose every number is computed here and now.
 
-use super::terms::Terms;
-use super::terms_text::{jacobian, pose, state, sum, task, wrench};
+use super::terms::text::{blocks, state, sum, task, wrench};
+use super::terms::values::Terms;
 use super::{info, screws, simulate_page};
 use crate::columns::save;
 use crate::failure::{Failure, Result};
-use crate::text::{Page, about, beside, matrix, table};
+use crate::task::TaskArguments;
+use crate::text::{Page, about, table};
+use mozzi::quantities::{
+    BodyJacobian, CoriolisMatrix, ForwardDynamics, ForwardKinematics, InverseDynamics, KineticEnergy, MassMatrix,
+    PotentialEnergy,
+};
 use mozzi::simulation::{Method, Options, Zero};
-use mozzi::{Environment, Model, TaskFrame, Trajectory, Wrench};
+use mozzi::{Environment, Model, Trajectory, Wrench};
 use nalgebra::DVector;
 
 const ROBOT: &str = "ur5";
@@ -60,32 +65,40 @@ fn one_state(model: &Model, page: &mut Page) -> Result<()> {
     let applied = [(model.end_effector()?, Wrench::from_array(F_TIP))];
     let environment = Environment { applied: &applied, ..model.environment() };
     let mut terms = Terms::at(model, [THETA.to_vec(), DTHETA.to_vec(), DDTHETA.to_vec()], &environment)?;
-    terms.add_task(None, TaskFrame::Body, &environment)?;
+    terms.add_task(&TaskArguments::default(), &environment)?;
     page.title("2  every term of its dynamics, at one state").lines(&state(&terms)).lines(&wrench(&terms));
-    if let Some(tip) = &terms.tip {
-        page.lines(&beside(&[
-            ("J_b(θ): V_b = J_b θ̇, the tip's twist, and τ = J_bᵀF".into(), jacobian(&tip.J_b)),
-            ("T_sb(θ): where the tip is, [R p]".into(), pose(tip.T_sb)),
-        ]));
-    }
-    page.lines(&beside(&[
-        ("M(θ), mass matrix [kg m²]".into(), matrix(&terms.M)),
-        ("C(θ, θ̇), Coriolis: C θ̇ = c, Ṁ = C + Cᵀ".into(), matrix(&terms.C)),
-    ]));
+    page.lines(&blocks(
+        &terms,
+        &[
+            ("J_b(θ): V_b = J_b θ̇, the tip's twist, and τ = J_bᵀF", BodyJacobian.into(), 0),
+            ("T_sb(θ): where the tip is, [R p]", ForwardKinematics.into(), 0),
+        ],
+    ));
+    page.lines(&blocks(
+        &terms,
+        &[
+            ("M(θ), mass matrix [kg m²]", MassMatrix.into(), 0),
+            ("C(θ, θ̇), Coriolis: C θ̇ = c, Ṁ = C + Cᵀ", CoriolisMatrix.into(), 0),
+        ],
+    ));
     page.blank().line("  The equation of motion, τ = M θ̈ + c + g + JᵀF_tip + f, term by term:").lines(&sum(&terms));
     let tau = model.closed_form(&THETA, &DTHETA, &environment)?.inverse_dynamics(&DVector::from_column_slice(&DDTHETA));
-    let error = (&tau - &terms.tau).amax();
-    let mut checks =
-        vec![format!("The book's closed form, by dense stacked matrices, gives the same τ to {error:.0e} N m")];
-    if let Some(ddtheta) = &terms.forward_dynamics {
-        let error = (ddtheta - DVector::from_column_slice(&DDTHETA)).amax();
-        checks.push(format!("and forward dynamics, in O(n), takes τ back to θ̈ to {error:.0e} rad/s²."));
-    }
-    checks.push(format!(
-        "Kinetic energy ½ θ̇ᵀMθ̇ = {:.4} J, potential energy −Σ m gᵀp = {:.4} J.",
-        terms.kinetic_energy, terms.potential_energy
-    ));
-    page.lines(&checks);
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    page.lines(&[
+        format!(
+            "The book's closed form, by dense stacked matrices, gives the same τ to {:.0e} N m",
+            apart(tau.as_slice(), terms.vector(InverseDynamics))
+        ),
+        format!(
+            "and forward dynamics, in O(n), takes τ back to θ̈ to {:.0e} rad/s².",
+            apart(&DDTHETA, terms.vector(ForwardDynamics))
+        ),
+        format!(
+            "Kinetic energy ½ θ̇ᵀMθ̇ = {:.4} J, potential energy −Σ m gᵀp = {:.4} J.",
+            terms.vector(KineticEnergy)[0],
+            terms.vector(PotentialEnergy)[0]
+        ),
+    ]);
     let mut lines = vec!["Seen from the tip, in its frame, F = Λ V̇ + η:".to_string()];
     lines.extend(task(&terms).into_iter().skip(1));
     page.lines(&lines);

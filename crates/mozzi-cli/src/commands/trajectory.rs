@@ -1,7 +1,7 @@
 //! `mozzi trajectory`: a motion to be followed.
 
 use crate::columns::{Columns, save};
-use crate::csv::{Samples, first_column};
+use crate::csv;
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
@@ -152,8 +152,9 @@ impl TrajectoryArguments {
     fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Timed<Box<dyn Path + 'm>>> {
         let path: Box<dyn Path + 'm> = match &self.via {
             Some(file) => {
-                let samples = Samples::read(file, model)?;
-                let points = samples.need(&samples.theta, &first_column(model, "theta"))?;
+                let samples = csv::read(file, model)?;
+                let points = samples.need("theta", model)?.chunks(model.nq());
+                let points = &points.map(<[f64]>::to_vec).collect::<Vec<_>>();
                 let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
                 match &samples.t {
                     Some(times) => {
@@ -293,9 +294,9 @@ fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limit
     };
     let units = Units::of(model);
     for (what, unit, found, limit) in [
-        ("velocity", units.rate(1), largest(&|k| rows[k].1.dtheta.clone()), &limits.velocity),
-        ("acceleration", units.rate(2), largest(&|k| rows[k].1.ddtheta.clone()), &limits.acceleration),
-        ("torque", units.force.to_string(), largest(&|k| tau[k].clone()), &limits.torque),
+        ("velocity", units.input(1), largest(&|k| rows[k].1.dtheta.clone()), &limits.velocity),
+        ("acceleration", units.input(2), largest(&|k| rows[k].1.ddtheta.clone()), &limits.acceleration),
+        ("torque", units.input(3), largest(&|k| tau[k].clone()), &limits.torque),
     ] {
         let share = found.iter().zip(limit).map(|(x, limit)| x / limit).fold(0.0, f64::max);
         let most = found.iter().fold(0.0_f64, |m, &x| m.max(x));

@@ -7,15 +7,14 @@ mod mcap;
 #[cfg(feature = "mcap")]
 mod ros;
 
-use crate::batch::quantity::Shape;
-use crate::batch::results::Output;
-use crate::batch::{arrow, npy, npz};
 use crate::columns::{Columns, save};
 use crate::commands::simulate_page::{columns, energies};
 use crate::csv::ENERGIES;
 use crate::failure::{Failure, Result};
 #[cfg(feature = "parquet")]
 use crate::interrupt::Writing;
+use crate::tables::array::Array;
+use crate::tables::{arrow, npy, npz};
 use mozzi::{Model, Trajectory};
 use std::path::Path;
 
@@ -80,15 +79,10 @@ fn matrix(table: Columns) -> Vec<u8> {
     npy::bytes(&[rows, columns.len()], &values)
 }
 
-fn arrays(motion: &Trajectory) -> Vec<Output<f64>> {
+fn arrays(motion: &Trajectory) -> Vec<Array> {
     let rows = motion.len();
-    let list = |name, values| Output { name, at_one: Shape::Number, shape: vec![rows], values };
-    let table = |name, width, values: &[f64]| Output {
-        name,
-        at_one: Shape::Vector,
-        shape: vec![rows, width],
-        values: values.to_vec(),
-    };
+    let list = |name, values| Array::new(name, vec![rows], values);
+    let table = |name, width, values: &[f64]| Array::new(name, vec![rows, width], values.to_vec());
     let mut arrays = vec![
         list("t", motion.t.clone()),
         table("theta", motion.nq, &motion.theta),

@@ -1,13 +1,20 @@
 //! The quantities of one state as text.
 
 use super::stacked;
-use super::terms::{Terms, Tip};
+use super::values::Terms;
 use crate::numbers::{TWIST, WRENCH};
+use crate::quantity::is_of_a_frame;
 use crate::robot::{Units, space_frame};
-use crate::table::{Quantity, quantities};
+use crate::table::{Quantity, quantities, short};
 use crate::text::{Page, beside, flow, matrix, scalar, sixes, table, tuple};
-use mozzi::{Base, Jacobian, SE3, TaskFrame, Twist};
-use nalgebra::DMatrix;
+use mozzi::quantities::{
+    BiasForces, BodyJacobian, BodyJacobianRate, CoriolisMatrix, ForwardDynamics, ForwardDynamicsDerivatives,
+    ForwardKinematics, GravityForces, GravityForcesDerivative, INPUTS, InverseDynamics, InverseDynamicsDerivatives,
+    JointFriction, KineticEnergy, MassMatrix, MassMatrixRate, PotentialEnergy, Query, SpaceJacobian, SpaceJacobianRate,
+    TipForces, VelocityProduct,
+};
+use mozzi::{Base, TaskFrame, Twist};
+use nalgebra::{DMatrix, DVector};
 
 pub fn page(terms: &Terms) -> String {
     let mut page = Page::default();
@@ -27,13 +34,12 @@ pub fn page(terms: &Terms) -> String {
         page.lines(&numbered(model.joint_names().collect()));
     }
     page.title("the state").lines(&state(terms)).lines(&wrench(terms));
-    if let Some(tip) = &terms.tip {
-        page.title(&format!("where {} is and how it moves", terms.model.frame_name(tip.frame)))
-            .lines(&kinematics(tip, space_frame(terms.model)));
+    if let Some(tip) = terms.tip {
+        page.title(&format!("where {} is and how it moves", model.frame_name(tip))).lines(&kinematics(terms));
     }
     page.title("the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ̇)").lines(&matrices(terms));
     page.blank().lines(&sum(terms)).blank().lines(&further(terms));
-    page.title("derivatives of inverse and forward dynamics").lines(&terms.derivatives.lines());
+    page.title("derivatives of inverse and forward dynamics").lines(&derivatives(terms));
     page.title("the Newton-Euler recursion, in frames {i} at the links' centres of mass, angular first");
     page.lines(&recursion(terms));
     page.title("the dynamics in the task space, F = Λ V̇ + η").lines(&task(terms));
@@ -44,16 +50,10 @@ pub fn page(terms: &Terms) -> String {
 }
 
 pub fn state(terms: &Terms) -> Vec<String> {
+    let inputs = INPUTS.iter().zip([&terms.theta, &terms.dtheta, &terms.ddtheta]);
     let units = Units::of(terms.model);
-    quantities(
-        terms.model,
-        &[
-            Quantity::new("θ", "positions", units.rate(0), &terms.theta),
-            Quantity::new("θ̇", "velocities", units.rate(1), &terms.dtheta),
-            Quantity::new("θ̈", "accelerations", units.rate(2), &terms.ddtheta),
-        ],
-        false,
-    )
+    let rows: Vec<Quantity> = inputs.map(|(input, values)| Quantity::of(input, &units, values)).collect();
+    quantities(terms.model, &rows, false)
 }
 
 /// What surrounds the robot.
@@ -70,96 +70,102 @@ pub fn wrench(terms: &Terms) -> Vec<String> {
     lines
 }
 
-pub fn dense<const R: usize, const C: usize>(rows: [[f64; C]; R]) -> DMatrix<f64> {
-    DMatrix::from_fn(R, C, |r, c| rows[r][c])
+/// Matrices beside each other, each an output of a quantity below a title; what is missing is left out.
+pub fn blocks(terms: &Terms, list: &[(&str, Query, usize)]) -> Vec<String> {
+    let block = |&(title, query, output): &(&str, Query, usize)| {
+        let lines = matrix(&terms.matrix(query, output)?);
+        let is_of_twists = is_of_a_frame(query) && query != ForwardKinematics.into();
+        Some((title.to_string(), if is_of_twists { with_rows_named(lines) } else { lines }))
+    };
+    beside(&list.iter().filter_map(block).collect::<Vec<_>>())
 }
 
-pub fn pose(T: SE3) -> Vec<String> {
-    matrix(&dense(T.to_matrix()))
-}
-
-/// A Jacobian with its rows named.
-pub fn jacobian(J: &Jacobian) -> Vec<String> {
-    let lines = matrix(&J.matrix());
+/// A Jacobian's lines.
+fn with_rows_named(lines: Vec<String>) -> Vec<String> {
     let mut names = TWIST.iter().cycle();
-    lines
-        .into_iter()
-        .map(|line| match line.starts_with("columns") {
-            true => line,
-            false => format!("{} {line}", names.next().unwrap_or(&"")),
-        })
-        .collect()
+    let named = |line: String| match line.starts_with("columns") {
+        true => line,
+        false => format!("{} {line}", names.next().unwrap_or(&"")),
+    };
+    lines.into_iter().map(named).collect()
 }
 
-fn velocity(V: Twist) -> String {
-    format!("(ω, v), ω = {} rad/s, v = {} m/s", short(&V.w.0), short(&V.v.0))
+fn velocity(V: Option<DVector<f64>>) -> String {
+    let V = V.unwrap_or_default();
+    let (w, v) = V.as_slice().split_at(V.len() / 2);
+    format!("(ω, v), ω = {} rad/s, v = {} m/s", short(w), short(v))
 }
 
-/// A tuple with few digits, for what was computed.
-pub fn short(values: &[f64]) -> String {
-    let decimals = crate::text::Decimals::of(values);
-    let entries: Vec<String> = values.iter().map(|&x| decimals.show(x).trim().to_string()).collect();
-    format!("({})", entries.join(", "))
-}
-
-fn kinematics(tip: &Tip, space: &str) -> Vec<String> {
-    let mut lines = beside(&[(format!("T_sb(θ), its pose in {space} [R p], m"), pose(tip.T_sb))]);
-    lines.push(format!("V_b = J_b θ̇ = {}   in its own frame", velocity(tip.V_b)));
-    lines.push(format!("V_s = J_s θ̇ = {}   in {space}", velocity(tip.V_s)));
-    lines.extend(beside(&[
-        ("J_b(θ), body Jacobian".into(), jacobian(&tip.J_b)),
-        ("J_s(θ), space Jacobian".into(), jacobian(&tip.J_s)),
-        ("J̇_b(θ, θ̇), its rate".into(), jacobian(&tip.dJ_b)),
-        ("J̇_s(θ, θ̇), its rate".into(), jacobian(&tip.dJ_s)),
-    ]));
+fn kinematics(terms: &Terms) -> Vec<String> {
+    let space = space_frame(terms.model);
+    let title = format!("T_sb(θ), its pose in {space} [R p], m");
+    let mut lines = blocks(terms, &[(&title, ForwardKinematics.into(), 0)]);
+    lines.push(format!("V_b = J_b θ̇ = {}   in its own frame", velocity(terms.twist(BodyJacobian))));
+    lines.push(format!("V_s = J_s θ̇ = {}   in {space}", velocity(terms.twist(SpaceJacobian))));
+    lines.extend(blocks(
+        terms,
+        &[
+            ("J_b(θ), body Jacobian", BodyJacobian.into(), 0),
+            ("J_s(θ), space Jacobian", SpaceJacobian.into(), 0),
+            ("J̇_b(θ, θ̇), its rate", BodyJacobianRate.into(), 0),
+            ("J̇_s(θ, θ̇), its rate", SpaceJacobianRate.into(), 0),
+        ],
+    ));
     lines
 }
 
 fn matrices(terms: &Terms) -> Vec<String> {
-    let unit = Units::of(terms.model).inertia;
-    beside(&[
-        (format!("M(θ), mass matrix [{unit}]"), matrix(&terms.M)),
-        ("Ṁ(θ, θ̇) = C + Cᵀ, its rate".into(), matrix(&terms.dM)),
-        ("C(θ, θ̇), Coriolis matrix: C θ̇ = c".into(), matrix(&terms.C)),
-    ])
+    let M = format!(
+        "M(θ), mass matrix [{}]",
+        Units::of(terms.model).own(Query::from(MassMatrix).declaration().outputs[0].unit)
+    );
+    let dM = ("Ṁ(θ, θ̇) = C + Cᵀ, its rate", MassMatrixRate.into(), 0);
+    let C = ("C(θ, θ̇), Coriolis matrix: C θ̇ = c", CoriolisMatrix.into(), 0);
+    blocks(terms, &[(&M, MassMatrix.into(), 0), dM, C])
 }
 
 /// τ as the sum of its terms.
 pub fn sum(terms: &Terms) -> Vec<String> {
-    let force = Units::of(terms.model).force;
-    let inertial = &terms.M * nalgebra::DVector::from_column_slice(&terms.ddtheta);
+    let force = &Units::of(terms.model).input(3);
+    let M = terms.matrix(MassMatrix, 0).unwrap_or_default();
+    let inertial = M * DVector::from_column_slice(&terms.ddtheta);
     quantities(
         terms.model,
         &[
             Quantity::new("  M θ̈", "mass_matrix θ̈", force, inertial.as_slice()),
-            Quantity::new("+ c", "velocity_product", force, terms.c.as_slice()),
-            Quantity::new("+ g", "gravity_forces", force, terms.g.as_slice()),
-            Quantity::new("+ JᵀF_tip", "tip_forces", force, terms.tip_forces.as_slice()),
-            Quantity::new("+ f", "joint_friction", force, terms.friction.as_slice()),
-            Quantity::new("= τ", "inverse_dynamics", force, terms.tau.as_slice()),
-            Quantity::new("  h = c + g", "bias_forces", force, terms.h.as_slice()),
+            Quantity::new("+ c", "velocity_product", force, terms.vector(VelocityProduct)),
+            Quantity::new("+ g", "gravity_forces", force, terms.vector(GravityForces)),
+            Quantity::new("+ JᵀF_tip", "tip_forces", force, terms.vector(TipForces)),
+            Quantity::new("+ f", "joint_friction", force, terms.vector(JointFriction)),
+            Quantity::new("= τ", "inverse_dynamics", force, terms.vector(InverseDynamics)),
+            Quantity::new("  h = c + g", "bias_forces", force, terms.vector(BiasForces)),
         ],
         true,
     )
 }
 
 fn further(terms: &Terms) -> Vec<String> {
-    let mut lines = Vec::new();
-    if let Some(ddtheta) = &terms.forward_dynamics {
-        let unit = Units::of(terms.model).rate(2);
-        lines = quantities(
-            terms.model,
-            &[Quantity::new("θ̈ of this τ", "forward_dynamics", unit, ddtheta.as_slice())],
-            false,
-        );
-    }
-    lines.push(format!("kinetic_energy   ½ θ̇ᵀMθ̇   = {} J", scalar(terms.kinetic_energy)));
+    let (unit, ddtheta) = (Units::of(terms.model).input(2), terms.vector(ForwardDynamics));
+    let mut lines = match ddtheta.is_empty() {
+        true => Vec::new(),
+        false => quantities(terms.model, &[Quantity::new("θ̈ of this τ", "forward_dynamics", unit, ddtheta)], false),
+    };
+    let energy = |query: Query| terms.vector(query).first().map_or(String::new(), |&x| scalar(x));
+    lines.push(format!("kinetic_energy   ½ θ̇ᵀMθ̇   = {} J", energy(KineticEnergy.into())));
     lines.push(format!(
         "potential_energy −Σ m gᵀp = {} J (0 for a mass at the origin of {})",
-        scalar(terms.potential_energy),
+        energy(PotentialEnergy.into()),
         space_frame(terms.model)
     ));
     lines
+}
+
+fn derivatives(terms: &Terms) -> Vec<String> {
+    let (inverse, forward) = (InverseDynamicsDerivatives.into(), ForwardDynamicsDerivatives.into());
+    let gravity = ("∂g/∂θ", GravityForcesDerivative.into(), 0);
+    let of_tau = [("∂τ/∂θ", inverse, 0), ("∂τ/∂θ̇", inverse, 1), ("∂τ/∂θ̈ = M", inverse, 2), gravity];
+    let of_ddtheta = [("∂θ̈/∂θ", forward, 1), ("∂θ̈/∂θ̇", forward, 2), ("∂θ̈/∂τ = M⁻¹", forward, 3)];
+    [blocks(terms, &of_tau), blocks(terms, &of_ddtheta)].concat()
 }
 
 fn recursion(terms: &Terms) -> Vec<String> {

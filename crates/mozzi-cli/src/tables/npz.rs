@@ -1,8 +1,8 @@
 //! NumPy's .npz: a zip of .npy, each called after its array.
 
-use super::npy::{self, Array};
-use super::quantity::Precision;
-use super::results::Output;
+use super::array::Array;
+use super::npy;
+use super::precision::Precision;
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
 use std::fs::File;
@@ -10,8 +10,8 @@ use std::io::{BufReader, BufWriter, Read, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-/// All arrays, by name.
-pub fn read(file: &str) -> Result<Vec<(String, Array)>> {
+/// All arrays.
+pub fn read(file: &str) -> Result<Vec<Array>> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be read: {error}"));
     let reader = BufReader::new(File::open(file).map_err(|error| cannot(&error))?);
     let mut archive = ZipArchive::new(reader).map_err(|error| cannot(&error))?;
@@ -22,21 +22,21 @@ pub fn read(file: &str) -> Result<Vec<(String, Array)>> {
         let mut bytes = Vec::new();
         entry.read_to_end(&mut bytes).map_err(|error| cannot(&error))?;
         let name = name.trim_end_matches(".npy");
-        arrays.push((name.to_string(), npy::parse(&format_args!("{file}: `{name}`"), &bytes)?));
+        arrays.push(npy::parse(&format_args!("{file}: `{name}`"), name, &bytes)?);
     }
     Ok(arrays)
 }
 
 /// As `numpy.savez` writes it: not compressed.
-pub fn write<T: Precision>(file: &str, outputs: &[Output<T>]) -> Result<()> {
+pub fn write<T: Precision>(file: &str, arrays: &[Array<T>]) -> Result<()> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
     let _writing = Writing::to(file);
     let writer = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
     let mut archive = ZipWriter::new(writer);
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored).large_file(true);
-    for output in outputs {
-        archive.start_file(format!("{}.npy", output.name), options).map_err(|error| cannot(&error))?;
-        let bytes = npy::bytes(&output.shape, &output.values);
+    for array in arrays {
+        archive.start_file(format!("{}.npy", array.name), options).map_err(|error| cannot(&error))?;
+        let bytes = npy::bytes(&array.shape, &array.values);
         archive.write_all(&bytes).map_err(|error| cannot(&error))?;
     }
     let mut writer = archive.finish().map_err(|error| cannot(&error))?;

@@ -1,6 +1,6 @@
 //! The stacked matrices of the closed form as text, block by block.
 
-use super::terms_text::short;
+use crate::table::short;
 use crate::text::{beside, matrix, table};
 use mozzi::{ClosedForm, Model};
 use nalgebra::{DMatrix, DVector};

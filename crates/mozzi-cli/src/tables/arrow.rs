@@ -1,8 +1,8 @@
 //! Arrow's IPC files: columns by name, as in CSV tables. pandas, polars and pyarrow call them Feather.
 
-use super::quantity::Precision;
-use super::states::Groups;
-use crate::csv::{GROUPS, Places};
+use super::precision::Precision;
+use super::samples::Samples;
+use crate::csv::Places;
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
 use arrow_array::{Array, Float32Array, Float64Array, Int64Array, RecordBatch};
@@ -13,7 +13,7 @@ use mozzi::Model;
 use std::fs::File;
 use std::sync::Arc;
 
-pub fn read(file: &str, model: &Model) -> Result<Groups> {
+pub fn read(file: &str, model: &Model) -> Result<Samples> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be read: {error}"));
     let opened = File::open(file).map_err(|error| cannot(&error))?;
     let reader = FileReader::try_new_buffered(opened, None).map_err(|error| cannot(&error))?;
@@ -30,20 +30,7 @@ pub fn read(file: &str, model: &Model) -> Result<Groups> {
         }
         rows += batch.num_rows();
     }
-    let table = |entries: &[Option<usize>]| -> Vec<f64> {
-        let number = |row: usize, column: Option<usize>| column.map_or(0.0, |c| columns[c][row]);
-        (0..rows).flat_map(|row| entries.iter().map(move |&c| number(row, c))).collect()
-    };
-    let mut groups = Groups::new(rows);
-    for (name, entries) in GROUPS.into_iter().zip(&places.groups) {
-        if let Some(entries) = entries {
-            groups.add(name, table(entries));
-        }
-    }
-    if let Some(entries) = places.wrench {
-        groups.add("wrench", table(&entries.map(Some)));
-    }
-    Ok(groups)
+    Ok(places.samples(file, rows, |row, column| columns[column][row]))
 }
 
 fn at(row: Option<usize>, before: usize, what: String) -> String {

@@ -1,29 +1,15 @@
 //! NumPy's .npy (numpy.lib.format), of floats: a magic word, the version, the header's length; the header, a Python dictionary of
 //! type, order and shape; the numbers.
 
-use super::quantity::Precision;
+use super::array::{Array, tuple};
+use super::precision::Precision;
 use crate::failure::{Failure, Result};
 use std::fmt::Display;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// An array by rows.
-#[derive(Debug, PartialEq)]
-pub struct Array {
-    pub shape: Vec<usize>,
-    pub values: Vec<f64>,
-}
-
-/// "(100, 6)", "(100,)"
-pub fn tuple(shape: &[usize]) -> String {
-    match shape {
-        [one] => format!("({one},)"),
-        _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
-    }
-}
-
-/// `place` is the file, or an archive and its array.
-pub fn parse(place: &dyn Display, bytes: &[u8]) -> Result<Array> {
+/// `place` is the file, or an archive and its array, which has this name.
+pub fn parse(place: &dyn Display, name: &str, bytes: &[u8]) -> Result<Array> {
     let wrong = |what: &str| Failure::wrong(format!("{place} is no .npy: {what}"));
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| wrong("it does not begin with \\x93NUMPY"))?;
     let cut = || wrong("it ends within its header");
@@ -67,7 +53,7 @@ pub fn parse(place: &dyn Display, bytes: &[u8]) -> Result<Array> {
     if by_columns && shape.len() > 1 {
         values = by_rows(&shape, &values);
     }
-    Ok(Array { shape, values })
+    Ok(Array::new(name, shape, values))
 }
 
 fn array<const K: usize>(bytes: &[u8]) -> [u8; K] {
@@ -123,17 +109,17 @@ mod tests {
             let values: Vec<f64> = (0..shape.iter().product()).map(|k| (k as f64).sqrt()).collect();
             let written = bytes(&shape, &values);
             assert_eq!((written.len() - 8 * values.len()) % 64, 0);
-            assert_eq!(parse(&"x", &written).expect("an array"), Array { shape: shape.clone(), values });
+            assert_eq!(parse(&"x", "x", &written).expect("an array"), Array::new("x", shape.clone(), values));
         }
-        let single = parse(&"x", &bytes(&[2], &[0.5_f32, -3.0])).expect("an array");
+        let single = parse(&"x", "x", &bytes(&[2], &[0.5_f32, -3.0])).expect("an array");
         assert_eq!(single.values, [0.5, -3.0]);
     }
 
     #[test]
     fn columns_become_rows_and_big_ends_little() {
         let numbers: Vec<u8> = [1.0_f64, 4.0, 2.0, 5.0, 3.0, 6.0].iter().flat_map(|x| x.to_be_bytes()).collect();
-        let found = parse(&"x", &file("{\"descr\": '>f8', 'fortran_order': True, 'shape': (2, 3)}", &numbers));
-        assert_eq!(found.expect("an array"), Array { shape: vec![2, 3], values: vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0] });
+        let found = parse(&"x", "x", &file("{\"descr\": '>f8', 'fortran_order': True, 'shape': (2, 3)}", &numbers));
+        assert_eq!(found.expect("an array"), Array::new("x", vec![2, 3], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
     }
 
     #[test]
@@ -152,7 +138,7 @@ mod tests {
             (file(&of("'<f8'", "(2,)"), &[0; 8]), "8 bytes"),
             (long, "16 bytes"),
         ] {
-            let Err(Failure::Wrong(message)) = parse(&"x.npy", &bytes) else { panic!("expected {word}") };
+            let Err(Failure::Wrong(message)) = parse(&"x.npy", "x", &bytes) else { panic!("expected {word}") };
             assert!(message.starts_with("x.npy ") && message.contains(word), "{message}");
         }
     }

@@ -16,7 +16,7 @@ import subprocess, sys
 import numpy as np
 program, folder = sys.argv[1:]
 def run(quantity, states, result):
-    command = [program, 'batch', 'ur5', '--quantity', quantity, '--in', f'{folder}/{states}', '--out', f'{folder}/{result}']
+    command = [program, 'compute', 'ur5', quantity, '--in', f'{folder}/{states}', '--out', f'{folder}/{result}']
     subprocess.run(command, check=True)
 theta = np.random.default_rng(1).uniform(-1, 1, (50, 6))
 np.save(f'{folder}/c.npy', theta)
@@ -40,7 +40,7 @@ fn numpy_reads_what_is_written_and_writes_what_is_read() {
         println!("skipped: MOZZI_PYTHON names no Python with NumPy (cargo xtask test makes one)");
         return;
     };
-    by_python(&python, BY_NUMPY, "batch_numpy");
+    by_python(&python, BY_NUMPY, "compute_numpy");
 }
 
 const BY_PYARROW: &str = "
@@ -51,7 +51,7 @@ theta = np.random.default_rng(1).uniform(-1, 1, (50, 6))
 table = pa.table({f'theta_{j + 1}': theta[:, j] for j in range(6)})
 for compression in ['uncompressed', 'lz4']:
     feather.write_feather(table, f'{folder}/states.feather', compression=compression)
-    command = [program, 'batch', 'ur5', '--quantity', 'gravity-forces', '--in', f'{folder}/states.feather']
+    command = [program, 'compute', 'ur5', 'gravity-forces', '--in', f'{folder}/states.feather']
     subprocess.run(command + ['--out', f'{folder}/g.arrow'], check=True)
     subprocess.run(command + ['--out', f'{folder}/g.npy'], check=True)
     g = feather.read_table(f'{folder}/g.arrow')
@@ -65,7 +65,7 @@ fn pyarrow_reads_what_is_written_and_writes_what_is_read() {
         println!("skipped: MOZZI_PYTHON names no Python with pyarrow");
         return;
     };
-    by_python(&python, BY_PYARROW, "batch_pyarrow");
+    by_python(&python, BY_PYARROW, "compute_pyarrow");
 }
 
 fn by_python(python: &str, script: &str, name: &str) {

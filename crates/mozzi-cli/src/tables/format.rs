@@ -1,7 +1,8 @@
 //! What kind of file a table is, by its ending.
 
-use super::quantity::Quantity;
 use crate::failure::{Failure, Result};
+use crate::quantity::hyphenated;
+use mozzi::quantities::Query;
 use std::path::Path;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,13 +31,13 @@ impl Format {
     }
 
     /// Of a file that is to hold this.
-    pub fn of_results(file: &str, quantity: Quantity) -> Result<Self> {
+    pub fn of_results(file: &str, query: Query) -> Result<Self> {
         let format = Self::of(file)?;
-        let names: Vec<&str> = quantity.outputs().iter().map(|&(name, _)| name).collect();
+        let names: Vec<&str> = query.declaration().outputs.iter().map(|output| output.name).collect();
         if format == Format::Npy && names.len() > 1 {
             return Err(Failure::wrong(format!(
                 "{file} holds one array, and {} gives {}: {}; expected a name that ends in .npz, .arrow or .csv",
-                quantity.name(),
+                hyphenated(query.name()),
                 names.len(),
                 names.join(", ")
             )));

@@ -1,10 +1,14 @@
-//! `mozzi batch` and `mozzi bench`: every quantity beside the library at one state, every kind of file, what is wrong with one.
+//! `mozzi compute` with tables, and `mozzi bench`: every quantity beside the library at one state, every kind of file, what is wrong with one.
 #![allow(non_snake_case)]
 
 mod by_python;
 #[path = "../common/mod.rs"]
 mod common;
+mod environment;
 mod files;
+mod flags;
+mod list;
+mod states;
 
 use arrow_array::{ArrayRef, Float64Array, Int64Array};
 use common::{assert_close, complaint, file, folder, json, mozzi};
@@ -12,52 +16,13 @@ use files::{npy, npz, parse, read_arrow, read_npz, save, to_columns, write_arrow
 use mozzi::nalgebra::DMatrix;
 use mozzi::{Environment, Model, Wrench};
 use serde_json::Value;
-use std::path::Path;
+use states::States;
 use std::sync::Arc;
-
-/// N states of a robot: θ, θ̇, θ̈ or τ, and the tip's wrench.
-struct States {
-    count: usize,
-    widths: [usize; 4],
-    tables: [Vec<f64>; 4],
-}
-
-impl States {
-    fn new(model: &Model, count: usize) -> Self {
-        let widths = [model.nq(), model.n(), model.n(), 6];
-        let tables = [0, 1, 2, 3].map(|k| {
-            let number = |i: usize| ((i * 7 + k * 13) as f64 * 0.37).sin() * if k == 3 { 5.0 } else { 1.0 };
-            (0..count * widths[k]).map(number).collect()
-        });
-        let mut states = States { count, widths, tables };
-        if model.is_floating() {
-            for theta in states.tables[0].chunks_exact_mut(model.nq()) {
-                theta[..4].copy_from_slice(&[0.5, -0.5, 0.5, 0.5]);
-            }
-        }
-        states
-    }
-
-    fn at(&self, k: usize, state: usize) -> &[f64] {
-        &self.tables[k][state * self.widths[k]..][..self.widths[k]]
-    }
-
-    /// The first tables beside each other, as one array.
-    fn beside(&self, tables: &[usize]) -> Vec<f64> {
-        (0..self.count).flat_map(|state| tables.iter().flat_map(move |&k| self.at(k, state).to_vec())).collect()
-    }
-
-    fn npz(&self, folder: &Path, name: &str) -> String {
-        let shapes = self.widths.map(|width| [self.count, width]);
-        let names = [("theta", 0), ("dtheta", 1), ("ddtheta", 2), ("tau", 2), ("wrench", 3)];
-        npz(folder, name, &names.map(|(name, k)| (name, &shapes[k][..], &self.tables[k][..])))
-    }
-}
 
 /// Arrays by name.
 type Arrays = Vec<(&'static str, Vec<f64>)>;
 
-/// Everything that `mozzi batch` computes, by the library at one state: name, then each array.
+/// Quantities by the library's methods at one state: name, then each array.
 fn at_one(model: &Model, [theta, dtheta, x, F]: [&[f64]; 4]) -> Vec<(&'static str, Arrays)> {
     let tip = model.end_effector().expect("a tip");
     let applied = [(tip, Wrench::from_array(std::array::from_fn(|k| F[k])))];
@@ -78,8 +43,8 @@ fn at_one(model: &Model, [theta, dtheta, x, F]: [&[f64]; 4]) -> Vec<(&'static st
         ("gravity-forces", vec![("g", list(model.gravity_forces(theta).expect("g")))]),
         ("bias-forces", vec![("h", list(model.bias_forces(theta, dtheta, e).expect("h")))]),
         ("tip-forces", vec![("tau", list(model.tip_forces(theta, &applied).expect("JᵀF")))]),
-        ("kinetic-energy", vec![("kinetic_energy", vec![model.kinetic_energy(theta, dtheta).expect("K")])]),
-        ("potential-energy", vec![("potential_energy", vec![model.potential_energy(theta).expect("P")])]),
+        ("kinetic-energy", vec![("energy", vec![model.kinetic_energy(theta, dtheta).expect("K")])]),
+        ("potential-energy", vec![("energy", vec![model.potential_energy(theta).expect("P")])]),
         ("forward-kinematics", vec![("T", pose.as_flattened().to_vec())]),
         ("space-jacobian", vec![("J", rows(model.space_jacobian(theta, tip).expect("J").matrix()))]),
         ("body-jacobian", vec![("J", rows(model.body_jacobian(theta, tip).expect("J").matrix()))]),
@@ -111,17 +76,17 @@ fn largest(values: &[f64]) -> f64 {
 
 #[test]
 fn every_quantity_is_that_of_one_state() {
-    let folder = folder("batch_quantities");
+    let folder = folder("compute_quantities");
     let ur5 = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
     let shapes = [("tau", "(11, 6)"), ("M", "(11, 6, 6)"), ("J", "(11, 6, 6)"), ("T", "(11, 4, 4)")];
-    let shapes = shapes.into_iter().chain([("kinetic_energy", "(11,)"), ("d_theta", "(11, 6, 6)")]);
+    let shapes = shapes.into_iter().chain([("energy", "(11,)"), ("d_theta", "(11, 6, 6)")]);
     let shapes: std::collections::BTreeMap<&str, &str> = shapes.collect();
     let states = States::new(&ur5, 11);
     let input = states.npz(&folder, "states.npz");
     let one: Vec<_> = (0..11).map(|s| at_one(&ur5, [0, 1, 2, 3].map(|k| states.at(k, s)))).collect();
     for (k, (name, arrays)) in one[0].iter().enumerate() {
         let out = folder.join(format!("{name}.npz")).to_str().expect("text").to_string();
-        let output = mozzi(&["batch", "ur5", "--quantity", name, "--in", &input, "--out", &out]);
+        let output = mozzi(&["compute", "ur5", name, "--in", &input, "--out", &out]);
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success() && said.starts_with("11 states in ") && said.contains("states/s"), "{said}");
         let found = read_npz(&out);
@@ -137,13 +102,13 @@ fn every_quantity_is_that_of_one_state() {
 
 #[test]
 fn what_is_computed_with_is_chosen() {
-    let folder = folder("batch_ways");
+    let folder = folder("compute_ways");
     let ur5 = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
     let states = States::new(&ur5, 300);
     let input = save(&folder, "states.npy", &npy(&[300, 18], &states.beside(&[0, 1, 2]), false));
     let out = folder.join("tau.npy").to_str().expect("text").to_string();
     let run = |more: &[&str]| {
-        let fixed = ["batch", "ur5", "--quantity", "inverse-dynamics", "--in", &input, "--out", &out];
+        let fixed = ["compute", "ur5", "inverse-dynamics", "--in", &input, "--out", &out];
         let summary = json(&[&fixed, more].concat());
         (summary, parse(&std::fs::read(&out).expect("a file")))
     };
@@ -170,7 +135,7 @@ fn what_is_computed_with_is_chosen() {
 
 #[test]
 fn every_kind_of_file_is_read_and_written() {
-    let folder = folder("batch_files");
+    let folder = folder("compute_files");
     let model = mozzi_urdf::open("two_link_planar").expect("a robot").build().expect("a model");
     let states = States::new(&model, 5);
     let beside = states.beside(&[0, 1, 2, 3]);
@@ -196,7 +161,7 @@ fn every_kind_of_file_is_read_and_written() {
         for ending in ["npz", "arrow", "csv"] {
             let out = folder.join(format!("out.{ending}")).to_str().expect("text").to_string();
             let quantity = "forward-dynamics-derivatives";
-            let said = mozzi(&["batch", "two_link_planar", "--quantity", quantity, "--in", input, "--out", &out]);
+            let said = mozzi(&["compute", "two_link_planar", quantity, "--in", input, "--out", &out]);
             assert!(said.status.success(), "{input}: {}", String::from_utf8_lossy(&said.stderr));
             all.push(match ending {
                 "npz" => {
@@ -205,7 +170,7 @@ fn every_kind_of_file_is_read_and_written() {
                 "arrow" => read_arrow(&out).into_iter().map(|(_, values)| values).collect::<Vec<_>>(),
                 _ => {
                     let text = std::fs::read_to_string(&out).expect("a table");
-                    let names = "ddtheta_1,ddtheta_2,by_theta_1_1,by_theta_1_2,by_theta_2_1,by_theta_2_2,by_dtheta_1_1";
+                    let names = "ddtheta_1,ddtheta_2,d_theta_1_1,d_theta_1_2,d_theta_2_1,d_theta_2_2,d_dtheta_1_1";
                     assert!(text.starts_with(names), "{text}");
                     let row = |line: &str| line.split(',').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>();
                     let rows: Vec<Vec<f64>> = text.lines().skip(1).map(row).collect();
@@ -218,31 +183,20 @@ fn every_kind_of_file_is_read_and_written() {
     assert!(all.iter().all(|one| *one == all[0]), "{all:?}");
     let names: Vec<String> =
         read_arrow(folder.join("out.arrow").to_str().expect("text")).into_iter().map(|(n, _)| n).collect();
-    assert_eq!(names[12..], ["by_tau_2_1", "by_tau_2_2"]);
-    let text =
-        common::text(&["batch", "two_link_planar", "--quantity", "kinetic-energy", "--in", &inputs[4], "--out", "-"]);
-    assert!(text.starts_with("kinetic_energy\n") && text.lines().count() == 6, "{text}");
+    assert_eq!(names[12..], ["d_tau_2_1", "d_tau_2_2"]);
+    let text = common::text(&["compute", "two_link_planar", "kinetic-energy", "--in", &inputs[4], "--out", "-"]);
+    assert!(text.starts_with("energy\n") && text.lines().count() == 6, "{text}");
 }
 
 #[test]
 fn a_free_base_has_its_columns_by_name() {
-    let folder = folder("batch_floating");
+    let folder = folder("compute_floating");
     let robot = mozzi_urdf::open("two_link_planar").expect("a robot").description;
     let model = robot.floating().build().expect("a model");
     let states = States::new(&model, 9);
     let input = save(&folder, "states.npy", &npy(&[9, 25], &states.beside(&[0, 1, 2]), false));
     let out = folder.join("tau.arrow").to_str().expect("text").to_string();
-    common::text(&[
-        "batch",
-        "two_link_planar",
-        "--floating",
-        "--quantity",
-        "inverse-dynamics",
-        "--in",
-        &input,
-        "--out",
-        &out,
-    ]);
+    common::text(&["compute", "two_link_planar", "--floating", "inverse-dynamics", "--in", &input, "--out", &out]);
     let columns = read_arrow(&out);
     assert_eq!((columns.len(), columns[0].0.as_str(), columns[5].0.as_str()), (8, "tau_base.wx", "tau_base.vz"));
     for state in 0..9 {
@@ -254,17 +208,8 @@ fn a_free_base_has_its_columns_by_name() {
     let mut zero = states.beside(&[0, 1, 2]);
     zero[25 * 4..][..4].fill(0.0);
     let input = save(&folder, "zero.npy", &npy(&[9, 25], &zero, false));
-    let (code, said) = complaint(&[
-        "batch",
-        "two_link_planar",
-        "--floating",
-        "--quantity",
-        "inverse-dynamics",
-        "--in",
-        &input,
-        "--out",
-        &out,
-    ]);
+    let (code, said) =
+        complaint(&["compute", "two_link_planar", "--floating", "inverse-dynamics", "--in", &input, "--out", &out]);
     assert!(
         code == 1 && said.contains("zero.npy: state 4 (counted from 0): ") && said.contains("quaternion"),
         "{said}"
@@ -273,14 +218,14 @@ fn a_free_base_has_its_columns_by_name() {
 
 #[test]
 fn a_nan_stays_in_its_state_and_is_told() {
-    let folder = folder("batch_nan");
+    let folder = folder("compute_nan");
     let model = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
     let states = States::new(&model, 10);
     let mut numbers = states.beside(&[0, 1, 2]);
     numbers[18 * 3 + 1] = f64::NAN;
     let input = save(&folder, "states.npy", &npy(&[10, 18], &numbers, false));
     let out = folder.join("tau.npy").to_str().expect("text").to_string();
-    let output = mozzi(&["batch", "ur5", "--quantity", "inverse-dynamics", "--in", &input, "--out", &out]);
+    let output = mozzi(&["compute", "ur5", "inverse-dynamics", "--in", &input, "--out", &out]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && said.contains("note: 1 of 10 states gave NaN\n"), "{said}");
     let (_, tau) = parse(&std::fs::read(&out).expect("a file"));
@@ -290,7 +235,7 @@ fn a_nan_stays_in_its_state_and_is_told() {
 
 #[test]
 fn what_is_wrong_is_named() {
-    let folder = folder("batch_wrong");
+    let folder = folder("compute_wrong");
     let out = folder.join("out.npy").to_str().expect("text").to_string();
     let model = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
     let states = States::new(&model, 4);
@@ -317,8 +262,7 @@ fn what_is_wrong_is_named() {
     let nothing = file(&folder, "nothing.arrow", "nothing");
     let csv = file(&folder, "states.csv", "theta_1,theta_2,theta_3,theta_4,theta_5,theta_6\n0,0,0,0,0,x\n");
     let said = |quantity: &str, input: &str, more: &[&str]| {
-        let (code, said) =
-            complaint(&[&["batch", "ur5", "--quantity", quantity, "--in", input, "--out", &out], more].concat());
+        let (code, said) = complaint(&[&["compute", "ur5", quantity, "--in", input, "--out", &out], more].concat());
         (code, said)
     };
     for (quantity, input, expected) in [
@@ -335,7 +279,11 @@ fn what_is_wrong_is_named() {
             "cut.npy is no .npy: there are 568 bytes of numbers, expected those of shape (4, 18)",
         ),
         ("mass-matrix", &theta, "theta.npz: `theta` has shape (4, 5), expected (N, 6) of `ur5`"),
-        ("mass-matrix", &odd, "odd.npz has an array `thetadot`, expected only theta, dtheta, ddtheta, tau, wrench"),
+        (
+            "mass-matrix",
+            &odd,
+            "odd.npz has an array `thetadot`, expected only theta, dtheta, ddtheta, tau, x, t, wrench, gravity, parameters, or wrench_FRAME of a frame",
+        ),
         ("mass-matrix", &count, "count.npz: `dtheta` has shape (3, 6), expected (4, 6): as many states as `theta`"),
         ("mass-matrix", &none, "none.npz has no array `theta`, which mass-matrix needs"),
         ("tip-forces", &whole, "whole.arrow has no columns m_x m_y m_z f_x f_y f_z, which tip-forces needs"),
@@ -364,11 +312,11 @@ fn what_is_wrong_is_named() {
     assert!(code == 1 && text.contains("0 threads could not be started: expected at least one"), "{text}");
     let (code, text) = said("mass-matrix", &all, &["--instruction-set", "neon"]);
     assert!(code == 2 && text.contains("expected one of portable, avx2, avx512"), "{text}");
-    let (code, text) = complaint(&["batch", "ur5", "--quantity", "mass-matrix", "--in", &all, "--out", "-", "--json"]);
+    let (code, text) = complaint(&["compute", "ur5", "mass-matrix", "--in", &all, "--out", "-", "--json"]);
     assert!(code == 1 && text.contains("--json and --out - both ask for standard output"), "{text}");
-    let (code, text) = complaint(&["batch", "panda", "--quantity", "body-jacobian", "--in", &all, "--out", &out]);
+    let (code, text) = complaint(&["compute", "panda", "body-jacobian", "--in", &all, "--out", &out]);
     assert!(code == 1 && text.contains("end effector"), "{text}");
-    let output = mozzi(&["batch", "ur5", "--quantity", "mass-matrix", "--in", &whole, "--out", &out]);
+    let output = mozzi(&["compute", "ur5", "mass-matrix", "--in", &whole, "--out", &out]);
     assert!(output.status.success(), "whole numbers are numbers");
 }
 

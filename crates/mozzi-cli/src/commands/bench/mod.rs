@@ -1,0 +1,139 @@
+//! `mozzi bench`: this machine's times, of one state and of many.
+
+mod page;
+mod runs;
+mod timing;
+
+use crate::failure::{self, Failure, Result};
+use crate::interrupt;
+use crate::progress::Progress;
+use crate::quantity::{hyphenated, is_of_a_frame, quantity};
+use crate::robot::{RobotArguments, end_effector};
+use clap::Args;
+use mozzi::quantities::{Kernel, LIST, Of, Quantity, Query, Uses};
+use mozzi_batch::{Batch, InstructionSet};
+use runs::{Data, Run, Subject};
+use std::time::Instant;
+use timing::{Report, Timing};
+
+/// Of the largest entry: a larger difference between one state and many is no rounding.
+const ROUNDING: f64 = 1e-6;
+
+#[derive(Args, Debug)]
+pub struct BenchArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    /// States in a batch
+    #[arg(long, value_name = "N", default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..))]
+    states: u32,
+    /// Threads of the second table [default: one a core]
+    #[arg(long, value_name = "K")]
+    threads: Option<usize>,
+    /// How often each is timed, in turn with the others
+    #[arg(long, value_name = "R", default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
+    rounds: u16,
+    /// Only this; may be repeated [default: those that have a kernel on registers]
+    #[arg(long, value_name = "NAME", value_parser = quantity())]
+    quantity: Vec<Query<'static>>,
+}
+
+/// Does the quantity at this place of the list have a kernel on registers?
+const HAS_REGISTERS: &[bool] = {
+    macro_rules! flags {
+        ($($Q:ident)*) => { &[$(<mozzi::quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
+    }
+    mozzi::quantities!(flags)
+};
+
+pub fn run(arguments: &BenchArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    if model.n() == 0 {
+        return Err(Failure::wrong(format!("`{}` has no joint that moves: nothing to time", model.description().name)));
+    }
+    let tip = end_effector(&model);
+    let usual = (0..LIST.len()).filter(|&index| HAS_REGISTERS[index] && LIST[index].of != Of::Task).map(Query::at);
+    let asked = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
+    let is_of_wrenches = |query: Query| query.declaration().uses == Uses::WRENCHES;
+    let asked = asked.into_iter().filter(|&query| tip.is_some() || !(is_of_a_frame(query) || is_of_wrenches(query)));
+    let queries: Vec<Query> =
+        asked.map(|query| tip.filter(|_| is_of_a_frame(query)).map_or(query, |tip| query.of(tip))).collect();
+    let threads = arguments.threads.unwrap_or_else(|| Batch::<f64>::of(&model).threads());
+    let data = Data::new(&model, arguments.states as usize);
+    let single = data.to_f32();
+
+    interrupt::listen();
+    let progress = Progress::new("timing", queries.len(), "quantities");
+    let (mut timings, mut done) = (Vec::new(), 0);
+    for &query in &queries {
+        let tip = tip.filter(|_| is_of_wrenches(query));
+        let mut runs = Subject { model: &model, query, tip }.runs(threads, &data, &single)?;
+        let Some(found) = measure(hyphenated(query.name()), &mut runs, arguments.rounds.into())? else { break };
+        timings.extend(found);
+        done += 1;
+        progress.at(done);
+    }
+    drop(progress);
+    let (BenchArguments { states, rounds, .. }, complete) = (arguments, done == queries.len());
+    let report = Report { processor: processor(), states: *states, rounds: *rounds, threads, complete, timings };
+    let text = if arguments.robot.json { page::object(&model, &report) } else { page::page(&model, &report) };
+    if complete {
+        return Ok(text);
+    }
+    failure::note(&format!("stopped by Ctrl-C: these are {done} of {} quantities", queries.len()));
+    Err(Failure::Stopped(text))
+}
+
+/// Compares with one state, then times all in turn; nothing, where Ctrl-C asked to end.
+fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<Timing>>> {
+    let mut differences = Vec::new();
+    let mut reference = Vec::new();
+    for run in &mut *runs {
+        if interrupt::asked() {
+            return Ok(None);
+        }
+        let (way, results) = (run.way, run.results()?);
+        if way.set.is_none() {
+            reference = results.clone();
+        }
+        let difference = reference.iter().zip(&results).map(|(a, b)| difference(a, b)).fold(0.0, f64::max);
+        if way.precision == "f64" && !(difference <= ROUNDING) {
+            let set = way.set.map_or("one state", InstructionSet::name);
+            return Err(Failure::wrong(format!(
+                "{name} on {set} differs from one state by {difference:.1e} of its largest entry, expected rounding"
+            )));
+        }
+        differences.push(difference);
+    }
+    let mut times = vec![Vec::with_capacity(rounds); runs.len()];
+    for _ in 0..rounds {
+        for (run, times) in runs.iter_mut().zip(&mut times) {
+            if interrupt::asked() {
+                return Ok(None);
+            }
+            let start = Instant::now();
+            run.run()?;
+            times.push(start.elapsed().as_secs_f64() * 1e9 / run.states as f64);
+        }
+    }
+    let all = runs.iter().zip(times).zip(differences);
+    let timings = all.map(|((run, mut times), difference)| {
+        times.sort_by(f64::total_cmp);
+        Timing { name: name.clone(), way: run.way, least: times[0], median: times[times.len() / 2], difference }
+    });
+    Ok(Some(timings.collect()))
+}
+
+/// Of the first states, as many as are in both.
+fn difference(reference: &[f64], found: &[f64]) -> f64 {
+    let largest = reference.iter().fold(0.0_f64, |m, x| m.max(x.abs())).max(f64::MIN_POSITIVE);
+    let apart = reference.iter().zip(found).map(|(a, b)| (a - b).abs());
+    // a NaN is the largest of all
+    apart.fold(0.0_f64, |m, x| if x <= m { m } else { x }) / largest
+}
+
+/// The processor's name, where the system tells it.
+fn processor() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    name.map_or(format!("unknown {}", std::env::consts::ARCH), |(_, name)| name.to_string())
+}

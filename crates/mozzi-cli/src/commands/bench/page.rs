@@ -1,0 +1,78 @@
+//! The times as text and as JSON.
+
+use super::timing::{Report, Timing, Way};
+use crate::json;
+use crate::text::{Page, about, table};
+use mozzi::Model;
+use mozzi_batch::InstructionSet;
+use serde_json::{Value, json};
+
+fn sets() -> Vec<&'static str> {
+    InstructionSet::available().into_iter().map(InstructionSet::name).collect()
+}
+
+pub fn object(model: &Model, report: &Report) -> String {
+    let entry = |timing: &Timing| {
+        json!({
+            "quantity": timing.name,
+            "instruction_set": timing.way.set.map(InstructionSet::name),
+            "one_state": timing.way.set.is_none(),
+            "precision": timing.way.precision,
+            "threads": timing.way.threads,
+            "ns_least": timing.least,
+            "ns_median": timing.median,
+            "states_per_second": 1e9 / timing.median,
+            "difference": timing.difference,
+        })
+    };
+    json::print(&json::of_robot(
+        model,
+        json!({
+            "processor": report.processor, "instruction_sets": sets(), "states": report.states,
+            "rounds": report.rounds, "complete": report.complete, "timings": report.timings.iter().map(entry).collect::<Value>(),
+        }),
+    ))
+}
+
+pub fn page(model: &Model, report: &Report) -> String {
+    let Report { processor, states, rounds, threads, timings, .. } = report;
+    let mut page = Page::default();
+    page.line(format!("{}: {} positions, {} velocities", model.description().name, model.nq(), model.n()));
+    page.line(format!("{processor}; {}; {threads} threads at most", sets().join(", ")));
+    page.line(format!("{states} states a batch; least / median of {rounds} rounds, all in turn"));
+    let time = |timing: &Timing| format!("{} / {}", digits(timing.least), digits(timing.median));
+    let rate = |timing: &Timing| format!("{} / {}", digits(1e3 / timing.least), digits(1e3 / timing.median));
+    let one_thread = |way: Way| way.threads == 1;
+    page.title("nanoseconds a state, on one thread").lines(&grid(timings, one_thread, time));
+    if *threads > 1 {
+        let title = format!("millions of states a second, on {threads} threads");
+        page.title(&title).lines(&grid(timings, |way| way.threads > 1, rate));
+    }
+    let error = |timing: &Timing| about(timing.difference);
+    page.title("largest difference from one state, of the largest entry").lines(&grid(timings, one_thread, error));
+    page.end()
+}
+
+/// A row for each quantity, a column for each way.
+fn grid(timings: &[Timing], which: impl Fn(Way) -> bool, cell: impl Fn(&Timing) -> String) -> Vec<String> {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut head = vec![String::new()];
+    for timing in timings.iter().filter(|timing| which(timing.way)) {
+        let (way, name) = (timing.way, timing.name.clone());
+        let title = way.set.map_or("one state".to_string(), |set| format!("{} {}", set.name(), way.precision));
+        if !head.contains(&title) {
+            head.push(title);
+        }
+        match rows.last_mut().filter(|row| row[0] == name) {
+            Some(row) => row.push(cell(timing)),
+            None => rows.push(vec![name, cell(timing)]),
+        }
+    }
+    table(&[vec![head], rows].concat(), "lr")
+}
+
+/// Three digits.
+fn digits(x: f64) -> String {
+    let places = (2 - x.abs().max(1e-9).log10().floor() as i32).clamp(0, 4) as usize;
+    format!("{x:.places$}")
+}

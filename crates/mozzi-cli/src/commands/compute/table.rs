@@ -1,0 +1,219 @@
+//! A quantity at every state of a file, on all cores, with progress.
+
+use super::subject;
+use crate::failure::{self, Failure, Result};
+use crate::progress::Progress;
+use crate::quantity::{hyphenated, is_of_a_frame};
+use crate::robot::RobotArguments;
+use crate::tables::array::{Array, tuple};
+use crate::tables::format::Format;
+use crate::tables::precision::Precision;
+use crate::tables::results::{self, nan};
+use crate::tables::states::States;
+use crate::{interrupt, json};
+use clap::Args;
+use mozzi::quantities::Query;
+use mozzi::{Environment, FrameId, Model};
+use mozzi_batch::{Batch, BatchEnvironment, Error, InstructionSet};
+use serde_json::{Map, Value, json};
+use std::time::{Duration, Instant};
+
+/// So many states are computed first, between two looks at the clock; then twice or half as many, until a piece takes about as long.
+const FIRST: usize = 256;
+const PIECE: [Duration; 2] = [Duration::from_millis(40), Duration::from_millis(160)];
+
+#[derive(Args, Debug)]
+pub struct TableArguments {
+    /// States in a file instead of by flags: .npy, .npz, .arrow, .feather or .csv ("-": CSV on standard input)
+    #[arg(long = "in", value_name = "STATES")]
+    pub input: Option<String>,
+    /// Where the results go, by the same endings [default: CSV on standard output, "-"]
+    #[arg(long = "out", value_name = "RESULT", requires = "input")]
+    output: Option<String>,
+    /// The numbers that are computed with, and written
+    #[arg(long, default_value = "f64", value_parser = ["f64", "f32"], requires = "input")]
+    precision: String,
+    /// At most as many threads [default: one a core]
+    #[arg(long, value_name = "K", requires = "input")]
+    threads: Option<usize>,
+    /// Registers: portable, avx2 or avx512 [default: the widest that the machine has]
+    #[arg(long, value_name = "NAME", value_parser = instruction_set, requires = "input")]
+    instruction_set: Option<InstructionSet>,
+}
+
+fn instruction_set(name: &str) -> Result<InstructionSet, String> {
+    use InstructionSet::*;
+    let all = [Portable, Avx2, Avx512];
+    let names = all.map(InstructionSet::name).join(", ");
+    all.into_iter().find(|set| set.name() == name).ok_or(format!("expected one of {names}"))
+}
+
+/// What is to be computed at all states of a file.
+pub struct Job<'a> {
+    pub file: &'a str,
+    pub query: Query<'a>,
+    pub model: &'a Model,
+    pub environment: Environment<'a>,
+    pub table: &'a TableArguments,
+    pub robot: &'a RobotArguments,
+}
+
+impl Job<'_> {
+    /// Without `--out`, JSON has the results; with it, what was computed and where it is.
+    pub fn run(&self) -> Result<String> {
+        if self.table.precision == "f32" { self.run_in::<f32>() } else { self.run_in::<f64>() }
+    }
+
+    fn run_in<T: Precision>(&self) -> Result<String> {
+        let &Job { file, query, model, environment, table: arguments, robot } = self;
+        let output = arguments.output.as_deref();
+        if robot.json && output == Some("-") {
+            return Err(Failure::wrong("--json and --out - both ask for standard output, expected one of them"));
+        }
+        Format::of_results(output.unwrap_or("-"), query)?;
+        query.check_subject(model)?; // before all states are read
+        let mut batch = Batch::<T>::of(model);
+        if let Some(threads) = arguments.threads {
+            batch = batch.with_threads(threads)?;
+        }
+        if let Some(set) = arguments.instruction_set {
+            batch = batch.with_instruction_set(set)?;
+        }
+        let states = States::<T>::read(file, query, model, environment.applied)?;
+        if robot.gravity.is_some() && states.gravity.is_some() {
+            return Err(Failure::wrong(format!(
+                "--gravity and the array `gravity` of {file} are both given, expected one of them"
+            )));
+        }
+        let frames =
+            states.wrenches.iter().map(|(frame, _)| frame).chain(environment.applied.iter().map(|(frame, _)| frame));
+        let has_tip = model.end_effector().is_ok_and(|tip| frames.copied().any(|frame| frame == tip));
+        if robot.end_effector.is_some() && !is_of_a_frame(query) && !has_tip {
+            return Err(Failure::wrong(format!("--frame has no effect: {file} has no wrench of that frame")));
+        }
+        let (results, seconds) = compute(&batch, query, &states, environment)?;
+        let (count, all) = (results.first().map_or(0, |array| array.shape[0]), states.samples.count);
+        let nan = nan(&results, count);
+        if nan > 0 {
+            failure::note(&format!("{nan} of {count} states gave NaN"));
+        }
+        let text = match output {
+            None if robot.json => json::print(&object(query, model, &states, &results)),
+            _ => results::write(output.unwrap_or("-"), query, model, &states, &results)?,
+        };
+        let (registers, threads) = (batch.instruction_set().name(), batch.threads());
+        let rate = count as f64 / seconds.max(1e-9);
+        let text = match output {
+            Some(output) if robot.json => {
+                let arrays: Value =
+                    results.iter().map(|array| json!({ "name": array.name, "shape": array.shape })).collect();
+                json::print(&json::of_robot(
+                    model,
+                    json!({
+                        "quantity": hyphenated(query.name()), "in": file, "out": output, "arrays": arrays, "states": count,
+                        "complete": count == all, "states_with_nan": nan, "seconds": seconds, "states_per_second": rate,
+                        "precision": T::NAME, "instruction_set": registers, "threads": threads,
+                    }),
+                ))
+            }
+            _ => {
+                let arrays: Vec<String> =
+                    results.iter().map(|array| format!("{} {}", array.name, tuple(&array.shape))).collect();
+                let of_threads = if threads == 1 { "1 thread".to_string() } else { format!("{threads} threads") };
+                let place = output.filter(|file| *file != "-").unwrap_or("standard output");
+                failure::write(&format!(
+                    "{count} states in {seconds:.3} s, {rate:.3e} states/s ({}, {registers}, {of_threads}): {} in {place}\n",
+                    T::NAME,
+                    arrays.join(", "),
+                ));
+                text
+            }
+        };
+        if count == all {
+            return Ok(text);
+        }
+        failure::note(&format!("stopped by Ctrl-C: these are the first {count} of {all} states"));
+        Err(Failure::Stopped(text))
+    }
+}
+
+/// The results, and the seconds that they took: of all states, or, after Ctrl-C, of as many as the results' shapes say.
+fn compute<T: Precision>(
+    batch: &Batch<T>,
+    query: Query,
+    states: &States<T>,
+    environment: Environment,
+) -> Result<(Vec<Array<T>>, f64)> {
+    let count = states.samples.count;
+    let mut results = results::arrays::<T>(query, batch.model(), count);
+    interrupt::listen();
+    let (progress, start) = (Progress::new(hyphenated(query.name()), count, "states"), Instant::now());
+    let (mut first, mut piece) = (0, FIRST);
+    while first < count && !interrupt::asked() {
+        let (begin, these) = (Instant::now(), piece.min(count - first));
+        let inputs: Vec<&[T]> = states.inputs.iter().map(|table| part(table, count, first, these)).collect();
+        let wrenches: Vec<(FrameId, &[T])> =
+            states.wrenches.iter().map(|(frame, table)| (*frame, part(table, count, first, these))).collect();
+        let environment = BatchEnvironment {
+            environment,
+            wrenches: &wrenches,
+            gravity: states.gravity.as_deref().map(|table| part(table, count, first, these)),
+            parameters: states.parameters.as_deref().map(|table| part(table, count, first, these)),
+        };
+        let mut outputs: Vec<&mut [T]> = results
+            .iter_mut()
+            .map(|array| {
+                let width = array.width();
+                &mut array.values[first * width..][..these * width]
+            })
+            .collect();
+        batch.compute(query, &inputs, &environment, &mut outputs).map_err(|error| match error {
+            Error::State { index, source } => {
+                Failure::wrong(format!("{}: {source}", states.samples.place(first + index)))
+            }
+            other => Failure::wrong(format!("{}: {other}", states.samples.file)),
+        })?;
+        first += these;
+        progress.at(first);
+        piece = match begin.elapsed() {
+            short if short < PIECE[0] => piece.saturating_mul(2),
+            long if long > PIECE[1] => (piece / 2).max(1),
+            _ => piece,
+        };
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    results.iter_mut().for_each(|array| array.truncate(first));
+    Ok((results, seconds))
+}
+
+/// Some states of a table that has so many.
+fn part<T>(table: &[T], count: usize, first: usize, these: usize) -> &[T] {
+    let width = table.len() / count;
+    &table[first * width..][..these * width]
+}
+
+/// The states that were computed, and the results, by names.
+fn object<T: Precision>(query: Query, model: &Model, states: &States<T>, results: &[Array<T>]) -> Value {
+    let count = results.first().map_or(0, |array| array.shape[0]);
+    let rows = |table: &[T]| {
+        let width = table.len() / states.samples.count.max(1);
+        let values: Vec<f64> = table[..count * width].iter().map(|&x| x.into()).collect();
+        json::nested(&[count, width], &values)
+    };
+    let mut object = subject::object(query, model);
+    if let Some(t) = &states.samples.t {
+        object.insert("t".into(), json::vector(&t[..count]));
+    }
+    for (input, table) in query.declaration().inputs.iter().zip(&states.inputs) {
+        object.insert(input.name.into(), rows(table));
+    }
+    if !states.wrenches.is_empty() {
+        let wrench = |(frame, table): &(FrameId, Vec<T>)| (model.frame_name(*frame).into(), rows(table));
+        object.insert("wrenches".into(), states.wrenches.iter().map(wrench).collect::<Map<_, _>>().into());
+    }
+    for array in results {
+        let values: Vec<f64> = array.values.iter().map(|&x| x.into()).collect();
+        object.insert(array.name.clone(), json::nested(&array.shape, &values));
+    }
+    json::of_robot(model, object.into())
+}

@@ -1,0 +1,116 @@
+//! The quantities of the list at one state.
+
+use crate::failure::{self, Result};
+use crate::quantity::hyphenated;
+use crate::robot::end_effector;
+use crate::task::TaskArguments;
+use mozzi::quantities::{BiasForces, InverseDynamics, LIST, Of, Query};
+use mozzi::{
+    BodyFrame, ClosedForm, Environment, FrameId, Model, NewtonEuler, Task, TaskFrame, TaskSpaceDynamics, Wrench,
+};
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+
+/// The quantities at one state, τ being what the motion takes.
+pub struct Terms<'m> {
+    pub model: &'m Model,
+    pub theta: Vec<f64>,
+    pub dtheta: Vec<f64>,
+    pub ddtheta: Vec<f64>,
+    /// The tip's wrench on the environment, in the tip's frame.
+    pub F_tip: Wrench,
+    pub tip: Option<FrameId>,
+    /// Each quantity's outputs, in the order of the list; none of what cannot be computed, needs a task or a further vector.
+    pub found: Vec<Option<Vec<Vec<f64>>>>,
+    pub newton_euler: NewtonEuler,
+    /// None without end effector, and where the task is singular.
+    pub task: Option<TaskSpaceDynamics>,
+    pub task_rows: Vec<usize>,
+    pub task_frame: TaskFrame,
+    pub closed_form: Option<ClosedForm>,
+}
+
+impl<'m> Terms<'m> {
+    /// All but the task and the closed form. Why a quantity cannot be computed, such as a singular mass matrix, is a note.
+    pub fn at(model: &'m Model, [theta, dtheta, ddtheta]: [Vec<f64>; 3], environment: &Environment) -> Result<Self> {
+        let tip = end_effector(model);
+        let tau = model.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], environment)?.remove(0);
+        let given = [("theta", &theta), ("dtheta", &dtheta), ("ddtheta", &ddtheta), ("tau", &tau)];
+        let still = Environment { applied: &[], ..*environment };
+        let mut missing: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut compute = |query: Query| {
+            let input = |name| given.iter().find(|(known, _)| *known == name).map(|(_, values)| values.as_slice());
+            let inputs: Vec<&[f64]> =
+                query.declaration().inputs.iter().map(|declared| input(declared.name)).collect::<Option<_>>()?;
+            let query = match query.declaration().of {
+                Of::Frame => query.of(tip?),
+                Of::Task => return None,
+                Of::Robot | Of::Point => query,
+            };
+            // h is c + g here, JᵀF a term of its own
+            let environment = if query == BiasForces.into() { &still } else { environment };
+            let outputs = model.compute(query, &inputs, environment);
+            outputs.map_err(|error| missing.entry(error.to_string()).or_default().push(hyphenated(query.name()))).ok()
+        };
+        let found = (0..LIST.len()).map(Query::at).map(&mut compute).collect();
+        for (error, names) in missing {
+            failure::note(&format!("no {}: {error}", names.join(", ")));
+        }
+        Ok(Terms {
+            tip,
+            F_tip: environment.applied.first().map_or(Wrench::zero(), |&(_, F)| F),
+            found,
+            newton_euler: model.newton_euler(&theta, &dtheta, &ddtheta, environment, BodyFrame::CenterOfMass)?,
+            task: None,
+            task_rows: (0..6).collect(),
+            task_frame: TaskFrame::Body,
+            closed_form: None,
+            model,
+            theta,
+            dtheta,
+            ddtheta,
+        })
+    }
+
+    /// A quantity's first output; empty where there is none.
+    pub fn vector<'q>(&self, query: impl Into<Query<'q>>) -> &[f64] {
+        self.found[query.into().index()].as_ref().map_or(&[], |outputs| &outputs[0])
+    }
+
+    /// A quantity's output of this number, a matrix.
+    pub fn matrix<'q>(&self, query: impl Into<Query<'q>>, output: usize) -> Option<DMatrix<f64>> {
+        let query = query.into();
+        let values = self.found[query.index()].as_ref()?.get(output)?;
+        match query.shapes(self.model)[output][..] {
+            [rows, columns] => Some(DMatrix::from_row_slice(rows, columns, values)),
+            _ => None,
+        }
+    }
+
+    /// Jθ̇, the twist (ω, v), of this Jacobian.
+    pub fn twist<'q>(&self, jacobian: impl Into<Query<'q>>) -> Option<DVector<f64>> {
+        Some(self.matrix(jacobian, 0)? * DVector::from_column_slice(&self.dtheta))
+    }
+
+    /// Λ and η; a singular task is an error where it was asked for by name, else a note.
+    pub fn add_task(&mut self, arguments: &TaskArguments, environment: &Environment) -> Result<()> {
+        (self.task_rows, self.task_frame) = (arguments.rows()?, arguments.coordinates());
+        let is_named = arguments.task.is_some();
+        if is_named {
+            self.model.end_effector()?;
+        }
+        let Some(frame) = self.tip else { return Ok(()) };
+        let task = Task { frame, coordinates: self.task_frame, rows: &self.task_rows };
+        let still = Environment { applied: &[], ..*environment };
+        match self.model.task_space_dynamics(&self.theta, &self.dtheta, task, &still) {
+            Ok(dynamics) => self.task = Some(dynamics),
+            Err(error) if is_named => return Err(error.into()),
+            Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 => failure::note(&format!(
+                "Λ and η are left out: {} joints cannot move all six directions; name those that matter, such as --task vx,vz",
+                self.model.n()
+            )),
+            Err(error) => failure::note(&format!("Λ and η are left out: {error}")),
+        }
+        Ok(())
+    }
+}

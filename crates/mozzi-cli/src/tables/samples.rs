@@ -1,0 +1,54 @@
+//! What a table has: states by rows, or poses, or what is followed.
+
+use crate::columns::names;
+use crate::failure::{Failure, Result};
+use crate::numbers::WRENCH;
+use mozzi::Model;
+use std::collections::BTreeMap;
+
+/// Numbers by name: those of the inputs, `wrench` of the tip; of .npz also `gravity`, `parameters` and `wrench_FRAME`.
+#[derive(Debug, Default)]
+pub struct Samples {
+    pub file: String,
+    /// Rows.
+    pub count: usize,
+    /// The line of each row in a CSV file.
+    pub lines: Vec<u64>,
+    pub t: Option<Vec<f64>>,
+    pub tables: BTreeMap<String, Vec<f64>>,
+}
+
+impl Samples {
+    /// "table.csv:7", the place of a row.
+    pub fn place(&self, row: usize) -> String {
+        match self.lines.get(row) {
+            Some(line) => format!("{}:{line}", self.file),
+            None => format!("{}: state {row} (counted from 0)", self.file),
+        }
+    }
+
+    /// Times that a command cannot do without.
+    pub fn times(&self) -> Result<&[f64]> {
+        self.t.as_deref().ok_or_else(|| self.missing("column t", "is needed here"))
+    }
+
+    /// A table that a command cannot do without.
+    pub fn need(&self, name: &str, model: &Model) -> Result<&[f64]> {
+        let table = self.tables.get(name).map(Vec::as_slice);
+        table.ok_or_else(|| self.missing(&format!("column {}", columns_of(model, name)), "is needed here"))
+    }
+
+    /// "table.csv has no column t, which is needed here"
+    pub fn missing(&self, what: &str, why: &str) -> Failure {
+        Failure::wrong(format!("{} has no {what}, which {why}", self.file))
+    }
+}
+
+/// How a message names the columns of a table.
+pub fn columns_of(model: &Model, name: &str) -> String {
+    if name == "wrench" {
+        return WRENCH.join(" ");
+    }
+    let names = names(model, name);
+    format!("{} …", names.first().map_or(name, |name| name))
+}

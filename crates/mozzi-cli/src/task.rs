@@ -1,0 +1,55 @@
+//! The rows of a task, and whose coordinates they are in.
+
+use crate::failure::{Failure, Result};
+use crate::numbers::TWIST;
+use clap::{Args, ValueEnum};
+use mozzi::TaskFrame;
+
+#[derive(Args, Debug, Default)]
+pub struct TaskArguments {
+    /// Rows of the task: of wx, wy, wz, vx, vy, vz those that matter, such as vx,vz for a planar arm [default: all six]
+    #[arg(long, value_name = "ROWS")]
+    pub task: Option<String>,
+    /// In whose coordinates the task's twist and wrench are [default: body]
+    #[arg(long, value_name = "FRAME")]
+    pub task_frame: Option<Coordinates>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Coordinates {
+    /// The end effector's
+    Body,
+    /// The base's
+    Space,
+}
+
+impl TaskArguments {
+    /// Rows of (ω, v), by index.
+    pub fn rows(&self) -> Result<Vec<usize>> {
+        self.task.as_ref().map_or_else(|| Ok((0..6).collect()), |rows| rows.split(',').map(row).collect())
+    }
+
+    pub fn coordinates(&self) -> TaskFrame {
+        match self.task_frame {
+            Some(Coordinates::Space) => TaskFrame::Space,
+            Some(Coordinates::Body) | None => TaskFrame::Body,
+        }
+    }
+}
+
+/// "body" or "space".
+pub fn name(coordinates: TaskFrame) -> &'static str {
+    match coordinates {
+        TaskFrame::Body => "body",
+        TaskFrame::Space => "space",
+    }
+}
+
+fn row(name: &str) -> Result<usize> {
+    let names = ["wx", "wy", "wz", "vx", "vy", "vz"];
+    let name = name.trim();
+    let found = names.iter().zip(TWIST).position(|(short, symbol)| *short == name || symbol == name);
+    found.ok_or_else(|| {
+        Failure::wrong(format!("--task: there is no row `{name}`, expected some of {}", names.join(", ")))
+    })
+}

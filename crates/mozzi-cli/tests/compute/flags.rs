@@ -1,0 +1,71 @@
+//! Flags that have no effect are refused, and names that are none.
+
+use crate::common::{complaint, folder};
+use crate::files::npz;
+
+fn wrong(arguments: &[&str], expected: &str) {
+    let (code, message) = complaint(&[&["compute"], arguments].concat());
+    assert!(code == 1 && message.contains(expected), "{arguments:?}: {message}");
+}
+
+#[test]
+fn flags_without_an_effect_are_refused() {
+    let zeros = "0,0,0,0,0,0";
+    for (quantity, flag, value, takes) in [
+        ("mass-matrix", "--tau", zeros, "--theta"),
+        ("mass-matrix", "--dtheta", zeros, "--theta"),
+        ("inverse-dynamics", "--tau", zeros, "--theta, --dtheta, --ddtheta, --tip-wrench, --wrench, --gravity"),
+        ("inverse-dynamics", "--x", zeros, "--theta, --dtheta, --ddtheta, --tip-wrench, --wrench, --gravity"),
+        ("coriolis-matrix", "--gravity", "0,0,0", "--theta, --dtheta"),
+        ("gravity-forces", "--tip-wrench", zeros, "--theta, --gravity"),
+        ("body-jacobian", "--wrench", "tool0=0,0,0,0,0,0", "--theta, --frame"),
+        ("mass-matrix", "--frame", "tool0", "--theta"),
+        ("inverse-dynamics", "--frame", "tool0", "--theta"),
+        ("body-jacobian", "--task", "vx", "--theta, --frame"),
+        ("body-jacobian", "--task-frame", "body", "--theta, --frame"),
+        ("task-space-dynamics", "--about", "0,0,0", "--theta, --dtheta, --frame, --task, --task-frame, "),
+    ] {
+        // --frame is another name of --end-effector
+        let expected = format!("{flag} has no effect on {quantity}, which takes {takes}");
+        wrong(&["ur5", quantity, flag, value], &expected);
+    }
+    let folder = folder("compute_flags");
+    let states = npz(&folder, "states.npz", &[("theta", &[1, 6], &[0.0; 6]), ("gravity", &[1, 3], &[0.0; 3])]);
+    wrong(&["ur5", "mass-matrix", "--in", &states, "--gravity", "0,0,0"], "--gravity has no effect on mass-matrix");
+    wrong(
+        &["ur5", "gravity-forces", "--in", &states, "--gravity", "0,0,0"],
+        "states.npz are both given, expected one of them",
+    );
+}
+
+#[test]
+fn a_frame_of_a_table_needs_its_wrench() {
+    let folder = folder("compute_frame");
+    let theta = npz(&folder, "theta.npz", &[("theta", &[1, 6], &[0.0; 6])]);
+    wrong(&["ur5", "inverse-dynamics", "--in", &theta, "--frame", "forearm_link"], "--frame has no effect: ");
+}
+
+#[test]
+fn wrenches_have_a_frame_and_six_numbers() {
+    let of = |flags: &[&str], expected| wrong(&[&["ur5", "inverse-dynamics"], flags].concat(), expected);
+    of(&["--wrench", "0,0,0,0,0,1"], "--wrench is `0,0,0,0,0,1`, expected FRAME=mx,my,mz,fx,fy,fz");
+    of(&["--wrench", "tool0=0,0,0,0,1"], "--wrench tool0 has 5 entries, expected 6: m_x");
+    of(&["--wrench", "hand=0,0,0,0,0,1"], "there is no frame `hand`");
+    let twice = ["--wrench", "tool0=0,0,0,0,0,1", "--tip-wrench", "0,0,0,0,0,1"];
+    of(&twice, "the wrench of the frame `tool0` is given twice");
+    let folder = folder("compute_wrenches");
+    let states = npz(&folder, "states.npz", &[("theta", &[1, 6], &[0.0; 6]), ("wrench", &[1, 6], &[0.0; 6])]);
+    of(&["--in", &states, "--wrench", "tool0=0,0,0,0,0,1"], "the wrench of the frame `tool0` is given twice");
+}
+
+#[test]
+fn an_unknown_quantity_lists_what_there_is() {
+    let (code, message) = complaint(&["compute", "ur5", "mass-matrx"]);
+    assert_eq!(code, 2, "{message}");
+    for words in ["'mass-matrx'", "a similar value exists: 'mass-matrix'", "inverse-dynamics, forward-dynamics,"] {
+        assert!(message.contains(words), "{words} in {message}");
+    }
+    wrong(&["panda", "body-jacobian"], "the end effector has to be named");
+    wrong(&["ur5", "task-space-dynamics", "--task", "vw"], "--task: there is no row `vw`");
+    wrong(&["ur5", "momentum", "--about", "1,2"], "--about has 2 entries, expected 3: x, y, z");
+}
