@@ -4,7 +4,8 @@
 //! optimisation it takes a thousand.
 
 use mozzi::Environment;
-use mozzi_batch::{Batch, BatchEnvironment};
+use mozzi::quantities::InverseDynamics;
+use mozzi_batch::Batch;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,14 +21,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let dtheta: Vec<f64> = (0..states * n).map(|k| number(k, 1.1)).collect();
     let ddtheta: Vec<f64> = (0..states * n).map(|k| number(k, 1.3)).collect();
     let environment: Environment = ur5.environment();
-    let surroundings = BatchEnvironment::from(environment);
 
     let batch = Batch::new(&ur5);
     let mut tau = vec![0.0; states * n];
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
         let start = Instant::now();
-        batch.inverse_dynamics(&theta, &dtheta, &ddtheta, &surroundings, &mut tau)?;
+        batch.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], &environment.into(), &mut [&mut tau])?;
         seconds = seconds.min(start.elapsed().as_secs_f64());
     }
     let rate = states as f64 / seconds;
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
         let start = Instant::now();
-        single.inverse_dynamics(&theta32, &dtheta32, &ddtheta32, &environment.into(), &mut tau32)?;
+        single.compute(InverseDynamics, &[&theta32, &dtheta32, &ddtheta32], &environment.into(), &mut [&mut tau32])?;
         seconds = seconds.min(start.elapsed().as_secs_f64());
     }
     let rate = states as f64 / seconds;

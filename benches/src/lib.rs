@@ -1,7 +1,17 @@
-//! The robots and the states that every benchmark uses.
+//! The robots, the states and the quantities of every benchmark.
 
-pub mod random;
 pub mod robots;
 mod states;
 
-pub use states::{State, States};
+pub use states::{State, States, inputs};
+
+/// The quantities of the tables, in their order.
+pub const QUANTITIES: [&str; 7] = [
+    "inverse_dynamics",
+    "forward_dynamics",
+    "mass_matrix",
+    "coriolis_matrix",
+    "bias_forces",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+];

@@ -1,10 +1,9 @@
 //! The robots: two arms, a body with a head and four limbs, a long chain, and two that walk.
 
-use crate::random::Random;
 use mozzi::model::description::{Joint, JointKind};
-use std::path::Path;
-
+use mozzi::testing::Random;
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
+use std::path::Path;
 
 /// Those that are built in, each with its name.
 ///
@@ -80,8 +79,8 @@ fn of_limbs(name: &str, limbs: &[(&str, &str, usize)]) -> Model {
             let mut axis = [0.0; 3];
             axis[i % 3] = 1.0;
             let screw = ScrewAxis::new(axis, [0.0; 3]).expect("a unit axis");
-            let [roll, pitch, yaw] = random.vector();
-            let origin = SE3::new(SO3::from_rpy(roll, pitch, yaw), Vec3(random.vector()) * 0.3);
+            let [roll, pitch, yaw] = random.array();
+            let origin = SE3::new(SO3::from_rpy(roll, pitch, yaw), Vec3(random.array()) * 0.3);
             robot = robot.link(&child, body(&mut random)).joint(Joint::new(
                 format!("{child}_joint"),
                 parent,
@@ -97,10 +96,10 @@ fn of_limbs(name: &str, limbs: &[(&str, &str, usize)]) -> Model {
 
 /// A body of 1 to 3 kg: a ball with a point mass beside its centre.
 fn body(random: &mut Random) -> SpatialInertia {
-    let axis = Vec3(random.vector());
+    let axis = Vec3(random.array());
     let moment = 0.02 + 0.01 * axis.dot(axis);
     let moments = Sym3::diagonal(moment, moment, moment) - Sym3::outer(axis, 0.01);
-    SpatialInertia::new(2.0 + random.number(), Vec3(random.vector()) * 0.1, moments)
+    SpatialInertia::new(2.0 + random.next(), Vec3(random.array()) * 0.1, moments)
 }
 
 /// The same robot as every library gets it: fixed links merged into what carries them, joint k between a link of the base's or

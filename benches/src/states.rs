@@ -1,10 +1,22 @@
 //! The states at which everything is evaluated.
 
-use crate::random::Random;
+use mozzi::quantities::Query;
+use mozzi::testing::Random;
 use mozzi::{Model, SE3, Twist, Vec3};
 
 /// (θ, θ̇, θ̈, τ).
 pub type State<'a> = [&'a [f64]; 4];
+
+/// Those of (θ, θ̇, θ̈, τ) that a quantity depends on.
+pub fn inputs<T: Copy>(query: Query, [theta, dtheta, ddtheta, tau]: [T; 4]) -> Vec<T> {
+    let input = |name| match name {
+        "theta" => theta,
+        "dtheta" => dtheta,
+        "ddtheta" => ddtheta,
+        _ => tau,
+    };
+    query.declaration().inputs.iter().map(|known| input(known.name)).collect()
+}
 
 /// K random states of a robot.
 pub struct States {
@@ -30,10 +42,10 @@ impl States {
         for _ in 0..count {
             let start = numbers.len();
             for (size, length) in [(std::f64::consts::PI, nq), (2.0, n), (5.0, n), (20.0, n)] {
-                numbers.extend((0..length).map(|_| size * random.number()));
+                numbers.extend(random.vector(length, size));
             }
             if model.is_floating() {
-                let turn = Twist { w: Vec3(random.vector()) * 2.0, v: Vec3(random.vector()) };
+                let turn = Twist { w: Vec3(random.array()) * 2.0, v: Vec3(random.array()) };
                 numbers[start..start + 7].copy_from_slice(&SE3::exp(turn).to_pose());
             }
         }

@@ -1,7 +1,8 @@
 //! The arm's equations, written anew from its URDF at every build.
 
 use mozzi::Solid;
-use mozzi_codegen::{Arguments, Language, Precision, Quantity, emit_into};
+use mozzi::quantities::{ForwardDynamics, InverseDynamics, Query};
+use mozzi_codegen::{Arguments, Language, Precision, emit_into};
 use std::error::Error;
 use std::path::Path;
 
@@ -18,11 +19,11 @@ pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     loaded.name = "panda_loaded".into();
     let loaded = loaded.build()?;
     for language in [Language::Rust, Language::C] {
-        let of = |robot, quantities: &[Quantity]| {
+        let of = |robot, quantities: &[Query]| {
             emit_into(folder, robot, quantities, Arguments::default(), language, Precision::F64)
         };
-        of(&arm, &[Quantity::InverseDynamics, Quantity::ForwardDynamics])?;
-        of(&loaded, &[Quantity::ForwardDynamics])?;
+        of(&arm, &[InverseDynamics.into(), ForwardDynamics.into()])?;
+        of(&loaded, &[ForwardDynamics.into()])?;
     }
     Ok(())
 }

@@ -145,18 +145,15 @@ fn escaped(text: &str) -> String {
 mod tests {
     use super::svg;
     use crate::count::Count;
-    use crate::quantity::Quantity;
     use crate::race::{Column, Row, Table, Time};
+    use mozzi::quantities::MassMatrix;
 
     #[test]
     fn a_mark_stands_at_its_ratio() {
         let column = |name: &str| Column { name: name.into(), width: None, difference: 0.0 };
         let time = |least| Some(Time { algorithm: String::new(), least, median: least, flops: None });
-        let row = Row {
-            quantity: Quantity::MassMatrix,
-            count: Count::default(),
-            times: vec![time(100.0), time(200.0), None],
-        };
+        let row =
+            Row { quantity: MassMatrix.into(), count: Count::default(), times: vec![time(100.0), time(200.0), None] };
         let columns = vec![column("mozzi"), column("a & b"), column("c")];
         let rows = vec![row];
         let text =

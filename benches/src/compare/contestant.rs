@@ -3,14 +3,14 @@
 use crate::mozzi_ways;
 use crate::peak::Width;
 use crate::peer::Peer;
-use crate::quantity::Quantity;
 use mozzi::Model;
+use mozzi::quantities::Query;
 use mozzi_benches::States;
 
 /// One library, or one way of mozzi, that holds a robot and all states.
 pub trait Contestant {
     /// What it computes, and what it calls each.
-    fn algorithms(&self) -> Vec<(Quantity, String)>;
+    fn algorithms(&self) -> Vec<(Query<'static>, String)>;
     /// The k-th algorithm at all states.
     fn run(&mut self, algorithm: usize);
     /// The flops of its own program, where it has one; else the kernels' are counted.

@@ -1,8 +1,9 @@
 //! A peer's states and results in its own convention, by `mozzi::conventions`.
 
-use crate::quantity::Quantity;
+use crate::quantity::has_matrices;
 use mozzi::conventions::{MuJoCo, Pinocchio};
 use mozzi::nalgebra::{DMatrix, DVector};
+use mozzi::quantities::{BiasForces, ForwardDynamics, Query};
 use mozzi::{Error, Model};
 use mozzi_benches::State;
 
@@ -45,11 +46,11 @@ impl Convention {
     }
 
     /// The peer's result in mozzi's convention, matrices by rows as they came.
-    pub fn result(&self, model: &Model, quantity: Quantity, state: State, result: &[f64]) -> Result<Vec<f64>, Error> {
+    pub fn result(&self, model: &Model, query: Query, state: State, result: &[f64]) -> Result<Vec<f64>, Error> {
         let n = model.n();
         let vector = |x: DVector<f64>| x.as_slice().to_vec();
         let by_rows = |M: DMatrix<f64>| M.transpose().as_slice().to_vec();
-        if quantity.matrices() > 0 {
+        if has_matrices(query) {
             let mut numbers = Vec::new();
             for block in result.chunks_exact(n * n) {
                 let M = DMatrix::from_row_slice(n, n, block);
@@ -68,9 +69,11 @@ impl Convention {
                 let [theta, dtheta, ..] = state;
                 let (qpos, qvel) = (m.configuration(theta)?, m.velocity(theta, dtheta)?);
                 let (qpos, qvel) = (qpos.as_slice(), qvel.as_slice());
-                match quantity {
-                    Quantity::ForwardDynamics => m.from_acceleration(qpos, qvel, result),
-                    Quantity::BiasForces => m.from_bias_forces(qpos, qvel, &model.mass_matrix(theta)?, result),
+                match query {
+                    query if query == ForwardDynamics.into() => m.from_acceleration(qpos, qvel, result),
+                    query if query == BiasForces.into() => {
+                        m.from_bias_forces(qpos, qvel, &model.mass_matrix(theta)?, result)
+                    }
                     _ => m.from_force(qpos, result),
                 }
                 .map(vector)

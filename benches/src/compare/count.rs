@@ -1,9 +1,8 @@
 //! What mozzi's kernels ask of the machine: they run on a scalar that counts.
 
-use crate::mozzi_ways::three;
-use crate::quantity::Quantity;
-use mozzi::{Environment, Model, Scalar, Workspace, dynamics};
-use mozzi_benches::State;
+use mozzi::quantities::{Memory, Query};
+use mozzi::{Model, Scalar};
+use mozzi_benches::{State, inputs};
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -97,35 +96,21 @@ impl Scalar for Counted {
 }
 
 /// The operations of one evaluation. They do not depend on the state.
-pub fn count(quantity: Quantity, model: &Model, state: State) -> Count {
-    let [theta, dtheta, ddtheta, tau] = state.map(|x| x.iter().map(|&x| Counted(x)).collect::<Vec<_>>());
-    let (n, environment, w) = (model.n(), model.environment::<Counted>(), &mut Workspace::<Counted>::new(model));
-    let environment: &Environment<Counted> = &environment;
-    let (x, matrices) = (&mut vec![Counted(0.0); n], &mut vec![Counted(0.0); 3 * n * n]);
+pub fn count(query: Query, model: &Model, state: State) -> Count {
+    let state = state.map(|x| x.iter().map(|&x| Counted(x)).collect::<Vec<_>>());
+    let inputs = inputs(query, state.each_ref().map(Vec::as_slice));
+    let mut outputs: Vec<_> = query.output_lengths(model).map(|length| vec![Counted(0.0); length]).collect();
+    let mut outputs: Vec<&mut [Counted]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+    let (environment, mut memory) = (model.environment(), Memory::new(model));
     COUNT.set(Count::default());
-    match quantity {
-        Quantity::InverseDynamics => {
-            dynamics::inverse_dynamics(model, &theta, &dtheta, &ddtheta, environment, w, x);
-        }
-        Quantity::ForwardDynamics => dynamics::forward_dynamics(model, &theta, &dtheta, &tau, environment, w, x),
-        Quantity::MassMatrix => dynamics::mass_matrix(model, &theta, w, &mut matrices[..n * n]),
-        Quantity::CoriolisMatrix => dynamics::coriolis_matrix(model, &theta, &dtheta, w, &mut matrices[..n * n]),
-        Quantity::BiasForces => dynamics::bias_forces(model, &theta, &dtheta, environment, w, x),
-        Quantity::InverseDynamicsDerivatives => {
-            let by = three(matrices, n);
-            dynamics::inverse_dynamics_derivatives(model, &theta, &dtheta, &ddtheta, environment, w, by);
-        }
-        Quantity::ForwardDynamicsDerivatives => {
-            let by = three(matrices, n);
-            dynamics::forward_dynamics_derivatives(model, &theta, &dtheta, &tau, environment, w, x, by);
-        }
-    }
+    query.evaluate(model, &inputs, &environment, &mut memory, &mut outputs);
     COUNT.get()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mozzi::quantities::InverseDynamics;
 
     #[test]
     fn each_operation_is_counted_once() {
@@ -145,7 +130,7 @@ mod tests {
         let model = mozzi_benches::robots::chain();
         let states = mozzi_benches::States::with_count(&model, 1);
         let state = states.iter().next().expect("one state");
-        let count = count(Quantity::InverseDynamics, &model, state);
+        let count = count(InverseDynamics.into(), &model, state);
         assert_eq!(count.sin_cos, 100);
         assert!((100 * 100..100 * 400).contains(&count.flops()), "{count:?}");
     }

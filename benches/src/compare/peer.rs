@@ -2,10 +2,11 @@
 
 use crate::contestant::Contestant;
 use crate::convention::Convention;
-use crate::quantity::Quantity;
+use crate::quantity;
 use crate::simulation::{BRAKE, STEP, STEPS};
 use libloading::{Library, Symbol};
 use mozzi::model::description::JointKind;
+use mozzi::quantities::Query;
 use mozzi::simulation::Method;
 use mozzi::{Description, Model, SE3};
 use mozzi_benches::States;
@@ -25,7 +26,7 @@ pub struct Robot<'a> {
     model: &'a Model,
     states: &'a States,
     convention: Convention,
-    algorithms: Vec<(Quantity, String)>,
+    algorithms: Vec<(Query<'static>, String)>,
 }
 
 #[repr(C)]
@@ -66,14 +67,16 @@ unsafe fn text(pointer: *const c_char) -> Option<String> {
 ///
 /// # Safety
 /// `robot` is the library's, and alive.
-unsafe fn algorithms(library: &Library, robot: *mut Opaque) -> Result<Vec<(Quantity, String)>, String> {
+unsafe fn algorithms(library: &Library, robot: *mut Opaque) -> Result<Vec<(Query<'static>, String)>, String> {
     let mut list = Vec::new();
     // SAFETY: the types are those of peer.hpp; the second function is asked only for what the first one knows.
     unsafe {
         let quantity_of = function::<TextOf>(library, "peer_quantity")?;
         let name_of = function::<TextOf>(library, "peer_algorithm")?;
         while let Some(name) = text(quantity_of(robot, list.len() as c_int)) {
-            let quantity = Quantity::from_name(&name).ok_or_else(|| format!("{name}: no such quantity"))?;
+            let quantity = quantity::all()
+                .find(|query| query.name() == name)
+                .ok_or_else(|| format!("{name}: no such quantity"))?;
             list.push((quantity, text(name_of(robot, list.len() as c_int)).unwrap_or_default()));
         }
     }
@@ -144,7 +147,7 @@ impl Robot<'_> {
 }
 
 impl Contestant for Robot<'_> {
-    fn algorithms(&self) -> Vec<(Quantity, String)> {
+    fn algorithms(&self) -> Vec<(Query<'static>, String)> {
         self.algorithms.clone()
     }
 
@@ -154,15 +157,15 @@ impl Contestant for Robot<'_> {
     }
 
     fn result(&mut self, algorithm: usize, state: usize) -> Result<Vec<f64>, String> {
-        let quantity = self.algorithms[algorithm].0;
-        let mut out = vec![0.0; quantity.length(self.model)];
+        let query = self.algorithms[algorithm].0;
+        let mut out = vec![0.0; quantity::length(query, self.model)];
         // SAFETY: the type is that of peer.hpp; `out` is as long as the quantity.
         unsafe {
             let get = function::<GetResult>(self.library, "peer_result")?;
             get(self.this, algorithm as c_int, state as c_int, out.as_mut_ptr());
         }
         let state = self.states.iter().nth(state).ok_or("no such state")?;
-        self.convention.result(self.model, quantity, state, &out).map_err(|error| error.to_string())
+        self.convention.result(self.model, query, state, &out).map_err(|error| error.to_string())
     }
 }
 

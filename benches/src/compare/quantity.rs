@@ -1,73 +1,58 @@
 //! What is computed.
 
 use mozzi::Model;
+use mozzi::quantities::{MOST_OUTPUTS, Query};
+use mozzi_benches::QUANTITIES;
 
-/// A quantity of the tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    InverseDynamics,
-    ForwardDynamics,
-    MassMatrix,
-    CoriolisMatrix,
-    BiasForces,
-    InverseDynamicsDerivatives,
-    ForwardDynamicsDerivatives,
+/// The quantities of the tables, in their order.
+pub fn all() -> impl Iterator<Item = Query<'static>> {
+    QUANTITIES.into_iter().map(|name| Query::named(name).expect("one of mozzi's"))
 }
 
-impl Quantity {
-    /// In the order of the tables.
-    pub const ALL: [Quantity; 7] = [
-        Quantity::InverseDynamics,
-        Quantity::ForwardDynamics,
-        Quantity::MassMatrix,
-        Quantity::CoriolisMatrix,
-        Quantity::BiasForces,
-        Quantity::InverseDynamicsDerivatives,
-        Quantity::ForwardDynamicsDerivatives,
-    ];
+/// Is it by matrices?
+pub fn has_matrices(query: Query) -> bool {
+    query.declaration().outputs.iter().any(|output| output.dims.len() == 2)
+}
 
-    /// As mozzi's function is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Quantity::InverseDynamics => "inverse_dynamics",
-            Quantity::ForwardDynamics => "forward_dynamics",
-            Quantity::MassMatrix => "mass_matrix",
-            Quantity::CoriolisMatrix => "coriolis_matrix",
-            Quantity::BiasForces => "bias_forces",
-            Quantity::InverseDynamicsDerivatives => "inverse_dynamics_derivatives",
-            Quantity::ForwardDynamicsDerivatives => "forward_dynamics_derivatives",
-        }
+/// The places of the outputs that are compared: where there are matrices, these, which are all that peers give.
+pub fn compared(query: Query) -> impl Iterator<Item = usize> {
+    let (outputs, is_matrix) = (query.declaration().outputs, has_matrices(query));
+    (0..outputs.len()).filter(move |&place| (outputs[place].dims.len() == 2) == is_matrix)
+}
+
+/// How many numbers those are, matrices by rows.
+pub fn length(query: Query, model: &Model) -> usize {
+    let lengths: Vec<usize> = query.output_lengths(model).collect();
+    compared(query).map(|place| lengths[place]).sum()
+}
+
+/// The largest difference over the largest entry, of the vector or of each matrix; NaN where something is.
+pub fn difference(query: Query, x: &[f64], reference: &[f64]) -> f64 {
+    let block = reference.len() / compared(query).count();
+    let largest = |worst: f64, x: f64| if x <= worst { worst } else { x }; // NaN stays
+    let mut worst = 0.0;
+    for (x, reference) in x.chunks_exact(block).zip(reference.chunks_exact(block)) {
+        let size = reference.iter().map(|y| y.abs()).fold(0.0, largest);
+        let difference = x.iter().zip(reference).map(|(x, y)| (x - y).abs()).fold(0.0, largest);
+        worst = largest(worst, difference / size);
+    }
+    worst
+}
+
+/// Memory for the outputs of any of them at some states.
+pub struct Outputs {
+    states: usize,
+    arrays: [Vec<f64>; MOST_OUTPUTS],
+}
+
+impl Outputs {
+    pub fn new(model: &Model, states: usize) -> Self {
+        Outputs { states, arrays: [(); MOST_OUTPUTS].map(|()| vec![0.0; states * model.n() * model.n()]) }
     }
 
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|quantity| quantity.name() == name)
-    }
-
-    /// How many n × n matrices it is; 0 for a vector.
-    pub fn matrices(self) -> usize {
-        match self {
-            Quantity::InverseDynamics | Quantity::ForwardDynamics | Quantity::BiasForces => 0,
-            Quantity::MassMatrix | Quantity::CoriolisMatrix => 1,
-            Quantity::InverseDynamicsDerivatives | Quantity::ForwardDynamicsDerivatives => 3,
-        }
-    }
-
-    /// How many numbers it is, matrices by rows.
-    pub fn length(self, model: &Model) -> usize {
-        let n = model.n();
-        if self.matrices() > 0 { self.matrices() * n * n } else { n }
-    }
-
-    /// The largest difference over the largest entry, of the vector or of each matrix; NaN where something is.
-    pub fn difference(self, x: &[f64], reference: &[f64]) -> f64 {
-        let block = reference.len() / self.matrices().max(1);
-        let largest = |worst: f64, x: f64| if x <= worst { worst } else { x }; // NaN stays
-        let mut worst = 0.0;
-        for (x, reference) in x.chunks_exact(block).zip(reference.chunks_exact(block)) {
-            let size = reference.iter().map(|y| y.abs()).fold(0.0, largest);
-            let difference = x.iter().zip(reference).map(|(x, y)| (x - y).abs()).fold(0.0, largest);
-            worst = largest(worst, difference / size);
-        }
-        worst
+    /// In their order.
+    pub fn of(&mut self, query: Query, model: &Model) -> Vec<&mut [f64]> {
+        let lengths = query.output_lengths(model).map(|length| self.states * length);
+        self.arrays.iter_mut().zip(lengths).map(|(array, length)| &mut array[..length]).collect()
     }
 }

@@ -5,8 +5,9 @@ use crate::contestant::{self, Entry};
 use crate::count::{Count, count};
 use crate::peak::Width;
 use crate::peer::Peer;
-use crate::quantity::Quantity;
+use crate::quantity;
 use mozzi::Model;
+use mozzi::quantities::Query;
 use mozzi_benches::States;
 use std::time::{Duration, Instant};
 
@@ -31,7 +32,7 @@ pub struct Time {
 
 /// One quantity of one robot.
 pub struct Row {
-    pub quantity: Quantity,
+    pub quantity: Query<'static>,
     pub count: Count,
     /// The fastest algorithm of each column, where it has any.
     pub times: Vec<Option<Time>>,
@@ -61,7 +62,7 @@ pub struct Table {
 struct Runner {
     entry: usize,
     algorithm: usize,
-    quantity: Quantity,
+    quantity: Query<'static>,
     name: String,
     flops: Option<usize>,
     times: Vec<f64>,
@@ -79,7 +80,7 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
             runners.push(Runner { entry, algorithm, quantity, name, flops, times: Vec::new() });
         }
     }
-    runners.sort_by_key(|runner| Quantity::ALL.iter().position(|&quantity| quantity == runner.quantity));
+    runners.sort_by_key(|runner| quantity::all().position(|query| query == runner.quantity));
     let (start, mut rounds) = (Instant::now(), 0);
     while start.elapsed() < time || rounds < 20 {
         rounds += 1;
@@ -95,12 +96,12 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
         }
     }
     let state = states.iter().next().ok_or("no states")?;
-    let rows = Quantity::ALL.map(|quantity| Row {
+    let rows = quantity::all().map(|quantity| Row {
         quantity,
         count: count(quantity, model, state),
         times: (0..entries.len()).map(|entry| fastest(&runners, entry, quantity)).collect(),
     });
-    let rows = Vec::from(rows);
+    let rows = rows.collect();
     let to_first_result = compiled::to_first_result(model, &states);
     Ok(Table { robot: title.into(), n: model.n(), states: states.count(), rounds, to_first_result, columns, rows })
 }
@@ -108,14 +109,15 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
 /// The columns, once every algorithm gave the first one's numbers at every state.
 fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -> Result<Vec<Column>, String> {
     let mut differences = vec![0.0_f64; entries.len()];
-    for quantity in Quantity::ALL {
+    for query in quantity::all() {
         for state in 0..states.count() {
-            let reference = entries[0].contestant.result(of(&entries[0], quantity)[0], state)?;
+            let reference = entries[0].contestant.result(of(&entries[0], query)[0], state)?;
             for (entry, worst) in entries.iter_mut().zip(&mut differences) {
-                for algorithm in of(entry, quantity) {
-                    let difference = quantity.difference(&entry.contestant.result(algorithm, state)?, &reference);
+                for algorithm in of(entry, query) {
+                    let found = entry.contestant.result(algorithm, state)?;
+                    let difference = quantity::difference(query, &found, &reference);
                     if !(difference <= LARGEST_DIFFERENCE) {
-                        let (name, what) = (&entry.name, quantity.name());
+                        let (name, what) = (&entry.name, query.name());
                         return Err(format!(
                             "{title} of {} velocities: {what} by {name} ({}) differs from mozzi's by {difference:.1e} at state {state}",
                             model.n(),
@@ -136,13 +138,13 @@ fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -
 }
 
 /// The algorithms that an entry has for a quantity.
-fn of(entry: &Entry, quantity: Quantity) -> Vec<usize> {
+fn of(entry: &Entry, query: Query) -> Vec<usize> {
     let algorithms = entry.contestant.algorithms();
-    (0..algorithms.len()).filter(|&k| algorithms[k].0 == quantity).collect()
+    (0..algorithms.len()).filter(|&k| algorithms[k].0 == query).collect()
 }
 
-fn fastest(runners: &[Runner], entry: usize, quantity: Quantity) -> Option<Time> {
-    let mine = runners.iter().filter(|runner| runner.entry == entry && runner.quantity == quantity);
+fn fastest(runners: &[Runner], entry: usize, query: Query) -> Option<Time> {
+    let mine = runners.iter().filter(|runner| runner.entry == entry && runner.quantity == query);
     let times = mine.filter_map(|runner| of_runs(&runner.name, runner.flops, runner.times.clone()));
     times.min_by(|a, b| a.least.total_cmp(&b.least))
 }

@@ -2,12 +2,12 @@
 
 use crate::contestant::Contestant;
 use crate::peer::Peer;
-use crate::quantity::Quantity;
 use crate::race::{LARGEST_DIFFERENCE, Time, of_runs};
 use mozzi::Model;
+use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{Method, Options, torque};
+use mozzi_batch::{Compiled, compile};
 use mozzi_benches::States;
-use mozzi_codegen::{Compiled, Quantity as Code, compile};
 use std::time::{Duration, Instant};
 
 pub const STEPS: usize = 1000;
@@ -59,7 +59,7 @@ fn by_mozzi<'a>(model: &'a Model, robot: Option<&'a Compiled>) -> Run<'a> {
 /// Everything in turn, again and again, after all ended in the same state.
 pub fn simulate(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Simulated, String> {
     let n = model.n();
-    let robot = compile(model, &[Code::ForwardDynamics]).map_err(|error| error.to_string())?;
+    let robot = compile(model, &[ForwardDynamics.into()]).map_err(|error| error.to_string())?;
     let states = States::with_count(model, 1);
     let mut simulators = vec![Simulator::new("mozzi", "", by_mozzi(model, None))];
     if robot.simulator().is_some() {
@@ -68,7 +68,7 @@ pub fn simulate(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Du
     for peer in peers {
         let Some(algorithms) = peer.robot(slug, model, &states)?.map(|robot| robot.algorithms()) else { continue };
         for (k, (quantity, name)) in algorithms.into_iter().enumerate() {
-            if quantity != Quantity::ForwardDynamics {
+            if quantity != ForwardDynamics.into() {
                 continue;
             }
             let Some(mut robot) = peer.robot(slug, model, &states)? else { continue };

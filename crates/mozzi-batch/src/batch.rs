@@ -4,7 +4,7 @@ use crate::chunk::{Chunk, Table, TableMut};
 use crate::columns::{Layout, place};
 use crate::engine::Engine;
 use crate::pool::Pool;
-use crate::programmed::{Cache, Key, Programmed};
+use crate::programmed::{Cache, Key, Programmed, Programs, find};
 use crate::registers::has_registers;
 use crate::request::Request;
 use crate::run::Run;
@@ -32,7 +32,7 @@ pub struct Batch<T: Number = f64> {
     /// Workers of earlier calls.
     pool: Pool,
     /// The quantities that were asked for as machine code.
-    compiled: Cache,
+    compiled: Arc<Programs>,
     /// Programs of earlier calls.
     programs: Cache,
 }
@@ -54,7 +54,7 @@ impl<T: Number> Batch<T> {
             layout: Layout::Rows,
             threads: Threads::All,
             pool: Pool::default(),
-            compiled: Cache::default(),
+            compiled: Arc::default(),
             programs: Cache::default(),
         }
     }
@@ -64,7 +64,7 @@ impl<T: Number> Batch<T> {
     /// # Errors
     /// [`Error::UnsupportedInstructionSet`].
     pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, Error> {
-        let (compiled, programs) = (Cache::default(), Cache::default());
+        let (compiled, programs) = (Arc::default(), Cache::default());
         if set.is_available() {
             Ok(Batch { set, compiled, programs, ..self })
         } else {
@@ -236,7 +236,7 @@ impl<T: Number> Batch<T> {
         let chunks = self.cut(states, &tables, outputs);
         let mut frames = Vec::new();
         let arguments = request.arguments(&mut frames);
-        let programmed = self.programmed(&request, arguments)?;
+        let programmed = self.programmed(&request, &arguments)?;
         let run = Run { model: &self.constants, threads: &self.threads, pool: &self.pool, request: &request, chunks };
         let errors = match programmed {
             Some(programmed) => T::run_program(self.set, (&programmed, &request.constants(&arguments)), run),
@@ -249,23 +249,20 @@ impl<T: Number> Batch<T> {
     }
 
     /// The program that computes this: of a compiled quantity in the robot's own environment, of inertial parameters that differ from state to
-    /// state, of a quantity without a kernel on registers.
-    fn programmed(&self, request: &Request<T>, arguments: Arguments) -> Result<Option<Arc<Programmed>>, Error> {
-        let key = Key::new(request.query, arguments);
-        if request.is_own()
-            && let Some(programmed) = self.compiled.get(&key)
-        {
-            return Ok(programmed.code.is_ok().then_some(programmed).or(self.rare(request, key, arguments)?));
+    /// state, of a quantity without a kernel on registers. None for the kernel.
+    fn programmed(&self, request: &Request<T>, arguments: &Arguments) -> Result<Option<Arc<Programmed>>, Error> {
+        let query = &request.query;
+        let compiled = if request.is_own() { find(&self.compiled, query, arguments) } else { None };
+        match compiled.filter(|programmed| programmed.code.is_ok()) {
+            Some(programmed) => Ok(Some(programmed.clone())),
+            None if has_registers(query.index()) && request.parameters.is_none() => Ok(None),
+            None => self.program(query, arguments).map(Some),
         }
-        self.rare(request, key, arguments)
     }
 
-    fn rare(&self, request: &Request<T>, key: Key, arguments: Arguments) -> Result<Option<Arc<Programmed>>, Error> {
-        if has_registers(request.query.index()) && request.parameters.is_none() {
-            return Ok(None);
-        }
-        let make = || Programmed::new::<T>(&self.model, request.query, arguments, self.set);
-        Ok(Some(self.programs.get_or_make(key, make)?))
+    fn program(&self, query: &Query, arguments: &Arguments) -> Result<Arc<Programmed>, Error> {
+        let make = || Programmed::new::<T>(&self.model, *query, *arguments, self.set);
+        Ok(self.programs.get_or_make(query, arguments, make)?)
     }
 
     /// The same, these quantities of it as machine code in the robot's own environment, where there is code for this machine: see
@@ -274,29 +271,26 @@ impl<T: Number> Batch<T> {
     /// # Errors
     /// [`Error::Model`] for a frame that is missing or another model's.
     pub fn compile(self, queries: &[Query]) -> Result<Self, Error> {
-        let compiled = self.compiled.copy();
-        for &query in queries {
+        let mut compiled = Vec::clone(&self.compiled);
+        for query in queries {
             let arguments = alone(query);
-            let make = || Programmed::new::<T>(&self.model, query, arguments, self.set);
-            compiled.get_or_make(Key::new(query, arguments), make)?;
+            let programmed = Programmed::new::<T>(&self.model, *query, arguments, self.set)?;
+            compiled.push((Key::new(query, &arguments), Arc::new(programmed)));
         }
-        Ok(Batch { compiled, ..self })
+        Ok(Batch { compiled: Arc::new(compiled), ..self })
     }
 
     /// What computes this quantity in the robot's own environment.
     pub fn engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
-        let query = query.into();
-        let key = Key::new(query, alone(query));
-        match (self.compiled.get(&key), has_registers(query.index())) {
-            (Some(programmed), true) => Engine::of(&programmed.code),
-            (None, true) => Engine::Kernels(Refusal::NotAsked),
-            (compiled, false) => match compiled.or_else(|| self.programs.get(&key)) {
-                Some(programmed) => Engine::of_program(&programmed.code),
-                None => {
-                    let make = || Programmed::new::<T>(&self.model, query, alone(query), self.set);
-                    let made = self.programs.get_or_make(key, make);
-                    made.map_or(Engine::Kernels(Refusal::NotAsked), |programmed| Engine::of_program(&programmed.code))
-                }
+        let query = &query.into();
+        let arguments = &alone(query);
+        match find(&self.compiled, query, arguments) {
+            Some(programmed) if has_registers(query.index()) => Engine::of(&programmed.code),
+            Some(programmed) => Engine::of_program(&programmed.code),
+            None if has_registers(query.index()) => Engine::Kernels(Refusal::NotAsked),
+            None => match self.program(query, arguments) {
+                Ok(programmed) => Engine::of_program(&programmed.code),
+                Err(_) => Engine::Kernels(Refusal::NotAsked), // of another model's frame: nothing computes it
             },
         }
     }
@@ -338,6 +332,6 @@ impl<T: Number> Batch<T> {
 }
 
 /// The arguments of a quantity's program in the robot's own environment: the point alone, where there is one.
-fn alone(query: Query) -> Arguments<'static> {
+fn alone(query: &Query) -> Arguments<'static> {
     Arguments { about: query.subject.point != mozzi::Vec3([0.0; 3]), ..Arguments::default() }
 }

@@ -24,13 +24,20 @@ impl<T: crate::Number> Chunk<'_, T> {
     #[inline(always)]
     pub fn read<L: Lane<Number = T>>(&self, first: usize, rows: usize, columns: &mut [L]) {
         let mut rest = columns;
-        for &(table, width) in &self.inputs {
+        for (k, &(_, width)) in self.inputs.iter().enumerate() {
             let (columns, further) = rest.split_at_mut(width);
-            match self.layout {
-                Layout::Rows => read_rows(table, first, rows, columns),
-                Layout::Blocks => read_block(table, first / L::WIDTH, columns),
-            }
+            self.read_input(k, first, rows, columns);
             rest = further;
+        }
+    }
+
+    /// Of one input.
+    #[inline(always)]
+    pub fn read_input<L: Lane<Number = T>>(&self, input: usize, first: usize, rows: usize, columns: &mut [L]) {
+        let (table, _) = self.inputs[input];
+        match self.layout {
+            Layout::Rows => read_rows(table, first, rows, columns),
+            Layout::Blocks => read_block(table, first / L::WIDTH, columns),
         }
     }
 

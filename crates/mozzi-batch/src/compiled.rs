@@ -1,9 +1,9 @@
 //! A robot whose quantities are machine code.
 
 use crate::{Batch, Engine, Layout};
-use mozzi::quantities::{ForwardDynamics, Query};
+use mozzi::quantities::{ForwardDynamics, Of, Query};
 use mozzi::simulation::{self, Equation, Input, Options};
-use mozzi::{Error, Model, Pivots, Trajectory, fast};
+use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
 use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Clone, Debug)]
 pub struct Compiled {
     batch: Batch,
-    machines: Arc<Vec<Machine>>,
+    machines: Arc<[Machine]>,
     /// Memory for the kernels; a call that finds it in use makes its own.
     workspace: Arc<Mutex<fast::Workspace>>,
 }
@@ -29,30 +29,29 @@ struct Machine {
     rows: Vec<usize>,
     subject: (Option<mozzi::FrameId>, mozzi::TaskFrame, mozzi::Vec3),
     code: Result<Kernel, Refusal>,
-    /// The lengths of the pivots behind its outputs.
-    pivots: Vec<usize>,
+    /// How many kinds of pivots are behind its outputs.
+    pivots: usize,
 }
 
 impl Machine {
     fn new(model: &Model, query: Query) -> Result<Self, Error> {
         let program = record_quantity(model, query, Arguments::default())?;
-        let lengths: Vec<usize> = program.outputs().iter().map(|output| output.values.len()).collect();
-        let own = lengths.len() - pivot_names(&query).len();
+        let pivots = pivot_names(&query).len();
         let subject = query.subject;
         Ok(Machine {
             index: query.index(),
             rows: subject.rows.to_vec(),
             subject: (subject.frame, subject.coordinates, subject.point),
-            code: Kernel::new(&program, Shape::OneF64),
-            pivots: lengths[own..].to_vec(),
+            code: Kernel::condensing(&program, Shape::OneF64, program.outputs().len() - pivots),
+            pivots,
         })
     }
 
-    fn is_of(&self, query: Query) -> bool {
-        let subject = query.subject;
-        self.index == query.index()
-            && self.subject == (subject.frame, subject.coordinates, subject.point)
-            && self.rows == subject.rows
+    #[inline(always)]
+    fn is_of(&self, query: &Query) -> bool {
+        let subject = &query.subject;
+        let is_of = || self.subject == (subject.frame, subject.coordinates, subject.point) && self.rows == subject.rows;
+        self.index == query.index() && (query.declaration().of == Of::Robot || is_of())
     }
 }
 
@@ -85,13 +84,15 @@ impl Compiled {
     /// # Errors
     /// As there.
     pub fn of(batch: Batch, queries: &[Query]) -> Result<Self, Error> {
-        let machines = queries.iter().map(|&query| Machine::new(batch.model(), query)).collect::<Result<_, _>>()?;
+        let machines =
+            queries.iter().map(|&query| Machine::new(batch.model(), query)).collect::<Result<Vec<_>, _>>()?;
+        let machines = Arc::from(machines);
         let batch = batch.compile(queries).map_err(|error| match error {
             crate::Error::Model(error) => error,
             other => unreachable!("of the quantity alone: {other}"),
         })?;
         let workspace = Arc::new(Mutex::new(fast::Workspace::new(batch.model())));
-        Ok(Compiled { batch, machines: Arc::new(machines), workspace })
+        Ok(Compiled { batch, machines, workspace })
     }
 
     /// The robot.
@@ -119,7 +120,7 @@ impl Compiled {
 
     /// What computes this quantity at one state.
     pub fn engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
-        self.machine(query.into()).map_or(Engine::Kernels(Refusal::NotAsked), |machine| Engine::of(&machine.code))
+        self.machine(&query.into()).map_or(Engine::Kernels(Refusal::NotAsked), |machine| Engine::of(&machine.code))
     }
 
     /// What computes this quantity at many states.
@@ -127,7 +128,8 @@ impl Compiled {
         self.batch.engine(query)
     }
 
-    fn machine(&self, query: Query) -> Option<&Machine> {
+    #[inline(always)]
+    fn machine(&self, query: &Query) -> Option<&Machine> {
         self.machines.iter().find(|machine| machine.is_of(query))
     }
 
@@ -139,7 +141,7 @@ impl Compiled {
     #[inline]
     pub fn evaluate<'q>(&self, query: impl Into<Query<'q>>, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> bool {
         let query = query.into();
-        if let Some(machine) = self.machine(query)
+        if let Some(machine) = self.machine(&query)
             && let Ok(kernel) = &machine.code
             && let Some(are_clear) = machine.run(kernel, state, outputs)
         {
@@ -160,8 +162,8 @@ impl Compiled {
             Some(workspace) => &mut **workspace,
             None => own.insert(fast::Workspace::new(self.model())),
         };
-        fast::evaluate(query, self.model(), state, &self.model().environment(), workspace, outputs);
-        workspace.are_pivots_clear(query)
+        fast::evaluate(&query, self.model(), state, &self.model().environment(), workspace, outputs);
+        workspace.are_pivots_clear(&query)
     }
 
     /// [`evaluate`](Self::evaluate) with checked arguments and judged pivots: see [`Model::compute`].
@@ -185,37 +187,27 @@ impl Compiled {
     }
 }
 
-/// The most pivots that fit on the stack: of larger robots they go to the heap.
-const PIVOTS: usize = 64;
-
 impl Machine {
     /// None where an angle is beyond the reduction, or NaN; else, are the pivots clear of rounding?
     #[inline]
     fn run(&self, kernel: &Kernel, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> Option<bool> {
         let mut squares = [0.0];
-        if self.pivots.is_empty() {
+        if self.pivots == 0 {
             kernel.call(state, outputs, &mut squares);
             return kernel.is_exact(squares[0]).then_some(true);
         }
-        let (mut few, mut many) = ([0.0; PIVOTS], Vec::new());
-        let count: usize = self.pivots.iter().sum();
-        let mut rest: &mut [f64] = if count <= PIVOTS {
-            &mut few[..count]
-        } else {
-            many.resize(count, 0.0);
-            &mut many
-        };
+        // of each kind of pivots the least and the sum
+        let [mut pivots, mut of_task] = [[0.0; 2]; 2];
         let mut all: [&mut [f64]; MOST_OUTPUTS] = Default::default();
         let own = outputs.len();
         for (place, output) in all.iter_mut().zip(outputs) {
             *place = output;
         }
-        for (place, &length) in all[own..].iter_mut().zip(&self.pivots) {
-            (*place, rest) = rest.split_at_mut(length);
-        }
-        let last = own + self.pivots.len();
-        kernel.call(state, &mut all[..last], &mut squares);
-        let are_clear = all[own..last].iter().all(|pivots| Pivots::new(pivots).are_clear());
+        all[own] = &mut pivots;
+        all[own + 1] = &mut of_task;
+        kernel.call(state, &mut all[..own + self.pivots], &mut squares);
+        let is_clear = |[least, sum]: [f64; 2]| least_is_clear(least, sum);
+        let are_clear = is_clear(pivots) && (self.pivots == 1 || is_clear(of_task));
         kernel.is_exact(squares[0]).then_some(are_clear)
     }
 }

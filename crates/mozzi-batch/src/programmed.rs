@@ -71,151 +71,166 @@ pub(crate) fn run<L: Lane>(
     L::Number: Number,
 {
     let Programmed { inputs, outputs, own, code, interpreter } = programmed;
-    // registers a block: one for machine code, those of 32 states for the interpreter
+    // registers side by side in a column: one for machine code, those of 32 states for the interpreter
     let abreast = if code.is_ok() { 1 } else { 32 / L::WIDTH };
-    let (all_in, all_out): (usize, usize) = (inputs.iter().sum(), outputs.iter().sum());
-    let Worker { input, output, values, errors, read, written, .. } = worker;
-    input.resize((all_in * abreast).max(1), L::zero());
-    output.resize((all_out * abreast).max(1), L::zero());
-    read.resize(chunk.inputs.iter().map(|&(_, width)| width).sum(), L::zero());
-    written.resize(chunk.outputs.iter().map(|&(_, width)| width).sum(), L::zero());
-    let (state, own_columns) = (inputs.len() - constants.len(), written.len());
-    // what is the same in all states, once
-    let mut place = 0;
+    let Worker { input, output, values, errors, scratch, .. } = worker;
+    input.resize(inputs.iter().sum::<usize>() * abreast, L::zero());
+    output.resize(outputs.iter().sum::<usize>() * abreast, L::zero());
+    let own_columns: usize = chunk.outputs.iter().map(|&(_, width)| width).sum();
+    // where each table's columns are among the inputs; what is the same in all states is written once
+    let (mut places, mut place) = (Vec::with_capacity(chunk.inputs.len()), 0);
     for (k, &width) in inputs.iter().enumerate() {
-        if let Some(Some(numbers)) = k.checked_sub(state).map(|k| &constants[k]) {
-            for (column, &x) in numbers.iter().enumerate() {
-                input[(place + column) * abreast..][..abreast].fill(L::from_f64(x));
+        match k.checked_sub(inputs.len() - constants.len()).and_then(|k| constants[k].as_ref()) {
+            Some(numbers) => {
+                let columns = input[place * abreast..].chunks_exact_mut(abreast);
+                columns.zip(numbers).for_each(|(column, &x)| column.fill(L::from_f64(x)));
             }
+            None => places.push(place..place + width),
         }
         place += width;
     }
-    for block in (0..chunk.states).step_by(abreast * L::WIDTH) {
-        for r in 0..abreast {
-            let first = block + r * L::WIDTH;
-            if first >= chunk.states {
-                break;
-            }
-            chunk.read(first, (chunk.states - first).min(L::WIDTH), read);
-            let (mut from, mut place) = (0, 0);
-            for (k, &width) in inputs.iter().enumerate() {
-                if k.checked_sub(state).is_none_or(|k| constants[k].is_none()) {
-                    for column in 0..width {
-                        input[(place + column) * abreast + r] = read[from + column];
-                    }
-                    from += width;
-                }
-                place += width;
-            }
-        }
-        let mut squares = [L::zero(); 1];
+    scratch.resize(own_columns.max(inputs.iter().copied().max().unwrap_or(0)), L::zero());
+
+    let all = chunk.states;
+    for block in (0..all).step_by(abreast * L::WIDTH) {
+        let registers = (all - block).div_ceil(L::WIDTH).min(abreast);
+        let states = |r: usize| (block + r * L::WIDTH, (all - block - r * L::WIDTH).min(L::WIDTH));
+        let mut squares = [L::zero()];
         match code {
             Ok(kernel) => {
-                let (mut given, mut found): ([&[L::Number]; MOST_ARRAYS], [&mut [L::Number]; MOST_ARRAYS]) =
-                    Default::default();
-                let mut rest = &input[..];
-                for (slice, &width) in given.iter_mut().zip(inputs) {
-                    let (this, further) = rest.split_at(width);
-                    (*slice, rest) = (L::numbers(this), further);
+                for (k, place) in places.iter().enumerate() {
+                    chunk.read_input(k, block, states(0).1, &mut input[place.clone()]);
                 }
-                let mut rest = &mut output[..];
-                for (slice, &width) in found.iter_mut().zip(outputs) {
-                    let (this, further) = rest.split_at_mut(width);
-                    (*slice, rest) = (L::numbers_mut(this), further);
-                }
-                let squares = L::numbers_mut(&mut squares);
-                kernel.call(&given[..inputs.len()], &mut found[..outputs.len()], squares);
+                call(kernel, (inputs, input), (outputs, output), &mut squares);
             }
-            Err(_) => interpreter.run(abreast, input, values, output),
-        }
-        for r in 0..abreast {
-            let first = block + r * L::WIDTH;
-            if first >= chunk.states {
-                break;
-            }
-            let rows = (chunk.states - first).min(L::WIDTH);
-            for (column, written) in written.iter_mut().enumerate() {
-                *written = output[column * abreast + r];
-            }
-            chunk.write(first, rows, written);
-            for row in 0..rows {
-                let number = |column: usize| L::numbers(&output[column * abreast + r..][..1])[row];
-                let is_exact = match code {
-                    Ok(kernel) => kernel.is_exact(L::numbers(&squares)[row]),
-                    Err(_) => true,
-                };
-                let pivots = (0..outputs.len() - own).map(|k| own_columns + 2 * k);
-                let are_clear = pivots.fold(true, |clear, k| clear & least_is_clear(number(k), number(k + 1)));
-                if !(is_exact && are_clear) {
-                    if let Err(error) = chunk.recheck(request, first + row, L::WIDTH, true) {
-                        errors.push((chunk.first + first + row, error));
+            Err(_) => {
+                for r in 0..registers {
+                    for (k, place) in places.iter().enumerate() {
+                        let columns = &mut scratch[..place.len()];
+                        chunk.read_input(k, states(r).0, states(r).1, columns);
+                        let to = input[place.start * abreast..].chunks_exact_mut(abreast);
+                        to.zip(columns).for_each(|(to, &mut from)| to[r] = from);
                     }
+                }
+                interpreter.run(abreast, input, values, output);
+            }
+        }
+        for r in 0..registers {
+            let (first, rows) = states(r);
+            if abreast == 1 {
+                chunk.write(first, rows, &output[..own_columns]);
+            } else {
+                let columns = &mut scratch[..own_columns];
+                columns.iter_mut().zip(output.chunks_exact(abreast)).for_each(|(to, from)| *to = from[r]);
+                chunk.write(first, rows, columns);
+            }
+            let passes = |row: usize| {
+                let number = |column: usize| L::numbers(&output[column * abreast + r..][..1])[row];
+                let is_exact = code.as_ref().map_or(true, |kernel| kernel.is_exact(L::numbers(&squares)[row]));
+                let pivots = (0..outputs.len() - own).map(|kind| own_columns + 2 * kind);
+                pivots.fold(is_exact, |clear, k| clear & least_is_clear(number(k), number(k + 1)))
+            };
+            if (0..L::WIDTH).all(passes) {
+                continue;
+            }
+            for row in (0..rows).filter(|&row| !passes(row)).collect::<Vec<_>>() {
+                if let Err(error) = chunk.recheck(request, first + row, L::WIDTH, true) {
+                    errors.push((chunk.first + first + row, error));
                 }
             }
         }
     }
 }
 
-/// The program of each quantity that was asked for, with what it is of and its arguments. Clones share it.
+/// Machine code on columns that lie one after the other.
+#[inline(always)]
+fn call<L: Lane>(
+    kernel: &Kernel,
+    (widths, input): (&[usize], &[L]),
+    (heights, output): (&[usize], &mut [L]),
+    squares: &mut [L; 1],
+) {
+    let (mut given, mut found): ([&[L::Number]; MOST_ARRAYS], [&mut [L::Number]; MOST_ARRAYS]) = Default::default();
+    let mut rest = input;
+    for (slice, &width) in given.iter_mut().zip(widths) {
+        let (this, further) = rest.split_at(width);
+        (*slice, rest) = (L::numbers(this), further);
+    }
+    let mut rest = output;
+    for (slice, &width) in found.iter_mut().zip(heights) {
+        let (this, further) = rest.split_at_mut(width);
+        (*slice, rest) = (L::numbers_mut(this), further);
+    }
+    kernel.call(&given[..widths.len()], &mut found[..heights.len()], L::numbers_mut(squares));
+}
+
+/// Programs, each with what it is of.
+pub(crate) type Programs = Vec<(Key, Arc<Programmed>)>;
+
+/// The program of this query with these arguments.
+pub(crate) fn find<'p>(programs: &'p Programs, query: &Query, arguments: &Arguments) -> Option<&'p Arc<Programmed>> {
+    programs.iter().find(|(key, _)| key.is_of(query, arguments)).map(|(_, programmed)| programmed)
+}
+
+/// The programs of earlier calls, the latest [`KEPT`]. Clones share them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Cache(Arc<Mutex<Vec<(Key, Arc<Programmed>)>>>);
+pub(crate) struct Cache(Arc<Mutex<Programs>>);
 
 /// So many programs are kept.
 const KEPT: usize = 64;
 
 /// Which program.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Key {
     index: usize,
     frame: Option<FrameId>,
     coordinates: TaskFrame,
     rows: Vec<usize>,
-    arguments: [bool; 5],
+    arguments: Arguments<'static>,
     frames: Vec<FrameId>,
 }
 
 impl Key {
-    pub fn new(query: Query, arguments: Arguments) -> Self {
+    pub fn new(query: &Query, arguments: &Arguments) -> Self {
         let subject = query.subject;
-        let Arguments { parameters, gravity, base_twist, base_acceleration, about, wrenches } = arguments;
         Key {
             index: query.index(),
             frame: subject.frame,
             coordinates: subject.coordinates,
             rows: subject.rows.to_vec(),
-            arguments: [parameters, gravity, base_twist, base_acceleration, about],
-            frames: wrenches.to_vec(),
+            arguments: Arguments { wrenches: &[], ..*arguments },
+            frames: arguments.wrenches.to_vec(),
         }
+    }
+
+    fn is_of(&self, query: &Query, arguments: &Arguments) -> bool {
+        let subject = &query.subject;
+        self.index == query.index()
+            && (self.frame, self.coordinates) == (subject.frame, subject.coordinates)
+            && self.rows == subject.rows
+            && self.frames == arguments.wrenches
+            && self.arguments == Arguments { wrenches: &[], ..*arguments }
     }
 }
 
 impl Cache {
-    /// The same programs, in a list of its own.
-    pub fn copy(&self) -> Self {
-        let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        Cache(Arc::new(Mutex::new(list.clone())))
-    }
-
-    pub fn get(&self, key: &Key) -> Option<Arc<Programmed>> {
-        let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        list.iter().find(|(known, _)| known == key).map(|(_, programmed)| programmed.clone())
-    }
-
     /// The program, made if there is none.
     pub fn get_or_make(
         &self,
-        key: Key,
+        query: &Query,
+        arguments: &Arguments,
         make: impl FnOnce() -> Result<Programmed, Error>,
     ) -> Result<Arc<Programmed>, Error> {
-        if let Some(programmed) = self.get(&key) {
-            return Ok(programmed);
+        let list = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(programmed) = find(&list(), query, arguments) {
+            return Ok(programmed.clone());
         }
         let programmed = Arc::new(make()?);
-        let mut list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut list = list();
         if list.len() == KEPT {
             list.remove(0);
         }
-        list.push((key, programmed.clone()));
+        list.push((Key::new(query, arguments), programmed.clone()));
         Ok(programmed)
     }
 }

@@ -5,9 +5,11 @@ use crate::chunk::Chunk;
 use crate::lanes::{Lane, MOST};
 use crate::request::Request;
 use crate::worker::Worker;
+use mozzi::model::clearance;
 use mozzi::quantities::{self, Call, Kernel, MOST_INPUTS, MOST_OUTPUTS, Memory, Quantity};
 use mozzi::scalar::Bits;
-use mozzi::{Environment, Model, Scalar, Vec3, Wrench, least_is_clear};
+use mozzi::scalar::Float;
+use mozzi::{Environment, Model, Scalar, Vec3, Wrench};
 
 /// A chunk of states, on registers of one kind: the errors of its states.
 pub(crate) type Entry<L> =
@@ -32,59 +34,62 @@ pub(crate) fn run<K: Kernel, L: Lane>(
 ) where
     L::Number: Number,
 {
-    let Worker { memory, input, output, applied, errors, zeros, .. } = worker;
+    let Worker { memory, input, output, applied, errors, .. } = worker;
     let declaration = request.query.declaration();
     let number = |x: f64| L::from_f64(x);
     let given = &request.environment;
     applied.clear();
     applied.extend(given.applied.iter().map(|&(frame, F)| (frame, F.map(number))));
     applied.extend(request.wrenches.iter().map(|&(frame, _)| (frame, Wrench::zero())));
-    let widths: [usize; MOST_INPUTS] =
-        core::array::from_fn(|k| declaration.inputs.get(k).map_or(0, |_| chunk.inputs[k].1));
-    input.resize(chunk.inputs.iter().map(|&(_, width)| width).sum(), L::zero());
-    output.resize(chunk.outputs.iter().map(|&(_, width)| width).sum(), L::zero());
-    zeros.resize(model.n(), L::zero());
-    let own: usize = widths.iter().sum();
-    let point = request.query.subject.point.map(number);
     let around = Environment {
         gravity: given.gravity.map(number),
         base_twist: given.base_twist.map(number),
         base_acceleration: given.base_acceleration.map(number),
         applied: &[],
     };
+    let point = request.query.subject.point.map(number);
+    // the columns of each input, of the environment, and n zeros for inputs that the quantity does not have
+    let own = declaration.inputs.len();
+    let mut ends = [0; MOST_INPUTS + 1];
+    for k in 0..MOST_INPUTS {
+        ends[k + 1] = ends[k] + if k < own { chunk.inputs[k].1 } else { 0 };
+    }
+    let read = chunk.inputs.iter().map(|&(_, width)| width).sum();
+    let missing = if declaration.is_at_rest { read..read + model.n() } else { 0..0 };
+    let place = |k: usize| if k < own { ends[k]..ends[k + 1] } else { missing.clone() };
+    let places = [place(0), place(1), place(2)];
+    input.resize(read + model.n(), L::zero());
+    input[read..].fill(L::zero());
+    let mut widths = [0; MOST_OUTPUTS];
+    widths[declaration.first_output()..].iter_mut().zip(&chunk.outputs).for_each(|(width, output)| *width = output.1);
+    output.resize(widths.iter().sum(), L::zero());
 
     for first in (0..chunk.states).step_by(L::WIDTH) {
         let rows = (chunk.states - first).min(L::WIDTH);
-        chunk.read(first, rows, input);
-        let (state, mut further) = input.split_at(own);
-        let mut environment = around;
+        chunk.read(first, rows, &mut input[..read]);
+        let mut gravity = around.gravity;
+        let mut wrenches = &input[ends[MOST_INPUTS]..read];
         if request.gravity.is_some() {
-            let (gravity, wrenches) = further.split_at(3);
-            (environment.gravity, further) = (Vec3([gravity[0], gravity[1], gravity[2]]), wrenches);
+            (gravity, wrenches) = (Vec3([wrenches[0], wrenches[1], wrenches[2]]), &wrenches[3..]);
         }
-        for (F, columns) in applied[given.applied.len()..].iter_mut().zip(further.as_chunks().0) {
+        for (F, columns) in applied[given.applied.len()..].iter_mut().zip(wrenches.as_chunks().0) {
             F.1 = Wrench::from_array(*columns);
         }
-        let mut rest = state;
-        let inputs: [&[L]; MOST_INPUTS] = core::array::from_fn(|k| match widths[k] {
-            0 => &zeros[..],
-            width => {
-                let (this, further) = rest.split_at(width);
-                rest = further;
-                this
-            }
-        });
-        let mut outputs: [&mut [L]; MOST_OUTPUTS] = Default::default();
-        let mut rest = &mut output[..];
-        for (place, &(_, width)) in outputs[declaration.first_output()..].iter_mut().zip(&chunk.outputs) {
-            (*place, rest) = rest.split_at_mut(width);
-        }
-        let environment = &Environment { applied, ..environment };
+        let environment = &Environment { gravity, applied, ..around };
+        // without closures or loops: what is not inlined is not compiled for the instruction set
+        let inputs = [&input[places[0].clone()], &input[places[1].clone()], &input[places[2].clone()]];
+        let (first_output, rest) = output.split_at_mut(widths[0]);
+        let (second, rest) = rest.split_at_mut(widths[1]);
+        let (third, fourth) = rest.split_at_mut(widths[2]);
+        let outputs = [first_output, second, third, fourth];
         K::run(Call { of: &request.query.subject, model, point, inputs, environment, memory, outputs });
         chunk.write(first, rows, output);
         if declaration.divides {
-            let unclear = unclear_rows(memory, rows);
-            for row in (0..rows).filter(|row| unclear[*row]) {
+            let clearance = clearances(memory);
+            for row in 0..rows {
+                if clearance[row] > L::Number::zero() {
+                    continue;
+                }
                 if let Err(error) = chunk.recheck(request, first + row, L::WIDTH, false) {
                     errors.push((chunk.first + first + row, error));
                 }
@@ -93,22 +98,23 @@ pub(crate) fn run<K: Kernel, L: Lane>(
     }
 }
 
-/// The states whose pivots do not pass the quick test.
+/// Positive for each state whose pivots pass the quick test.
 #[inline(always)]
-fn unclear_rows<L: Lane>(memory: &Memory<L>, rows: usize) -> [bool; MOST] {
-    let mut unclear = [false; MOST];
+fn clearances<L: Lane>(memory: &Memory<L>) -> [L::Number; MOST]
+where
+    L::Number: Number,
+{
+    let mut all = L::one();
     for pivots in memory.pivots() {
         let Some((&pivot, rest)) = pivots.split_first() else { continue };
         let (mut least, mut sum) = (pivot, pivot);
         for &pivot in rest {
             (least, sum) = (least.min(pivot), sum + pivot);
         }
-        let mut numbers = [[L::Number::zero(); MOST]; 2];
-        least.store(&mut numbers[0]);
-        sum.store(&mut numbers[1]);
-        for row in 0..rows {
-            unclear[row] |= !least_is_clear(numbers[0][row], numbers[1][row]);
-        }
+        // a NaN is kept, being the second operand; one of the mass matrix is one of the task, too
+        all = all.min(clearance(least, sum, L::Number::EPSILON));
     }
-    unclear
+    let mut numbers = [L::Number::zero(); MOST];
+    all.store(&mut numbers);
+    numbers
 }

@@ -9,11 +9,9 @@ pub struct Worker<L: Lane> {
     pub memory: Memory<L>,
     pub input: Vec<L>,
     pub output: Vec<L>,
-    pub zeros: Vec<L>,
     pub applied: Vec<(FrameId, Wrench<L>)>,
-    /// The columns of all tables of one register of states.
-    pub read: Vec<L>,
-    pub written: Vec<L>,
+    /// The columns of one register of states.
+    pub scratch: Vec<L>,
     /// The slots of an interpreter.
     pub values: Vec<L>,
     /// States without an answer.
@@ -26,10 +24,8 @@ impl<L: Lane> Worker<L> {
             memory: Memory::new(model),
             input: Vec::new(),
             output: Vec::new(),
-            zeros: Vec::new(),
             applied: Vec::new(),
-            read: Vec::new(),
-            written: Vec::new(),
+            scratch: Vec::new(),
             values: Vec::new(),
             errors: Vec::new(),
         }

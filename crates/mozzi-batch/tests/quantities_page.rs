@@ -68,12 +68,8 @@ fn of(declaration: &Declaration) -> &'static str {
 }
 
 fn environment(uses: Uses) -> String {
-    let parts = [
-        (Uses::GRAVITY, "g"),
-        (Uses::WRENCHES, "F"),
-        (Uses::BASE_TWIST, "𝒱_s"),
-        (Uses::BASE_ACCELERATION, "𝒱̇_s"),
-    ];
+    let parts =
+        [(Uses::GRAVITY, "g"), (Uses::WRENCHES, "F"), (Uses::BASE_TWIST, "𝒱_s"), (Uses::BASE_ACCELERATION, "𝒱̇_s")];
     parts.into_iter().filter(|(part, _)| uses.has(*part)).map(|(_, name)| name).collect::<Vec<_>>().join(", ")
 }
 

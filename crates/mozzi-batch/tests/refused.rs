@@ -1,6 +1,7 @@
 //! Wrong input gets an error that names the table or the state.
 
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::quantities::{ForwardDynamics, ForwardKinematics, InverseDynamics, MassMatrix, Query};
 use mozzi::testing::{floating_tree, tree};
 use mozzi::{Description, SE3, ScrewAxis, Solid, SpatialInertia};
 use mozzi_batch::{Batch, Error, InstructionSet, Layout};
@@ -13,26 +14,22 @@ fn text(result: Result<(), Error>) -> String {
 fn lengths() {
     let model = tree(1, 7, 0);
     let (batch, s) = (Batch::new(&model), model.environment().into());
-    let (x, mut tau) = (vec![0.0; 21], vec![0.0; 21]);
-    assert_eq!(
-        text(batch.inverse_dynamics(&x[..20], &x, &x, &s, &mut tau)),
-        "theta has 20 numbers, expected a multiple of 7: 7 positions a state"
-    );
-    assert_eq!(
-        text(batch.inverse_dynamics(&x, &x, &x[..14], &s, &mut tau)),
-        "ddtheta has 14 numbers, expected 21 (3 states of 7)"
-    );
-    assert_eq!(text(batch.mass_matrix(&x, &mut tau)), "M has 21 numbers, expected 147 (3 states of 49)");
+    let (x, mut tau, mut M) = (vec![0.0; 21], vec![0.0; 21], vec![0.0; 21]);
+    let mut tau_of = |theta, ddtheta| batch.compute(InverseDynamics, &[theta, &x, ddtheta], &s, &mut [&mut tau]);
+    assert_eq!(text(tau_of(&x[..20], &x)), "theta has 20 numbers, expected a multiple of 7: 7 numbers a state");
+    assert_eq!(text(tau_of(&x, &x[..14])), "ddtheta has 14 numbers, expected 21 (3 states of 7)");
+    let mut M_of = |batch: &Batch| batch.compute(MassMatrix, &[&x], &s, &mut [&mut M]);
+    assert_eq!(text(M_of(&batch)), "M has 21 numbers, expected 147 (3 states of 49)");
     let blocks = batch.clone().with_layout(Layout::Blocks);
     if blocks.lanes() > 1 {
         let expected = format!(
-            "theta has 21 numbers, expected a multiple of 7: 7 positions a state, in whole blocks of {} states",
+            "theta has 21 numbers, expected a multiple of 7: 7 numbers a state, in whole blocks of {} states",
             blocks.lanes()
         );
-        assert_eq!(text(blocks.mass_matrix(&x, &mut tau)), expected);
+        assert_eq!(text(M_of(&blocks)), expected);
     }
     // no state is no error
-    batch.inverse_dynamics(&[], &[], &[], &s, &mut []).unwrap();
+    batch.compute(InverseDynamics, &[&[], &[], &[]], &s, &mut [&mut []]).unwrap();
 }
 
 #[test]
@@ -42,10 +39,11 @@ fn a_state_by_its_number() {
     let mut theta: Vec<f64> = model.neutral_configuration().repeat(30);
     theta[17 * model.nq()] = 0.9;
     let mut M = vec![0.0; 30 * model.n() * model.n()];
-    let found = text(batch.mass_matrix(&theta, &mut M));
+    let mut M_of = |theta: &[f64]| batch.compute(MassMatrix, &[theta], &model.environment().into(), &mut [&mut M]);
+    let found = text(M_of(&theta));
     assert!(found.starts_with("state 17 (counted from 0): the base's orientation in theta is [0.9, "), "{found}");
     theta[17 * model.nq()] = f64::NAN; // no number is no error, as at one state
-    batch.mass_matrix(&theta, &mut M).unwrap();
+    M_of(&theta).unwrap();
 }
 
 #[test]
@@ -66,7 +64,8 @@ fn a_singular_state_names_its_joint() {
     for set in InstructionSet::available() {
         let batch = Batch::new(&model).with_instruction_set(set).unwrap();
         let (x, mut y) = (vec![0.1; 10], vec![0.0; 10]);
-        let found = text(batch.forward_dynamics(&x, &x, &x, &model.environment().into(), &mut y));
+        let environment = model.environment().into();
+        let found = text(batch.compute(ForwardDynamics, &[&x, &x, &x], &environment, &mut [&mut y]));
         assert!(found.starts_with("state 0 (counted from 0): the mass matrix is singular at joint `first`"), "{found}");
     }
 }
@@ -76,8 +75,12 @@ fn frames_threads_and_registers() {
     let (small, large) = (tree(1, 2, 0), tree(2, 12, 0));
     let batch = Batch::new(&small);
     let tip = large.end_effector().unwrap();
-    let found = text(batch.forward_kinematics(tip, &[0.0; 2], &mut [0.0; 16]));
+    let (query, environment) = (Query::from(ForwardKinematics), small.environment().into());
+    let T_of = |query| text(batch.compute(query, &[&[0.0; 2]], &environment, &mut [&mut [0.0; 16]]));
+    let found = T_of(query.of(tip));
     assert!(found.starts_with("the frame is number "), "{found}");
+    let found = T_of(query);
+    assert!(found.starts_with("the frame is missing for forward_kinematics, expected "), "{found}");
     assert_eq!(
         batch.clone().with_threads(0).map(drop).expect_err("none").to_string(),
         "0 threads could not be started: expected at least one"

@@ -82,14 +82,11 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
         let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
         let mut rest = rest.iter().map(Vec::as_slice);
         let mut next = |is_argument: bool| if is_argument { rest.next() } else { None };
-        let traced = match next(arguments.parameters) {
-            Some(parameters) => model.with_parameters(parameters),
-            None => model.map(Traced::from),
-        };
+        let parameters = next(arguments.parameters);
         fn fixed<const K: usize>(numbers: &[Traced]) -> [Traced; K] {
             std::array::from_fn(|k| numbers[k])
         }
-        let gravity = next(arguments.gravity).map_or(traced.gravity(), |g| Vec3(fixed(g)));
+        let gravity = next(arguments.gravity).map_or(model.gravity().map(Traced::from), |g| Vec3(fixed(g)));
         let twist = |x: Option<&[Traced]>| x.map_or(Twist::zero(), |x| Twist::from_array(fixed(x)));
         let base_twist = twist(next(arguments.base_twist));
         let base_acceleration = twist(next(arguments.base_acceleration));
@@ -98,14 +95,21 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
         let applied: Vec<_> = wrenches.map(|(frame, F)| (frame, Wrench::from_array(fixed(F)))).collect();
         let environment = Environment { gravity, base_twist, base_acceleration, applied: &applied };
 
-        let mut memory = Memory::new(&traced);
+        let mut memory = Memory::new(model);
         if let Some(point) = point {
             memory = memory.with_point(point);
         }
         let zero = Traced::from(0.0);
         let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
         let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        kernel.evaluate(&traced, &state, &environment, &mut memory, &mut slices);
+        // without parameters on the model's own numbers, so that each is recorded where it is used first: what the machine code's speed hangs on
+        match parameters {
+            Some(parameters) => {
+                let model = model.with_parameters(parameters);
+                kernel.evaluate(&model, &state, &environment, &mut memory, &mut slices);
+            }
+            None => kernel.evaluate(model, &state, &environment, &mut memory, &mut slices),
+        }
         let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
         names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
     })

@@ -4,11 +4,17 @@
 mod common;
 mod harness;
 
-use common::{error, published, state, tree};
+use common::{compute, error, inputs, published, state, tree};
 use harness::{Call, Module, build, exists, rounded, run};
-use mozzi::{Base, Environment, Model, Scalar};
+use mozzi::quantities::{
+    BodyJacobian, CenterOfMassJacobian, ForwardDynamics, ForwardKinematics, GravityForces, InverseDynamics,
+    InverseDynamicsDerivatives, JointFriction, MassMatrix, MassMatrixProductDerivative, Momentum, PotentialEnergy,
+    Query, Regressor, SpaceJacobian, TaskSpaceDynamics,
+};
+use mozzi::testing::Random;
+use mozzi::{Base, Model, Scalar, Task, TaskFrame, Vec3};
 use mozzi_codegen::{
-    Arguments, EmitError, Language, Precision, Program, Quantity, Traced, emit, emit_programs, record,
+    Arguments, EmitError, Language, Precision, Program, Traced, emit, emit_programs, record, record_quantity,
 };
 use std::process::Command;
 
@@ -16,17 +22,26 @@ fn embedded(name: &str) -> Model {
     mozzi_urdf::open(name).and_then(|robot| robot.build()).expect("an embedded robot")
 }
 
+/// The same robot under another name.
+fn named(model: &Model, name: &str) -> Model {
+    let mut robot = model.description().clone();
+    robot.name = name.to_string();
+    robot.build().expect("sound")
+}
+
 /// States of a robot: at random, at rest at zero, with an angle that is NaN, with one that is too large.
 fn states(model: &Model, program: &Program, angle: usize, precision: Precision) -> Vec<Vec<Vec<f64>>> {
-    let third = |name: &str| match name {
-        "parameters" => model.parameters(),
-        "gravity" => vec![1.0, 2.0, -9.0],
-        _ => vec![0.1, 0.2, 0.3, 4.0, 5.0, 6.0],
-    };
-    let filled = |state: [Vec<f64>; 3]| -> Vec<Vec<f64>> {
-        let is_state = |name: &str| !matches!(name, "parameters" | "gravity" | "wrench");
-        let arrays = program.inputs().iter().zip(state.into_iter().chain([vec![], vec![], vec![]]));
-        let arrays = arrays.map(|(input, x)| if is_state(&input.name) { x } else { third(&input.name) });
+    let filled = |[theta, dtheta, x]: [Vec<f64>; 3]| -> Vec<Vec<f64>> {
+        let array = |name: &str| match name {
+            "theta" => theta.clone(),
+            "dtheta" => dtheta.clone(),
+            "ddtheta" | "tau" | "x" => x.clone(),
+            "parameters" => model.parameters(),
+            "gravity" => vec![1.0, 2.0, -9.0],
+            "about" => vec![0.3, -0.2, 0.1],
+            six => Random(six.bytes().map(u64::from).sum()).vector(6, 5.0), // of a twist or a wrench
+        };
+        let arrays = program.inputs().iter().map(|input| array(&input.name));
         arrays.map(|x| x.into_iter().map(|x| rounded(x, precision)).collect()).collect()
     };
     let mut zero = [vec![0.0; model.nq()], vec![0.0; model.n()], vec![0.0; model.n()]];
@@ -35,9 +50,9 @@ fn states(model: &Model, program: &Program, angle: usize, precision: Precision) 
     }
     let mut states = vec![filled(state(model, 1)), filled(state(model, 2)), filled(zero)];
     for wrong in [f64::NAN, 1.1 * precision.largest_angle(), -f64::INFINITY] {
-        let mut of_wrong = filled(state(model, 3));
+        let mut of_wrong = state(model, 3);
         of_wrong[0][angle] = wrong;
-        states.push(of_wrong);
+        states.push(filled(of_wrong));
     }
     states
 }
@@ -48,13 +63,13 @@ fn basics(language: Language, precision: Precision) -> Module {
         let ((sin, cos), y) = (x[0][0].sin_cos(), x[0][1]);
         vec![("sin_cos", vec![sin, cos]), ("rest", vec![y.sqrt(), y.sgn()])]
     });
-    let mut random = common::Random(7);
+    let mut random = Random(7);
     let small = if precision == Precision::F64 { 1e-310 } else { 1e-40 };
     let largest = precision.largest_angle();
     let mut ys = vec![0.0, -0.0, 1.0, -1.0, small, 1e38, 1e-38, f64::INFINITY, f64::NAN];
-    ys.extend((0..300).map(|k| random.number() * 2.0_f64.powi(k % 60 - 40)));
+    ys.extend((0..300).map(|k| random.next() * 2.0_f64.powi(k % 60 - 40)));
     let state = |y: f64| {
-        let x = (random.number() * 10.0_f64.powi(random.below(7) as i32)).clamp(-largest, largest);
+        let x = (random.next() * 10.0_f64.powi(random.below(7) as i32)).clamp(-largest, largest);
         vec![vec![rounded(x, precision), rounded(y, precision)]]
     };
     let mut states: Vec<Vec<Vec<f64>>> = ys.into_iter().map(state).collect();
@@ -65,43 +80,50 @@ fn basics(language: Language, precision: Precision) -> Module {
 
 /// The robots' text with what is called: fixed, free, with friction, with inputs left open; and a pose's, named by its frame.
 fn modules(language: Language, precision: Precision) -> Vec<Module> {
-    use Quantity::*;
-    let panda = embedded("panda");
-    let hand = panda.frames().last().expect("a frame").0;
+    let last = |model: &Model| model.frames().last().expect("a frame").0;
+    let (panda, ur5) = (embedded("panda"), embedded("ur5"));
     let anymal = embedded("anymal").with_base(Base::Floating).expect("sound");
-    let ur5 = embedded("ur5");
-    let tool = ur5.frames().last().expect("a frame").0;
-    let open = Arguments { parameters: true, gravity: true, wrench: Some(tool) };
+    let hand = Query::from(ForwardKinematics).of(last(&panda));
+    let tools = [last(&ur5), ur5.frame("forearm_link").expect("a frame")];
     let fixed = Arguments::default();
+    let open = Arguments { parameters: true, gravity: true, wrenches: &tools[..1], ..fixed };
+    let carried =
+        Arguments { gravity: true, base_twist: true, base_acceleration: true, about: true, wrenches: &tools, ..fixed };
     let rubbing = tree(3, 9, 0).build().expect("sound");
     let turning = rubbing.joint_names().position(|name| name == "joint2").expect("a joint that only turns");
+    let dynamics = || vec![InverseDynamics.into(), MassMatrix.into(), ForwardDynamics.into()];
+    let momentum = Query::from(Momentum).about(Vec3([0.5, -0.25, 1.0]));
+    let of_masses = [momentum, PotentialEnergy.into(), CenterOfMassJacobian.into(), MassMatrixProductDerivative.into()];
+    let task = Task { frame: tools[0], coordinates: TaskFrame::Body, rows: &[2, 3, 4] };
+    let task = Query::from(TaskSpaceDynamics).of_task(task);
+    let moved = [&of_masses[..], &[InverseDynamics.into(), Regressor.into(), task]].concat();
     let mut robots = vec![
-        (panda, vec![InverseDynamics, MassMatrix, ForwardDynamics, ForwardKinematics(hand)], fixed, 3),
-        (anymal, vec![InverseDynamics, ForwardDynamics], fixed, 9),
-        (rubbing, vec![InverseDynamics], fixed, turning),
-        (ur5, vec![InverseDynamics], open, 3),
+        (panda, [&dynamics()[..], &[hand], &of_masses].concat(), fixed, 3),
+        (anymal, vec![InverseDynamics.into(), ForwardDynamics.into()], fixed, 9),
+        (rubbing, vec![InverseDynamics.into(), JointFriction.into()], fixed, turning),
+        (named(&ur5, "moved"), moved, carried, 3),
+        (ur5, vec![InverseDynamics.into()], open, 3),
     ];
     if precision == Precision::F64 {
-        let loaded = embedded("ur5").with_payload(tool, mozzi::Solid::Sphere { radius: 0.05 }.inertia(1.0));
-        let mut loaded = loaded.expect("a load").description().clone();
-        loaded.name = "loaded".into();
-        let all = vec![MassMatrix, InverseDynamicsDerivatives, BodyJacobian(tool), SpaceJacobian(tool), GravityForces];
-        robots.push((loaded.build().expect("sound"), all, fixed, 1));
-        let dynamics = || vec![InverseDynamics, MassMatrix, ForwardDynamics];
+        let ur5 = embedded("ur5");
+        let loaded = ur5.with_payload(tools[0], mozzi::Solid::Sphere { radius: 0.05 }.inertia(1.0)).expect("a load");
+        let frames = [BodyJacobian.into(), SpaceJacobian.into()].map(|query: Query| query.of(tools[0]));
+        let all = [MassMatrix.into(), InverseDynamicsDerivatives.into(), GravityForces.into(), Regressor.into()];
+        robots.push((named(&loaded, "loaded"), [&all[..], &frames].concat(), fixed, 1));
         let pendulums = ["double_pendulum", "furuta_pendulum", "two_link_planar"].map(embedded);
         robots.extend(pendulums.into_iter().map(|robot| (robot, dynamics(), fixed, 1)));
         let arms = published().into_iter().map(|(_, robot)| robot).filter(|robot| (6..8).contains(&robot.n()));
         robots.extend(arms.map(|robot| (robot, dynamics(), fixed, 1)));
     }
-    let of_robot = |(model, quantities, open, angle): (Model, Vec<Quantity>, Arguments, usize)| {
-        let call = |quantity: &Quantity| {
-            let program = quantity.record(&model, open);
-            let frame = quantity.frame().map(|frame| format!("_{}", model.frame_name(frame)));
+    let of_robot = |(model, queries, open, angle): (Model, Vec<Query>, Arguments, usize)| {
+        let call = |&query: &Query| {
+            let program = record_quantity(&model, query, open).expect("its own frames");
+            let frame = query.subject.frame.map(|frame| format!("_{}", model.frame_name(frame)));
             let states = states(&model, &program, angle, precision);
-            Call { function: format!("{}{}", quantity.name(), frame.unwrap_or_default()), program, states }
+            Call { function: format!("{}{}", query.name(), frame.unwrap_or_default()), program, states }
         };
-        let files = emit(&model, &quantities, open, language, precision).expect("text");
-        Module { files, calls: quantities.iter().map(call).collect() }
+        let files = emit(&model, &queries, open, language, precision).expect("text");
+        Module { files, calls: queries.iter().map(call).collect() }
     };
     robots.into_iter().map(of_robot).chain([basics(language, precision)]).collect()
 }
@@ -124,7 +146,7 @@ fn check(what: &str, precision: Precision, modules: &[Module], results: &[Vec<Ve
         let is_wrong = |x: &f64| x.is_nan() || x.abs() > precision.largest_angle();
         for (k, (inputs, found)) in call.states.iter().zip(found).enumerate() {
             let mut inputs = inputs.clone();
-            if call.function != "basics" {
+            if call.program.inputs()[0].name == "theta" {
                 inputs[0].iter_mut().filter(|x| is_wrong(x)).for_each(|x| *x = f64::NAN);
             }
             let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
@@ -217,8 +239,8 @@ fn cuda_keeps_its_numbers_in_registers() {
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("nvcc");
     std::fs::create_dir_all(&folder).expect("a folder");
     for precision in [Precision::F64, Precision::F32] {
-        let quantities = [Quantity::InverseDynamics, Quantity::ForwardDynamics];
-        let files = emit(&embedded("panda"), &quantities, Arguments::default(), Language::Cuda, precision);
+        let queries = [InverseDynamics.into(), ForwardDynamics.into()];
+        let files = emit(&embedded("panda"), &queries, Arguments::default(), Language::Cuda, precision);
         files.expect("text")[0].write(&folder).expect("a file");
         let arguments = ["-arch=sm_90", "-Xptxas", "-v", "-cubin", "-o", "panda.cubin", "panda.cu"];
         let output = Command::new("nvcc").args(arguments).current_dir(&folder).output().expect("a compiler");
@@ -233,12 +255,11 @@ fn cuda_keeps_its_numbers_in_registers() {
 
 #[test]
 fn the_interpreter_is_the_kernel() {
-    let (model, quantity) = (embedded("panda"), Quantity::InverseDynamics);
-    let [theta, dtheta, ddtheta] = state(&model, 1);
-    let found = quantity.record(&model, Arguments::default()).evaluate(&[&theta[..], &dtheta, &ddtheta]);
-    let environment = Environment::with_gravity(model.gravity());
-    let expected = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
-    assert!(error(&found[0], expected.as_slice()) < 2e-14);
+    let (model, query) = (embedded("panda"), Query::from(InverseDynamics));
+    let program = record_quantity(&model, query, Arguments::default()).expect("no frame");
+    let found = program.evaluate(&inputs(query, &state(&model, 1)));
+    let expected = compute(&model, query, 1).expect("lengths");
+    assert!(error(&found[0], &expected[0]) < 2e-14);
 }
 
 #[test]
@@ -248,8 +269,11 @@ fn what_cannot_be_written_is_refused() {
     let nothing = emit(&model, &[], fixed, Language::C, Precision::F64);
     assert!(matches!(nothing, Err(EmitError::Nothing)));
     let far = embedded("anymal").frames().last().expect("a frame").0;
-    let of_other = emit(&model, &[Quantity::ForwardKinematics(far)], fixed, Language::Rust, Precision::F64);
-    assert!(matches!(of_other, Err(EmitError::Frame(_))));
+    let of_other = [Query::from(ForwardKinematics).of(far), ForwardKinematics.into()];
+    for query in of_other {
+        let refused = emit(&model, &[query], fixed, Language::Rust, Precision::F64);
+        assert!(matches!(refused, Err(EmitError::Frame(_))));
+    }
     let of = |f: fn(Traced) -> Traced| record("f", &[("x", 1)], |x| vec![("y", vec![f(x[0][0])])]);
     let tanh = emit_programs("f", &[of(|x| x.tanh())], Language::Rust, Precision::F64);
     assert!(tanh.is_err_and(|error| error.to_string().contains("tanh")));
@@ -264,7 +288,7 @@ fn files_are_written_where_they_differ() {
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("files are written");
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
-    let files = emit(&embedded("ur5"), &[Quantity::GravityForces], Arguments::default(), Language::C, Precision::F64);
+    let files = emit(&embedded("ur5"), &[GravityForces.into()], Arguments::default(), Language::C, Precision::F64);
     let files = files.expect("text");
     let written = || {
         let path = files[0].write(&folder).expect("a folder");

@@ -2,10 +2,8 @@
 //! `MOZZI_FUZZ_SEED`. Not in a plain `cargo test`; `cargo xtask test` runs it. A program that fails is printed.
 #![allow(missing_docs)]
 
-mod common;
-
-use common::Random;
 use mozzi::Scalar;
+use mozzi::testing::Random;
 use mozzi_codegen::{Kernel, Program, Shape, Traced, record};
 use std::time::{Duration, Instant};
 
@@ -27,7 +25,7 @@ fn program(random: &mut Random) -> Program {
                 if random.below(5) == 0 { -x } else { x }
             };
             let (a, b, c) = (some(), some(), some());
-            let k = random.number();
+            let k = random.next();
             let k = Traced::from(if random.below(4) == 0 { k.round() } else { k });
             values.push(match random.below(13) {
                 0 => (a + b) * half,

@@ -3,72 +3,27 @@
 
 mod common;
 
-use common::{error, quantities, robots, state};
-use mozzi::{Dual, Environment, Model, Scalar, Vec3, Wrench};
-use mozzi_codegen::{Arguments, Program, Quantity};
-
-/// The kernels' outputs, by the methods of the model.
-fn reference(
-    model: &Model,
-    quantity: Quantity,
-    [theta, dtheta, x]: &[Vec<f64>; 3],
-    environment: &Environment,
-) -> Vec<Vec<f64>> {
-    let rows = |M: mozzi::nalgebra::DMatrix<f64>| M.transpose().as_slice().to_vec();
-    let columns = |J: mozzi::Jacobian| J.0.iter().flat_map(|column| column.to_array()).collect();
-    let list = |x: mozzi::nalgebra::DVector<f64>| x.as_slice().to_vec();
-    match quantity {
-        Quantity::InverseDynamics => {
-            vec![list(model.inverse_dynamics(theta, dtheta, x, environment).expect("lengths"))]
-        }
-        Quantity::MassMatrix => vec![rows(model.mass_matrix(theta).expect("lengths"))],
-        Quantity::ForwardDynamics => {
-            vec![list(model.forward_dynamics(theta, dtheta, x, environment).expect("regular"))]
-        }
-        Quantity::BiasForces => vec![list(model.bias_forces(theta, dtheta, environment).expect("lengths"))],
-        Quantity::VelocityProduct => vec![list(model.velocity_product(theta, dtheta).expect("lengths"))],
-        Quantity::GravityForces => vec![list(model.gravity_forces(theta).expect("lengths"))],
-        Quantity::ForwardKinematics(frame) => {
-            let T = model.forward_kinematics(theta, frame).expect("lengths");
-            vec![T.R.matrix().rows().concat(), T.p.0.to_vec()]
-        }
-        Quantity::BodyJacobian(frame) => vec![columns(model.body_jacobian(theta, frame).expect("lengths"))],
-        Quantity::SpaceJacobian(frame) => vec![columns(model.space_jacobian(theta, frame).expect("lengths"))],
-        Quantity::InverseDynamicsDerivatives => {
-            let d = model.inverse_dynamics_derivatives(theta, dtheta, x, environment).expect("lengths");
-            [d.d_theta, d.d_dtheta, d.d_ddtheta].map(rows).to_vec()
-        }
-        Quantity::ForwardDynamicsDerivatives => {
-            let d = model.forward_dynamics_derivatives(theta, dtheta, x, environment).expect("regular");
-            [list(d.ddtheta)].into_iter().chain([d.d_theta, d.d_dtheta, d.d_tau].map(rows)).collect()
-        }
-    }
-}
-
-/// Pivots and solves lose what the matrix's condition takes.
-fn tolerance(quantity: Quantity) -> f64 {
-    match quantity {
-        Quantity::ForwardDynamics | Quantity::ForwardDynamicsDerivatives => 1e-10,
-        _ => 2e-14,
-    }
-}
+use common::{compute, error, inputs, quantities, robots, state, tolerance};
+use mozzi::quantities::InverseDynamics;
+use mozzi::{Dual, Environment, Scalar, Twist, Vec3, Wrench};
+use mozzi_codegen::{Arguments, Program, pivot_names, record_quantity};
 
 #[test]
 fn every_quantity_of_every_robot() {
     for (name, model) in robots() {
-        for quantity in quantities(&model) {
-            let program = quantity.record(&model, Arguments::default());
+        for query in quantities(&model) {
+            let program = record_quantity(&model, query, Arguments::default()).expect("its own frame");
             let text: Program = program.to_string().parse().expect("a program");
             assert_eq!(text.to_string(), program.to_string());
             for seed in 0..3 {
                 let state = state(&model, seed);
-                let slices: Vec<&[f64]> = state[..program.inputs().len()].iter().map(Vec::as_slice).collect();
-                let found = program.evaluate(&slices);
-                assert_eq!(text.evaluate(&slices), found);
-                let expected = reference(&model, quantity, &state, &model.environment());
+                let found = program.evaluate(&inputs(query, &state));
+                assert_eq!(text.evaluate(&inputs(query, &state)), found);
+                let expected = compute(&model, query, seed).expect("regular");
+                assert_eq!(found.len(), expected.len() + pivot_names(&query).len());
                 for (found, expected) in found.iter().zip(&expected) {
                     let error = error(found, expected);
-                    assert!(error < tolerance(quantity), "{name}, {}: {error:e}", quantity.name());
+                    assert!(error < tolerance(query), "{name}, {}: {error:e}", query.name());
                 }
             }
         }
@@ -78,49 +33,67 @@ fn every_quantity_of_every_robot() {
 #[test]
 fn folding_leaves_less_work() {
     for (name, model) in robots() {
-        for quantity in quantities(&model) {
-            let program = quantity.record(&model, Arguments::default());
+        for query in quantities(&model) {
+            let program = record_quantity(&model, query, Arguments::default()).expect("its own frame");
             let (before, after) = (program.count_before_folding().expect("recorded"), program.count());
-            assert!(after.flops() < before.flops(), "{name}, {}: {before}; {after}", quantity.name());
+            assert!(after.flops() < before.flops(), "{name}, {}: {before}; {after}", query.name());
         }
     }
     let ur5 = mozzi_urdf::open("ur5").and_then(|robot| robot.build()).expect("an embedded robot");
-    let count = Quantity::InverseDynamics.record(&ur5, Arguments::default()).count();
+    let count = record_quantity(&ur5, InverseDynamics, Arguments::default()).expect("no frame").count();
     assert!(count.flops() < 420, "{count}");
 }
 
 #[test]
 fn what_is_left_open_is_an_input() {
+    let (gravity, about) = ([1.0, 2.0, -3.0], [0.3, -0.2, 0.1]);
+    let (twist, acceleration) = ([0.2, -0.4, 0.6, 0.8, -1.0, 1.2], [3.0, 1.0, -2.0, 0.5, 4.0, -1.0]);
+    let (push, pull, none) = ([0.1, 0.2, 0.3, 4.0, 5.0, 6.0], [-1.0, 0.5, 0.7, -3.0, 2.0, 1.0], [0.0; 6]);
     for (name, model) in robots() {
-        let tip = model.frames().last().expect("a frame").0;
-        let open = Arguments { parameters: true, gravity: true, wrench: Some(tip) };
-        for quantity in [Quantity::InverseDynamics, Quantity::ForwardDynamics, Quantity::BiasForces] {
-            let program = quantity.record(&model, open);
-            let names: Vec<_> = program.inputs().iter().map(|input| input.name.as_str()).collect();
-            assert_eq!(names[names.len() - 3..], ["parameters", "gravity", "wrench"]);
-            let (state, gravity, push) = (state(&model, 5), [1.0, 2.0, -3.0], [0.1, 0.2, 0.3, 4.0, 5.0, 6.0]);
-            let pi = model.parameters();
-            let mut slices: Vec<&[f64]> = state[..names.len() - 3].iter().map(Vec::as_slice).collect();
-            slices.extend([&pi[..], &gravity, &push]);
-            let found = program.evaluate(&slices);
-            let applied = [(tip, Wrench::from_array(push))];
-            let environment = Environment { applied: &applied, ..Environment::with_gravity(Vec3(gravity)) };
-            let error = error(&found[0], &reference(&model, quantity, &state, &environment)[0]);
-            assert!(error < 1e-9, "{name}, {}: {error:e}", quantity.name());
+        let frames: Vec<_> = model.frames().map(|(frame, _)| frame).collect();
+        let frames = [frames[frames.len() - 1], frames[frames.len() / 2]];
+        let open = Arguments {
+            parameters: true,
+            gravity: true,
+            base_twist: true,
+            base_acceleration: true,
+            about: true,
+            wrenches: &frames,
+        };
+        let [tip, middle] = frames.map(|frame| format!("wrench_{}", model.frame_name(frame)));
+        let names = ["parameters", "gravity", "base_twist", "base_acceleration", "about", &tip, &middle];
+        let applied = [(frames[0], Wrench::from_array(push)), (frames[1], Wrench::from_array(pull))];
+        let environment = Environment {
+            gravity: Vec3(gravity),
+            base_twist: Twist::from_array(twist),
+            base_acceleration: Twist::from_array(acceleration),
+            applied: &applied,
+        };
+        let (state, pi) = (state(&model, 5), model.parameters());
+        for query in quantities(&model) {
+            let program = record_quantity(&model, query, open).expect("its own frames");
+            let state = inputs(query, &state);
+            let further: Vec<_> = program.inputs()[state.len()..].iter().map(|input| input.name.as_str()).collect();
+            assert_eq!(further, names);
+            let run = |pi: &[f64], push: &[f64], pull: &[f64]| {
+                program.evaluate(&[&state[..], &[pi, &gravity, &twist, &acceleration, &about, push, pull]].concat())
+            };
+            let expected = model.compute(query.about(Vec3(about)), &state, &environment).expect("regular");
+            for (found, expected) in run(&pi, &push, &pull).iter().zip(&expected) {
+                let error = error(found, expected);
+                assert!(error < 1e-9, "{name}, {}: {error:e}", query.name());
+            }
             // half the masses and frictions, half the forces
-            if quantity == Quantity::InverseDynamics {
+            if query == InverseDynamics.into() {
                 let half: Vec<f64> = pi.iter().map(|x| x / 2.0).collect();
-                let none = [0.0; 6];
-                let at = slices.len();
-                let mut run = |pi| {
-                    (slices[at - 3], slices[at - 1]) = (pi, &none);
-                    program.evaluate(&slices).remove(0)
-                };
-                let (whole, halves) = (run(&pi[..]), run(&half[..]));
-                let twice: Vec<f64> = halves.iter().map(|x| 2.0 * x).collect();
-                assert!(common::error(&twice, &whole) < 1e-13, "{name}");
+                let (whole, halves) = (run(&pi, &none, &none), run(&half, &none, &none));
+                let twice: Vec<f64> = halves[0].iter().map(|x| 2.0 * x).collect();
+                assert!(error(&twice, &whole[0]) < 1e-13, "{name}");
             }
         }
+        let one = Arguments { wrenches: &frames[..1], ..Arguments::default() };
+        let program = record_quantity(&model, InverseDynamics, one).expect("its own frame");
+        assert_eq!(program.inputs().last().map(|input| input.name.as_str()), Some("wrench"));
     }
 }
 
@@ -128,7 +101,7 @@ fn what_is_left_open_is_an_input() {
 fn programs_run_on_any_scalar() {
     // the derivative of τ along θ̈ is M's product
     let model = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");
-    let program = Quantity::InverseDynamics.record(&model, Arguments::default());
+    let program = record_quantity(&model, InverseDynamics, Arguments::default()).expect("no frame");
     let [theta, dtheta, ddtheta] = state(&model, 1);
     let (along, zero) = (vec![1.0; model.n()], vec![0.0; model.n()]);
     let duals = [Dual::list(&theta, &zero), Dual::list(&dtheta, &zero), Dual::list(&ddtheta, &along)];

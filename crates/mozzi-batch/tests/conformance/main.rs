@@ -139,9 +139,8 @@ fn in_arrays<T: Number>(
     tables: &[Vec<Vec<f64>>],
     environment: &BatchEnvironment<T>,
 ) -> Vec<Vec<Vec<f64>>> {
-    let table = |k: usize| -> Vec<T> {
-        tables.iter().flat_map(|inputs| inputs[k].iter().map(|&x| T::from_f64(x))).collect()
-    };
+    let table =
+        |k: usize| -> Vec<T> { tables.iter().flat_map(|inputs| inputs[k].iter().map(|&x| T::from_f64(x))).collect() };
     let inputs: Vec<Vec<T>> = (0..tables[0].len()).map(table).collect();
     let inputs: Vec<&[T]> = inputs.iter().map(Vec::as_slice).collect();
     let lengths: Vec<usize> = query.output_lengths(batch.model()).collect();
@@ -176,16 +175,15 @@ fn conform<Q: SecondWay>(case: &Case) {
         close(&what("duals"), &on_duals(case, query, inputs), &plain, wide);
         let mut outputs: Vec<Vec<f64>> = plain.iter().map(|x| vec![f64::NAN; x.len()]).collect();
         let mut slices: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        fast::evaluate(query, model, inputs, &environment, &mut workspace, &mut slices);
+        fast::evaluate(&query, model, inputs, &environment, &mut workspace, &mut slices);
         let before = allocations();
-        fast::evaluate(query, model, inputs, &environment, &mut workspace, &mut slices);
+        fast::evaluate(&query, model, inputs, &environment, &mut workspace, &mut slices);
         assert_eq!(allocations() - before, 0, "{}", what("allocations"));
         close(&what("fused"), &outputs, &plain, wide);
     }
 
     // arrays: registers of every kind, with a wrench, gravity and base motion for all and a wrench for each state
-    let tables: Vec<Vec<Vec<f64>>> =
-        inputs.iter().map(|inputs| inputs.iter().map(|x| x.to_vec()).collect()).collect();
+    let tables: Vec<Vec<Vec<f64>>> = inputs.iter().map(|inputs| inputs.iter().map(|x| x.to_vec()).collect()).collect();
     for set in InstructionSet::available() {
         for parameters in [false, true] {
             arrays::<f64>(case, query, &tables, set, parameters, wide);
@@ -246,11 +244,9 @@ fn arrays<T: Number>(
     let numbers = |x: &[f64]| x.iter().map(|&x| T::from_f64(x)).collect::<Vec<T>>();
     let gravity: Vec<[f64; 3]> = (0..count).map(|k| [1.0 + k as f64, 2.0, -9.0]).collect();
     let wrenches: Vec<[f64; 6]> = (0..count).map(|k| wrench(k as u64).to_array()).collect();
-    let parameters: Vec<Vec<f64>> = (0..count)
-        .map(|k| model.parameters().iter().map(|x| x * (1.0 + 0.1 * k as f64)).collect())
-        .collect();
-    let [g, F, pi] =
-        [numbers(gravity.as_flattened()), numbers(wrenches.as_flattened()), numbers(&parameters.concat())];
+    let parameters: Vec<Vec<f64>> =
+        (0..count).map(|k| model.parameters().iter().map(|x| x * (1.0 + 0.1 * k as f64)).collect()).collect();
+    let [g, F, pi] = [numbers(gravity.as_flattened()), numbers(wrenches.as_flattened()), numbers(&parameters.concat())];
     let of_frame = [(case.frame, &F[..])];
     let environment = BatchEnvironment {
         environment: case.environment(),
@@ -259,7 +255,13 @@ fn arrays<T: Number>(
         parameters: with_parameters.then_some(&pi[..]),
     };
     let batch = Batch::<T>::of(model).with_instruction_set(set).expect("available").with_threads(1).expect("one");
-    let way = format!("{} of {}, {} bytes a number on {}, parameters {with_parameters}", query.name(), case.name, size_of::<T>(), set.name());
+    let way = format!(
+        "{} of {}, {} bytes a number on {}, parameters {with_parameters}",
+        query.name(),
+        case.name,
+        size_of::<T>(),
+        set.name()
+    );
     for (k, found) in in_arrays(&batch, query, tables, &environment).iter().enumerate() {
         let applied = [case.applied[0], case.applied[1], (case.frame, Wrench::from_array(wrenches[k]))];
         let one = Environment { gravity: Vec3(gravity[k]), applied: &applied, ..case.environment() };

@@ -90,8 +90,7 @@ impl Given<'_> {
             let mut e = vec![0.0; self.n()];
             e[j] = 1.0;
             let theta = seed_direction(self.model, self.theta(), &e);
-            let inputs: Vec<&[Dual]> =
-                std::iter::once(&theta[..]).chain(others.iter().map(Vec::as_slice)).collect();
+            let inputs: Vec<&[Dual]> = std::iter::once(&theta[..]).chain(others.iter().map(Vec::as_slice)).collect();
             self.dual(quantity, &inputs).into_iter().map(|x| x.derivative).collect::<Vec<f64>>()
         });
         let columns: Vec<DVector<f64>> = columns.map(|column| vector(&column)).collect();

@@ -2,36 +2,15 @@
 #![allow(dead_code, missing_docs)] // each test uses a part
 
 use mozzi::model::description::{Joint, JointKind, Mimic};
-use mozzi::{Base, Description, Model, SE3, ScrewAxis, Solid, SpatialInertia, Twist, Vec3};
-use mozzi_codegen::Quantity;
+use mozzi::quantities::{LIST, Of, Query};
+use mozzi::testing::Random;
+use mozzi::{Base, Description, Model, SE3, ScrewAxis, Solid, SpatialInertia, Task, TaskFrame, Twist, Vec3};
 
-/// Numbers in [−1, 1) from a seed: SplitMix64.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() >> 16) as usize % n
-    }
-    pub fn number(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    pub fn array<const K: usize>(&mut self) -> [f64; K] {
-        std::array::from_fn(|_| self.number())
-    }
-    pub fn vector(&mut self, n: usize, size: f64) -> Vec<f64> {
-        (0..n).map(|_| size * self.number()).collect()
-    }
-}
+pub use mozzi::testing::state;
 
 fn body(random: &mut Random) -> SpatialInertia {
     let turn = SE3::exp(Twist::from_array(random.array()));
-    Solid::Box([0.3, 0.2 + 0.1 * random.number(), 0.1]).inertia(2.0 + random.number()).transformed(turn)
+    Solid::Box([0.3, 0.2 + 0.1 * random.next(), 0.1]).inertia(2.0 + random.next()).transformed(turn)
 }
 
 /// A tree of revolute, prismatic and helical joints off every axis, with friction and armature; `mimic joints` of the last joints follow
@@ -40,7 +19,7 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
     let mut random = Random(seed);
     let mut robot = Description::new(format!("tree {seed}")).link("link0", body(&mut random));
     for i in 1..=links {
-        let parent = if random.number() < 0.4 { i - 1 } else { random.below(i) };
+        let parent = if random.next() < 0.4 { i - 1 } else { random.below(i) };
         let mut V = Twist::from_array(random.array());
         match i % 4 {
             0 => V.w = Vec3([0.0; 3]),                                      // a slide
@@ -57,7 +36,7 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
         }
         if i > links - mimics {
             let followed = format!("joint{}", 1 + (i * 7) % (links - mimics));
-            joint.mimic = Some(Mimic { joint: followed, ratio: 1.5 * random.number(), offset: random.number() });
+            joint.mimic = Some(Mimic { joint: followed, ratio: 1.5 * random.next(), offset: random.next() });
         }
         robot = robot.link(format!("link{i}"), body(&mut random)).joint(joint);
     }
@@ -106,32 +85,52 @@ pub fn robots() -> Vec<(String, Model)> {
     robots
 }
 
-/// Every quantity of a robot; those of a frame of its last one.
-pub fn quantities(model: &Model) -> Vec<Quantity> {
-    let frame = model.frames().last().expect("a frame").0;
-    vec![
-        Quantity::InverseDynamics,
-        Quantity::MassMatrix,
-        Quantity::ForwardDynamics,
-        Quantity::BiasForces,
-        Quantity::VelocityProduct,
-        Quantity::GravityForces,
-        Quantity::ForwardKinematics(frame),
-        Quantity::BodyJacobian(frame),
-        Quantity::SpaceJacobian(frame),
-        Quantity::InverseDynamicsDerivatives,
-        Quantity::ForwardDynamicsDerivatives,
-    ]
+/// Every quantity of a robot; those of a frame of its last one, those of a task of the last one that can move so in every state of the tests.
+pub fn quantities(model: &Model) -> Vec<Query<'static>> {
+    let frames: Vec<_> = model.frames().map(|(frame, _)| frame).collect();
+    let task = |query: Query<'static>| {
+        let rows = [&[2, 3, 4][..], &[1, 5], &[2], &[1], &[0]];
+        let tasks = frames
+            .iter()
+            .rev()
+            .flat_map(|&frame| rows.map(|rows| query.of_task(Task { frame, coordinates: TaskFrame::Body, rows })));
+        let is_regular = |query: &Query| (0..32).all(|seed| compute(model, *query, seed).is_ok());
+        tasks.into_iter().find(is_regular).expect("a frame that turns")
+    };
+    let of_list = |place: usize| {
+        let query = Query::at(place);
+        match query.declaration().of {
+            Of::Robot => query,
+            Of::Frame => query.of(frames[frames.len() - 1]),
+            Of::Point => query.about(Vec3([0.5, -0.25, 1.0])),
+            Of::Task => task(query),
+        }
+    };
+    (0..LIST.len()).map(of_list).collect()
 }
 
-/// θ, θ̇, and θ̈ or τ.
-pub fn state(model: &Model, seed: u64) -> [Vec<f64>; 3] {
-    let mut random = Random(seed);
-    let mut theta = random.vector(model.nq(), 3.0);
-    if let (Some(pose), true) = (theta.first_chunk_mut(), model.is_floating()) {
-        *pose = SE3::exp(Twist::from_array(random.array()) * 2.0).to_pose();
+/// The entries of a [`state`] that a quantity takes.
+pub fn inputs<'s>(query: Query, state: &'s [Vec<f64>; 3]) -> Vec<&'s [f64]> {
+    let array = |name| match name {
+        "theta" => &state[0],
+        "dtheta" => &state[1],
+        _ => &state[2],
+    };
+    query.declaration().inputs.iter().map(|input| &array(input.name)[..]).collect()
+}
+
+/// By the kernels, in the robot's own environment.
+pub fn compute(model: &Model, query: Query, seed: u64) -> Result<Vec<Vec<f64>>, mozzi::Error> {
+    model.compute(query, &inputs(query, &state(model, seed)), &model.environment())
+}
+
+/// Pivots and solves lose what the matrix's condition takes.
+pub fn tolerance(query: Query) -> f64 {
+    match query.declaration() {
+        declaration if !declaration.divides => 2e-14,
+        declaration if declaration.of == Of::Task => 1e-8,
+        _ => 1e-10,
     }
-    [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
 }
 
 /// The largest |found − reference| beside the largest |reference|.

@@ -1,16 +1,18 @@
 //! Simulation by machine code beside that by the kernels.
 #![allow(missing_docs)]
 
+#[path = "../../mozzi-codegen/tests/common/mod.rs"]
 mod common;
 
 use common::{error, robots, state};
+use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{Equation, GravityCompensation, Input, Method, Options, Zero, applied, torque};
 use mozzi::{Error, Model, Trajectory, Vec3, Wrench};
-use mozzi_codegen::{Compiled, Quantity, compile};
+use mozzi_batch::{Compiled, compile};
 use std::ops::ControlFlow;
 
 fn compiled(model: &Model) -> Compiled {
-    compile(model, &[Quantity::ForwardDynamics]).expect("no frames")
+    compile(model, &[ForwardDynamics.into()]).expect("no frames")
 }
 
 fn end(motion: Result<Trajectory, Error>) -> Vec<f64> {

@@ -1,0 +1,69 @@
+//! Many states by machine code, against one state by the kernels.
+#![allow(missing_docs)]
+
+#[path = "../../mozzi-codegen/tests/common/mod.rs"]
+mod common;
+
+use common::{compute, error, inputs, quantities, robots, state, tolerance};
+use mozzi::quantities::MassMatrix;
+use mozzi_batch::{Layout, compile};
+
+#[test]
+fn rows_and_blocks_of_any_number_of_states() {
+    for (name, model) in robots() {
+        let (n, nq, environment) = (model.n(), model.nq(), model.environment().into());
+        // compiled, and with nothing compiled: the batch's kernels
+        let queries = quantities(&model);
+        for compiled in [&queries[..], &[]] {
+            let robot = compile(&model, compiled).expect("its own frames").with_threads(2).expect("two threads");
+            for (query, states) in queries.iter().flat_map(|&query| [0, 1, 8, 13].map(|states| (query, states))) {
+                let rows: Vec<[Vec<f64>; 3]> = (0..states).map(|seed| state(&model, seed)).collect();
+                let count = query.declaration().inputs.len();
+                let tables: Vec<Vec<f64>> =
+                    (0..count).map(|k| rows.iter().flat_map(|row| inputs(query, row)[k].to_vec()).collect()).collect();
+                let tables: Vec<&[f64]> = tables.iter().map(Vec::as_slice).collect();
+                let lengths = query.output_lengths(&model);
+                let mut found: Vec<Vec<f64>> = lengths.map(|length| vec![f64::NAN; states as usize * length]).collect();
+                let mut outputs: Vec<&mut [f64]> = found.iter_mut().map(Vec::as_mut_slice).collect();
+                robot.batch().compute(query, &tables, &environment, &mut outputs).expect("regular");
+                for seed in 0..states {
+                    let expected = compute(&model, query, seed).expect("regular");
+                    for (found, expected) in found.iter().zip(&expected) {
+                        let error = error(&found[seed as usize * expected.len()..][..expected.len()], expected);
+                        assert!(
+                            error < tolerance(query).max(1e-13),
+                            "{name}, {}, state {seed} of {states}: {error:e}",
+                            query.name()
+                        );
+                    }
+                }
+            }
+            let robot = robot.with_layout(Layout::Blocks);
+            let rows: Vec<f64> = (0..13).flat_map(|seed| state(&model, seed)[0].clone()).collect();
+            let blocks = robot.batch().to_blocks(&rows, nq);
+            let mut M = vec![0.0; blocks.len() / nq * n * n];
+            robot.batch().compute(MassMatrix, &[&blocks], &environment, &mut [&mut M]).expect("lengths");
+            let found = robot.batch().to_rows(&M, n * n, 13);
+            let expected = model.mass_matrix(&rows[12 * nq..]).expect("lengths");
+            assert!(error(&found[12 * n * n..], expected.as_slice()) < 1e-13, "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_registers_cannot_do_is_done_at_one_state() {
+    let model = mozzi_urdf::open("ur5").and_then(|robot| robot.build()).expect("an embedded robot");
+    let robot = compile(&model, &[MassMatrix.into()]).expect("no frames");
+    let (batch, environment) = (robot.batch(), model.environment().into());
+    let mut theta: Vec<f64> = (0..20).flat_map(|seed| state(&model, seed)[0].clone()).collect();
+    (theta[6 * 3 + 2], theta[6 * 9 + 1]) = (3e9, f64::NAN);
+    let mut M = vec![0.0; 20 * 36];
+    batch.compute(MassMatrix, &[&theta], &environment, &mut [&mut M]).expect("lengths");
+    for k in (0..20).filter(|&k| k != 9) {
+        let expected = model.mass_matrix(&theta[6 * k..][..6]).expect("lengths");
+        assert!(error(&M[36 * k..][..36], expected.as_slice()) < 1e-14, "state {k}");
+    }
+    assert!(M[36 * 9..][..36].iter().any(|x| x.is_nan()));
+    let error = batch.compute(MassMatrix, &[&theta], &environment, &mut [&mut M[1..]]).expect_err("short").to_string();
+    assert!(error.contains("M has 719 numbers, expected 720"), "{error}");
+}
