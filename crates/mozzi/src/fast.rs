@@ -11,14 +11,12 @@
 //! let (theta, dtheta, ddtheta) = (vec![0.1; model.nq()], vec![0.0; model.n()], vec![0.0; model.n()]);
 //! let mut tau = vec![0.0; model.n()];
 //! let (query, environment) = (Query::from(InverseDynamics), model.environment());
-//! fast::evaluate(query, model, &[&theta, &dtheta, &ddtheta], &environment, &mut workspace, &mut [&mut tau]);
+//! fast::evaluate(&query, model, &[&theta, &dtheta, &ddtheta], &environment, &mut workspace, &mut [&mut tau]);
 //! # }
 //! ```
 
 use crate::model::{Environment, Error, FrameId, Model};
-use crate::quantities::{
-    Entry, MOST_INPUTS, MOST_OUTPUTS, Memory, Quantity, Query, Subject, are_clear, evaluate as run,
-};
+use crate::quantities::{Inputs, Memory, Outputs, Quantity, Query, Subject, are_clear, evaluate as run};
 use crate::scalar::Fused;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
@@ -60,7 +58,7 @@ impl Workspace {
 
     /// Was everything that the last call of this quantity divided by far above rounding? If not, [`Model::compute`] says what is
     /// singular, if anything is. See [`Pivots`](crate::Pivots).
-    pub fn are_pivots_clear(&self, query: Query) -> bool {
+    pub fn are_pivots_clear(&self, query: &Query) -> bool {
         match &self.0 {
             Inner::Plain(memory) => are_clear(query.declaration(), memory),
             Inner::Fused(memory, _) => are_clear(query.declaration(), memory),
@@ -74,7 +72,7 @@ impl Workspace {
 /// On slices of a wrong number or length, and on a frame that is missing or another model's: see [`Query::check`].
 #[inline]
 pub fn evaluate(
-    query: Query,
+    query: &Query,
     model: &Model,
     inputs: &[&[f64]],
     environment: &Environment,
@@ -84,13 +82,14 @@ pub fn evaluate(
     match &mut workspace.0 {
         Inner::Plain(memory) => query.evaluate_f64(model, inputs, environment, memory, outputs),
         Inner::Fused(memory, applied) => {
-            let (mut given, mut found): ([&[Fused]; MOST_INPUTS], [&mut [Fused]; MOST_OUTPUTS]) = Default::default();
-            let count = outputs.len();
-            given.iter_mut().zip(inputs).for_each(|(fused, plain)| *fused = as_fused(plain));
-            found.iter_mut().zip(outputs).for_each(|(fused, plain)| *fused = as_fused_mut(plain));
+            let [a, b, c] = query.inputs(inputs);
+            let [x, y, z, w] = query.outputs(outputs);
+            let given = [as_fused(a), as_fused(b), as_fused(c)];
+            let mut found = [as_fused_mut(x), as_fused_mut(y), as_fused_mut(z), as_fused_mut(w)];
             let environment = &fused_environment(environment, applied);
             let entry = ENTRIES[query.index()];
-            entry(&query.subject, model, &given[..inputs.len()], environment, memory, &mut found[..count]);
+            // SAFETY: a Memory<Fused> is made by `Workspace::new` alone, where the processor has FMA.
+            unsafe { entry(&query.subject, model, &given, environment, memory, &mut found) }
         }
     }
 }
@@ -101,7 +100,7 @@ pub fn evaluate(
 /// As [`Model::compute`].
 #[inline]
 pub fn compute(
-    query: Query,
+    query: &Query,
     model: &Model,
     inputs: &[&[f64]],
     environment: &Environment,
@@ -113,13 +112,16 @@ pub fn compute(
     if workspace.are_pivots_clear(query) {
         return Ok(());
     }
-    for (output, values) in outputs.iter_mut().zip(model.compute(query, inputs, environment)?) {
+    for (output, values) in outputs.iter_mut().zip(model.compute(*query, inputs, environment)?) {
         output.copy_from_slice(&values);
     }
     Ok(())
 }
 
-const ENTRIES: &[Entry<Fused, f64>] = {
+/// Compiled for FMA: to be called where the processor has it.
+type Entry = unsafe fn(&Subject, &Model, &Inputs<Fused>, &Environment<Fused>, &mut Memory<Fused>, &mut Outputs<Fused>);
+
+const ENTRIES: &[Entry] = {
     macro_rules! entries {
         ($($Q:ident)*) => { &[$(fused::<crate::quantities::$Q>),*] };
     }
@@ -127,30 +129,16 @@ const ENTRIES: &[Entry<Fused, f64>] = {
 };
 
 /// The same kernel, compiled for FMA (and AVX, which it implies).
+#[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
 fn fused<Q: Quantity>(
     of: &Subject,
     model: &Model,
-    inputs: &[&[Fused]],
+    inputs: &Inputs<Fused>,
     environment: &Environment<Fused>,
     memory: &mut Memory<Fused>,
-    outputs: &mut [&mut [Fused]],
+    outputs: &mut Outputs<Fused>,
 ) {
-    #[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
-    fn entry<Q: Quantity>(
-        of: &Subject,
-        model: &Model,
-        inputs: &[&[Fused]],
-        environment: &Environment<Fused>,
-        memory: &mut Memory<Fused>,
-        outputs: &mut [&mut [Fused]],
-    ) {
-        run::<Q, Fused, f64>(of, model, inputs, environment, memory, outputs);
-    }
-    #[allow(unused_unsafe)] // no target feature elsewhere
-    // SAFETY: a Memory<Fused> is made by `Workspace::new` alone, where the processor has FMA, and this list is called with no other.
-    unsafe {
-        entry::<Q>(of, model, inputs, environment, memory, outputs)
-    }
+    run::<Q, Fused, f64>(of, model, inputs, environment, memory, outputs);
 }
 
 fn as_fused(x: &[f64]) -> &[Fused] {

@@ -154,7 +154,8 @@ impl Quantity for GravityForces {
         &[THETA],
         &[output("g", VECTOR, FORCE)],
     )
-    .uses(Uses::GRAVITY);
+    .uses(Uses::GRAVITY)
+    .at_rest();
 }
 
 /// See [`tip_forces`].
@@ -169,5 +170,6 @@ impl Quantity for TipForces {
         &[THETA],
         &[output("tau", VECTOR, FORCE)],
     )
-    .uses(Uses::WRENCHES);
+    .uses(Uses::WRENCHES)
+    .at_rest();
 }

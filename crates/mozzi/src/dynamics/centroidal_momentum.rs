@@ -45,7 +45,8 @@ impl Quantity for CentroidalMomentumBias {
         &[THETA, DTHETA],
         &[output("b", SIX, "N m, N")],
     )
-    .needs_mass();
+    .needs_mass()
+    .at_rest();
 }
 impl Kernel for CentroidalMomentumBias {
     #[inline(always)]

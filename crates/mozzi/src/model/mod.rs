@@ -33,7 +33,7 @@ pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
 pub(crate) use link::{Lifted, Link};
-pub use pivots::{Pivots, least_is_clear};
+pub use pivots::{Pivots, clearance, least_is_clear};
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub use task::{Task, TaskFrame, TaskMemory};

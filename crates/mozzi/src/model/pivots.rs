@@ -1,7 +1,7 @@
 //! What a factorization of the mass matrix divided by, and the one rule that judges it.
 
 use super::{Error, Model};
-use crate::scalar::Float;
+use crate::scalar::{Float, Scalar};
 use alloc::string::ToString;
 use alloc::vec::Vec;
 
@@ -60,5 +60,11 @@ impl Pivots<'_> {
 /// The quick test by the least pivot and the sum of all: least > √ε/4 · sum. No for NaN and infinity.
 #[inline(always)]
 pub fn least_is_clear<T: Float>(least: T, sum: T) -> bool {
-    least > T::EPSILON.sqrt() * T::from_f64(0.25) * sum && sum * T::zero() == T::zero()
+    clearance(least, sum, T::EPSILON) > T::zero()
+}
+
+/// least − √ε/4 · sum, positive where the pivots are clear: for each number that a register holds. ε is that of its numbers.
+#[inline(always)]
+pub fn clearance<S: Scalar + From<T>, T: Float>(least: S, sum: S, epsilon: T) -> S {
+    least - S::from(epsilon.sqrt() * T::from_f64(0.25)) * sum
 }

@@ -72,6 +72,13 @@ mod tests {
             let reduced = model.reduced();
             let [theta, dtheta, ddtheta] = state(&model, 6);
             let applied = [(model.end_effector().expect("named"), wrench(2))];
+            let derivatives = |model: &Model, environment: &Environment| {
+                let state: [&[f64]; 3] = [&theta, &dtheta, &ddtheta];
+                model
+                    .compute(crate::quantities::InverseDynamicsDerivatives, &state, environment)
+                    .expect("lengths")
+                    .remove(0)
+            };
             let of = |model: &Model| {
                 let environment = Environment { applied: &applied, ..model.environment() };
                 [
@@ -81,12 +88,7 @@ mod tests {
                         .as_slice()
                         .to_vec(),
                     model.mass_matrix(&theta).expect("lengths").as_slice().to_vec(),
-                    model
-                        .inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment)
-                        .expect("lengths")
-                        .d_theta
-                        .as_slice()
-                        .to_vec(),
+                    derivatives(model, &environment),
                 ]
             };
             for (found, reference) in of(&reduced).iter().zip(&of(&model)) {

@@ -19,6 +19,7 @@ mod compute;
 mod query;
 
 pub use crate::quantity::*;
+pub(crate) use crate::quantity::{Entry, Inputs, Outputs, evaluate};
 pub(crate) use compute::are_clear;
 pub use query::Query;
 
@@ -107,6 +108,30 @@ impl Query<'_> {
         memory: &mut Memory<S>,
         outputs: &mut [&mut [S]],
     ) {
-        Entries::<S, C>::LIST[self.index](&self.subject, model, inputs, environment, memory, outputs);
+        let (inputs, mut outputs) = (self.inputs(inputs), self.outputs(outputs));
+        Entries::<S, C>::LIST[self.index](&self.subject, model, &inputs, environment, memory, &mut outputs);
+    }
+
+    /// As many as the quantity has, in their places.
+    #[inline(always)]
+    pub(crate) fn inputs<'a, S>(&self, given: &[&'a [S]]) -> Inputs<'a, S> {
+        assert!(given.len() == self.declaration().inputs.len(), "{} inputs of {}", given.len(), self.name());
+        let input = |k: usize| if k < given.len() { given[k] } else { &[] };
+        [input(0), input(1), input(2)]
+    }
+
+    /// Likewise.
+    #[inline(always)]
+    pub(crate) fn outputs<'a, S>(&self, given: &'a mut [&mut [S]]) -> Outputs<'a, S> {
+        match given {
+            _ if given.len() != self.declaration().outputs.len() => {
+                panic!("{} outputs of {}", given.len(), self.name())
+            }
+            [a] => [a, &mut [], &mut [], &mut []],
+            [a, b] => [a, b, &mut [], &mut []],
+            [a, b, c] => [a, b, c, &mut []],
+            [a, b, c, d] => [a, b, c, d],
+            _ => Default::default(),
+        }
     }
 }

@@ -20,6 +20,8 @@ pub struct Declaration {
     pub of: Of,
     /// The parts of the environment that it depends on.
     pub uses: Uses,
+    /// Its kernel's other inputs are zeros.
+    pub is_at_rest: bool,
     /// It divides by pivots: of the mass matrix, and of the task where it is of one.
     pub divides: bool,
     /// It divides by the robot's mass.
@@ -44,6 +46,7 @@ impl Declaration {
             first_output: 0,
             of,
             uses,
+            is_at_rest: false,
             divides: false,
             needs_mass: false,
             is_of_forces: true,
@@ -54,6 +57,9 @@ impl Declaration {
     }
     pub(crate) const fn uses(self, uses: Uses) -> Self {
         Declaration { uses, ..self }
+    }
+    pub(crate) const fn at_rest(self) -> Self {
+        Declaration { is_at_rest: true, ..self }
     }
     pub(crate) const fn divides(self) -> Self {
         Declaration { divides: true, ..self }

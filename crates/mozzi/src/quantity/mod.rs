@@ -13,6 +13,7 @@ pub use subject::Subject;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
+use alloc::vec::Vec;
 
 /// A function of a robot and its state: a name, the kernel that computes it, what goes in, what comes out.
 pub trait Quantity: Copy + Send + Sync + 'static {
@@ -57,7 +58,7 @@ pub struct Call<'a, S, C> {
     pub model: &'a Model<C>,
     /// The point of {s}.
     pub point: Vec3<S>,
-    /// The inputs in their order; zeros after them.
+    /// The inputs in their order; after them zeros, if the quantity [is at rest](Declaration::is_at_rest).
     pub inputs: [&'a [S]; MOST_INPUTS],
     /// The parts of the environment that the quantity uses.
     pub environment: &'a Environment<'a, S>,
@@ -67,37 +68,47 @@ pub struct Call<'a, S, C> {
     pub outputs: [&'a mut [S]; MOST_OUTPUTS],
 }
 
+/// Inputs in their order; those that are not there are empty.
+pub(crate) type Inputs<'a, S> = [&'a [S]; MOST_INPUTS];
+/// Likewise outputs.
+pub(crate) type Outputs<'a, S> = [&'a mut [S]; MOST_OUTPUTS];
 /// One quantity, at one state or at as many as a number holds.
-pub(crate) type Entry<S, C> = fn(&Subject, &Model<C>, &[&[S]], &Environment<S>, &mut Memory<S>, &mut [&mut [S]]);
+pub(crate) type Entry<S, C> = fn(&Subject, &Model<C>, &Inputs<S>, &Environment<S>, &mut Memory<S>, &mut Outputs<S>);
 
-/// A quantity's inputs, environment and outputs, routed to its kernel: missing inputs are zeros, unused parts of the environment absent.
+/// A quantity's inputs, environment and outputs, routed to its kernel: inputs that it does not have are zeros, parts of the environment that
+/// it does not use absent.
 #[inline(always)]
 pub(crate) fn evaluate<Q: Quantity, S: Scalar + From<C>, C: Scalar>(
     of: &Subject,
     model: &Model<C>,
-    inputs: &[&[S]],
+    inputs: &Inputs<S>,
     environment: &Environment<S>,
     memory: &mut Memory<S>,
-    outputs: &mut [&mut [S]],
+    outputs: &mut Outputs<S>,
 ) {
-    let zeros = core::mem::take(&mut memory.zeros);
-    let environment = Q::DECLARATION.uses.of(environment);
-    let (inputs, outputs) = (routed_inputs(inputs, &zeros[..model.n()]), routed_outputs(&Q::DECLARATION, outputs));
-    let point = memory.point.take().unwrap_or_else(|| of.point.map(S::from_f64));
-    Q::Kernel::run(Call { of, model, point, inputs, environment: &environment, memory, outputs });
-    memory.zeros = zeros;
-}
-
-#[inline(always)]
-fn routed_inputs<'a, S>(given: &[&'a [S]], zeros: &'a [S]) -> [&'a [S]; MOST_INPUTS] {
-    core::array::from_fn(|k| given.get(k).copied().unwrap_or(zeros))
-}
-
-#[inline(always)]
-fn routed_outputs<'a, S>(declaration: &Declaration, given: &'a mut [&mut [S]]) -> [&'a mut [S]; MOST_OUTPUTS] {
-    let mut outputs: [&mut [S]; MOST_OUTPUTS] = Default::default();
-    for (output, given) in outputs[declaration.first_output()..].iter_mut().zip(given) {
-        *output = given;
+    let declaration = const { Q::DECLARATION };
+    let zeros = if declaration.is_at_rest { core::mem::take(&mut memory.zeros) } else { Vec::new() };
+    let mut inputs: Inputs<S> = *inputs;
+    if declaration.is_at_rest {
+        inputs[declaration.inputs.len()..].fill(&zeros[..model.n()]);
     }
-    outputs
+    let [a, b, c, d] = outputs;
+    let mut outputs = [&mut **a, &mut **b, &mut **c, &mut **d];
+    outputs.rotate_right(declaration.first_output());
+    let part;
+    let environment = match declaration.uses {
+        Uses::ALL => environment,
+        uses => {
+            part = uses.of(environment);
+            &part
+        }
+    };
+    let point = match declaration.of {
+        Of::Point => memory.point.take().unwrap_or_else(|| of.point.map(S::from_f64)),
+        _ => Vec3::zero(),
+    };
+    Q::Kernel::run(Call { of, model, point, inputs, environment, memory, outputs });
+    if declaration.is_at_rest {
+        memory.zeros = zeros;
+    }
 }

@@ -10,7 +10,7 @@ use crate::fast;
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, FrameId, Model, Workspace};
-use crate::quantities;
+use crate::quantities::{self, Query};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use alloc::format;
@@ -125,9 +125,9 @@ impl<'m, I: Input> Equation<'m, I> {
         let is_clear = match &mut self.other {
             Some(other) if self.wrenches.is_empty() => other.write(theta, dtheta, &self.force, ddtheta),
             _ => {
-                let query = quantities::ForwardDynamics.into();
-                fast::evaluate(query, self.model, &state, &environment, &mut self.fast, &mut [ddtheta]);
-                self.fast.are_pivots_clear(query)
+                let query = Query::from(quantities::ForwardDynamics);
+                fast::evaluate(&query, self.model, &state, &environment, &mut self.fast, &mut [ddtheta]);
+                self.fast.are_pivots_clear(&query)
             }
         };
         if !is_clear {

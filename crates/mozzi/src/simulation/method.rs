@@ -284,8 +284,9 @@ mod tests {
             let (mut tau, mut ddtheta) = (vec![0.0; model.n()], vec![0.0; model.n()]);
             motors(if k == N { t_f } else { k as f64 * dt }, &theta, &dtheta, &mut tau);
             let environment = model.environment();
-            let (query, state) = (crate::quantities::ForwardDynamics.into(), [&theta[..], &dtheta, &tau]);
-            fast::evaluate(query, &model, &state, &environment, &mut workspace, &mut [&mut ddtheta]);
+            let (query, state) =
+                (crate::quantities::Query::from(crate::quantities::ForwardDynamics), [&theta[..], &dtheta, &tau]);
+            fast::evaluate(&query, &model, &state, &environment, &mut workspace, &mut [&mut ddtheta]);
             let sample = motion.sample(k);
             assert_eq!((sample.theta, sample.dtheta), (theta.as_slice(), dtheta.as_slice()), "step {k}");
             assert_eq!((sample.ddtheta, sample.tau), (ddtheta.as_slice(), tau.as_slice()), "step {k}");

@@ -96,45 +96,39 @@ fn random_states_many() {
     }
 }
 
+/// On a number without value and order, which a kernel cannot branch on: every quantity, bit for bit.
 #[test]
 fn a_recording_plays_back_bit_for_bit() {
+    use crate::quantities::{LIST, Memory, Of, Query};
     use crate::scalar::recorded::{Recorded, play};
+    use alloc::vec::Vec;
     for (seed, mimics) in [(1, 0), (2, 2)] {
         let model = tree(seed, 6, mimics);
-        let n = model.n();
-        let [theta, dtheta, ddtheta] = state(&model, seed);
-        let input = |k: usize| (0..n).map(|j| Recorded::input(k * n + j)).collect::<alloc::vec::Vec<_>>();
-        let (q, dq, ddq) = (input(0), input(1), input(2));
-        let zero = Recorded::Constant(0.0);
-        let (mut tau, mut found, mut M) = (alloc::vec![zero; n], alloc::vec![zero; n], alloc::vec![zero; n * n]);
-        let mut w = Workspace::<Recorded>::new(&model);
-        let environment = model.environment::<Recorded>();
-        kernel::inverse_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut tau);
-        kernel::forward_dynamics(&model, &q, &dq, &ddq, &environment, &mut w, &mut found);
-        kernel::coriolis_matrix(&model, &q, &dq, &mut w, &mut M);
-        let mut by = [(); 6].map(|()| alloc::vec![zero; n * n]);
-        let [a, b, c, d, e, f] = by.each_mut().map(|x| &mut x[..]);
-        kernel::inverse_dynamics_derivatives(&model, &q, &dq, &ddq, &environment, &mut w, [a, b, c]);
-        let mut x = alloc::vec![zero; n];
-        kernel::forward_dynamics_derivatives(&model, &q, &dq, &ddq, &environment, &mut w, &mut x, [d, e, f]);
-        let value = play(&[&theta[..], &dtheta, &ddtheta].concat());
-        let played = |list: &[Recorded]| list.iter().map(|&x| value(x)).collect::<alloc::vec::Vec<f64>>();
-        let environment = model.environment();
-        assert_eq!(
-            played(&tau),
-            model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths").as_slice()
-        );
-        assert_eq!(
-            played(&found),
-            model.forward_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("regular").as_slice()
-        );
-        assert_eq!(played(&M), model.coriolis_matrix(&theta, &dtheta).expect("lengths").transpose().as_slice());
-        let of_tau = model.inverse_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
-        let of_ddtheta = model.forward_dynamics_derivatives(&theta, &dtheta, &ddtheta, &environment).expect("regular");
-        assert_eq!(played(&by[0]), of_tau.d_theta.transpose().as_slice());
-        assert_eq!(played(&by[1]), of_tau.d_dtheta.transpose().as_slice());
-        assert_eq!(played(&by[3]), of_ddtheta.d_theta.transpose().as_slice());
-        assert_eq!(played(&by[5]), of_ddtheta.d_tau.as_slice());
+        let (state, n) = (state(&model, seed), model.n());
+        let inputs: [Vec<Recorded>; 3] = core::array::from_fn(|k| (0..n).map(|j| Recorded::input(k * n + j)).collect());
+        let frame = model.end_effector().expect("named");
+        for index in 0..LIST.len() {
+            let rows = &[0];
+            let task = crate::Task { frame, coordinates: crate::TaskFrame::Body, rows };
+            let query = match LIST[index].of {
+                Of::Task => Query::at(index).of_task(task),
+                _ => Query::at(index).of(frame),
+            };
+            let count = query.declaration().inputs.len();
+            let given: Vec<&[Recorded]> = inputs[..count].iter().map(Vec::as_slice).collect();
+            let numbers: Vec<&[f64]> = state[..count].iter().map(Vec::as_slice).collect();
+            let mut found: Vec<Vec<Recorded>> =
+                query.output_lengths(&model).map(|length| alloc::vec![Recorded::Constant(f64::NAN); length]).collect();
+            let mut slices: Vec<&mut [Recorded]> = found.iter_mut().map(Vec::as_mut_slice).collect();
+            let (environment, memory) = (model.environment::<Recorded>(), &mut Memory::new(&model));
+            query.evaluate(&model, &given, &environment, memory, &mut slices);
+            let value = play(&state.concat());
+            let expected = model.compute(query, &numbers, &model.environment()).expect("regular");
+            for (found, expected) in found.iter().zip(&expected) {
+                let played: Vec<f64> = found.iter().map(|&x| value(x)).collect();
+                assert_eq!(&played, expected, "{}", query.name());
+            }
+        }
     }
 }
 
