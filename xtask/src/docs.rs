@@ -1,4 +1,4 @@
-//! The pages of `docs/`, written by the tests that otherwise hold them current.
+//! The pages of `docs/`, and the stubs of the Python package, written by the tests that otherwise hold them current.
 
 use crate::command;
 use crate::oracles;
@@ -7,10 +7,10 @@ use crate::tests::give;
 use crate::workspace::Workspace;
 
 /// The tests that write pages.
-const PAGES: [&str; 4] = ["reports", "published", "oracles", "quantities_page"];
+const PAGES: [&str; 5] = ["reports", "published", "oracles", "quantities_page", "stubs"];
 
 pub fn write(workspace: &Workspace) -> Outcome {
-    let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf", "--package", "mozzi-batch"]);
+    let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf", "--package", "mozzi-batch", "--package", "mozzi-py"]);
     for page in PAGES {
         cargo.args(["--test", page]);
     }

@@ -5,13 +5,14 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Where `unsafe` may stand: instruction sets and their dispatch, machine code, and NumPy's arrays. A file that starts so.
-const UNSAFE_ALLOWED: [&str; 5] = [
+/// Where `unsafe` may stand: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's methods. A file that starts so.
+const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi/src/fast",
     "crates/mozzi-batch/src/instruction_set",
     "crates/mozzi-batch/src/lanes/",
     "crates/mozzi-codegen/src/jit/executable",
     "crates/mozzi-py/src/numpy",
+    "crates/mozzi-py/src/methods/attach",
 ];
 
 /// A file longer than this is asking to be two.

@@ -124,10 +124,6 @@ fn check(workspace: &Workspace) -> ExitCode {
         let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
         command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
     });
-    report.step("for build scripts", || {
-        let arguments = ["clippy", "--package", "mozzi-codegen", "--no-default-features", "--", "-D", "warnings"];
-        command::outcome(workspace.cargo(&arguments))
-    });
     report.step("documentation", || {
         // Libraries: the program `mozzi` would be written over the library of the same name, at the same time.
         let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);

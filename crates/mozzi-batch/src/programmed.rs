@@ -150,7 +150,8 @@ fn call<L: Lane>(
     (heights, output): (&[usize], &mut [L]),
     squares: &mut [L; 1],
 ) {
-    let (mut given, mut found): ([&[L::Number]; MOST_ARRAYS], [&mut [L::Number]; MOST_ARRAYS]) = Default::default();
+    let mut given: [&[L::Number]; MOST_ARRAYS] = Default::default();
+    let mut found: [&mut [L::Number]; MOST_ARRAYS] = Default::default();
     let mut rest = input;
     for (slice, &width) in given.iter_mut().zip(widths) {
         let (this, further) = rest.split_at(width);

@@ -105,7 +105,6 @@ fn a_recording_plays_back_bit_for_bit() {
     for (seed, mimics) in [(1, 0), (2, 2)] {
         let model = tree(seed, 6, mimics);
         let (state, n) = (state(&model, seed), model.n());
-        let inputs: [Vec<Recorded>; 3] = core::array::from_fn(|k| (0..n).map(|j| Recorded::input(k * n + j)).collect());
         let frame = model.end_effector().expect("named");
         for index in 0..LIST.len() {
             let rows = &[0];
@@ -114,6 +113,8 @@ fn a_recording_plays_back_bit_for_bit() {
                 Of::Task => Query::at(index).of_task(task),
                 _ => Query::at(index).of(frame),
             };
+            let inputs: [Vec<Recorded>; 3] =
+                core::array::from_fn(|k| (0..n).map(|j| Recorded::input(k * n + j)).collect());
             let count = query.declaration().inputs.len();
             let given: Vec<&[Recorded]> = inputs[..count].iter().map(Vec::as_slice).collect();
             let numbers: Vec<&[f64]> = state[..count].iter().map(Vec::as_slice).collect();
