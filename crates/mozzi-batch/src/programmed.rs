@@ -7,7 +7,7 @@ use crate::request::Request;
 use crate::worker::Worker;
 use crate::{InstructionSet, Number};
 use mozzi::quantities::Query;
-use mozzi::{Error, FrameId, Model, TaskFrame, least_is_clear};
+use mozzi::{Error, FrameId, Model, Scalar, TaskFrame, least_is_clear};
 use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -124,10 +124,16 @@ pub(crate) fn run<L: Lane>(
                 columns.iter_mut().zip(output.chunks_exact(abreast)).for_each(|(to, from)| *to = from[r]);
                 chunk.write(first, rows, columns);
             }
+            // all states at once: angles that are reduced exactly, and no pivots
+            let kinds = outputs.len() - own;
+            let limit = code.as_ref().map_or(f64::INFINITY, Kernel::angle_limit);
+            if kinds == 0 && squares[0].within(L::Number::from_f64(limit)) {
+                continue;
+            }
             let passes = |row: usize| {
                 let number = |column: usize| L::numbers(&output[column * abreast + r..][..1])[row];
-                let is_exact = code.as_ref().map_or(true, |kernel| kernel.is_exact(L::numbers(&squares)[row]));
-                let pivots = (0..outputs.len() - own).map(|kind| own_columns + 2 * kind);
+                let is_exact = L::numbers(&squares)[row] <= L::Number::from_f64(limit);
+                let pivots = (0..kinds).map(|kind| own_columns + 2 * kind);
                 pivots.fold(is_exact, |clear, k| clear & least_is_clear(number(k), number(k + 1)))
             };
             if (0..L::WIDTH).all(passes) {

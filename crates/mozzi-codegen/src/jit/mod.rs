@@ -127,6 +127,12 @@ impl Kernel {
         self.executable.call(inputs, outputs, squares);
     }
 
+    /// The largest sum of squares for which angles are reduced exactly.
+    #[inline(always)]
+    pub fn angle_limit(&self) -> f64 {
+        self.angle_limit
+    }
+
     /// Are the angles of a lane so small that their sines were reduced exactly? Else, and for NaN, its outputs mean nothing.
     #[inline(always)]
     pub fn is_exact<S: Float>(&self, squares: S) -> bool {
