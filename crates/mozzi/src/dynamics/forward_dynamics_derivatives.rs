@@ -7,7 +7,7 @@ use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
-    ACCELERATION, Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR, output,
+    ACCELERATION, Call, D_ACCELERATION, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR, output,
 };
 use crate::scalar::Scalar;
 
@@ -69,9 +69,9 @@ impl Quantity for ForwardDynamicsDerivatives {
         &[THETA, DTHETA, TAU],
         &[
             output("ddtheta", VECTOR, ACCELERATION),
-            output("d_theta", MATRIX, "rad/s² or m/s², each per unit of its column"),
-            output("d_dtheta", MATRIX, "rad/s² or m/s², each per unit of its column"),
-            output("d_tau", MATRIX, "rad/s² or m/s², each per unit of its column"),
+            output("d_theta", MATRIX, D_ACCELERATION),
+            output("d_dtheta", MATRIX, D_ACCELERATION),
+            output("d_tau", MATRIX, D_ACCELERATION),
         ],
     )
     .uses(Uses::ALL)

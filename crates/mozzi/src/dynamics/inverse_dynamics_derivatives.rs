@@ -29,14 +29,11 @@
 //! >
 //! > ∂τ_i/∂θ̇_j = A_iᵀ (2 𝒢ᶜ Ȧ_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
 
-use super::bias_forces::take_zeros;
 use crate::kinematics::{base_motion, base_pose, joint_transforms};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Environment, FrameId, Model, Workspace};
-use crate::quantity::{
-    CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, Rare, THETA, Uses, output,
-};
+use crate::model::{Environment, Model, Workspace};
+use crate::quantity::{Call, D_FORCE, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
@@ -65,7 +62,7 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 /// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
 #[cfg_attr(not(test), inline(always))]
 #[allow(clippy::too_many_arguments)]
-fn derivatives<S: Scalar + From<C>, C: Scalar>(
+pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
     dtheta: &[S],
@@ -291,75 +288,6 @@ fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     }
 }
 
-/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is fixed: g is a gradient. Of a floating base along its body
-/// twist, as [`inverse_dynamics_derivatives`].
-///
-/// Cost O(n · depth) beside n² zeros, no allocation.
-///
-/// # Panics
-/// When θ is not nq long, or `dg` not n².
-#[cfg_attr(not(test), inline(always))]
-pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    theta: &[S],
-    gravity: Vec3<S>,
-    workspace: &mut Workspace<S>,
-    dg: &mut [S],
-) {
-    at_rest(model, theta, None, &Environment::with_gravity(gravity), workspace, dg);
-}
-
-/// ∂(JᵀF)/∂θ, n × n, row-major into `dtau`, of wrenches that keep their coordinates in their frames.
-///
-/// Cost O(n · depth) beside n² zeros, no allocation.
-///
-/// # Panics
-/// When θ is not nq long, or `dtau` not n².
-#[cfg_attr(not(test), inline(always))]
-pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    theta: &[S],
-    applied: &[(FrameId, Wrench<S>)],
-    workspace: &mut Workspace<S>,
-    dtau: &mut [S],
-) {
-    let environment = Environment { applied, ..Environment::with_gravity(Vec3::zero()) };
-    at_rest(model, theta, None, &environment, workspace, dtau);
-}
-
-/// ∂(M(θ)x)/∂θ for a constant x, n × n, row-major into `dMx`. Armature is constant and drops out.
-///
-/// Cost O(n · depth) beside n² zeros, no allocation.
-///
-/// # Panics
-/// When θ is not nq long, x not n, or `dMx` not n².
-#[cfg_attr(not(test), inline(always))]
-pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    theta: &[S],
-    x: &[S],
-    workspace: &mut Workspace<S>,
-    dMx: &mut [S],
-) {
-    at_rest(model, theta, Some(x), &Environment::with_gravity(Vec3::zero()), workspace, dMx);
-}
-
-/// ∂τ/∂θ of inverse dynamics at θ̇ = 0, and θ̈ = 0 or as given.
-#[cfg_attr(not(test), inline(always))]
-fn at_rest<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    theta: &[S],
-    ddtheta: Option<&[S]>,
-    environment: &Environment<S>,
-    workspace: &mut Workspace<S>,
-    d_theta: &mut [S],
-) {
-    let zero = take_zeros(workspace);
-    joint_transforms(model, theta, workspace);
-    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, d_theta, None);
-    workspace.vector = zero;
-}
-
 /// See [`inverse_dynamics_derivatives`].
 #[derive(Clone, Copy, Debug)]
 pub struct InverseDynamicsDerivatives;
@@ -371,9 +299,9 @@ impl Quantity for InverseDynamicsDerivatives {
         "∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M, row i of τ_i; by θ along the velocities",
         &[THETA, DTHETA, DDTHETA],
         &[
-            output("d_theta", MATRIX, "N m or N, each per unit of its column"),
-            output("d_dtheta", MATRIX, "N m or N, each per unit of its column"),
-            output("d_ddtheta", MATRIX, "N m or N, each per unit of its column"),
+            output("d_theta", MATRIX, D_FORCE),
+            output("d_dtheta", MATRIX, D_FORCE),
+            output("d_ddtheta", MATRIX, D_FORCE),
         ],
     )
     .uses(Uses::ALL);
@@ -391,70 +319,5 @@ impl Kernel for InverseDynamicsDerivatives {
             &mut c.memory.workspace,
             [a, b, M],
         );
-    }
-}
-
-/// See [`gravity_forces_derivative`].
-#[derive(Clone, Copy, Debug)]
-pub struct GravityForcesDerivative;
-impl Quantity for GravityForcesDerivative {
-    type Kernel = Self;
-    type Registers = Rare;
-    const DECLARATION: Declaration = Declaration::new(
-        "gravity_forces_derivative",
-        "∂g/∂θ",
-        &[THETA],
-        &[output("dg", MATRIX, "N m or N, each per unit of its column")],
-    )
-    .uses(Uses::GRAVITY);
-}
-impl Kernel for GravityForcesDerivative {
-    #[inline(always)]
-    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, ..], [dg, ..]) = (c.inputs, c.outputs);
-        gravity_forces_derivative(c.model, theta, c.environment.gravity, &mut c.memory.workspace, dg);
-    }
-}
-
-/// See [`tip_forces_derivative`].
-#[derive(Clone, Copy, Debug)]
-pub struct TipForcesDerivative;
-impl Quantity for TipForcesDerivative {
-    type Kernel = Self;
-    type Registers = Rare;
-    const DECLARATION: Declaration = Declaration::new(
-        "tip_forces_derivative",
-        "∂(JᵀF)/∂θ of the wrenches that frames apply to the environment",
-        &[THETA],
-        &[output("dtau", MATRIX, "N m or N, each per unit of its column")],
-    )
-    .uses(Uses::WRENCHES);
-}
-impl Kernel for TipForcesDerivative {
-    #[inline(always)]
-    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, ..], [dtau, ..]) = (c.inputs, c.outputs);
-        tip_forces_derivative(c.model, theta, c.environment.applied, &mut c.memory.workspace, dtau);
-    }
-}
-
-/// See [`mass_matrix_product_derivative`].
-#[derive(Clone, Copy, Debug)]
-pub struct MassMatrixProductDerivative;
-impl Quantity for MassMatrixProductDerivative {
-    type Kernel = Self;
-    type Registers = Rare;
-    const DECLARATION: Declaration = Declaration::new(
-        "mass_matrix_product_derivative",
-        "∂(M(θ)x)/∂θ for a constant x",
-        &[THETA, CONSTANT_VECTOR],
-        &[output("dMx", MATRIX, "that of M x, each per unit of its column")],
-    );
-}
-impl Kernel for MassMatrixProductDerivative {
-    #[inline(always)]
-    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, x, _], [dMx, ..]) = (c.inputs, c.outputs);
-        mass_matrix_product_derivative(c.model, theta, x, &mut c.memory.workspace, dMx);
     }
 }

@@ -7,6 +7,7 @@ mod centroidal_momentum;
 mod closed_form;
 mod coriolis_matrix;
 mod energy;
+mod force_derivatives;
 mod forward_dynamics;
 mod forward_dynamics_by_inverse_dynamics;
 mod forward_dynamics_derivatives;
@@ -33,14 +34,15 @@ pub use centroidal_momentum::{CentroidalMomentumBias, CentroidalMomentumMatrix};
 pub use closed_form::ClosedForm;
 pub use coriolis_matrix::{CoriolisMatrix, MassMatrixRate, coriolis_matrix, mass_matrix_rate};
 pub use energy::{KineticEnergy, PotentialEnergy, kinetic_energy, potential_energy};
+pub use force_derivatives::{
+    GravityForcesDerivative, MassMatrixProductDerivative, TipForcesDerivative, gravity_forces_derivative,
+    mass_matrix_product_derivative, tip_forces_derivative,
+};
 pub use forward_dynamics::{ForwardDynamics, forward_dynamics};
 pub use forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics;
 pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynamics_derivatives};
 pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
-pub use inverse_dynamics_derivatives::{
-    GravityForcesDerivative, InverseDynamicsDerivatives, MassMatrixProductDerivative, TipForcesDerivative,
-    gravity_forces_derivative, inverse_dynamics_derivatives, mass_matrix_product_derivative, tip_forces_derivative,
-};
+pub use inverse_dynamics_derivatives::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
 pub use joint_friction::{JointFriction, joint_friction};
 pub use mass_matrix::{MassMatrix, mass_matrix};
 pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};

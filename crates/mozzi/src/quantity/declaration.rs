@@ -197,6 +197,9 @@ pub(crate) const fn output(name: &'static str, dims: &'static [Dim], unit: &'sta
 
 pub(crate) const FORCE: &str = "N m or N";
 pub(crate) const ACCELERATION: &str = DDTHETA.unit;
+/// Of ∂τ and of ∂θ̈.
+pub(crate) const D_FORCE: &str = "N m or N, each per unit of its column";
+pub(crate) const D_ACCELERATION: &str = "rad/s² or m/s², each per unit of its column";
 pub(crate) const INERTIA: &str = "kg m², kg m or kg";
 pub(crate) const NUMBER: &[Dim] = &[];
 pub(crate) const VECTOR: &[Dim] = &[Dim::N];
