@@ -1,6 +1,7 @@
 //! What Python gives for an array, as numbers in C's order; shapes that do not fit, named.
 
 use crate::numpy::{self, Element, Fresh};
+use mozzi::nalgebra::DMatrix;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -106,12 +107,19 @@ impl<'py> Numbers<'py> {
         given: &Bound<'py, PyAny>,
         expected: &'static str,
     ) -> PyResult<[f64; K]> {
-        let mut numbers = Numbers::new(name, given)?;
-        if numbers.shape != [K] {
-            return Err(wrong_shape(name, &numbers.shape, expected));
+        let numbers = Numbers::new(name, given)?;
+        match numbers.shape[..] == [K] {
+            true => numbers.few(),
+            false => Err(wrong_shape(name, &numbers.shape, expected)),
         }
-        numbers.spread::<f64>(&[], 1)?;
-        Ok(std::array::from_fn(|k| numbers.slice::<f64>().map_or(f64::NAN, |numbers| numbers[k])))
+    }
+
+    /// As many numbers as are known to be there.
+    pub fn few<const K: usize>(mut self) -> PyResult<[f64; K]> {
+        self.spread::<f64>(&[], 1)?;
+        let mut few = [0.0; K];
+        few.copy_from_slice(self.slice()?);
+        Ok(few)
     }
 
     /// A matrix of R rows and C columns.
@@ -147,6 +155,12 @@ fn plain<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<Fresh<'py, f64>>> {
     Ok((!list.is_empty()).then_some(fresh))
 }
 
+/// A matrix that is stored by columns, by rows.
+pub fn by_rows(M: &DMatrix<f64>, out: &mut [f64]) {
+    let columns = M.ncols();
+    out.iter_mut().enumerate().for_each(|(k, x)| *x = M[(k / columns, k % columns)]);
+}
+
 /// `theta has shape (6,), expected (..., 7): …`
 pub fn wrong_shape(name: &str, found: &[usize], expected: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(format!("{name} has shape {}, expected {expected}", shown(found)))
@@ -164,9 +178,15 @@ pub fn shown(shape: &[usize]) -> String {
 ///
 /// # Errors
 /// `ValueError` naming both.
-pub fn common_leading(shapes: &[(&'static str, &[usize])]) -> PyResult<Vec<usize>> {
+pub fn common_leading<'a>(shapes: impl IntoIterator<Item = (&'static str, &'a [usize])>) -> PyResult<Vec<usize>> {
     let mut common: Vec<usize> = Vec::new();
-    for &(name, shape) in shapes {
+    for (name, shape) in shapes {
+        if common.is_empty() {
+            common.extend(shape);
+        }
+        if common == shape {
+            continue;
+        }
         let rank = common.len().max(shape.len());
         let before = common.clone();
         common.splice(..0, std::iter::repeat_n(1, rank - before.len()));

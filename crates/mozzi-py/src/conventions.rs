@@ -1,11 +1,10 @@
 //! `mozzi.conventions`: states, forces and matrices in the order, frames and signs of Pinocchio and MuJoCo, there and back.
 #![allow(clippy::wrong_self_convention)] // `from_` another library's convention, of the robot that self is
 
-use crate::array::{Numbers, common_leading, wrong_shape};
+use crate::array::{Numbers, by_rows, common_leading, wrong_shape};
 use crate::failure::{of_model, of_state};
 use crate::model::PyModel;
 use crate::numpy::Fresh;
-use crate::quantity::rows;
 use mozzi::conventions;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{Error, Jacobian, Twist};
@@ -30,8 +29,7 @@ fn each<'py, const K: usize>(
             return Err(wrong_shape(numbers.name, &numbers.shape, ["(..., n)", "(..., rows, columns)"][axes(k) - 1]));
         }
     }
-    let leadings: Vec<_> = given.iter().enumerate().map(|(k, x)| (x.name, x.leading(axes(k)))).collect();
-    let leading = common_leading(&leadings)?;
+    let leading = common_leading(given.iter().enumerate().map(|(k, x)| (x.name, x.leading(axes(k)))))?;
     for (k, numbers) in given.iter_mut().enumerate() {
         numbers.spread::<f64>(&leading, axes(k))?;
     }
@@ -52,7 +50,7 @@ fn each<'py, const K: usize>(
         }
         let length = result.len();
         if let Some(out) = &mut out {
-            rows(&result, &mut out.numbers()[index * length..][..length]);
+            by_rows(&result, &mut out.numbers()[index * length..][..length]);
         }
     }
     match out {

@@ -21,7 +21,10 @@ create_exception!(mozzi, DivergedError, PyArithmeticError, "A simulated state le
 
 /// An error of the library.
 pub fn of_model(error: mozzi::Error) -> PyErr {
-    let text = error.to_string();
+    raised(&error, error.to_string())
+}
+
+fn raised(error: &mozzi::Error, text: String) -> PyErr {
     match error {
         mozzi::Error::SingularMassMatrix { .. } | mozzi::Error::SingularTask { .. } => SingularError::new_err(text),
         mozzi::Error::Diverged { .. } => DivergedError::new_err(text),
@@ -56,11 +59,7 @@ pub fn of_state(error: mozzi::Error, index: usize, leading: &[usize]) -> PyErr {
         .collect();
     place.reverse();
     let place = place.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-    let error_type = of_model(error);
-    Python::attach(|py| {
-        let text = format!("state [{place}]: {}", error_type.value(py));
-        PyErr::from_type(error_type.get_type(py), text)
-    })
+    raised(&error, format!("state [{place}]: {error}"))
 }
 
 /// An error of the loader, with its lines as `diagnostics`.

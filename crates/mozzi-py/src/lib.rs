@@ -1,9 +1,9 @@
 //! mozzi in Python: arguments are converted and checked, the library is called, errors are named. No mathematics.
 
+mod arguments;
 mod array;
 mod call;
 mod compare;
-mod compiled;
 mod conventions;
 mod describe;
 mod environment;
@@ -14,8 +14,9 @@ mod methods;
 mod model;
 mod modern_robotics;
 mod numpy;
-mod quantity;
+mod results;
 mod robot;
+mod signature;
 mod simulate;
 mod threads;
 
@@ -28,6 +29,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     numpy::prepare(py)?;
     robot::remember_process();
     module.add_class::<model::PyModel>()?;
+    methods::add_to(&py.get_type::<model::PyModel>())?;
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;

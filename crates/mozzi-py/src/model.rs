@@ -1,17 +1,20 @@
 //! Python's `Model`: where it comes from, what it is, what it is turned into.
 
-use crate::call::named;
 use crate::describe::{State, from_state, to_state};
-use crate::failure::{of_batch, of_model};
+use crate::failure::of_model;
 use crate::numpy::Fresh;
+use crate::results::named;
 use crate::robot::{Asked, Machine, Robot};
 use crate::threads::Threads;
-use crate::{compiled, html, load};
+use crate::{html, load};
 
 use mozzi::FrameId;
-use mozzi_codegen::{Engine, Refusal};
+use mozzi::quantities::{Of, Query};
+use mozzi_batch::Engine;
+use mozzi_codegen::Refusal;
 use mozzi_text::scalar;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by threads.
@@ -48,21 +51,27 @@ impl PyModel {
 
     fn compiled(&self, names: Vec<Asked>, threads: Option<usize>) -> PyResult<Self> {
         let model = &self.0.model;
-        let quantity = |(name, frame): &Asked| compiled::named(model, name, self.0.frame(frame.as_deref()));
-        let quantities = names.iter().map(quantity).collect::<PyResult<Vec<_>>>()?;
-        let code = mozzi_codegen::compile(model, &quantities).map_err(of_model)?;
+        let query = |(name, frame): &Asked| self.query(name, frame.as_deref());
+        let queries = names.iter().map(query).collect::<PyResult<Vec<_>>>()?;
+        let code = mozzi_batch::compile(model, &queries).map_err(of_model)?;
         let mut robot = Robot::new(model.clone());
-        let code = match threads {
-            Some(count) => code.with_threads(count).map_err(|error| of_batch(error, &[]))?,
-            None => code,
-        };
         robot.compiled = Some(Machine { code, names, threads });
         Ok(PyModel(robot))
+    }
+
+    /// The quantity of this name, if it is of a frame that of this one, by default the end effector.
+    fn query(&self, name: &str, frame: Option<&str>) -> PyResult<Query<'static>> {
+        let query = Query::named(name).map_err(of_model)?;
+        Ok(if is_of_frame(&query) { query.of(self.frame(frame)?) } else { query })
     }
 
     pub fn built(model: Result<mozzi::Model, mozzi::Error>) -> PyResult<Self> {
         model.map(Self::of).map_err(of_model)
     }
+}
+
+fn is_of_frame(query: &Query) -> bool {
+    matches!(query.declaration().of, Of::Frame | Of::Task)
 }
 
 /// A new array of these numbers.
@@ -137,24 +146,23 @@ impl PyModel {
         Ok((rebuild, (to_state(self.0.model.description()), names, threads)))
     }
 
-    /// The same robot, these quantities of it made machine code: its methods are faster, on one state and on many, as long as
-    /// float64 is computed in the robot's own gravity, its base at rest, touching nothing. All else is computed as before.
-    /// `simulate` goes by 'forward_dynamics', from one start and, where torques are a function, from many.
+    /// The same robot with these quantities as machine code, which is faster at one state and at many. The code is used for float64, in the
+    /// robot's own gravity, with its own parameters, its base at rest, touching nothing; everything else is computed as before.
+    /// `simulate` uses 'forward_dynamics', from one start and, if the torques are a function, from many.
     ///
     /// Parameters
     /// ----------
     /// *quantities : str
-    ///     Names of methods: 'inverse_dynamics', 'forward_dynamics', 'mass_matrix', 'bias_forces', 'velocity_product',
-    ///     'gravity_forces', 'forward_kinematics', 'space_jacobian', 'body_jacobian' and the derivatives of both dynamics.
+    ///     Names of methods that compute a quantity, such as 'inverse_dynamics'.
     /// frame : str, optional
-    ///     Of poses and Jacobians; by default the end effector.
+    ///     Frame of those that are of a frame. Default: the end effector.
     /// threads : int, optional
-    ///     As many at most share many states; by default all cores. A method's own `threads` other than that is for the kernels.
+    ///     Largest number of threads for many states, unless a call has its own. Default: all cores.
     ///
     /// Returns
     /// -------
     /// Model
-    ///     Equal to this one. `engine(name)` says what computes a quantity.
+    ///     Equal to this one. `engine(name)` reports what computes a quantity.
     ///
     /// Examples
     /// --------
@@ -167,24 +175,41 @@ impl PyModel {
     #[pyo3(signature = (*quantities, frame=None, threads=None))]
     fn compile(&self, quantities: Vec<String>, frame: Option<String>, threads: Option<Threads>) -> PyResult<Self> {
         let asked = quantities.into_iter().map(|name| {
-            let of_frame = matches!(name.as_str(), "forward_kinematics" | "space_jacobian" | "body_jacobian");
+            let of_frame = Query::named(&name).is_ok_and(|query| is_of_frame(&query));
             (name, frame.clone().filter(|_| of_frame))
         });
         let before = self.0.compiled.iter().flat_map(|machine| machine.names.clone());
         self.compiled(before.chain(asked).collect(), threads.map(|Threads(count)| count))
     }
 
-    /// What computes a quantity at one state, of a frame where it has one, of the end effector by default.
+    /// What computes a quantity in the robot's own environment.
+    ///
+    /// Parameters
+    /// ----------
+    /// quantity : str
+    ///     Name of its method.
+    /// frame : str, optional
+    ///     Frame of a quantity that is of one. Default: the end effector.
     ///
     /// Returns
     /// -------
-    /// str
-    ///     Such as 'machine code (AVX2), 5210 bytes', or 'kernels: ' and why.
+    /// Engine
+    ///     A named tuple: `one` for one state, `many` for arrays of states. Each is such as 'machine code (avx512f), 5210 bytes', or
+    ///     'kernels: ' and why.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> mozzi.models.ur5().engine("mass_matrix").one
+    /// 'kernels: nobody asked for machine code'
     #[pyo3(signature = (quantity, frame=None))]
-    fn engine(&self, quantity: &str, frame: Option<&str>) -> PyResult<String> {
-        let quantity = compiled::named(&self.0.model, quantity, self.0.frame(frame))?;
-        let compiled = self.0.compiled.as_ref().map(|machine| machine.code.engine(quantity));
-        Ok(compiled.unwrap_or(Engine::Kernels(Refusal::NotAsked)).to_string())
+    fn engine<'py>(&self, py: Python<'py>, quantity: &str, frame: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
+        let query = self.query(quantity, frame)?;
+        let compiled = self.0.compiled.as_ref().map(|machine| machine.code.engine(query));
+        let one = compiled.unwrap_or(Engine::Kernels(Refusal::NotAsked));
+        let many = py.detach(|| self.0.batch::<f64>(None).map(|batch| batch.engine(query)))?;
+        let words = |engine: Engine| PyString::new(py, &engine.to_string()).into_any();
+        named(py, "Engine", vec![words(one), words(many)])
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

@@ -5,6 +5,7 @@ use crate::describe::refused;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::numpy::{self, Fresh};
+use mozzi::quantities::{ForwardDynamics, InverseDynamics, MassMatrix};
 use mozzi::{
     Environment, HomeFrames, Mat3, Model, SE3, SO3, ScrewAxis, Screws, SpatialInertia, Twist, Vec3, Wrench, fast,
 };
@@ -232,7 +233,8 @@ fn inverse_dynamics<'py>(
     let mut tau = Fresh::<f64>::new(py, &[n])?;
     let mut workspace = fast::Workspace::new(&model);
     let ddtheta = scaled(ddtheta, &sizes);
-    fast::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut workspace, tau.numbers());
+    let inputs: [&[f64]; 3] = [&theta, &dtheta, &ddtheta];
+    fast::evaluate(&InverseDynamics.into(), &model, &inputs, &environment, &mut workspace, &mut [tau.numbers()]);
     tau.numbers().iter_mut().zip(&sizes).for_each(|(tau, k)| *tau *= k);
     Ok(tau.into_array())
 }
@@ -249,7 +251,8 @@ fn mass_matrix<'py>(
     let n = theta.len();
     let (model, sizes) = chain(n, Mlist, Glist, Slist)?;
     let mut M = Fresh::<f64>::new(py, &[n, n])?;
-    fast::mass_matrix(&model, &scaled(theta, &sizes), &mut fast::Workspace::new(&model), M.numbers());
+    let (theta, mut workspace) = (scaled(theta, &sizes), fast::Workspace::new(&model));
+    fast::evaluate(&MassMatrix.into(), &model, &[&theta], &model.environment(), &mut workspace, &mut [M.numbers()]);
     for (place, x) in M.numbers().iter_mut().enumerate() {
         *x *= sizes[place / n] * sizes[place % n];
     }
@@ -280,21 +283,19 @@ fn forward_dynamics<'py>(
     let mut workspace = fast::Workspace::new(&model);
     let mut ddtheta = Fresh::<f64>::new(py, &[n])?;
     let theta = scaled(theta, &sizes);
-    fast::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut workspace, ddtheta.numbers());
-    if !workspace.is_regular() || sizes.contains(&0.0) {
-        let why = match model.forward_dynamics(&theta, &dtheta, &tau, &environment) {
-            Err(error) => error.to_string(),
-            Ok(found) if sizes.iter().all(|&k| k != 0.0) => {
-                ddtheta.numbers().copy_from_slice(found.as_slice());
-                String::new()
-            }
-            Ok(_) => "Slist has a column of zeros: nothing says how fast such a joint speeds up".into(),
-        };
-        if !why.is_empty() {
-            // as the package's inverse of the mass matrix raises
-            let error = py.import("numpy.linalg")?.getattr("LinAlgError")?.call1((why,))?;
-            return Err(PyErr::from_value(error));
+    let (query, inputs): (_, [&[f64]; 3]) = (&ForwardDynamics.into(), [&theta, &dtheta, &tau]);
+    let found = fast::compute(query, &model, &inputs, &environment, &mut workspace, &mut [ddtheta.numbers()]);
+    let why = match found {
+        Err(error) => Some(error.to_string()),
+        Ok(()) if sizes.contains(&0.0) => {
+            Some("Slist has a column of zeros: nothing says how fast such a joint speeds up".into())
         }
+        Ok(()) => None,
+    };
+    if let Some(why) = why {
+        // as the package's inverse of the mass matrix raises
+        let error = py.import("numpy.linalg")?.getattr("LinAlgError")?.call1((why,))?;
+        return Err(PyErr::from_value(error));
     }
     ddtheta.numbers().iter_mut().zip(&sizes).for_each(|(x, k)| *x /= k);
     Ok(ddtheta.into_array())

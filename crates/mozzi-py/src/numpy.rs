@@ -1,7 +1,7 @@
 //! NumPy's arrays, through NumPy's C interface: what is a table of numbers is seen as a slice, and results are arrays from the start.
 //! The buffer protocol is in Python's stable interface from 3.11 on only, and takes longer.
 //!
-//! All of the binding's `unsafe` is here. A slice is of an array's memory, which the reference to the array keeps. While Python's lock is
+//! All of the binding's `unsafe` is here, but for that of methods. A slice is of an array's memory, which the reference to the array keeps. While Python's lock is
 //! held nothing else runs that could write there. Batches run without the lock: a thread that writes to an array which another
 //! thread computes on makes a race, as with every library that computes on NumPy's arrays.
 
@@ -167,34 +167,46 @@ fn lengths(array: &ArrayObject) -> &[usize] {
 pub fn view<'a, T: Element>(array: &'a Bound<'_, PyAny>) -> Option<(&'a [usize], &'a [T])> {
     let fields = behaved::<T>(array)?;
     let shape = lengths(fields);
-    let length = count(shape);
-    if length == 0 {
-        return Some((shape, &[]));
-    }
-    // SAFETY: an aligned array without gaps has this many numbers at `data`.
-    Some((shape, unsafe { std::slice::from_raw_parts(fields.data.cast::<T>(), length) }))
+    Some((shape, numbers(fields, count(shape))))
 }
 
-/// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs. A method asks once, of `out`
-/// alone.
+/// The numbers of an array of this one length that needs no conversion.
+#[inline(always)]
+pub fn vector<'a, T: Element>(array: &'a Bound<'_, PyAny>, length: usize) -> Option<&'a [T]> {
+    let fields = behaved::<T>(array)?;
+    (lengths(fields) == [length]).then(|| numbers(fields, length))
+}
+
+/// All numbers of an array that [behaves](behaved), which are this many.
+#[inline(always)]
+fn numbers<T: Element>(array: &ArrayObject, length: usize) -> &[T] {
+    if length == 0 {
+        return &[];
+    }
+    // SAFETY: an aligned array without gaps has this many numbers at `data`.
+    unsafe { std::slice::from_raw_parts(array.data.cast::<T>(), length) }
+}
+
+/// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs. A method asks once for each
+/// array of `out`, whose other arrays are among the inputs.
 #[allow(clippy::mut_from_ref)] // of NumPy's memory, which the reference only keeps
-pub fn view_mut<'a, T: Element>(
+pub fn view_mut<'a, 'i, 'py: 'i, T: Element>(
     array: &'a Bound<'_, PyAny>,
-    inputs: &[&Bound<'_, PyAny>],
+    mut inputs: impl Iterator<Item = &'i Bound<'py, PyAny>>,
 ) -> Option<(&'a [usize], &'a mut [T])> {
     let fields = behaved::<T>(array)?;
     let shape = lengths(fields);
     let length = count(shape);
     let first = fields.data as usize;
     let end = first + length * size_of::<T>();
-    let apart = |input: &&Bound<'_, PyAny>| match view::<T>(input) {
+    let apart = |input: &Bound<'_, PyAny>| match view::<T>(input) {
         Some((_, numbers)) => {
             let start = numbers.as_ptr() as usize;
             start + size_of_val(numbers) <= first || end <= start
         }
         None => false,
     };
-    if fields.flags & WRITEABLE == 0 || !inputs.iter().all(apart) {
+    if fields.flags & WRITEABLE == 0 || !inputs.all(apart) {
         return None;
     }
     if length == 0 {
@@ -208,6 +220,7 @@ pub fn view_mut<'a, T: Element>(
 pub struct Fresh<'py, T> {
     array: Bound<'py, PyAny>,
     length: usize,
+    has_no_axes: bool,
     of: PhantomData<T>,
 }
 
@@ -225,7 +238,7 @@ impl<'py, T: Element> Fresh<'py, T> {
             let array = (api.zeros)(shape.len() as c_int, shape.as_ptr().cast(), dtype, 0);
             Bound::from_owned_ptr_or_err(py, array)?
         };
-        Ok(Fresh { array, length: count(shape), of: PhantomData })
+        Ok(Fresh { array, length: count(shape), has_no_axes: shape.is_empty(), of: PhantomData })
     }
 
     #[inline(always)]
@@ -240,6 +253,11 @@ impl<'py, T: Element> Fresh<'py, T> {
     /// How many numbers there are.
     pub fn len(&self) -> usize {
         self.length
+    }
+
+    /// Is it a number alone?
+    pub fn has_no_axes(&self) -> bool {
+        self.has_no_axes
     }
 
     pub fn into_array(self) -> Bound<'py, PyAny> {

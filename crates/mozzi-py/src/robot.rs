@@ -1,31 +1,20 @@
 //! A model with what computing takes: memory for one state, batches for many.
 
-use crate::compiled;
 use crate::failure::of_batch;
-use crate::quantity::Quantity;
+use crate::numpy::Element;
 use crate::threads::Threads;
-use mozzi::{Environment, FrameId, Model, fast};
-use mozzi_batch::{Batch, Number};
-use mozzi_codegen::Compiled;
+use mozzi::quantities::Query;
+use mozzi::{Environment, Error, FrameId, Model, fast};
+use mozzi_batch::{Batch, Compiled};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Memory for the kernels at one state.
-pub struct Memory {
-    pub fast: fast::Workspace,
-    pub plain: mozzi::Workspace,
-}
-
-impl Memory {
-    fn new(model: &Model) -> Self {
-        Memory { fast: fast::Workspace::new(model), plain: mozzi::Workspace::new(model) }
-    }
-}
-
 pub struct Robot {
     pub model: Model,
+    /// Its own gravity, its base at rest, touching nothing.
+    own: Environment<'static>,
     /// Used while Python's lock is held, so that nobody waits.
-    memory: Mutex<Memory>,
+    memory: Mutex<fast::Workspace>,
     double: Mutex<Engines<f64>>,
     single: Mutex<Engines<f32>>,
     pub compiled: Option<Machine>,
@@ -36,51 +25,82 @@ pub struct Machine {
     pub code: Compiled,
     /// As they were asked for.
     pub names: Vec<Asked>,
+    /// For calls without `threads`.
     pub threads: Option<usize>,
 }
 
-/// A quantity's name, and its frame's where it is of one.
+/// A quantity's name, and its frame's.
 pub type Asked = (String, Option<String>);
 
 impl Robot {
     pub fn new(model: Model) -> Self {
-        let memory = Mutex::new(Memory::new(&model));
-        Robot { model, memory, double: Mutex::default(), single: Mutex::default(), compiled: None }
+        let memory = Mutex::new(fast::Workspace::new(&model));
+        Robot {
+            own: model.environment(),
+            model,
+            memory,
+            double: Mutex::default(),
+            single: Mutex::default(),
+            compiled: None,
+        }
     }
 
-    /// The quantity at one state, whose lengths were checked; by machine code where nothing but the robot's own surrounds it.
-    #[inline(always)]
+    /// The quantity at one state, whose lengths, frame and rows were checked; by machine code if there is some and the environment is the
+    /// robot's own, which is `None`. `fast::compute` would check all again, which takes a tenth of an arm's recursion.
+    #[inline]
     pub fn one(
         &self,
-        quantity: Quantity,
-        state: &[&[f64]],
+        query: &Query,
+        inputs: &[&[f64]],
         environment: Option<&Environment>,
         out: &mut [&mut [f64]],
-    ) -> Result<(), mozzi::Error> {
-        if let (Some(machine), None) = (&self.compiled, environment)
-            && compiled::one(&machine.code, quantity, state, out)?
-        {
-            return Ok(());
+    ) -> Result<(), Error> {
+        if query.declaration().needs_mass {
+            query.check_subject(&self.model)?;
         }
-        let own = self.model.environment();
-        quantity.one(&self.model, &mut self.memory(), state, environment.unwrap_or(&own), out)
-    }
-
-    /// The machine code for many states, if it is for as many threads, which this process has.
-    pub fn compiled_for_many(&self, threads: Option<Threads>) -> Option<&Compiled> {
-        let machine = self.compiled.as_ref()?;
-        let is_asked = threads.is_none_or(|Threads(count)| machine.threads == Some(count));
-        (is_asked && (machine.threads == Some(1) || !is_fork())).then_some(&machine.code)
-    }
-
-    #[inline(always)]
-    pub fn memory(&self) -> MutexGuard<'_, Memory> {
-        unpoisoned(&self.memory)
+        if inputs[0].len() == self.model.nq() {
+            self.model.check_configuration(inputs[0])?;
+        }
+        let are_pivots_clear = match (&self.compiled, environment) {
+            (Some(machine), None) => machine.code.evaluate(*query, inputs, out),
+            (_, environment) => {
+                let (environment, mut memory) = (environment.unwrap_or(&self.own), unpoisoned(&self.memory));
+                fast::evaluate(query, &self.model, inputs, environment, &mut memory, out);
+                memory.are_pivots_clear(query)
+            }
+        };
+        if !are_pivots_clear {
+            let found = self.model.compute(*query, inputs, environment.unwrap_or(&self.own))?;
+            out.iter_mut().zip(found).for_each(|(out, found)| out.copy_from_slice(&found));
+        }
+        Ok(())
     }
 
     /// The frame of this name; without one the end effector.
-    pub fn frame(&self, name: Option<&str>) -> Result<FrameId, mozzi::Error> {
+    #[inline]
+    pub fn frame(&self, name: Option<&str>) -> Result<FrameId, Error> {
         name.map_or_else(|| self.model.end_effector(), |name| self.model.frame(name))
+    }
+
+    /// The batch on this many threads; without a number on those that the robot was compiled for, or all cores.
+    pub fn batch<T: HasEngines>(&self, threads: Option<Threads>) -> PyResult<Batch<T>> {
+        let compiled_for = || self.compiled.as_ref().and_then(|machine| machine.threads).map(Threads);
+        let threads = threads.or_else(compiled_for);
+        let mut engines = unpoisoned(T::engines(self));
+        if engines.process != std::process::id() {
+            // their threads do not exist here, and dropping would wait for them
+            std::mem::forget(std::mem::take(&mut *engines));
+        }
+        if let Some((_, batch)) = engines.made.iter().find(|(known, _)| *known == threads) {
+            return Ok(batch.clone());
+        }
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let count = threads.map(|Threads(count)| count).or_else(|| is_fork().then(cores));
+        let batch = T::batch(self);
+        let batch =
+            count.map_or(Ok(batch.clone()), |count| batch.with_threads(count)).map_err(|error| of_batch(error, &[]))?;
+        engines.made.push((threads, batch.clone()));
+        Ok(batch)
     }
 }
 
@@ -90,30 +110,61 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// The batches of a model that were needed, by their number of threads.
-pub struct Engines<T: Number> {
+pub struct Engines<T: Element> {
     /// The process that they were made in: a fork has none of their threads.
     process: u32,
     made: Vec<(Option<Threads>, Batch<T>)>,
 }
 
-impl<T: Number> Default for Engines<T> {
+impl<T: Element> Default for Engines<T> {
     fn default() -> Self {
         Engines { process: std::process::id(), made: Vec::new() }
     }
 }
 
-/// The numbers that a robot has batches for.
-pub trait HasEngines: Number {
+/// The numbers that a robot computes on.
+pub trait HasEngines: Element {
     fn engines(robot: &Robot) -> &Mutex<Engines<Self>>;
+
+    /// On the threads that all batches share; of a compiled robot with its machine code.
+    fn batch(robot: &Robot) -> Batch<Self>;
+
+    /// [`Robot::one`], of the numbers that it is for.
+    fn one_state(
+        _robot: &Robot,
+        _query: &Query,
+        _inputs: &[&[Self]],
+        _environment: Option<&Environment>,
+        _out: &mut [&mut [Self]],
+    ) -> Option<Result<(), Error>> {
+        None
+    }
 }
+
 impl HasEngines for f64 {
     fn engines(robot: &Robot) -> &Mutex<Engines<f64>> {
         &robot.double
     }
+    fn batch(robot: &Robot) -> Batch<f64> {
+        robot.compiled.as_ref().map_or_else(|| Batch::of(&robot.model), |machine| machine.code.batch().clone())
+    }
+    fn one_state(
+        robot: &Robot,
+        query: &Query,
+        inputs: &[&[f64]],
+        environment: Option<&Environment>,
+        out: &mut [&mut [f64]],
+    ) -> Option<Result<(), Error>> {
+        Some(robot.one(query, inputs, environment, out))
+    }
 }
+
 impl HasEngines for f32 {
     fn engines(robot: &Robot) -> &Mutex<Engines<f32>> {
         &robot.single
+    }
+    fn batch(robot: &Robot) -> Batch<f32> {
+        Batch::of(&robot.model)
     }
 }
 
@@ -126,23 +177,4 @@ fn is_fork() -> bool {
 /// To be called when the module is loaded.
 pub fn remember_process() {
     is_fork();
-}
-
-/// The batch on this many threads; without a number on all cores.
-pub fn batch<T: HasEngines>(robot: &Robot, threads: Option<Threads>) -> PyResult<Batch<T>> {
-    let mut engines = unpoisoned(T::engines(robot));
-    if engines.process != std::process::id() {
-        // their threads do not exist here, and dropping would wait for them
-        std::mem::forget(std::mem::take(&mut *engines));
-    }
-    if let Some((_, batch)) = engines.made.iter().find(|(known, _)| *known == threads) {
-        return Ok(batch.clone());
-    }
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let count = threads.map(|Threads(count)| count).or_else(|| is_fork().then(cores));
-    let batch = Batch::<T>::of(&robot.model);
-    let batch =
-        count.map_or(Ok(batch.clone()), |count| batch.with_threads(count)).map_err(|error| of_batch(error, &[]))?;
-    engines.made.push((threads, batch.clone()));
-    Ok(batch)
 }

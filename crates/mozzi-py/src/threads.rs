@@ -15,13 +15,13 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
 
     fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let py = given.py();
-        let expected = format!("expected 1 to {MOST}, or None for all cores");
+        let expected = || format!("expected 1 to {MOST}, or None for all cores");
         match given.extract::<i64>() {
             Ok(count @ 1..=MOST) => Ok(Threads(count as usize)),
             Err(error) if error.is_instance_of::<PyTypeError>(py) => {
-                Err(PyTypeError::new_err(format!("threads is a {}, {expected}", given.get_type().name()?)))
+                Err(PyTypeError::new_err(format!("threads is a {}, {}", given.get_type().name()?, expected())))
             }
-            Ok(_) | Err(_) => Err(PyValueError::new_err(format!("threads is {}, {expected}", given.str()?))),
+            Ok(_) | Err(_) => Err(PyValueError::new_err(format!("threads is {}, {}", given.str()?, expected()))),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 import decimal
 import fractions
+import inspect
 import threading
 
 import mozzi
@@ -13,6 +14,8 @@ from conftest import assert_close, positions, robots, state
 METHODS = {
     "inverse_dynamics": ("theta", "dtheta", "ddtheta"),
     "forward_dynamics": ("theta", "dtheta", "tau"),
+    "forward_dynamics_by_mass_matrix": ("theta", "dtheta", "tau"),
+    "forward_dynamics_by_inverse_dynamics": ("theta", "dtheta", "tau"),
     "mass_matrix": ("theta",),
     "mass_matrix_rate": ("theta", "dtheta"),
     "coriolis_matrix": ("theta", "dtheta"),
@@ -48,7 +51,11 @@ METHODS = {
     "energy_regressors": ("theta", "dtheta"),
     "frame_poses": ("theta",),
 }
-TAKES_OUT = [name for name in METHODS if name not in ("task_space_dynamics", "energy_regressors") and "dynamics_deriv" not in name]
+
+
+def taking(argument):
+    """The methods that have this argument."""
+    return [name for name in METHODS if argument in inspect.signature(getattr(mozzi.Model, name)).parameters]
 
 
 def arguments(robot, names, random, *leading):
@@ -60,6 +67,16 @@ def arguments(robot, names, random, *leading):
 
 def parts(result):
     return result if isinstance(result, tuple) else (result,)
+
+
+def test_every_method_of_a_state_is_here():
+    class_ = mozzi.Model
+    public = [name for name in vars(class_) if not name.startswith("_") and callable(getattr(class_, name))]
+    assert {name for name in public if {"out", "threads"} <= set(inspect.signature(getattr(class_, name)).parameters)} == set(METHODS)
+    for name, state in METHODS.items():
+        parameters = inspect.signature(getattr(class_, name)).parameters
+        required = [parameter.name for parameter in parameters.values() if parameter.default is parameter.empty]
+        assert required == ["self", *state], name
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -81,6 +98,10 @@ def test_float32_stays_float32(method, ur5, random):
         assert found.dtype == np.float32 and expected.dtype == np.float64
         if method != "task_space_dynamics":  # near a singular state
             assert_close(found, expected, tolerance=1e-3)
+    for found, expected in zip(parts(call(*(x[0].astype(np.float32) for x in given))), parts(call(*given))):
+        assert isinstance(found, float) or found.dtype == np.float32
+        if method != "task_space_dynamics":
+            assert_close(found, expected[0], np.abs(expected).max(initial=1e-3), tolerance=1e-3)
     mixed = call(*given[:-1], given[-1].astype(np.float32))
     assert parts(mixed)[0].dtype == (np.float32 if len(given) == 1 else np.float64)
 
@@ -108,27 +129,57 @@ def test_strided_and_foreign_arrays(method, ur5, random):
             assert np.array_equal(found, same), way
 
 
-@pytest.mark.parametrize("method", TAKES_OUT)
+@pytest.mark.parametrize("method", METHODS)
 def test_out(method, ur5, random):
     for leading in [(), (4,)]:
         call, given = getattr(ur5, method), arguments(ur5, METHODS[method], random, *leading)
-        expected = np.asarray(call(*given))
-        place = np.full_like(expected, np.nan)
-        assert call(*given, out=place) is place and np.array_equal(place, expected)
-        if expected.ndim:
-            wide = np.full((*expected.shape[:-1], 2 * expected.shape[-1]), np.nan)
-            assert np.array_equal(call(*given, out=wide[..., ::2]), expected) and np.isnan(wide[..., 1::2]).all()
-        single = np.zeros(expected.shape, np.float32)
-        assert_close(call(*given, out=single), expected, tolerance=1e-6)
-        with pytest.raises(ValueError, match=r"out has shape"):
-            call(*given, out=np.zeros((*expected.shape, 2)))
-        with pytest.raises(TypeError, match="out is no array"):
-            call(*given, out=expected.tolist())
-        place.flags.writeable = False
+        result = call(*given)
+        many = isinstance(result, tuple)
+        expected = [np.asarray(x) for x in parts(result)]
+        out = (lambda arrays: arrays) if many else (lambda arrays: arrays[0])
+        places = [np.full_like(x, np.nan) for x in expected]
+        found = call(*given, out=out(places))
+        assert all(x is place and np.array_equal(x, same) for x, place, same in zip(parts(found), places, expected, strict=True))
+        if expected[0].ndim:
+            wide = [np.full((*x.shape[:-1], 2 * x.shape[-1]), np.nan) for x in expected]
+            found = parts(call(*given, out=out([x[..., ::2] for x in wide])))
+            assert all(np.array_equal(x, y) and np.isnan(z[..., 1::2]).all() for x, y, z in zip(found, expected, wide))
+        single = [np.zeros(x.shape, np.float32) for x in expected]
+        for x, y in zip(parts(call(*given, out=out(single))), expected):
+            assert_close(x, y, tolerance=1e-6)
+        name = f"out.{result._fields[0]}" if many else "out"
+        with pytest.raises(ValueError, match=rf"^{name} has shape"):
+            call(*given, out=out([np.zeros((*x.shape, 2)) for x in expected]))
+        with pytest.raises(TypeError, match=f"^{name} is no array"):
+            call(*given, out=out([x.tolist() for x in expected]))
+        for place in places:
+            place.flags.writeable = False
         with pytest.raises(ValueError, match="read-only"):
-            call(*given, out=place)
+            call(*given, out=out(places))
         with pytest.raises(TypeError):
-            call(*given, out=np.zeros(expected.shape, int))
+            call(*given, out=out([np.zeros(x.shape, int) for x in expected]))
+
+
+def test_out_of_several_results(ur5, random):
+    for leading in [(), (50,)]:
+        theta, dtheta, ddtheta = state(ur5, random, *leading)
+        expected = ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta)
+        for kind in (list, tuple, expected._make):
+            places = kind(np.full_like(x, np.nan) for x in expected)
+            found = ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=places)
+            assert type(found) is mozzi.InverseDynamicsDerivatives and all(x is y for x, y in zip(found, places))
+            assert all(np.array_equal(x, y) for x, y in zip(found, expected))
+        same = np.zeros_like(expected[0])  # written three times: the last result stays
+        ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=[same, same, same])
+        assert np.array_equal(same, expected.d_ddtheta)
+        names = "expected 3 arrays: d_theta, d_dtheta, d_ddtheta"
+        with pytest.raises(ValueError, match=f"^out has 2 arrays, {names}$"):
+            ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=[same, same])
+        with pytest.raises(TypeError, match=f"^out is a dict, {names}$"):
+            ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out={})
+        table = np.zeros((3, *same.shape))
+        ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=table)
+        assert np.array_equal(table, np.stack(expected))
 
 
 def test_out_may_be_an_argument(ur5, random):
@@ -168,6 +219,73 @@ def test_wrenches_of_each_state(ur5, random):
     for k in range(5):
         one = ur5.tip_forces(theta[k], applied_wrenches={"tool0": wrenches[k], "forearm_link": wrenches[0]})
         assert_close(many[k], one)
+
+
+def check_one_by_one(method, robot, random, one_by_one):
+    """Many states with an argument of each, beside one state after the other: `one_by_one(k)` is the robot and its arguments."""
+    given = arguments(robot, METHODS[method], random, 5)
+
+    def check(**options):
+        many = parts(getattr(robot, method)(*given, **options))
+        for k in range(5):
+            other, own = one_by_one(k)
+            one = parts(getattr(other, method)(*(x[k] for x in given), **own))
+            for found, expected in zip(many, one, strict=True):
+                size = np.abs(expected).max(initial=1e-3)
+                assert_close(found[k], expected, size, tolerance=1e-9 if "forward" in method or "task" in method else 1e-12)
+
+    return check
+
+
+@pytest.mark.parametrize("method", taking("gravity"))
+def test_gravity_of_each_state(method, ur5, random):
+    gravity = random.uniform(-10, 10, (5, 3))
+    check_one_by_one(method, ur5, random, lambda k: (ur5, {"gravity": gravity[k]}))(gravity=gravity)
+    check_one_by_one(method, ur5, random, lambda k: (ur5.with_gravity(gravity[k]), {}))(gravity=gravity)
+    given = arguments(ur5, METHODS[method], random)
+    assert parts(getattr(ur5, method)(*given, gravity=gravity))[0].shape[0] == 5  # of one state
+
+
+@pytest.mark.parametrize("method", taking("parameters"))
+def test_parameters_of_each_state(method, ur5, random):
+    loaded = [ur5.with_payload("forearm_link", mass).with_payload("tool0", 2 * mass) for mass in random.uniform(0.1, 3, 5)]
+    parameters = np.array([robot.parameters for robot in loaded])
+    check_one_by_one(method, ur5, random, lambda k: (loaded[k], {}))(parameters=parameters)
+    check_one_by_one(method, ur5, random, lambda k: (ur5, {"parameters": parameters[k]}))(parameters=parameters)
+    check_one_by_one(method, ur5, random, lambda k: (loaded[2], {}))(parameters=parameters[2])
+
+
+def test_what_depends_on_parameters_takes_them(ur5, random):
+    parameters, loaded = ur5.parameters * random.uniform(0.9, 1.1, 78) + 0.01, ur5.with_payload("tool0", 2.0)
+    for method in METHODS:
+        given = arguments(ur5, METHODS[method], random)
+        options = {"tip_wrench": random.uniform(-1, 1, 6)} if method in taking("tip_wrench") else {}
+        own = parts(getattr(ur5, method)(*given, **options))
+        if method in taking("parameters"):
+            found = parts(getattr(ur5, method)(*given, **options, parameters=parameters))
+            assert not all(np.allclose(x, y, 1e-6, 1e-9) for x, y in zip(found, own)), method
+        else:
+            assert all(np.array_equal(x, y) for x, y in zip(parts(getattr(loaded, method)(*given, **options)), own)), method
+
+
+def test_tables_of_each_state_go_together(ur5, random):
+    theta, dtheta, ddtheta = state(ur5, random, 5)
+    gravity, wrenches = random.uniform(-10, 10, (5, 3)), random.uniform(-3, 3, (5, 6))
+    parameters = np.array([ur5.with_payload("tool0", mass).parameters for mass in random.uniform(0.1, 3, 5)])
+    options = {"gravity": gravity, "tip_wrench": wrenches, "parameters": parameters}
+    twist = {"base_twist": random.uniform(-1, 1, 6), "base_acceleration": random.uniform(-1, 1, 6)}
+    many = ur5.inverse_dynamics(theta, dtheta, ddtheta, **options, **twist)
+    for k in range(5):
+        own = {name: table[k] for name, table in options.items()}
+        assert_close(many[k], ur5.inverse_dynamics(theta[k], dtheta[k], ddtheta[k], **own, **twist))
+    single = {name: table.astype(np.float32) for name, table in options.items()}
+    found = ur5.inverse_dynamics(*(x.astype(np.float32) for x in (theta, dtheta, ddtheta)), **single, **twist)
+    assert found.dtype == np.float32
+    assert_close(found, many, tolerance=1e-4)
+    with pytest.raises(ValueError, match=r"gravity has leading axes \(4,\), which do not go with \(5,\)"):
+        ur5.gravity_forces(theta, gravity=gravity[:4])
+    with pytest.raises(ValueError, match=r"parameters has shape \(5, 77\), expected \(..., 78\): ten numbers a body"):
+        ur5.gravity_forces(theta, parameters=parameters[:, 1:])
 
 
 def test_threads(random):
@@ -210,6 +328,22 @@ def test_numbers_of_other_kinds(ur5):
             return np.array([0.0, 1, 2, 0, 1, 1])
 
     assert np.array_equal(ur5.gravity_forces(Other()), expected)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_robot_without_joints(method):
+    fixed = mozzi.Model.from_urdf_string("<robot name='fixed'><link name='base'/></robot>")
+    call, count = getattr(fixed, method), len(METHODS[method])
+    try:
+        one = call(*[[]] * count)
+    except (ValueError, ArithmeticError) as error:  # no mass, or no row of a task can move
+        with pytest.raises(type(error)):
+            call(*[np.zeros((3, 0))] * count)
+        return
+    for kind in (np.float64, np.float32):
+        for found, expected in zip(parts(call(*[np.zeros((3, 0), kind)] * count)), parts(one), strict=True):
+            assert found.dtype == kind and found.shape == (3, *np.shape(expected)) and (found == expected).all()
+        assert parts(call(*[np.zeros((0, 0), kind)] * count))[0].shape[0] == 0
 
 
 def test_nan_gives_nan_and_nothing_else(ur5, random):

@@ -29,8 +29,8 @@ def test_shapes(ur5):
         anymal.mass_matrix(np.zeros(18))
     with refused(ValueError, "tip_wrench has shape (3,), expected (..., 6): (m, f) that the frame applies"):
         ur5.tip_forces(ZERO, np.zeros(3))
-    with refused(ValueError, "gravity has shape (1, 3), expected (3,): m/s²"):
-        ur5.gravity_forces(ZERO, gravity=[[0, 0, 1]])
+    with refused(ValueError, "gravity has shape (1, 2), expected (..., 3): m/s²"):
+        ur5.gravity_forces(ZERO, gravity=[[0, 1]])
 
 
 def test_things_that_are_no_numbers(ur5):
@@ -78,6 +78,8 @@ def test_threads(ur5):
             ur5.gravity_forces(np.zeros((2, 6)), threads=wrong)
     with refused(TypeError, "threads is a str, expected 1 to 1024"):
         ur5.gravity_forces(np.zeros((2, 6)), threads="all")
+    with refused(ValueError, "threads is 0, expected 1 to 1024"):
+        ur5.gravity_forces(np.zeros(6), threads=0)  # which one state does not need
 
 
 def test_states_that_have_no_answer(random):
@@ -160,8 +162,32 @@ def test_lists(ur5):
 def test_arguments_of_python(ur5):
     with pytest.raises(TypeError, match="missing 2 required positional arguments"):
         ur5.inverse_dynamics(ZERO)
-    with pytest.raises(TypeError, match="unexpected keyword argument"):
+    name = "Model.inverse_dynamics()"
+    with refused(TypeError, f"{name} missing 2 required positional arguments: 'dtheta' and 'ddtheta'"):
+        ur5.inverse_dynamics(ZERO)
+    with refused(TypeError, f"{name} missing 3 required positional arguments: 'theta', 'dtheta', and 'ddtheta'"):
+        ur5.inverse_dynamics()
+    with refused(TypeError, f"{name} missing 1 required positional argument: 'dtheta'"):
+        ur5.inverse_dynamics(ddtheta=ZERO, theta=ZERO)
+    with refused(TypeError, f"{name} got an unexpected keyword argument 'wrench'"):
         ur5.inverse_dynamics(ZERO, ZERO, ZERO, wrench=ZERO)
+    with refused(TypeError, f"{name} got multiple values for argument 'theta'"):
+        ur5.inverse_dynamics(ZERO, ZERO, ZERO, theta=ZERO)
+    with refused(TypeError, f"{name} takes from 3 to 4 positional arguments but 5 were given"):
+        ur5.inverse_dynamics(*[ZERO] * 5)
+    with refused(TypeError, "Model.mass_matrix() takes 1 positional arguments but 20 were given"):
+        ur5.mass_matrix(*[ZERO] * 20)
+    with pytest.raises(TypeError, match="'mozzi.Model'"):
+        mozzi.Model.inverse_dynamics(1, ZERO, ZERO, ZERO)
+    with refused(TypeError, "frame is a int, expected a str"):
+        ur5.body_jacobian(ZERO, 1)
+    for rows, kind in [(3, "int"), ("ab", "str"), ([-1], "list"), ([1.5], "list")]:
+        with refused(TypeError, f"rows is a {kind}, expected a sequence of row numbers from 0 to 5"):
+            ur5.task_space_dynamics(ZERO, ZERO, rows=rows)
+    with pytest.raises(ValueError, match=r"rows is \[1, 1\], expected distinct row numbers from 0 to 5"):
+        ur5.task_space_dynamics(ZERO, ZERO, rows=[1, 1])
+    with refused(ValueError, "coordinates is 'tool', expected 'body' or 'space'"):
+        ur5.task_space_dynamics(ZERO, ZERO, coordinates="tool")
     with pytest.raises(TypeError):
         mozzi.Model()
     with pytest.raises(AttributeError):

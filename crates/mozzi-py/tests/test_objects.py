@@ -8,6 +8,7 @@ import inspect
 import multiprocessing
 import os
 import pickle
+import pydoc
 
 import mozzi
 import numpy as np
@@ -122,6 +123,34 @@ def test_examples_in_the_documentation_of_the_model():
         assert text, f"{name} has no documentation"
         runner.run(finder.get_doctest(text, {}, name, None, 0))
     assert runner.tries >= 29 and runner.failures == 0
+
+
+def test_help_shows_signature_and_documentation():
+    for name, member in documented():
+        if not callable(member) or isinstance(member, staticmethod) or name == "Model":
+            continue
+        shown = pydoc.plain(pydoc.render_doc(member))
+        assert f"{name}(" in shown and inspect.getdoc(member).splitlines()[0] in shown
+        assert member.__name__ == name and member.__qualname__ == f"Model.{name}"
+        if "threads" in inspect.signature(member).parameters and name not in ("compile", "simulate"):
+            assert member.__objclass__ is mozzi.Model and member.__text_signature__.startswith("($self, ")
+            assert inspect.signature(getattr(mozzi.models.ur5(), name)).parameters.keys() == (
+                inspect.signature(member).parameters.keys() - {"self"}
+            )
+
+
+def test_documentation_has_shapes_units_and_an_example():
+    text = inspect.getdoc(mozzi.Model.forward_dynamics)
+    for part in (
+        "Parameters\n----------\ntheta : array_like, shape (..., nq)\n    θ, positions: rad or m; of a floating base",
+        "\ntip_wrench : array_like, shape (..., 6), optional\n    Wrench (m, f)",
+        "\nReturns\n-------\nddtheta : numpy.ndarray, shape (..., n)\n    rad/s² or m/s².\n",
+        "\nRaises\n------\nSingularError\n    If the mass matrix is singular.",
+        ">>> ur5.forward_dynamics([theta] * 5, dtheta, tau).shape\n(5, 6)",
+    ):
+        assert part in text
+    text = inspect.getdoc(mozzi.Model.task_space_dynamics)
+    assert "TaskSpaceDynamics\n    A named tuple of arrays:\n\n    - `Lambda`, shape (..., k, k): kg m²" in text
 
 
 def test_documentation_names_every_argument():

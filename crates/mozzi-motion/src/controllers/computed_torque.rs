@@ -4,7 +4,7 @@ use super::{Gains, errors};
 use crate::Error;
 use crate::error::check;
 use crate::trajectories::Reference;
-use mozzi::quantities::InverseDynamics;
+use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::simulation::Input;
 use mozzi::{Model, fast};
 
@@ -53,8 +53,8 @@ impl<R: Reference> Input for ComputedTorque<'_, R> {
         }
         self.model.check_lengths(theta, [("the reference's ddtheta", &ddtheta)])?;
         let environment = self.model.environment();
-        let (query, state) = (InverseDynamics.into(), [theta, dtheta, &ddtheta]);
-        fast::evaluate(query, self.model, &state, &environment, &mut self.workspace, &mut [&mut self.tau]);
+        let (query, state) = (Query::from(InverseDynamics), [theta, dtheta, &ddtheta]);
+        fast::evaluate(&query, self.model, &state, &environment, &mut self.workspace, &mut [&mut self.tau]);
         tau.iter_mut().zip(&self.tau).for_each(|(sum, tau)| *sum += tau);
         Ok(())
     }

@@ -3,18 +3,16 @@
 Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
 """
 
-from . import conventions, models, modern_robotics
+from . import _quantities, conventions, models, modern_robotics
 from ._compare import Comparison, compare
 from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
+from ._quantities import *
 from ._results import (
     BaseParameters,
     ClosedForm,
-    EnergyRegressors,
-    ForwardDynamicsDerivatives,
-    InverseDynamicsDerivatives,
+    Engine,
     NewtonEuler,
     ScrewLists,
-    TaskSpaceDynamics,
     Trajectories,
     Trajectory,
 )
@@ -24,16 +22,13 @@ __all__ = [
     "ClosedForm",
     "Comparison",
     "DivergedError",
-    "EnergyRegressors",
-    "ForwardDynamicsDerivatives",
-    "InverseDynamicsDerivatives",
+    "Engine",
     "LoadError",
     "LoadWarning",
     "Model",
     "NewtonEuler",
     "ScrewLists",
     "SingularError",
-    "TaskSpaceDynamics",
     "Trajectories",
     "Trajectory",
     "__version__",
@@ -42,3 +37,4 @@ __all__ = [
     "models",
     "modern_robotics",
 ]
+__all__ += _quantities.__all__

@@ -1,46 +1,20 @@
-"""Results of several parts. The compiled methods make them by position."""
+"""Results of several parts, but for those of the quantities. The compiled methods make them by position."""
 
 import importlib
 import os
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from numpy.typing import NDArray
+from ._quantities import Array
 
 if TYPE_CHECKING:
     from ._mozzi import Model
 
-Array = NDArray[Any]
 
+class Engine(NamedTuple):
+    """What computes a quantity, at one state and in arrays of states: see ``Model.engine``."""
 
-class InverseDynamicsDerivatives(NamedTuple):
-    """∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M, each (..., n, n)."""
-
-    d_theta: Array
-    d_dtheta: Array
-    d_ddtheta: Array
-
-
-class ForwardDynamicsDerivatives(NamedTuple):
-    """θ̈ (..., n); ∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹, each (..., n, n)."""
-
-    ddtheta: Array
-    d_theta: Array
-    d_dtheta: Array
-    d_tau: Array
-
-
-class TaskSpaceDynamics(NamedTuple):
-    """Λ (..., k, k) and η (..., k) of 𝓕 = Λ𝒱̇ + η."""
-
-    Lambda: Array
-    eta: Array
-
-
-class EnergyRegressors(NamedTuple):
-    """The rows of the kinetic and the potential energy, each (..., parameters)."""
-
-    kinetic: Array
-    potential: Array
+    one: str
+    many: str
 
 
 class ClosedForm(NamedTuple):

@@ -1,19 +1,34 @@
 //! What is there to look at, at one state: the book's matrices, the recursion's parts, base parameters.
 
-use crate::array::{Numbers, wrong_shape};
-use crate::call::named;
+use crate::arguments::{Arguments, Given};
+use crate::array::{Numbers, by_rows, wrong_shape};
 use crate::describe::refused;
-use crate::environment::{Arguments, Around, Given};
+use crate::environment::ArrayEnvironment;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
-use crate::quantity::rows;
+use crate::results::named;
+use crate::signature::Slot;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{BodyFrame, Twist, Wrench};
 use pyo3::prelude::*;
 
+/// The environment's arguments in numpydoc's form.
+macro_rules! environment {
+    () => {
+        "tip_wrench : array_like, shape (6,), optional
+    Wrench (m, f) that the end effector applies to the environment, in its own coordinates: N m, N.
+gravity : array_like, shape (3,), optional
+    Gravity in the axes of {s}, m/s². Default: the model's.
+applied_wrenches : dict of str to array_like of shape (6,), optional
+    Wrench (m, f) that each frame applies to the environment, in its own coordinates: N m, N.
+base_twist, base_acceleration : array_like, shape (6,), optional
+    Twist (ω, v) and acceleration (ω̇, v̇) of {s}. Default: at rest."
+    };
+}
+
 fn matrix<'py>(py: Python<'py>, M: &DMatrix<f64>) -> PyResult<Bound<'py, PyAny>> {
     let mut numbers = vec![0.0; M.len()];
-    rows(M, &mut numbers);
+    by_rows(M, &mut numbers);
     array(py, &[M.nrows(), M.ncols()], numbers)
 }
 
@@ -38,13 +53,10 @@ impl PyModel {
     }
 }
 
-/// What surrounds the robot, of one state.
-fn around<'py>(model: &mozzi::Model, given: &Arguments<'_, 'py>) -> PyResult<Around<'py>> {
-    let around = Around::new(model, given)?;
-    match around.tables.first() {
-        None => Ok(around),
-        Some((_, table)) => Err(wrong_shape(table.name, &table.shape, "(6,): one state")),
-    }
+/// The environment of one state.
+fn environment<'py>(model: &mozzi::Model, given: [Given<'_, 'py>; 5]) -> PyResult<ArrayEnvironment<'py>> {
+    let slots = [Slot::TipWrench, Slot::Gravity, Slot::AppliedWrenches, Slot::BaseTwist, Slot::BaseAcceleration];
+    ArrayEnvironment::one_state(model, &Arguments::of(slots.into_iter().zip(given)))
 }
 
 #[pymethods]
@@ -54,10 +66,9 @@ impl PyModel {
     ///
     /// Parameters
     /// ----------
-    #[doc = said!(one theta, dtheta, tip_wrench)]
-    #[doc = said!(gravity)]
-    #[doc = said!(one applied_wrenches)]
-    #[doc = said!(base_twist, base_acceleration)]
+    /// theta, dtheta : array_like, shapes (nq,) and (n,)
+    ///     Positions, rad or m; velocities, rad/s or m/s.
+    #[doc = environment!()]
     ///
     /// Returns
     /// -------
@@ -87,9 +98,9 @@ impl PyModel {
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = &self.robot().model;
         let [theta, dtheta] = self.one_state([("theta", theta), ("dtheta", dtheta)])?;
-        let given = Arguments { tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration };
-        let around = around(model, &given)?;
-        let form = model.closed_form(&theta, &dtheta, &around.environment()).map_err(of_model)?;
+        let given = [tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration];
+        let environment = environment(model, given)?;
+        let form = model.closed_form(&theta, &dtheta, &environment.environment()).map_err(of_model)?;
         let fields = vec![
             matrix(py, &form.A)?,
             matrix(py, &form.G)?,
@@ -115,12 +126,11 @@ impl PyModel {
     ///
     /// Parameters
     /// ----------
-    #[doc = said!(one theta, dtheta, ddtheta, tip_wrench)]
+    /// theta, dtheta, ddtheta : array_like, shapes (nq,), (n,) and (n,)
+    ///     Positions, rad or m; velocities, rad/s or m/s; accelerations, rad/s² or m/s².
     /// frame : {'center_of_mass', 'link'}
     ///     In the book's frames {i}, at the centres of mass, or in the links' own.
-    #[doc = said!(gravity)]
-    #[doc = said!(one applied_wrenches)]
-    #[doc = said!(base_twist, base_acceleration)]
+    #[doc = environment!()]
     ///
     /// Returns
     /// -------
@@ -156,9 +166,10 @@ impl PyModel {
             other => return Err(refused(format!("frame is '{other}', expected 'center_of_mass' or 'link'"))),
         };
         let [theta, dtheta, ddtheta] = self.one_state([("theta", theta), ("dtheta", dtheta), ("ddtheta", ddtheta)])?;
-        let given = Arguments { tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration };
-        let around = around(model, &given)?;
-        let found = model.newton_euler(&theta, &dtheta, &ddtheta, &around.environment(), frame).map_err(of_model)?;
+        let given = [tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration];
+        let environment = environment(model, given)?;
+        let found =
+            model.newton_euler(&theta, &dtheta, &ddtheta, &environment.environment(), frame).map_err(of_model)?;
         let twists = |list: &[Twist]| array(py, &[list.len(), 6], list.iter().flat_map(|V| V.to_array()));
         let wrenches = |list: &[Wrench]| array(py, &[list.len(), 6], list.iter().flat_map(|F| F.to_array()));
         let fields = vec![

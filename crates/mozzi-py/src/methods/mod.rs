@@ -1,11 +1,10 @@
 //! Methods of Python's `Model`: the quantities, edits, pages.
 
-#[macro_use]
-mod quantities;
-
+mod attach;
 mod closed_form;
-mod derivatives;
-mod dynamics;
+mod documentation;
 mod edits;
-mod kinematics;
+mod quantity;
 mod report;
+
+pub use attach::add_to;

@@ -1,19 +1,18 @@
 //! Many starts at once: the batch's forward dynamics, and motions as arrays.
 
 use super::Torque;
+use crate::arguments::{Arguments, Given};
 use crate::array::{Numbers, shown, wrong_shape};
-use crate::call::{self, named};
-use crate::environment::{Arguments, Given};
 use crate::failure::{of_batch, of_model, of_state};
 use crate::model::{PyModel, array};
 use crate::numpy::Fresh;
-use crate::quantity::Quantity;
-use crate::robot::batch;
+use crate::results::named;
+use crate::signature::{INPUTS, Slot};
 use crate::threads::Threads;
+use mozzi::quantities::{ForwardDynamics, GravityForces, KineticEnergy, PotentialEnergy, Query};
 use mozzi::simulation::{LARGEST, Motion, Options};
 use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, BatchEnvironment};
-use mozzi_codegen::Compiled;
 use pyo3::prelude::*;
 
 /// Steps of all robots together between two looks at whether Python was interrupted: a part of a second. Not by the clock: how steps are cut
@@ -64,9 +63,7 @@ impl Record<'_> {
 struct Robots<'a> {
     model: &'a Model,
     batch: Batch<f64>,
-    /// Machine code, where there is some and gravity is the robot's own.
-    machine: Option<&'a Compiled>,
-    surroundings: BatchEnvironment<'a, f64>,
+    environment: BatchEnvironment<'a, f64>,
     leading: &'a [usize],
     options: &'a Options,
 }
@@ -119,7 +116,7 @@ impl Robots<'_> {
             let some = piece.min(record_every - done % record_every).min(steps - done);
             let duration = some as f64 * self.options.step();
             let (theta, dtheta) = (&mut theta, &mut dtheta);
-            py.detach(|| self.batch.simulate(theta, dtheta, tau, &self.surroundings, method, duration, some))
+            py.detach(|| self.batch.simulate(theta, dtheta, tau, &self.environment, method, duration, some))
                 .map_err(|error| self.later(error, done))?;
             done += some;
             self.check_bounded("theta", theta, |robot| (robot, done))?;
@@ -157,11 +154,9 @@ impl Robots<'_> {
         let mut tau = vec![0.0; dtheta.len()];
         let mut accelerations = |tau: &mut [f64], t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]| {
             torque(t, theta, dtheta, tau)?;
-            let found = py.detach(|| match self.machine {
-                Some(code) => code.forward_dynamics_batch(theta, dtheta, tau, ddtheta),
-                None => self.batch.forward_dynamics(theta, dtheta, tau, &self.surroundings, ddtheta),
-            });
-            found.map_err(|error| of_batch(error, self.leading))?;
+            let inputs: [&[f64]; 3] = [theta, dtheta, tau];
+            py.detach(|| self.batch.compute(ForwardDynamics, &inputs, &self.environment, &mut [ddtheta]))
+                .map_err(|error| of_batch(error, self.leading))?;
             Ok::<[f64; 0], PyErr>([])
         };
         let (base, robots) = (self.model.base(), dtheta.len() / self.model.n());
@@ -225,9 +220,8 @@ pub fn simulate<'py>(
     let model = &this.robot().model;
     options.check().map_err(of_model)?;
     let environment = Environment::with_gravity(options.gravity.unwrap_or(model.gravity()));
-    let surroundings = BatchEnvironment::from(environment);
-    let machine = this.robot().compiled_for_many(threads).filter(|_| gravity.is_none());
-    let robots = Robots { model, batch: batch(this.robot(), threads)?, machine, surroundings, leading, options };
+    let environment = BatchEnvironment::from(environment);
+    let robots = Robots { model, batch: this.robot().batch(threads)?, environment, leading, options };
     let everywhere = |_| String::new();
     robots.check_finite("theta", start[0], everywhere)?;
     robots.check_finite("dtheta", start[1], everywhere)?;
@@ -248,7 +242,7 @@ pub fn simulate<'py>(
         Torque::GravityCompensation => {
             let base = model.base().velocities(); // without motors
             let compensation = |_, theta: &[f64], _: &[f64], tau: &mut [f64]| {
-                py.detach(|| robots.batch.gravity_forces(theta, &surroundings, tau))
+                py.detach(|| robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau]))
                     .map_err(|error| of_batch(error, leading))?;
                 tau.chunks_exact_mut(n).for_each(|tau| tau[..base].fill(0.0));
                 Ok(())
@@ -264,12 +258,12 @@ pub fn simulate<'py>(
 
     let t = array(py, &[rows], record.t)?;
     let [theta, dtheta, tau] = [record.theta, record.dtheta, record.tau].map(|table| table.array.into_array());
-    let ask = |quantity, state: &[call::Named<'_, 'py>], gravity| -> PyResult<Bound<'py, PyAny>> {
-        let around = Arguments { gravity, ..Arguments::default() };
-        let options = call::Options { threads, ..call::Options::default() };
-        Ok(this.robot().ask_all(py, quantity, state, &around, options)?.swap_remove(0))
+    let compute = |query: Query, state: &[&Bound<'py, PyAny>], gravity| {
+        let state = INPUTS.into_iter().zip(state.iter().map(|&table| Some(table)));
+        let given = Arguments::of(state.chain([(Slot::Gravity, gravity)]));
+        this.robot().compute(py, &query, &given, threads)
     };
-    let ddtheta = ask(Quantity::ForwardDynamics, &[("theta", &theta), ("dtheta", &dtheta), ("tau", &tau)], gravity)?;
+    let ddtheta = compute(ForwardDynamics.into(), &[&theta, &dtheta, &tau], gravity)?;
     let recorded = |state: usize| (state / rows, (state % rows * options.record_every).min(options.steps));
     robots.check_bounded("ddtheta", Numbers::new("ddtheta", &ddtheta)?.slice()?, recorded)?;
     let fields = vec![
@@ -278,8 +272,8 @@ pub fn simulate<'py>(
         dtheta.clone(),
         ddtheta,
         tau,
-        ask(Quantity::KineticEnergy, &[("theta", &theta), ("dtheta", &dtheta)], None)?,
-        ask(Quantity::PotentialEnergy, &[("theta", &theta)], gravity)?,
+        compute(KineticEnergy.into(), &[&theta, &dtheta], None)?,
+        compute(PotentialEnergy.into(), &[&theta], gravity)?,
         model.position_names().collect::<Vec<_>>().into_pyobject(py)?,
         model.velocity_names().collect::<Vec<_>>().into_pyobject(py)?,
         robot.clone().into_any(),

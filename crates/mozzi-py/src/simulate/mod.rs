@@ -3,8 +3,8 @@
 mod many;
 mod one;
 
+use crate::arguments::Given;
 use crate::array::{Numbers, common_leading};
-use crate::environment::Given;
 use crate::model::PyModel;
 use crate::threads::Threads;
 use mozzi::Vec3;
@@ -141,7 +141,7 @@ impl PyModel {
         if let Torque::Constant(tau) = &mut torque {
             tables.push(tau);
         }
-        let leading = common_leading(&tables.iter().map(|table| (table.name, table.leading(1))).collect::<Vec<_>>())?;
+        let leading = common_leading(tables.iter().map(|table| (table.name, table.leading(1))))?;
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;
         let start = [theta.slice()?, dtheta.slice()?];
         match slip_speed {

@@ -2,9 +2,9 @@
 
 use super::Torque;
 use crate::array::Numbers;
-use crate::call::named;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
+use crate::results::named;
 use crate::robot::Robot;
 use mozzi::Error;
 use mozzi::simulation::{Energy, GravityCompensation, Input, Options, Trajectory, Zero};

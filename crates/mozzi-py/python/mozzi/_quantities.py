@@ -1,0 +1,68 @@
+"""Several results of a quantity, as named tuples. Written by `cargo xtask docs` from the list of quantities."""
+
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+__all__ = [
+    "TaskSpaceDynamics",
+    "InverseDynamicsDerivatives",
+    "ForwardDynamicsDerivatives",
+    "EnergyRegressors",
+]
+
+
+class TaskSpaceDynamics(NamedTuple):
+    """Λ and η of 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱), the dynamics as the rows of a frame's twist show them.
+
+    See ``Model.task_space_dynamics``.
+    """
+
+    Lambda: Array
+    """Shape (..., k, k): kg m², kg m, kg."""
+    eta: Array
+    """Shape (..., k): N m, N."""
+
+
+class InverseDynamicsDerivatives(NamedTuple):
+    """∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M, row i of τ_i; by θ along the velocities.
+
+    See ``Model.inverse_dynamics_derivatives``.
+    """
+
+    d_theta: Array
+    """Shape (..., n, n): N m or N, each per unit of its column."""
+    d_dtheta: Array
+    """Shape (..., n, n): N m or N, each per unit of its column."""
+    d_ddtheta: Array
+    """Shape (..., n, n): N m or N, each per unit of its column."""
+
+
+class ForwardDynamicsDerivatives(NamedTuple):
+    """θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹, row i of θ̈_i; by θ along the velocities.
+
+    See ``Model.forward_dynamics_derivatives``.
+    """
+
+    ddtheta: Array
+    """Shape (..., n): rad/s² or m/s²."""
+    d_theta: Array
+    """Shape (..., n, n): rad/s² or m/s², each per unit of its column."""
+    d_dtheta: Array
+    """Shape (..., n, n): rad/s² or m/s², each per unit of its column."""
+    d_tau: Array
+    """Shape (..., n, n): rad/s² or m/s², each per unit of its column."""
+
+
+class EnergyRegressors(NamedTuple):
+    """the rows that give the kinetic and the potential energy of the parameters π.
+
+    See ``Model.energy_regressors``.
+    """
+
+    kinetic: Array
+    """Shape (..., p): J, each per unit of its parameter."""
+    potential: Array
+    """Shape (..., p): J, each per unit of its parameter."""

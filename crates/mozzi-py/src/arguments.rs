@@ -1,0 +1,113 @@
+//! Arguments as Python passed them, each in its slot; what is missing, unknown or given twice is named in Python's words.
+
+use crate::signature::{ENVIRONMENT, INPUTS, SLOTS, Signature, Slot};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyString, PyTuple};
+use std::fmt::Arguments as Words;
+
+/// An argument that may be left out.
+pub type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+/// The arguments of a call by their slots.
+#[derive(Default)]
+pub struct Arguments<'a, 'py>([Option<Borrowed<'a, 'py, PyAny>>; SLOTS]);
+
+impl<'a, 'py> Arguments<'a, 'py> {
+    /// These alone.
+    pub fn of(given: impl IntoIterator<Item = (Slot, Given<'a, 'py>)>) -> Self
+    where
+        'py: 'a,
+    {
+        let mut arguments = Arguments::default();
+        given.into_iter().for_each(|(slot, value)| arguments.0[slot as usize] = value.map(Bound::as_borrowed));
+        arguments
+    }
+
+    /// From positional values, and values with their names.
+    ///
+    /// # Errors
+    /// `TypeError` for what is not in the signature.
+    #[inline(always)]
+    pub fn fill(
+        &mut self,
+        signature: &Signature,
+        positional: &[Borrowed<'a, 'py, PyAny>],
+        names: Option<Borrowed<'a, 'py, PyTuple>>,
+        named: &[Borrowed<'a, 'py, PyAny>],
+    ) -> PyResult<()> {
+        let slots = &mut self.0;
+        if positional.len() > signature.positional {
+            return Err(too_many(signature, positional.len()));
+        }
+        let inputs = positional.len().min(signature.required);
+        for (slot, &value) in slots[..inputs].iter_mut().zip(positional) {
+            *slot = Some(value); // the first slots are the state's, in this order
+        }
+        for (argument, &value) in signature.arguments.iter().zip(positional).skip(inputs) {
+            slots[argument.slot as usize] = Some(value);
+        }
+        if let Some(names) = names {
+            for (name, &value) in names.iter_borrowed().zip(named) {
+                let name = name.cast::<PyString>()?;
+                let name = name.to_str()?;
+                let Some(argument) = signature.arguments.iter().find(|argument| argument.name == name) else {
+                    return Err(wrong(signature, format_args!("got an unexpected keyword argument '{name}'")));
+                };
+                if slots[argument.slot as usize].replace(value).is_some() {
+                    return Err(wrong(signature, format_args!("got multiple values for argument '{name}'")));
+                }
+            }
+        }
+        if slots[inputs..signature.required].iter().any(Option::is_none) {
+            return Err(missing(signature, slots));
+        }
+        Ok(())
+    }
+
+    /// Was anything of the environment given?
+    #[inline(always)]
+    pub fn have_environment(&self) -> bool {
+        self.0[ENVIRONMENT].iter().flatten().any(|value| !value.is_none())
+    }
+
+    /// An optional argument, if it was given and is not None.
+    #[inline(always)]
+    pub fn get(&self, slot: Slot) -> Option<&Bound<'py, PyAny>> {
+        self.0[slot as usize].as_deref().filter(|value| !value.is_none())
+    }
+
+    /// The inputs of the state, in the order of the declaration.
+    #[inline(always)]
+    pub fn state(&self) -> impl Iterator<Item = &Bound<'py, PyAny>> {
+        self.0[..INPUTS.len()].iter().flatten().map(|value| &**value)
+    }
+}
+
+#[cold]
+fn wrong(signature: &Signature, words: Words) -> PyErr {
+    PyTypeError::new_err(format!("Model.{}() {words}", signature.name))
+}
+
+#[cold]
+fn too_many(signature: &Signature, found: usize) -> PyErr {
+    let (least, most) = (signature.required, signature.positional);
+    let range = if least == most { most.to_string() } else { format!("from {least} to {most}") };
+    let were = if found == 1 { "was" } else { "were" };
+    wrong(signature, format_args!("takes {range} positional arguments but {found} {were} given"))
+}
+
+#[cold]
+fn missing(signature: &Signature, slots: &[Option<Borrowed<'_, '_, PyAny>>]) -> PyErr {
+    let required = signature.arguments[..signature.required].iter().zip(slots);
+    let names: Vec<String> =
+        required.filter(|(_, value)| value.is_none()).map(|(argument, _)| format!("'{}'", argument.name)).collect();
+    let list = match &names[..] {
+        [one] => one.clone(),
+        [one, other] => format!("{one} and {other}"),
+        [many @ .., last] => format!("{}, and {last}", many.join(", ")),
+        [] => String::new(),
+    };
+    let s = if names.len() == 1 { "" } else { "s" };
+    wrong(signature, format_args!("missing {} required positional argument{s}: {list}", names.len()))
+}
