@@ -10,7 +10,8 @@ use crate::workspace::Workspace;
 const PAGES: [&str; 5] = ["reports", "published", "oracles", "quantities_page", "stubs"];
 
 pub fn write(workspace: &Workspace) -> Outcome {
-    let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf", "--package", "mozzi-batch", "--package", "mozzi-py"]);
+    let mut cargo =
+        workspace.cargo(&["test", "--package", "mozzi-urdf", "--package", "mozzi-batch", "--package", "mozzi-py"]);
     for page in PAGES {
         cargo.args(["--test", page]);
     }

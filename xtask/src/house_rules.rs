@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Where `unsafe` may stand: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's methods. A file that starts so.
 const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi/src/fast",
-    "crates/mozzi-batch/src/instruction_set",
+    "crates/mozzi-batch/src/number",
     "crates/mozzi-batch/src/lanes/",
     "crates/mozzi-codegen/src/jit/executable",
     "crates/mozzi-py/src/numpy",

@@ -79,7 +79,7 @@ impl<'py> Numbers<'py> {
     /// In this type of numbers, repeated along leading axes until they are these.
     pub fn spread<T: Element>(&mut self, leading: &[usize], tail: usize) -> PyResult<()> {
         let py = self.array.py();
-        if self.leading(tail) != leading {
+        if !are_same(self.leading(tail), leading) {
             let shape = [leading, &self.shape[self.shape.len() - tail..]].concat();
             self.array = function(py, "broadcast_to")?.call1((&self.array, shape.clone()))?;
             self.shape = shape;
@@ -174,6 +174,11 @@ pub fn shown(shape: &[usize]) -> String {
     }
 }
 
+/// Mostly both are empty: `==` would call `memcmp`, which takes a hundred nanoseconds for no bytes at an address without memory.
+fn are_same(a: &[usize], b: &[usize]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
+}
+
 /// NumPy's rule: axes are counted from the last, and a length of 1 is repeated.
 ///
 /// # Errors
@@ -184,7 +189,7 @@ pub fn common_leading<'a>(shapes: impl IntoIterator<Item = (&'static str, &'a [u
         if common.is_empty() {
             common.extend(shape);
         }
-        if common == shape {
+        if are_same(&common, shape) {
             continue;
         }
         let rank = common.len().max(shape.len());

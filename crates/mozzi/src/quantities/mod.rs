@@ -1,6 +1,6 @@
 //! The list of all quantities.
 //!
-//! A [`Kernel`](crate::quantity::Kernel) is code, compiled for every kind of number. A [`Quantity`] is a declaration at the foot of its
+//! A [`Kernel`] is code, compiled for every kind of number. A [`Quantity`] is a declaration at the foot of its
 //! kernel's file: a name, what goes in, what comes out. [`quantities!`](crate::quantities!) lists them, once; from that list come the fast
 //! functions on `f64` ([`fast`](crate::fast)), batches, recorded programs, machine code, emitted text, `mozzi compute`, Python's
 //! methods and `docs/quantities.md`.
