@@ -18,6 +18,9 @@ use std::sync::Arc;
 /// A chunk's tables fill about half of a core's second cache.
 const CHUNK_BYTES: usize = 1 << 18;
 
+/// A table's name, its length and how many of its numbers are a state's.
+type Size = (&'static str, usize, usize);
+
 /// A model with what it takes to ask it of many states: constants as `T`, registers, threads, the tables' layout.
 ///
 /// Every method takes tables of N states, N being given by θ's length, and writes tables of the caller's. Numbers of one state stand side
@@ -137,15 +140,15 @@ impl<T: Number> Batch<T> {
         (0..states).flat_map(|state| (0..width).map(move |column| blocks[place(state, column, width, lanes)])).collect()
     }
 
-    /// By the length of the first table.
-    fn states(&self, what: &'static str, (table, width): Table<T>) -> Result<usize, Error> {
+    /// By the length of the first table; of a robot without joints, by the first table that has numbers for each state.
+    fn states(&self, mut tables: impl Iterator<Item = Size>) -> Result<usize, Error> {
         let lanes = self.block();
-        match table.len() {
-            0 => Ok(0),
-            found if width == 0 || !found.is_multiple_of(width * lanes) => {
+        match tables.find(|&(_, _, width)| width > 0) {
+            Some((what, found, width)) if !found.is_multiple_of(width * lanes) => {
                 Err(Error::IncompleteState { what, found, width, lanes })
             }
-            found => Ok(found / width),
+            Some((_, found, width)) => Ok(found / width),
+            None => Ok(0),
         }
     }
 
@@ -166,13 +169,14 @@ impl<T: Number> Batch<T> {
     pub(crate) fn check(
         &self,
         inputs: &[(&'static str, Table<T>)],
-        outputs: &[(&'static str, usize, usize)],
+        outputs: &[Size],
         environment: &Environment,
         frames: impl Iterator<Item = FrameId>,
     ) -> Result<usize, Error> {
         let (model, lanes) = (&*self.model, self.block());
         let (first, table) = inputs[0];
-        let states = self.states(first, table)?;
+        let given = inputs.iter().map(|&(what, (table, width))| (what, table.len(), width));
+        let states = self.states(given.clone().chain(outputs.iter().copied()))?;
         let wrong = |what, found, width| {
             let expected = states * width;
             if found == expected {
@@ -181,12 +185,7 @@ impl<T: Number> Batch<T> {
                 Err(Error::WrongLength { what, found, expected, states, width, lanes })
             }
         };
-        for &(what, (table, width)) in inputs {
-            wrong(what, table.len(), width)?;
-        }
-        for &(what, length, width) in outputs {
-            wrong(what, length, width)?;
-        }
+        given.chain(outputs.iter().copied()).try_for_each(|(what, found, width)| wrong(what, found, width))?;
         frames.into_iter().try_for_each(|frame| model.check_frame(frame))?;
         model.check_environment(environment)?;
         if model.is_floating() && first == "theta" {
@@ -195,7 +194,8 @@ impl<T: Number> Batch<T> {
         Ok(states)
     }
 
-    /// A quantity at many states: the outputs, from tables of its inputs in their order. The length of the first tells the number N of states.
+    /// A quantity at many states: the outputs, from tables of its inputs in their order. The length of the first tells the number N of states (of a robot
+    /// without joints, the first table that has numbers for each state).
     /// What the quantity does not use of the environment has no effect. See [`LIST`](mozzi::quantities::LIST).
     ///
     /// # Errors

@@ -157,9 +157,7 @@ impl Robot {
         let (same, slices) = (environment.environment(), &mut results.slices()[..]);
         let is_one_state = leading.is_empty() && environment.tables().next().is_none();
         let other = (!environment.is_own).then_some(&same);
-        if self.model.nq() == 0 {
-            self.repeat(query, slices).map_err(of_model)?;
-        } else if is_one_state && let Some(found) = T::one_state(self, query, &inputs, other, slices) {
+        if is_one_state && let Some(found) = T::one_state(self, query, &inputs, other, slices) {
             found.map_err(of_model)?;
         } else {
             let (batch, wrenches) = (self.batch::<T>(threads)?, environment.wrenches()?);
@@ -168,15 +166,5 @@ impl Robot {
                 .map_err(|error| of_batch(error, &leading))?;
         }
         results.finish(py, query)
-    }
-
-    /// All states of a robot without joints, which are the same.
-    fn repeat<T: Element>(&self, query: &Query, out: &mut [&mut [T]]) -> Result<(), Error> {
-        let inputs = vec![&[][..]; query.declaration().inputs.len()];
-        let found = self.model.compute(*query, &inputs, &self.model.environment())?;
-        for (out, found) in out.iter_mut().zip(found) {
-            out.iter_mut().zip(found.iter().cycle()).for_each(|(out, &x)| *out = T::from_f64(x));
-        }
-        Ok(())
     }
 }

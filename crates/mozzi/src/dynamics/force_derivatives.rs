@@ -1,7 +1,7 @@
 //! Derivatives of the parts of τ by θ: each is ∂τ/∂θ with arguments set to zero.
 
 use super::bias_forces::take_zeros;
-use super::inverse_dynamics_derivatives::derivatives;
+use super::derivatives::derivatives;
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
 /// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is fixed: g is a gradient. Of a floating base along its body
-/// twist, as of [`inverse_dynamics_derivatives`](super::inverse_dynamics_derivatives()).
+/// twist, as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
 /// Cost O(n · depth) beside n² zeros, no allocation.
 ///

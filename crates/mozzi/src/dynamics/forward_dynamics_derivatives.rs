@@ -1,7 +1,7 @@
 //! ∂θ̈ of forward dynamics, by those of inverse dynamics and the factors of M (Carpentier and Mansard 2018).
 
 use super::bias_forces::take_zeros;
-use super::inverse_dynamics_derivatives::{add_accelerations, inward_pass, joint_forces, outward_pass};
+use super::derivatives::{add_accelerations, inward_pass, joint_forces, outward_pass};
 use super::joint_friction::joint_friction;
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
@@ -12,7 +12,7 @@ use crate::quantity::{
 use crate::scalar::Scalar;
 
 /// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n × n, row-major: row i is
-/// θ̈_i's, and columns are as of [`inverse_dynamics_derivatives`](super::inverse_dynamics_derivatives()).
+/// θ̈_i's, and columns are as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
 /// θ̈ is by M, which the derivatives need as well. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
 ///

@@ -6,6 +6,7 @@ mod center_of_mass;
 mod centroidal_momentum;
 mod closed_form;
 mod coriolis_matrix;
+mod derivatives;
 mod energy;
 mod force_derivatives;
 mod forward_dynamics;

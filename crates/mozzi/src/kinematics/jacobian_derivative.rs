@@ -142,7 +142,7 @@ impl Kernel for BodyJacobianDerivative {
 /// From H[i n + j] = ∂J_i/∂θ_j to one 6 × n matrix for each j.
 #[inline(always)]
 fn by_velocity<S: Scalar>(columns: &[Twist<S>], n: usize, H: &mut [S]) {
-    for (j, matrix) in H.chunks_exact_mut(6 * n).enumerate() {
+    for (j, matrix) in H.chunks_exact_mut((6 * n).max(1)).enumerate() {
         by_rows((0..n).map(|i| columns[i * n + j].to_array()), matrix);
     }
 }

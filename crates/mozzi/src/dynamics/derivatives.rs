@@ -1,0 +1,266 @@
+//! The two passes behind ∂τ and ∂θ̈, analytic (Carpentier and Mansard 2018; Singh, Russell and Wensing 2022).
+//!
+//! All twists and wrenches are in the coordinates of the base link, in which axes move and composite bodies add up. Ad maps
+//! drop out; what is left of a joint that turns or slides is its bracket.
+//!
+//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p. So its rates are, θ̇ and θ̈ being per unit,
+//!
+//! > Ȧ = `[ad_𝒱_p]` A, Ä = `[ad_𝒱̇_p]` A + `[ad_𝒱_p]` Ȧ, and 𝒱 = 𝒱_p + A θ̇, 𝒱̇ = 𝒱̇_p + Ȧ θ̇ + A θ̈
+//!
+//! **What a body beyond the joint sees.** A small motion of the joint carries all links beyond it along, without a change of
+//! the joints between them. Seen from such a link, whose own coordinates are carried too, its twist, its acceleration and the
+//! wrench 𝓕 = 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 change by
+//!
+//! > ∂𝒱 = Ȧ, ∂𝒱̇ = Ä − `[ad_𝒱]` Ȧ, ∂𝓕 = 𝒢 Ä + (−𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢) Ȧ − `[ad_Ȧ]`ᵀ 𝒢𝒱 = 𝒢 Ä + 𝓑 Ȧ, by θ
+//! >
+//! > ∂𝒱 = A, ∂𝒱̇ = 2 Ȧ − `[ad_𝒱]` A, ∂𝓕 = 2 𝒢 Ȧ + 𝓑 A, by θ̇
+//! >
+//! > ∂𝒱 = 0, ∂𝒱̇ = A, ∂𝓕 = 𝒢 A, by θ̈
+//!
+//! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia and H(P)A = −`[ad_A]`ᵀP, skew. Half of 𝓑 cancels: it is
+//! `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. The axes do not depend on the link, so 𝒢, K, f and 𝓕 add up over all that
+//! hangs from the joint: 28 numbers, no 6 × 6 matrix. A wrench that is applied to a link is constant in its coordinates and adds to
+//! 𝓕 alone.
+//!
+//! **What a joint i carries**, τ_i = A_iᵀ𝓕ᶜ_i. By a joint j at i or between it and the base, axis and wrench are both carried, and what is
+//! left is ∂𝓕 of the bodies beyond i. By a joint j beyond i, they are the bodies beyond j that change, and are carried past an axis that is not:
+//!
+//! > ∂τ_i/∂θ_j = A_iᵀ (𝒢ᶜ_i Ä_j + 𝓑ᶜ_i Ȧ_j), j at or before i; A_iᵀ (𝒢ᶜ_j Ä_j + 𝓑ᶜ_j Ȧ_j − `[ad_A_j]`ᵀ 𝓕ᶜ_j), j beyond i
+//! >
+//! > ∂τ_i/∂θ̇_j = A_iᵀ (2 𝒢ᶜ Ȧ_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
+
+use crate::kinematics::{base_motion, base_pose};
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Environment, Model, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::{CoriolisFactor, Twist, Wrench};
+
+/// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
+#[cfg_attr(not(test), inline(always))]
+#[allow(clippy::too_many_arguments)]
+pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    ddtheta: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    d_theta: &mut [S],
+    by_rates: Option<[&mut [S]; 2]>,
+) {
+    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
+    let (d_dtheta, M) = by_rates.map_or((None, None), |[d_dtheta, M]| (Some(d_dtheta), Some(M)));
+    inward_pass(model, theta, environment, workspace, true, [Some(d_theta), d_dtheta, M]);
+}
+
+/// Axes with their rates, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip] // one equation a line
+pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>,
+) {
+    model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, dV, F, axes, G_c, B, .. } = workspace;
+    let (T, V, dV, F) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
+    let (axes, G_c, B) = (&mut axes[..slots], &mut G_c[..slots], &mut B[..slots]);
+
+    // base: its own motion
+    (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
+    let G = model.base_inertia.map(S::from);
+    let P = G * V[0];
+    T[0] = SE3::identity();
+    (G_c[0], B[0]) = (G, CoriolisFactor::new(G, V[0], P));
+    F[0] = G * dV[0] - V[0].ad().transpose() * P;
+
+    // base to tips: axes with their rates, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
+    for (i, link) in model.outward::<S>() {
+        let (p, j) = (link.parent, link.j);
+        T[i]  = T[i] * T[p];                                                 // T_i0
+        let A   = link.A().seen_through(T[i]) * link.ratio();
+        let dA  = V[p].ad() * A;
+        let ddA = dV[p].ad().mul_add(A, V[p].ad() * dA);
+        let V_i  = A.mul_add(dtheta[j], V[p]);
+        let dV_i = A.mul_add(ddtheta[j], dA.mul_add(dtheta[j], dV[p]));
+        (V[i], dV[i], axes[i]) = (V_i, dV_i, [A, dA, ddA]);
+        let G = link.G().congruence(T[i].Ad());
+        let P = G * V_i;
+        (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V_i, P));
+        F[i]  = G * dV_i - V_i.ad().transpose() * P;
+    }
+    for &(frame, F_b) in environment.applied {
+        let frame = model.frame_at::<S>(frame);
+        F[frame.slot] += (frame.T.inverse() * T[frame.slot]).Ad().transpose() * F_b;
+    }
+}
+
+/// Adds θ̈ to what was carried and filled without: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by `[ad_𝒱̇'_p]` A,
+/// and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
+    let Workspace { dV, F, U, axes, G_c, .. } = workspace;
+    dV[0] = match ddtheta.first_chunk() {
+        Some(&dV) if model.is_floating() => Twist::from_array(dV),
+        _ => Twist::zero(),
+    };
+    for (i, link) in model.outward::<S>() {
+        let ([A, _, ddA], p, ddq) = (&mut axes[i], link.parent, ddtheta[link.j]);
+        *ddA += dV[p].ad() * *A;
+        dV[i] = dV[p] + *A * ddq;
+        U[i]  = U[i] * ddq;
+    }
+    U[0] = Wrench::zero();
+    for (i, link) in model.inward::<S>() {
+        let (p, U_i) = (link.parent, U[i]);
+        F[i] += G_c[i] * dV[p] + U_i;
+        U[p] += U_i;
+    }
+    F[0] += G_c[0] * dV[0] + U[0];
+}
+
+/// ∂τ/∂θ, ∂τ/∂θ̇ and M, what is asked for. Tips to base, 𝒢, 𝓑 and 𝓕 of a link become those of the link with all that hangs from it; `carried`
+/// says that they are so far those of links.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>, carried: bool,
+    [mut d_theta, mut d_dtheta, mut M]: [Option<&mut [S]>; 3],
+) {
+    let n = model.n();
+    let Workspace { V, F, U, axes, G_c, B, .. } = workspace;
+    if let Some(d_theta) = &mut d_theta {
+        zero(model, d_theta);
+    }
+    if let Some(d_dtheta) = &mut d_dtheta {
+        zero(model, d_dtheta);
+        for j in 0..n {
+            d_dtheta[j * n + j] = S::from(model.damping[j]);
+        }
+    }
+    if let Some(M) = &mut M {
+        zero(model, M);
+        for j in 0..n {
+            M[j * n + j] = S::from(model.armature[j]);
+        }
+    }
+    // {s}, which carries the axes of a floating base, seen from it
+    let Ad = base_pose(model, theta).inverse().Ad();
+    let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
+
+    for (i, link) in model.inward::<S>() {
+        let (j, [A, dA, ddA], G_i, B_i) = (link.j, axes[i], G_c[i], B[i]);
+        let (GA, GdA) = (G_i * A, G_i * dA);
+        let column  = G_i * ddA + B_i * dA - A.ad().transpose() * F[i];      // ∂𝓕 by θ_j, felt below joint i
+        let dcolumn = GdA + GdA + B_i * A;                                   // by θ̇_j
+        let BtA     = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
+        if let Some(d_theta) = &mut d_theta {
+            d_theta[j * n + j] += A.dot(column);
+        }
+        if let Some(d_dtheta) = &mut d_dtheta {
+            d_dtheta[j * n + j] += A.dot(dcolumn);
+        }
+        if let Some(M) = &mut M {
+            M[j * n + j] += A.dot(GA);
+        }
+        let mut k = link.parent;
+        while k > 0 {
+            let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
+            let (ij, ji) = (below.j * n + j, j * n + below.j);
+            if let Some(d_theta) = &mut d_theta {
+                d_theta[ij] += A.dot(column);
+                d_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
+            }
+            if let Some(d_dtheta) = &mut d_dtheta {
+                let dAGA = dA.dot(GA);
+                d_dtheta[ij] += A.dot(dcolumn);
+                d_dtheta[ji] += dAGA + dAGA + A.w.dot(BtA);
+            }
+            if let Some(M) = &mut M {
+                let entry = A.dot(GA);
+                M[ij] += entry;
+                M[ji] += entry;
+            }
+            k = below.parent;
+        }
+        if model.is_floating() {
+            let BtA = Wrench { m: BtA, f: Vec3::zero() };
+            let (s_t, ds_t) = (V_s.ad().transpose(), dV_s.ad().transpose());
+            let row  = ds_t * GA + s_t * (s_t * GA + BtA);                   // (𝒢A)ᵀÄ_e + (𝓑ᵀA)ᵀȦ_e for each e
+            let drow = (V_s + V[0]).ad().transpose() * GA + BtA;
+            if let Some(d_theta) = &mut d_theta {
+                add_cross(d_theta, n, j, column, row);
+            }
+            if let Some(d_dtheta) = &mut d_dtheta {
+                add_cross(d_dtheta, n, j, dcolumn, drow);
+            }
+            if let Some(M) = &mut M {
+                add_cross(M, n, j, GA, GA);
+            }
+        }
+        if carried {
+            let (p, F_i) = (link.parent, F[i]);
+            U[i]    = GA;
+            G_c[p] += G_i;
+            B[p]   += B_i;
+            F[p]   += F_i;
+        }
+    }
+
+    // a floating base: the axes e
+    if model.is_floating() {
+        let (G, B) = (G_c[0], B[0]);
+        for (r, e) in Twist::axes().into_iter().enumerate() {
+            let de = V_s.ad() * e;
+            if let Some(d_theta) = &mut d_theta {
+                set_column(d_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
+            }
+            if let Some(d_dtheta) = &mut d_dtheta {
+                set_column(d_dtheta, n, r, G * (de + V[0].ad() * e) + B * e);
+            }
+            if let Some(M) = &mut M {
+                set_column(M, n, r, G * e);
+            }
+        }
+    }
+}
+
+/// What joints and a floating base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
+    let Workspace { F, axes, .. } = workspace;
+    tau.fill(S::zero());
+    if model.is_floating() {
+        tau[..6].copy_from_slice(&F[0].to_array());
+    }
+    for (i, link) in model.outward::<S>() {
+        tau[link.j] += axes[i][0].dot(F[i]);
+    }
+}
+
+/// n × n zeros.
+#[cfg_attr(not(test), inline(always))]
+#[track_caller]
+fn zero<S: Scalar, C: Scalar>(model: &Model<C>, X: &mut [S]) {
+    let n = model.n();
+    assert!(X.len() == n * n, "a derivative has {} entries, expected n² = {}", X.len(), n * n);
+    X.fill(S::zero());
+}
+
+/// Column j and row j at a floating base's six.
+#[cfg_attr(not(test), inline(always))]
+fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
+    for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
+        X[r * n + j] += column;
+        X[j * n + r] += row;
+    }
+}
+
+/// A column of a floating base's 6 × 6 block.
+#[cfg_attr(not(test), inline(always))]
+fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
+    for (s, entry) in column.to_array().into_iter().enumerate() {
+        X[s * n + r] = entry;
+    }
+}
