@@ -41,7 +41,7 @@ const CODES: [Entry; 57] = [
     ("fixed_mimic",
         "A fixed joint follows another joint (mimic). It does not move, so this has no effect.",
         "was the joint meant to move? Otherwise remove the <mimic>"),
-    ("fixed_master",
+    ("fixed_source",
         "A joint follows a fixed joint, which never moves.",
         "follow a joint that moves, or make this one fixed too"),
     ("ignored_property",

@@ -39,7 +39,7 @@ impl Report<'_> {
                 self.error(
                     element,
                     "mimic",
-                    "fixed_master",
+                    "fixed_source",
                     format!("joint `{}` is fixed, expected one that moves", mimic.joint),
                 );
             }
