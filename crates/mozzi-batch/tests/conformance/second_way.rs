@@ -220,6 +220,7 @@ second_ways! {
     ForwardDynamicsByMassMatrix [1e-7]: |g| accelerations(g);
     ForwardDynamicsByInverseDynamics [1e-7]: |g| accelerations(g);
     MassMatrix: |g| vec![rows(&g.at_rest().mass_matrix())];
+    MassMatrixInverse [1e-7]: |g| vec![rows(&g.at_rest().mass_matrix().try_inverse().expect("regular"))];
     MassMatrixRate: |g| vec![rows(&g.moving().mass_matrix_rate())];
     CoriolisMatrix: |g| vec![rows(&g.moving().coriolis_matrix())];
     VelocityProduct: |g| vec![g.moving().velocity_product().as_slice().to_vec()];

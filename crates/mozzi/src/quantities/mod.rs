@@ -32,7 +32,7 @@ macro_rules! quantities {
     ($callback:ident) => {
         $callback! {
             InverseDynamics ForwardDynamics ForwardDynamicsByMassMatrix ForwardDynamicsByInverseDynamics
-            MassMatrix MassMatrixRate CoriolisMatrix VelocityProduct GravityForces BiasForces TipForces JointFriction
+            MassMatrix MassMatrixInverse MassMatrixRate CoriolisMatrix VelocityProduct GravityForces BiasForces TipForces JointFriction
             KineticEnergy PotentialEnergy
             ForwardKinematics FramePoses SpaceJacobian BodyJacobian SpaceJacobianRate BodyJacobianRate
             SpaceJacobianDerivative BodyJacobianDerivative TaskSpaceDynamics

@@ -1,0 +1,53 @@
+//! The inverse of the mass matrix, by the factors of M along the tree (Featherstone 2008, section 6.5).
+
+use super::mass_matrix::mass_matrix;
+use crate::linalg::ldlt;
+use crate::model::{Model, Workspace};
+use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, output};
+use crate::scalar::Scalar;
+
+/// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: what accelerations a unit of each joint force produces. 1/(kg m²), 1/(kg m) or 1/kg.
+///
+/// Where M is singular the result is not finite or meaningless: the methods of [`Model`] judge the pivots.
+///
+/// Cost O(n² · depth), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `inverse` not n².
+#[cfg_attr(not(test), inline(always))]
+pub fn mass_matrix_inverse<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    workspace: &mut Workspace<S>,
+    inverse: &mut [S],
+) {
+    let (n, pattern) = (model.n(), &model.structure.pattern);
+    mass_matrix(model, theta, workspace, inverse);
+    ldlt::factor(pattern, inverse);
+    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
+        *pivot = inverse[j * n + j];
+    }
+    ldlt::invert(pattern, inverse, &mut workspace.vector);
+}
+
+/// See [`mass_matrix_inverse`].
+#[derive(Clone, Copy, Debug)]
+pub struct MassMatrixInverse;
+impl Quantity for MassMatrixInverse {
+    type Kernel = Self;
+    type Registers = Self;
+    const DECLARATION: Declaration = Declaration::new(
+        "mass_matrix_inverse",
+        "M(θ)⁻¹, the accelerations that a unit of each joint force produces",
+        &[THETA],
+        &[output("inverse", MATRIX, "1/(kg m²), 1/(kg m) or 1/kg")],
+    )
+    .divides();
+}
+impl Kernel for MassMatrixInverse {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [inverse, ..]) = (c.inputs, c.outputs);
+        mass_matrix_inverse(c.model, theta, &mut c.memory.workspace, inverse);
+    }
+}
