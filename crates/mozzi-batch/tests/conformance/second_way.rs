@@ -264,6 +264,14 @@ second_ways! {
     BodyJacobianRate: |g| vec![jacobian_rows(&g.jacobian_rate(g.inputs[1], TaskFrame::Body))];
     SpaceJacobianDerivative: |g| jacobian_derivative(g, TaskFrame::Space);
     BodyJacobianDerivative: |g| jacobian_derivative(g, TaskFrame::Body);
+    FrameAcceleration: |g| {
+        // along the motion, the rates of ω and ṗ in {s}, turned into the frame's coordinates
+        let theta = seed_direction(g.model, g.theta(), g.inputs[1]);
+        let (T, J) = frame(g.model, &theta, g.frame_name());
+        let V = twist(&J, &Dual::list(g.inputs[1], g.inputs[2]));
+        let rate = |x: Vec3<Dual>| T.R.map(|x| x.value).inverse() * (T.R * x).map(|x| x.derivative);
+        vec![Twist { w: rate(V.w), v: rate(V.v) }.to_array().to_vec()]
+    };
     TaskSpaceDynamics [1e-6]: |g| {
         let (k, coordinates) = (g.of.rows.len(), g.of.coordinates);
         let of_rows = |columns: &[Twist]| {

@@ -4,6 +4,7 @@ mod base;
 mod configuration;
 mod exponentials;
 mod forward;
+mod frame_acceleration;
 mod jacobian;
 mod jacobian_derivative;
 mod jacobian_rate;
@@ -24,6 +25,7 @@ pub use exponentials::{
     body_jacobian_of_screws, body_product_of_exponentials, product_of_exponentials, space_jacobian_of_screws,
 };
 pub use forward::{ForwardKinematics, FramePoses, forward_kinematics, frame_poses};
+pub use frame_acceleration::{FrameAcceleration, frame_acceleration};
 pub use jacobian::{BodyJacobian, Jacobian, SpaceJacobian, body_jacobian, space_jacobian};
 pub use jacobian_derivative::{
     BodyJacobianDerivative, SpaceJacobianDerivative, body_jacobian_derivative, space_jacobian_derivative,

@@ -35,7 +35,7 @@ macro_rules! quantities {
             MassMatrix MassMatrixInverse MassMatrixRate CoriolisMatrix VelocityProduct GravityForces BiasForces TipForces JointFriction
             KineticEnergy PotentialEnergy
             ForwardKinematics FramePoses SpaceJacobian BodyJacobian SpaceJacobianRate BodyJacobianRate
-            SpaceJacobianDerivative BodyJacobianDerivative TaskSpaceDynamics
+            SpaceJacobianDerivative BodyJacobianDerivative FrameAcceleration TaskSpaceDynamics
             InverseDynamicsDerivatives ForwardDynamicsDerivatives
             GravityForcesDerivative TipForcesDerivative MassMatrixProductDerivative
             CenterOfMass CenterOfMassVelocity CenterOfMassAcceleration CenterOfMassJacobian
