@@ -38,11 +38,8 @@ pub(crate) fn forward_dynamics_by_inverse_dynamics<S: Scalar + From<C>, C: Scala
     for (x, &tau) in ddtheta.iter_mut().zip(tau) {
         *x = tau - *x;
     }
-    ldlt::factor(dense, M);
+    ldlt::factor(dense, M, &mut workspace.pivots);
     ldlt::solve(dense, M, ddtheta);
-    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
-        *pivot = M[j * n + j];
-    }
 }
 
 /// See [`Model::forward_dynamics_by_inverse_dynamics`].

@@ -45,11 +45,8 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     for j in 0..n {
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
     }
-    ldlt::factor(pattern, d_tau);
+    ldlt::factor(pattern, d_tau, &mut workspace.pivots);
     ldlt::solve(pattern, d_tau, ddtheta);
-    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
-        *pivot = d_tau[j * n + j];
-    }
 
     add_accelerations(model, ddtheta, workspace);
     inward_pass(model, theta, environment, workspace, false, [Some(d_theta), Some(d_dtheta), None]);

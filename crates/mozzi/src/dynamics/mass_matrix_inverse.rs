@@ -21,12 +21,9 @@ pub fn mass_matrix_inverse<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     inverse: &mut [S],
 ) {
-    let (n, pattern) = (model.n(), &model.structure.pattern);
+    let pattern = &model.structure.pattern;
     mass_matrix(model, theta, workspace, inverse);
-    ldlt::factor(pattern, inverse);
-    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
-        *pivot = inverse[j * n + j];
-    }
+    ldlt::factor(pattern, inverse, &mut workspace.pivots);
     ldlt::invert(pattern, inverse, &mut workspace.vector);
 }
 

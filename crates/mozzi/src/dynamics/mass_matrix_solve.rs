@@ -36,11 +36,8 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
     }
     mass_matrix(model, theta, workspace, M);
-    ldlt::factor(pattern, M);
+    ldlt::factor(pattern, M, &mut workspace.pivots);
     ldlt::solve(pattern, M, ddtheta);
-    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
-        *pivot = M[j * n + j];
-    }
 }
 
 /// See [`forward_dynamics_by_mass_matrix`].

@@ -54,11 +54,8 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     }
 
     mass_matrix(model, theta, workspace, M);
-    ldlt::factor(pattern, M);
+    ldlt::factor(pattern, M, &mut workspace.pivots);
     ldlt::solve(pattern, M, h);
-    for (j, pivot) in workspace.pivots.iter_mut().enumerate() {
-        *pivot = M[j * n + j];
-    }
     let dot = |a: &[S], b: &[S]| a.iter().zip(b).fold(S::zero(), |sum, (&a, &b)| a.mul_add(b, sum));
     for r in 0..k {
         eta[r] = dot(&J[r * n..][..n], h) - dJ_dtheta[r];
@@ -68,10 +65,7 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
             Lambda[r * k + c] = dot(&J[c * n..][..n], &row[..n]); // Λ⁻¹ = J M⁻¹Jᵀ
         }
     }
-    ldlt::factor(dense, Lambda);
-    for (r, pivot) in pivots.iter_mut().enumerate() {
-        *pivot = Lambda[r * k + r];
-    }
+    ldlt::factor(dense, Lambda, pivots);
     ldlt::solve(dense, Lambda, eta);
     ldlt::invert(dense, Lambda, &mut row[..k]);
 }

@@ -4,13 +4,14 @@ pub(crate) use super::pattern::Pattern;
 use crate::scalar::Scalar;
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
-/// The caller checks that the pivots D are positive.
+/// `pivots` take D too: whoever answers a user checks that they are positive.
 #[cfg_attr(not(test), inline(always))]
-pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S]) {
+pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]) {
     let n = pattern.len();
     for k in (0..n).rev() {
         let (above, row) = M.split_at_mut(k * n);
         let row = &mut row[..n];
+        pivots[k] = row[k];
         let one_over = S::one() / row[k];
         for i in pattern.ancestors(k) {
             let (above, a) = (&mut above[i * n..][..n], row[i] * one_over);
@@ -269,7 +270,7 @@ mod tests {
         assert!(found.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {x:?}");
         let pattern = Pattern::new(6, 6, core::iter::empty::<(usize, usize)>());
         let mut M = A.as_flattened().to_vec();
-        factor(&pattern, &mut M);
+        factor(&pattern, &mut M, &mut vec![0.0; pattern.len()]);
         assert!((0..6).all(|k| (pivots[k] - M[7 * k]).abs() < 1e-14 * pivots[k]));
     }
 
@@ -320,7 +321,7 @@ mod tests {
         let x = random.vector(n, 1.0);
         let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| M[i * n + j] * x[j]).sum()).collect();
         let (mut rows, mut more, right) = (M.clone(), B.clone(), b.clone());
-        factor(pattern, &mut M);
+        factor(pattern, &mut M, &mut vec![0.0; pattern.len()]);
         solve(pattern, &M, &mut b);
         assert!(b.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-14));
         solve_rows(pattern, &M, [&mut rows, &mut more]);
