@@ -1,8 +1,9 @@
-//! `cargo xtask test | check | docs | page | bench | wheel`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | page | bench | accuracy | wheel`: what CI runs, anyone can run.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
 
+mod accuracy;
 mod advisories;
 mod bench;
 mod command;
@@ -46,6 +47,12 @@ usage: cargo xtask COMMAND
           --install                                   let apt install clang and KDL first
           --criterion                                 each kernel alone, without peers
           --python                                    Python's calls beside Pinocchio's and the Modern Robotics package's
+  accuracy  every quantity in every way, Pinocchio and MuJoCo against numbers of 31 and 71 digits, into docs/accuracy.md
+          --states 1000                               of each robot, up to a million
+          --references 2                              states at which 71 digits check the reference
+          --robots ur5,anymal:floating,FILE.urdf      these alone, to standard output
+          --quantities mass-matrix,forward-dynamics   likewise
+          --no-hard                                   without what is hard by design
   wheel   the Python package for Linux, into target/wheels; installed into an empty environment, where its README runs
           --of-tests                                  of what `test` built, as `test` does it";
 
@@ -62,6 +69,7 @@ fn main() -> ExitCode {
         ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
+        ["accuracy", ref options @ ..] => accuracy(&workspace, options),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
             Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),
             Err(why) => {
@@ -106,6 +114,14 @@ fn wheel(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("Python environment", || venv::prepare(workspace));
     report.step("wheel", || wheel::build(workspace));
+    report.finish()
+}
+
+fn accuracy(workspace: &Workspace, options: &[&str]) -> ExitCode {
+    let mut report = Report::default();
+    report.step("Python environment", || venv::prepare(workspace));
+    report.step("reference numbers", || oracles::make(workspace));
+    report.step("accuracy", || accuracy::run(workspace, options));
     report.finish()
 }
 

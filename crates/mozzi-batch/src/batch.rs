@@ -1,6 +1,6 @@
 //! The quantities of a model at many states.
 
-use crate::chunk::{Chunk, Table, TableMut};
+use crate::chunk::{Chunk, Fixed, Table, TableMut};
 use crate::columns::{Layout, place};
 use crate::engine::Engine;
 use crate::pool::Pool;
@@ -161,22 +161,21 @@ impl<T: Number> Batch<T> {
     }
 
     /// The numbers of this state in a table.
-    fn at(&self, (table, width): Table<T>, state: usize) -> Vec<f64> {
-        (0..width).map(|column| table[place(state, column, width, self.block())].into()).collect()
+    fn at(&self, &Table { numbers, width, .. }: &Table<T>, state: usize) -> Vec<f64> {
+        (0..width).map(|column| numbers[place(state, column, width, self.block())].into()).collect()
     }
 
     /// The number of states; an error for tables that do not go with it, and frames of other models.
     pub(crate) fn check(
         &self,
-        inputs: &[(&'static str, Table<T>)],
-        outputs: &[Size],
+        inputs: &[Table<T>],
+        outputs: impl Iterator<Item = Size> + Clone,
         environment: &Environment,
         frames: impl Iterator<Item = FrameId>,
     ) -> Result<usize, Error> {
         let (model, lanes) = (&*self.model, self.block());
-        let (first, table) = inputs[0];
-        let given = inputs.iter().map(|&(what, (table, width))| (what, table.len(), width));
-        let states = self.states(given.clone().chain(outputs.iter().copied()))?;
+        let all = inputs.iter().map(|table| (table.name, table.numbers.len(), table.width)).chain(outputs);
+        let states = self.states(all.clone())?;
         let wrong = |what, found, width| {
             let expected = states * width;
             if found == expected {
@@ -185,11 +184,11 @@ impl<T: Number> Batch<T> {
                 Err(Error::WrongLength { what, found, expected, states, width, lanes })
             }
         };
-        given.chain(outputs.iter().copied()).try_for_each(|(what, found, width)| wrong(what, found, width))?;
+        all.clone().try_for_each(|(what, found, width)| wrong(what, found, width))?;
         frames.into_iter().try_for_each(|frame| model.check_frame(frame))?;
         model.check_environment(environment)?;
-        if model.is_floating() && first == "theta" {
-            self.check_quaternions(table, states)?;
+        if model.is_floating() && inputs[0].name == "theta" {
+            self.check_quaternions(&inputs[0], states)?;
         }
         Ok(states)
     }
@@ -223,16 +222,15 @@ impl<T: Number> Batch<T> {
         );
         let request = Request::new(query, &self.model, environment);
         let state = declaration.inputs.iter().zip(inputs).zip(query.input_lengths(&*self.model));
-        let mut tables: Vec<(&'static str, Table<T>)> =
-            state.map(|((input, &table), width)| (input.name, (table, width))).collect();
+        let mut tables: Vec<Table<T>> =
+            state.map(|((input, &numbers), width)| Table { name: input.name, numbers, width }).collect();
         tables.extend(request.further());
-        let widths: Vec<usize> = query.output_lengths(&*self.model).collect();
-        let sizes = declaration.outputs.iter().zip(&*outputs).zip(&widths);
-        let sizes: Vec<_> = sizes.map(|((output, table), &width)| (output.name, table.len(), width)).collect();
+        let widths: Fixed<usize> = query.output_lengths(&*self.model).collect();
+        let sizes = declaration.outputs.iter().zip(&*outputs).zip(&*widths);
+        let sizes = sizes.map(|((output, table), &width)| (output.name, table.len(), width));
         let frames = request.wrenches.iter().map(|&(frame, _)| frame);
-        let states = self.check(&tables, &sizes, &request.environment, frames)?;
-        let tables: Vec<Table<T>> = tables.into_iter().map(|(_, table)| table).collect();
-        let outputs = outputs.iter_mut().zip(widths).map(|(table, width)| (&mut **table, width)).collect();
+        let states = self.check(&tables, sizes, &request.environment, frames)?;
+        let outputs = outputs.iter_mut().zip(&*widths).map(|(table, &width)| (&mut **table, width)).collect();
         let chunks = self.cut(states, &tables, outputs);
         let mut frames = Vec::new();
         let arguments = request.arguments(&mut frames);
@@ -252,7 +250,8 @@ impl<T: Number> Batch<T> {
     /// state, of a quantity without a kernel on registers. None for the kernel.
     fn programmed(&self, request: &Request<T>, arguments: &Arguments) -> Result<Option<Arc<Programmed>>, Error> {
         let query = &request.query;
-        let compiled = if request.is_own() { find(&self.compiled, query, arguments) } else { None };
+        let compiled = if self.compiled.is_empty() { None } else { find(&self.compiled, query, arguments) };
+        let compiled = compiled.filter(|_| request.is_own());
         match compiled.filter(|programmed| programmed.code.is_ok()) {
             Some(programmed) => Ok(Some(programmed.clone())),
             None if has_registers(query.index()) && request.parameters.is_none() => Ok(None),
@@ -296,30 +295,33 @@ impl<T: Number> Batch<T> {
     }
 
     /// Cuts the tables into pieces for the cache, and for the threads.
-    fn cut<'a>(&self, states: usize, inputs: &[Table<'a, T>], mut outputs: Vec<TableMut<'a, T>>) -> Vec<Chunk<'a, T>> {
-        let width: usize = inputs.iter().map(|&(_, w)| w).chain(outputs.iter().map(|&(_, w)| w)).sum();
+    fn cut<'a>(
+        &self,
+        states: usize,
+        inputs: &'a [Table<'a, T>],
+        mut outputs: Fixed<TableMut<'a, T>>,
+    ) -> Vec<Chunk<'a, T>> {
+        let width: usize = inputs.iter().map(|table| table.width).chain(outputs.iter().map(|&(_, w)| w)).sum();
         let most = (CHUNK_BYTES / (width * size_of::<T>()).max(1)).max(1).next_multiple_of(self.lanes().max(32));
         let mut chunks = Vec::with_capacity(states.div_ceil(most));
         for first in (0..states).step_by(most) {
             let count = most.min(states - first);
-            let mut own = Vec::with_capacity(outputs.len());
-            for (table, width) in &mut outputs {
+            let own = |(table, width): &mut TableMut<'a, T>| {
                 let (this, rest) = core::mem::take(table).split_at_mut(count * *width);
                 *table = rest;
-                own.push((this, *width));
-            }
-            let part = |&(table, width): &Table<'a, T>| (&table[first * width..][..count * width], width);
-            let (layout, inputs) = (self.layout, inputs.iter().map(part).collect());
-            chunks.push(Chunk { first, states: count, layout, inputs, outputs: own });
+                (this, *width)
+            };
+            let own = outputs.iter_mut().map(own).collect();
+            chunks.push(Chunk { first, states: count, layout: self.layout, inputs, outputs: own });
         }
         chunks
     }
 
-    fn check_quaternions(&self, theta: Table<T>, states: usize) -> Result<(), Error> {
+    fn check_quaternions(&self, theta: &Table<T>, states: usize) -> Result<(), Error> {
         let (near, one) = (T::from_f64(1e-4), T::one());
         for index in 0..states {
             let square = (0..4).fold(T::zero(), |sum, k| {
-                let x = theta.0[place(index, k, theta.1, self.block())];
+                let x = theta.numbers[place(index, k, theta.width, self.block())];
                 sum + x * x
             });
             if !((square - one) <= near && (one - square) <= near) {

@@ -3,9 +3,18 @@
 use crate::columns::{Layout, place, read_block, read_rows, write_block, write_rows};
 use crate::lanes::Lane;
 use crate::request::Request;
+use core::ops::{Deref, DerefMut};
+use mozzi::quantities::MOST_OUTPUTS;
+
+/// A table, by its name, and its numbers a state.
+#[derive(Clone, Copy)]
+pub struct Table<'a, T> {
+    pub name: &'static str,
+    pub numbers: &'a [T],
+    pub width: usize,
+}
 
 /// A table of this thread's states, and its numbers a state.
-pub(crate) type Table<'a, T> = (&'a [T], usize);
 pub(crate) type TableMut<'a, T> = (&'a mut [T], usize);
 
 /// This thread's states.
@@ -14,9 +23,40 @@ pub struct Chunk<'a, T> {
     pub first: usize,
     pub states: usize,
     pub layout: Layout,
-    /// In the order of [`Request::tables`].
-    pub inputs: Vec<Table<'a, T>>,
-    pub outputs: Vec<TableMut<'a, T>>,
+    /// Of the whole call, in the order of [`Request::tables`].
+    pub inputs: &'a [Table<'a, T>],
+    /// As many as the quantity has.
+    pub outputs: Fixed<TableMut<'a, T>>,
+}
+
+/// As many things as a quantity has outputs, without memory of their own.
+pub struct Fixed<X> {
+    all: [X; MOST_OUTPUTS],
+    count: usize,
+}
+
+impl<X: Default> FromIterator<X> for Fixed<X> {
+    fn from_iter<I: IntoIterator<Item = X>>(items: I) -> Self {
+        let mut fixed = Fixed { all: Default::default(), count: 0 };
+        for item in items {
+            fixed.all[fixed.count] = item;
+            fixed.count += 1;
+        }
+        fixed
+    }
+}
+impl<X> Deref for Fixed<X> {
+    type Target = [X];
+    #[inline(always)]
+    fn deref(&self) -> &[X] {
+        &self.all[..self.count]
+    }
+}
+impl<X> DerefMut for Fixed<X> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [X] {
+        &mut self.all[..self.count]
+    }
 }
 
 impl<T: crate::Number> Chunk<'_, T> {
@@ -24,8 +64,8 @@ impl<T: crate::Number> Chunk<'_, T> {
     #[inline(always)]
     pub fn read<L: Lane<Number = T>>(&self, first: usize, rows: usize, columns: &mut [L]) {
         let mut rest = columns;
-        for (k, &(_, width)) in self.inputs.iter().enumerate() {
-            let (columns, further) = rest.split_at_mut(width);
+        for (k, table) in self.inputs.iter().enumerate() {
+            let (columns, further) = rest.split_at_mut(table.width);
             self.read_input(k, first, rows, columns);
             rest = further;
         }
@@ -34,7 +74,7 @@ impl<T: crate::Number> Chunk<'_, T> {
     /// Of one input.
     #[inline(always)]
     pub fn read_input<L: Lane<Number = T>>(&self, input: usize, first: usize, rows: usize, columns: &mut [L]) {
-        let (table, _) = self.inputs[input];
+        let (table, first) = (self.inputs[input].numbers, self.first + first);
         match self.layout {
             Layout::Rows => read_rows(table, first, rows, columns),
             Layout::Blocks => read_block(table, first / L::WIDTH, columns),
@@ -45,7 +85,7 @@ impl<T: crate::Number> Chunk<'_, T> {
     #[inline(always)]
     pub fn write<L: Lane<Number = T>>(&mut self, first: usize, rows: usize, columns: &[L]) {
         let mut rest = columns;
-        for (table, width) in &mut self.outputs {
+        for (table, width) in &mut *self.outputs {
             let (columns, further) = rest.split_at(*width);
             match self.layout {
                 Layout::Rows => write_rows(table, first, rows, columns),
@@ -67,10 +107,10 @@ impl<T: crate::Number> Chunk<'_, T> {
         replace: bool,
     ) -> Result<(), mozzi::Error> {
         let lanes = if self.layout == Layout::Rows { 1 } else { lanes };
-        let numbers = self
-            .inputs
-            .iter()
-            .map(|&(table, width)| (0..width).map(|column| table[place(state, column, width, lanes)].into()).collect());
+        let at = |&Table { numbers, width, .. }: &Table<T>| {
+            (0..width).map(|column| numbers[place(self.first + state, column, width, lanes)].into()).collect()
+        };
+        let numbers = self.inputs.iter().map(at);
         let found = request.at_one_state(&numbers.collect::<Vec<_>>())?;
         for ((table, width), values) in self.outputs.iter_mut().zip(found).filter(|_| replace) {
             for (column, value) in values.into_iter().enumerate() {

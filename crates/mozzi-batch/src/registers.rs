@@ -52,16 +52,16 @@ pub(crate) fn run<K: Kernel, L: Lane>(
     let own = declaration.inputs.len();
     let mut ends = [0; MOST_INPUTS + 1];
     for k in 0..MOST_INPUTS {
-        ends[k + 1] = ends[k] + if k < own { chunk.inputs[k].1 } else { 0 };
+        ends[k + 1] = ends[k] + if k < own { chunk.inputs[k].width } else { 0 };
     }
-    let read = chunk.inputs.iter().map(|&(_, width)| width).sum();
+    let read = chunk.inputs.iter().map(|table| table.width).sum();
     let missing = if declaration.is_at_rest { read..read + model.n() } else { 0..0 };
     let place = |k: usize| if k < own { ends[k]..ends[k + 1] } else { missing.clone() };
     let places = [place(0), place(1), place(2)];
     input.resize(read + model.n(), L::zero());
     input[read..].fill(L::zero());
     let mut widths = [0; MOST_OUTPUTS];
-    widths[declaration.first_output()..].iter_mut().zip(&chunk.outputs).for_each(|(width, output)| *width = output.1);
+    widths[declaration.first_output()..].iter_mut().zip(&*chunk.outputs).for_each(|(width, output)| *width = output.1);
     output.resize(widths.iter().sum(), L::zero());
 
     for first in (0..chunk.states).step_by(L::WIDTH) {

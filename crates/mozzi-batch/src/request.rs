@@ -30,11 +30,12 @@ impl<'a, T: Number> Request<'a, T> {
         }
     }
 
-    /// The tables of the environment, in their order: name, numbers, numbers a state.
-    pub fn further(&self) -> impl Iterator<Item = (&'static str, Table<'a, T>)> + use<'_, 'a, T> {
-        let parameters = self.parameters.map(|table| ("parameters", (table, self.model.parameter_count())));
-        let gravity = self.gravity.map(|table| ("gravity", (table, 3)));
-        let wrenches = self.wrenches.iter().map(|&(_, table)| ("wrenches", (table, 6)));
+    /// The tables of the environment, in their order.
+    pub fn further(&self) -> impl Iterator<Item = Table<'a, T>> + use<'_, 'a, T> {
+        let table = |name, numbers, width| Table { name, numbers, width };
+        let parameters = self.parameters.map(|numbers| table("parameters", numbers, self.model.parameter_count()));
+        let gravity = self.gravity.map(|numbers| table("gravity", numbers, 3));
+        let wrenches = self.wrenches.iter().map(move |&(_, numbers)| table("wrenches", numbers, 6));
         parameters.into_iter().chain(gravity).chain(wrenches)
     }
 

@@ -1,5 +1,6 @@
 //! Many robots of one model in time.
 
+use crate::chunk::Table;
 use crate::request::Request;
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout, Number};
@@ -29,10 +30,11 @@ impl<T: Number> Batch<T> {
         steps: usize,
     ) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n());
-        let mut inputs = vec![("theta", (&*theta, nq)), ("dtheta", (&*dtheta, n)), ("tau", (tau, n))];
+        let table = |name, numbers, width| Table { name, numbers, width };
+        let mut inputs = vec![table("theta", &*theta, nq), table("dtheta", &*dtheta, n), table("tau", tau, n)];
         inputs.extend(Request::new(ForwardDynamics.into(), self.model(), environment).further());
         let frames = environment.wrenches.iter().map(|&(frame, _)| frame);
-        let states = self.check(&inputs, &[], &environment.environment, frames)?;
+        let states = self.check(&inputs, [].into_iter(), &environment.environment, frames)?;
         let h = duration / steps as f64;
         if !(h.is_finite() && h >= 0.0) {
             let found = format!("{steps} steps in {duration} s");

@@ -86,10 +86,9 @@ pub fn evaluate(
             let [x, y, z, w] = query.outputs(outputs);
             let given = [as_fused(a), as_fused(b), as_fused(c)];
             let mut found = [as_fused_mut(x), as_fused_mut(y), as_fused_mut(z), as_fused_mut(w)];
-            let environment = &fused_environment(environment, applied);
             let entry = ENTRIES[query.index()];
             // SAFETY: a Memory<Fused> is made by `Workspace::new` alone, where the processor has FMA.
-            unsafe { entry(&query.subject, model, &given, environment, memory, &mut found) }
+            unsafe { entry(&query.subject, model, &given, (environment, applied), memory, &mut found) }
         }
     }
 }
@@ -119,7 +118,10 @@ pub fn compute(
 }
 
 /// Compiled for FMA: to be called where the processor has it.
-type Entry = unsafe fn(&Subject, &Model, &Inputs<Fused>, &Environment<Fused>, &mut Memory<Fused>, &mut Outputs<Fused>);
+type Entry = unsafe fn(&Subject, &Model, &Inputs<Fused>, Around, &mut Memory<Fused>, &mut Outputs<Fused>);
+
+/// The environment, and memory for its wrenches in fused numbers.
+type Around<'a> = (&'a Environment<'a>, &'a mut Vec<(FrameId, Wrench<Fused>)>);
 
 const ENTRIES: &[Entry] = {
     macro_rules! entries {
@@ -134,11 +136,13 @@ fn fused<Q: Quantity>(
     of: &Subject,
     model: &Model,
     inputs: &Inputs<Fused>,
-    environment: &Environment<Fused>,
+    (environment, applied): Around,
     memory: &mut Memory<Fused>,
     outputs: &mut Outputs<Fused>,
 ) {
-    run::<Q, Fused, f64>(of, model, inputs, environment, memory, outputs);
+    // here, where it is known what of it is used
+    let environment = const { Q::DECLARATION.uses }.of(environment).map(Fused, applied);
+    run::<Q, Fused, f64>(of, model, inputs, &environment, memory, outputs);
 }
 
 fn as_fused(x: &[f64]) -> &[Fused] {
@@ -148,16 +152,4 @@ fn as_fused(x: &[f64]) -> &[Fused] {
 fn as_fused_mut(x: &mut [f64]) -> &mut [Fused] {
     // SAFETY: Fused is a transparent f64, and the borrow is handed on.
     unsafe { core::slice::from_raw_parts_mut(x.as_mut_ptr().cast(), x.len()) }
-}
-
-/// The environment with fused numbers, its wrenches in `applied`.
-fn fused_environment<'a>(e: &Environment, applied: &'a mut Vec<(FrameId, Wrench<Fused>)>) -> Environment<'a, Fused> {
-    applied.clear();
-    applied.extend(e.applied.iter().map(|&(frame, F)| (frame, F.map(Fused))));
-    Environment {
-        gravity: e.gravity.map(Fused),
-        base_twist: e.base_twist.map(Fused),
-        base_acceleration: e.base_acceleration.map(Fused),
-        applied,
-    }
 }

@@ -4,9 +4,7 @@
 #![allow(missing_docs)]
 
 mod allocations;
-mod bodies;
 mod emitted;
-mod second_way;
 
 use allocations::allocations;
 use mozzi::quantities::*;
@@ -14,7 +12,7 @@ use mozzi::testing::{floating_tree, state, tree, twist, wrench};
 use mozzi::{Dual, Environment, Error, FrameId, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
 use mozzi_batch::{Batch, BatchEnvironment, Compiled, InstructionSet, Number, compile};
 use mozzi_codegen::{Arguments, record_quantity};
-use second_way::{Given, SecondWay};
+use mozzi_oracle::{Given, SecondWay};
 
 /// Fixed and floating, with and without mimic joints, one joint alone, none.
 fn robots() -> Vec<(&'static str, Model)> {
@@ -91,13 +89,8 @@ fn on<S: Scalar + From<C> + Into<f64> + 'static, C: Scalar + 'static>(
     let number = |x: f64| S::from_f64(x);
     let inputs: Vec<Vec<S>> = inputs.iter().map(|x| x.iter().map(|&x| number(x)).collect()).collect();
     let inputs: Vec<&[S]> = inputs.iter().map(Vec::as_slice).collect();
-    let applied: Vec<_> = environment.applied.iter().map(|&(frame, F)| (frame, F.map(number))).collect();
-    let environment = Environment {
-        gravity: environment.gravity.map(number),
-        base_twist: environment.base_twist.map(number),
-        base_acceleration: environment.base_acceleration.map(number),
-        applied: &applied,
-    };
+    let mut applied = Vec::new();
+    let environment = environment.map(number, &mut applied);
     let mut memory = Memory::new(constants);
     let mut found = Vec::new();
     for _ in 0..2 {
@@ -115,16 +108,10 @@ fn on<S: Scalar + From<C> + Into<f64> + 'static, C: Scalar + 'static>(
 }
 
 fn on_duals(case: &Case, query: Query, inputs: &[&[f64]]) -> Vec<Vec<f64>> {
-    let environment = case.environment();
     let dual = case.model.map(Dual::constant);
     let inputs: Vec<Vec<Dual>> = inputs.iter().map(|x| Dual::constants(x)).collect();
-    let applied: Vec<_> = environment.applied.iter().map(|&(frame, F)| (frame, F.map(Dual::constant))).collect();
-    let environment = Environment {
-        gravity: environment.gravity.map(Dual::constant),
-        base_twist: environment.base_twist.map(Dual::constant),
-        base_acceleration: environment.base_acceleration.map(Dual::constant),
-        applied: &applied,
-    };
+    let mut applied = Vec::new();
+    let environment = case.environment().map(Dual::constant, &mut applied);
     let mut outputs: Vec<Vec<Dual>> =
         query.output_lengths(case.model).map(|length| vec![Dual::zero(); length]).collect();
     let mut slices: Vec<&mut [Dual]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
@@ -166,7 +153,7 @@ fn conform<Q: SecondWay>(case: &Case) {
         if query.output_lengths(model).all(|length| length == 0) {
             return vec![Vec::new(); query.declaration().outputs.len()];
         }
-        Q::second_way(Given { model, of: query.subject, inputs, environment: &environment })
+        Q::second_way(Given { robot: model.description(), model, of: query.subject, inputs, environment: &environment })
     };
 
     if model.n() == 0

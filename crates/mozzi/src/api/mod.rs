@@ -16,18 +16,18 @@ pub use newton_euler::{BodyFrame, NewtonEuler};
 pub use task_space::TaskSpaceDynamics;
 
 use crate::model::{Environment, Error, FrameId, Model};
-use crate::scalar::Scalar;
+use crate::scalar::{Real, Scalar};
 use alloc::format;
 
-impl Model<f64> {
+impl<C: Real + Into<f64>> Model<C> {
     /// Every argument as long as it must be: θ nq, the others, with their names, n; and a floating base's quaternion of length 1, to 10⁻³.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for the quaternion.
     pub fn check_lengths<const K: usize>(
         &self,
-        theta: &[f64],
-        velocities: [(&'static str, &[f64]); K],
+        theta: &[C],
+        velocities: [(&'static str, &[C]); K],
     ) -> Result<(), Error> {
         self.check_configuration(theta)?;
         self.check_velocities(velocities)
@@ -37,17 +37,17 @@ impl Model<f64> {
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::BadArgument`].
-    pub fn check_configuration(&self, theta: &[f64]) -> Result<(), Error> {
+    pub fn check_configuration(&self, theta: &[C]) -> Result<(), Error> {
         check_length("theta", theta, self.nq())?;
         match theta.first_chunk() {
-            Some(&q) if self.is_floating() => check_unit(q),
+            Some(q) if self.is_floating() => check_unit(q.map(Into::into)),
             _ => Ok(()),
         }
     }
 
     pub(crate) fn check_velocities<const K: usize>(
         &self,
-        velocities: [(&'static str, &[f64]); K],
+        velocities: [(&'static str, &[C]); K],
     ) -> Result<(), Error> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
@@ -69,12 +69,12 @@ impl Model<f64> {
     ///
     /// # Errors
     /// [`Error::BadArgument`].
-    pub fn check_environment(&self, environment: &Environment) -> Result<(), Error> {
+    pub fn check_environment(&self, environment: &Environment<C>) -> Result<(), Error> {
         environment.applied.iter().try_for_each(|&(frame, _)| self.check_frame(frame))
     }
 }
 
-fn check_length(what: &'static str, slice: &[f64], expected: usize) -> Result<(), Error> {
+fn check_length<C>(what: &'static str, slice: &[C], expected: usize) -> Result<(), Error> {
     let found = slice.len();
     if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
 }

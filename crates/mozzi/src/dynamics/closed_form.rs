@@ -5,9 +5,14 @@ use super::joint_friction::joint_friction;
 use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::model::{Environment, Error, Model};
+use crate::scalar::{Real, Scalar};
 use crate::spatial::{Twist, Wrench};
-use alloc::vec::Vec;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, DMatrix, DVector};
+use num_traits::{One, Zero};
+
+/// A number of which nalgebra has matrices: `f64`, [`Dual`](crate::Dual), a wide number.
+pub trait Entry: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign {}
+impl<S: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign> Entry for S {}
 
 /// Every stacked vector and matrix of the closed form at one state, for N moving links and n velocities. Frame {i} is at the
 /// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A floating base is the first of the
@@ -16,44 +21,44 @@ use nalgebra::{DMatrix, DVector};
 /// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
 /// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
 #[derive(Clone, Debug)]
-pub struct ClosedForm {
+pub struct ClosedForm<S = f64> {
     /// 𝒜, 6N × n: the screw axes on the block diagonal; a mimic joint's stands in its source joint's column, times its ratio.
-    pub A: DMatrix<f64>,
+    pub A: DMatrix<S>,
     /// 𝒢, 6N × 6N: the spatial inertias.
-    pub G: DMatrix<f64>,
+    pub G: DMatrix<S>,
     /// 𝒲(θ), 6N × 6N: `[Ad_T_ip]` in the block of link i and its parent p. Nilpotent of the tree's depth.
-    pub W: DMatrix<f64>,
+    pub W: DMatrix<S>,
     /// ℒ(θ) = (I − 𝒲)⁻¹ = I + 𝒲 + 𝒲² + …, 6N × 6N.
-    pub L: DMatrix<f64>,
+    pub L: DMatrix<S>,
     /// `[ad_𝒱]`, 6N × 6N.
-    pub ad_V: DMatrix<f64>,
+    pub ad_V: DMatrix<S>,
     /// `[ad_𝒜θ̇]`, 6N × 6N.
-    pub ad_Adtheta: DMatrix<f64>,
+    pub ad_Adtheta: DMatrix<S>,
     /// 𝒱 = ℒ(𝒜θ̇ + 𝒱_base), 6N.
-    pub V: DVector<f64>,
+    pub V: DVector<S>,
     /// 𝒱_base, 6N: `[Ad_T_i0]` 𝒱₀ for the links on the base.
-    pub V_base: DVector<f64>,
+    pub V_base: DVector<S>,
     /// 𝒱̇_base, 6N: `[Ad_T_i0]` 𝒱̇₀ for the links on the base, gravity in it.
-    pub dV_base: DVector<f64>,
+    pub dV_base: DVector<S>,
     /// 𝓕_tip, 6N: what each link applies to the environment.
-    pub F_tip: DVector<f64>,
+    pub F_tip: DVector<S>,
     /// θ̇.
-    pub dtheta: DVector<f64>,
+    pub dtheta: DVector<S>,
     /// The rotors' inertia at each joint.
-    pub armature: DVector<f64>,
+    pub armature: DVector<S>,
     /// f(θ̇), the friction in the joints.
-    pub friction: DVector<f64>,
+    pub friction: DVector<S>,
 }
 
-impl Model<f64> {
+impl<S: Entry> Model<S> {
     /// The stacked closed form at (θ, θ̇). O(N³): to read and to compare.
     ///
     /// # Errors
     /// [`Error::WrongLength`].
-    pub fn closed_form(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<ClosedForm, Error> {
+    pub fn closed_form(&self, theta: &[S], dtheta: &[S], environment: &Environment<S>) -> Result<ClosedForm<S>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
         self.check_environment(environment)?;
-        let (lists, n, base) = (self.screws(), self.n(), usize::from(self.is_floating()));
+        let (n, base) = (self.n(), usize::from(self.is_floating()));
         let N = base + self.moving_links();
         let mut form = ClosedForm {
             A: DMatrix::zeros(6 * N, n),
@@ -79,10 +84,10 @@ impl Model<f64> {
             form.dV_base.rows_mut(0, 6).copy_from(&(&Ad * vector6(environment.proper_base_acceleration())));
         }
         for (i, link) in self.links.iter().enumerate() {
-            let (A, q) = (lists.A[i], link.ratio * theta[link.q] + link.offset);
-            let T = SE3::exp(A * -q) * lists.M_relative[i].inverse(); // T_{i,p} = e^{−[A]q} M_{i,p}
+            let (A, q) = (self.screw_of(i + 1), link.ratio * theta[link.q] + link.offset);
+            let T = SE3::exp(A * -q) * self.home_in_parent(i + 1).inverse(); // T_{i,p} = e^{−[A]q} M_{i,p}
             let Ad = matrix6(T.Ad().to_matrix());
-            let G = matrix6(lists.G[i].to_matrix());
+            let G = matrix6(self.body_inertia(i + 1).to_matrix());
             let i = base + i;
             match link.parent {
                 0 if !self.is_floating() => {
@@ -97,7 +102,7 @@ impl Model<f64> {
             form.ad_Adtheta.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&ad);
         }
         let mut power = form.W.clone();
-        while power.iter().any(|&x| x != 0.0) && !power.iter().any(|x| x.is_nan()) {
+        while power.iter().any(|&x| x != <S as Scalar>::zero()) && power.iter().all(|x| x == x) {
             form.L += &power;
             power = &form.W * power;
         }
@@ -118,64 +123,64 @@ impl Model<f64> {
     }
 }
 
-impl ClosedForm {
+impl<S: Entry> ClosedForm<S> {
     /// M = 𝒜ᵀℒᵀ𝒢ℒ𝒜 + diag(armature).
-    pub fn mass_matrix(&self) -> DMatrix<f64> {
+    pub fn mass_matrix(&self) -> DMatrix<S> {
         self.jacobians().transpose() * &self.G * self.jacobians() + DMatrix::from_diagonal(&self.armature)
     }
 
     /// The stacked body Jacobians ℒ𝒜, 6N × n: block i is J_ib, with 𝒱_i = J_ib θ̇ and M = Σ J_ibᵀ𝒢_iJ_ib.
-    pub fn jacobians(&self) -> DMatrix<f64> {
+    pub fn jacobians(&self) -> DMatrix<S> {
         &self.L * &self.A
     }
 
     /// The book's matrix before θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + `[ad_𝒱]`ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ less twice this
     /// matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
-    pub fn book_coriolis_matrix(&self) -> DMatrix<f64> {
+    pub fn book_coriolis_matrix(&self) -> DMatrix<S> {
         let inner = &self.G * &self.L * &self.ad_Adtheta * &self.W + self.ad_V.transpose() * &self.G;
         -(self.jacobians().transpose() * inner * self.jacobians())
     }
 
     /// c, base at rest.
-    pub fn velocity_product(&self) -> DVector<f64> {
+    pub fn velocity_product(&self) -> DVector<S> {
         self.book_coriolis_matrix() * &self.dtheta
     }
 
     /// g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base.
-    pub fn gravity_forces(&self) -> DVector<f64> {
+    pub fn gravity_forces(&self) -> DVector<S> {
         self.jacobians().transpose() * &self.G * &self.L * &self.dV_base
     }
 
     /// JᵀF = 𝒜ᵀℒᵀ𝓕_tip.
-    pub fn tip_forces(&self) -> DVector<f64> {
+    pub fn tip_forces(&self) -> DVector<S> {
         self.jacobians().transpose() * &self.F_tip
     }
 
     /// 𝒱̇ = ℒ(𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base), 6N, at any motion of the base.
-    pub fn accelerations(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
+    pub fn accelerations(&self, ddtheta: &DVector<S>) -> DVector<S> {
         &self.L * (&self.A * ddtheta - &self.ad_Adtheta * (&self.W * &self.V + &self.V_base) + &self.dV_base)
     }
 
     /// 𝓕 = ℒᵀ(𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip), 6N.
-    pub fn wrenches(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
+    pub fn wrenches(&self, ddtheta: &DVector<S>) -> DVector<S> {
         let own = &self.G * self.accelerations(ddtheta) - self.ad_V.transpose() * &self.G * &self.V + &self.F_tip;
         self.L.transpose() * own
     }
 
     /// τ = 𝒜ᵀ𝓕 + armature θ̈ + f(θ̇), at any motion of the base.
-    pub fn inverse_dynamics(&self, ddtheta: &DVector<f64>) -> DVector<f64> {
+    pub fn inverse_dynamics(&self, ddtheta: &DVector<S>) -> DVector<S> {
         self.A.transpose() * self.wrenches(ddtheta) + self.armature.component_mul(ddtheta) + &self.friction
     }
 
     /// Ṁ = −(X + Xᵀ) with X = 𝒜ᵀℒᵀ𝒢ℒ[ad_𝒜θ̇]𝒲ℒ𝒜 (Modern Robotics, exercise 8.7); base at rest.
-    pub fn mass_matrix_rate(&self) -> DMatrix<f64> {
+    pub fn mass_matrix_rate(&self) -> DMatrix<S> {
         let X = self.jacobians().transpose() * &self.G * &self.L * &self.ad_Adtheta * &self.W * self.jacobians();
         -(&X + X.transpose())
     }
 
     /// The Coriolis matrix of the Christoffel symbols, C = 𝒜ᵀℒᵀ(½(𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 + H(𝒢𝒱)) − 𝒢ℒ[ad_𝒜θ̇]𝒲)ℒ𝒜 with
     /// H(m, f) = `[[−[m], −[f]], [−[f], 0]]`: Cθ̇ = c and Ṁ = C + Cᵀ; base at rest.
-    pub fn coriolis_matrix(&self) -> DMatrix<f64> {
+    pub fn coriolis_matrix(&self) -> DMatrix<S> {
         let momenta = &self.G * &self.V;
         let mut H = DMatrix::zeros(self.G.nrows(), self.G.ncols());
         for i in 0..momenta.len() / 6 {
@@ -189,17 +194,16 @@ impl ClosedForm {
                 }
             }
         }
-        let inner = (&self.G * &self.ad_V - self.ad_V.transpose() * &self.G + H) * 0.5
+        let inner = (&self.G * &self.ad_V - self.ad_V.transpose() * &self.G + H) * S::from_f64(0.5)
             - &self.G * &self.L * &self.ad_Adtheta * &self.W;
         self.jacobians().transpose() * inner * self.jacobians()
     }
 }
 
-fn matrix6(rows: [[f64; 6]; 6]) -> DMatrix<f64> {
+fn matrix6<S: Entry>(rows: [[S; 6]; 6]) -> DMatrix<S> {
     DMatrix::from_fn(6, 6, |i, j| rows[i][j])
 }
 
-fn vector6(V: Twist) -> DVector<f64> {
-    let entries: Vec<f64> = V.to_array().to_vec();
-    DVector::from_vec(entries)
+fn vector6<S: Entry>(V: Twist<S>) -> DVector<S> {
+    DVector::from_column_slice(&V.to_array())
 }

@@ -33,7 +33,7 @@ pub use center_of_mass::{
     CenterOfMass, CenterOfMassAcceleration, CenterOfMassJacobian, CenterOfMassVelocity, center_of_mass,
 };
 pub use centroidal_momentum::{CentroidalMomentumBias, CentroidalMomentumMatrix};
-pub use closed_form::ClosedForm;
+pub use closed_form::{ClosedForm, Entry};
 pub use coriolis_matrix::{CoriolisMatrix, MassMatrixRate, coriolis_matrix, mass_matrix_rate};
 pub use energy::{KineticEnergy, PotentialEnergy, kinetic_energy, potential_energy};
 pub use force_derivatives::{

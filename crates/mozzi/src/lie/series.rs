@@ -7,8 +7,8 @@ use crate::scalar::Real;
 /// sin θ / θ.
 pub fn sinc<S: Real>(z: S) -> S {
     // below this the next term, z²/120, is far under rounding, and θ may be 0
-    if z < S::from_f64(1e-18) {
-        return S::one() - z * S::from_f64(1.0 / 6.0);
+    if z < S::epsilon() {
+        return S::one() - z / S::from_f64(6.0);
     }
     let theta = z.sqrt();
     theta.sin_cos().0 / theta
@@ -26,11 +26,13 @@ pub fn sinc3<S: Real>(z: S) -> S {
         let theta = z.sqrt();
         return (theta - theta.sin_cos().0) / (z * theta);
     }
-    // Σ (−1)ᵏ θ²ᵏ / (2k + 3)!
-    let (mut term, mut sum) = (S::from_f64(1.0 / 6.0), S::zero());
-    for k in 1..10 {
+    // Σ (−1)ᵏ θ²ᵏ / (2k + 3)!, until a term is below rounding at z = 1 and with it everywhere, its derivatives too
+    let (mut term, mut sum, mut largest) = (S::one() / S::from_f64(6.0), S::zero(), S::one());
+    let mut k = 1.0;
+    while largest > S::epsilon() {
         sum += term;
-        term = -term * z * S::from_f64(1.0 / f64::from((2 * k + 2) * (2 * k + 3)));
+        let quotient = S::from_f64((2.0 * k + 2.0) * (2.0 * k + 3.0));
+        (term, largest, k) = (-term * z / quotient, largest / quotient, k + 1.0);
     }
     sum
 }
@@ -62,7 +64,7 @@ pub fn cotc<S: Real>(z: S) -> S {
 /// z = s².
 pub fn angle_over_sine<S: Real>(z: S, c: S) -> S {
     let two = S::from_f64(2.0);
-    if z < S::from_f64(1e-18) {
+    if z < S::epsilon() {
         return two / c - z * two / (S::from_f64(3.0) * c * c * c);
     }
     let s = z.sqrt();

@@ -4,31 +4,33 @@ use super::description::{Joint, JointKind};
 use super::{Description, Error, Frame, FrameId, Link, Model, Severity, Structure};
 use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
+use crate::scalar::Real;
 use crate::spatial::{JointAxis, ScrewAxis, SpatialInertia};
 use alloc::collections::BTreeMap;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
-impl Description {
-    /// The model of this robot. Joints are numbered depth first, siblings in the order of the file; a mimic joint takes no
+impl<C: Real + Into<f64>> Description<C> {
+    /// The model of this robot, its constants in the description's numbers; the checks see them rounded to `f64`. Joints are numbered depth first, siblings in the order of the file; a mimic joint takes no
     /// number. Fixed links are folded into the link that carries them.
     ///
     /// # Errors
-    /// [`Error::Invalid`] with all that [`check`](Self::check) calls an error.
-    pub fn build(self) -> Result<Model, Error> {
-        let problems = self.check();
+    /// [`Error::Invalid`] with all that [`check`](Description::check) calls an error.
+    pub fn build(self) -> Result<Model<C>, Error> {
+        let rounded = self.map(Into::into);
+        let problems = rounded.check();
         if problems.iter().any(|problem| problem.severity == Severity::Error) {
             return Err(Error::Invalid { robot: self.name, problems });
         }
-        Ok(normal_form(self))
+        Ok(normal_form(&self, rounded))
     }
 }
 
-/// The model of a description that was checked.
-pub(super) fn normal_form(description: Description) -> Model {
+/// The model of a description that was checked, which it keeps as `rounded`.
+pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Description) -> Model<C> {
     let link_index = index(description.links.iter().map(|link| link.name.as_str()));
-    let (joints_of, base) = branches(&description, &link_index);
+    let (joints_of, base) = branches(description, &link_index);
 
     // depth first: each link's frame on its slot, the moving links, and what each slot weighs
     let mut frames = vec![Frame { slot: 0, T: SE3::identity() }; description.links.len()];
@@ -51,8 +53,8 @@ pub(super) fn normal_form(description: Description) -> Model {
                         A: axis,
                         M: (home * normal).inverse(),
                         G: SpatialInertia::zero(),
-                        ratio: 1.0,
-                        offset: 0.0,
+                        ratio: C::one(),
+                        offset: C::zero(),
                     });
                     moving_joints.push(i);
                     inertias.push(SpatialInertia::zero());
@@ -84,10 +86,10 @@ pub(super) fn normal_form(description: Description) -> Model {
         None => None,
     };
 
-    let joints = couple(&description, &moving_joints, &mut links);
+    let joints = couple(description, &moving_joints, &mut links);
     let n = description.base.velocities() + joints.len();
-    let sum = |of: fn(&Joint, f64) -> f64| {
-        let mut total = vec![0.0; n];
+    let sum = |of: fn(&Joint<C>, C) -> C| {
+        let mut total = vec![C::zero(); n];
         for (link, &i) in links.iter().zip(&moving_joints) {
             total[link.j] += of(&description.joints[i], link.ratio);
         }
@@ -110,7 +112,7 @@ pub(super) fn normal_form(description: Description) -> Model {
             joints,
             end_effector,
             leaves,
-            description,
+            description: rounded,
         }),
         links,
     }
@@ -121,7 +123,7 @@ fn index<'n>(names: impl Iterator<Item = &'n str>) -> BTreeMap<&'n str, usize> {
 }
 
 /// The joints that each link carries, and the base: the link that no joint moves.
-fn branches(description: &Description, link_index: &BTreeMap<&str, usize>) -> (Vec<Vec<usize>>, usize) {
+fn branches<C>(description: &Description<C>, link_index: &BTreeMap<&str, usize>) -> (Vec<Vec<usize>>, usize) {
     let mut joints_of = vec![Vec::new(); description.links.len()];
     let mut is_child = vec![false; description.links.len()];
     for (i, joint) in description.joints.iter().enumerate() {
@@ -134,7 +136,7 @@ fn branches(description: &Description, link_index: &BTreeMap<&str, usize>) -> (V
 
 /// Numbers the independent joints in the order of their links, and gives each mimic joint its source joint's number, ratio and
 /// offset, through chains of mimic joints. Returns the description's joint of each number.
-fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<f64>]) -> Vec<usize> {
+fn couple<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &mut [Link<C>]) -> Vec<usize> {
     let joint_index = index(description.joints.iter().map(|joint| joint.name.as_str()));
     let mimic = |i: usize| description.joints[i].mimic.as_ref();
     let joints: Vec<usize> = moving_joints.iter().copied().filter(|&i| mimic(i).is_none()).collect();
@@ -153,19 +155,19 @@ fn couple(description: &Description, moving_joints: &[usize], links: &mut [Link<
 
 /// The joint's axis in the normal form, and the normal frame seen from the link's: z along the screw, the origin on it.
 /// The other axes are the link's own where the screw is along one of them, so that zeros stay zeros.
-fn normal_frame(A: ScrewAxis) -> (JointAxis<f64>, SE3) {
+fn normal_frame<C: Real>(A: ScrewAxis<C>) -> (JointAxis<C>, SE3<C>) {
     let V = A.twist();
     let (axis, z, p) = if A.is_prismatic() {
-        (JointAxis { a: 0.0, b: 1.0 }, V.v, Vec3::zero())
+        (JointAxis { a: C::zero(), b: C::one() }, V.v, Vec3::zero())
     } else {
-        (JointAxis { a: 1.0, b: A.pitch() }, V.w, V.w.cross(V.v))
+        (JointAxis { a: C::one(), b: V.w.dot(V.v) }, V.w, V.w.cross(V.v))
     };
-    let size = z.map(f64::abs).0;
+    let size = z.map(C::abs).0;
     let least = (1..3).fold(0, |least, i| if size[i] < size[least] { i } else { least });
-    let mut e = [0.0; 3];
-    e[least] = 1.0;
+    let mut e = [C::zero(); 3];
+    e[least] = C::one();
     let x = Vec3(e) - z * z.0[least];
-    let x = x * (1.0 / x.norm());
+    let x = x * (C::one() / x.norm());
     let R = Mat3 { x, y: z.cross(x), z }.transpose();
     (axis, SE3 { R: SO3(R), p })
 }

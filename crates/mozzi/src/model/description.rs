@@ -2,25 +2,27 @@
 
 use super::Base;
 use crate::lie::SE3;
+use crate::scalar::Real;
 use crate::spatial::{ScrewAxis, SpatialInertia};
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Links, joints and frames in the order of the file. [`build`](Description::build) makes a [`Model`](crate::Model).
+/// Links, joints and frames in the order of the file. [`build`](Description::build) makes a [`Model`](crate::Model) with constants of
+/// the same numbers: dual numbers give derivatives by what the file says, wide ones a reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Description {
+pub struct Description<C = f64> {
     /// The robot's name.
     pub name: String,
     /// Rigid bodies; exactly one of them, the base, is no joint's child.
-    pub links: Vec<Link>,
+    pub links: Vec<Link<C>>,
     /// Joints between them.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<Joint<C>>,
     /// Further frames.
-    pub frames: Vec<NamedFrame>,
+    pub frames: Vec<NamedFrame<C>>,
     /// The end-effector frame, where it was named.
     pub end_effector: Option<String>,
     /// Gravity in {s} coordinates, m/s².
-    pub gravity: [f64; 3],
+    pub gravity: [C; 3],
     /// Is the base link fixed to {s}, or free?
     pub base: Base,
     /// What a file calls that from which a floating base is freed; says nothing about a fixed one.
@@ -45,15 +47,15 @@ impl Default for FreeJoint {
 
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Link {
+pub struct Link<C = f64> {
     /// Unique among links and frames.
     pub name: String,
     /// In the link's frame; zero for a massless link.
-    pub inertia: SpatialInertia,
+    pub inertia: SpatialInertia<C>,
 }
 
 /// Its name.
-impl AsRef<str> for Link {
+impl<C> AsRef<str> for Link<C> {
     fn as_ref(&self) -> &str {
         &self.name
     }
@@ -61,7 +63,7 @@ impl AsRef<str> for Link {
 
 /// A joint.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
+pub struct Joint<C = f64> {
     /// Unique among joints.
     pub name: String,
     /// The link that carries it.
@@ -69,32 +71,32 @@ pub struct Joint {
     /// The link that it moves.
     pub child: String,
     /// The child link's frame seen from the parent's when the joint is at 0.
-    pub origin: SE3,
+    pub origin: SE3<C>,
     /// How it moves.
-    pub kind: JointKind,
+    pub kind: JointKind<C>,
     /// How far, how fast, how strong.
     pub limits: Limits,
     /// Viscous friction d ≥ 0: N m s/rad or N s/m.
-    pub damping: f64,
+    pub damping: C,
     /// Coulomb friction μ ≥ 0: N m or N.
-    pub friction: f64,
+    pub friction: C,
     /// Rotor inertia, seen at the joint: kg m² or kg.
-    pub armature: f64,
+    pub armature: C,
     /// The joint that it follows, if it follows one.
-    pub mimic: Option<Mimic>,
+    pub mimic: Option<Mimic<C>>,
 }
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum JointKind {
+pub enum JointKind<C = f64> {
     /// Not at all.
     Fixed,
     /// About and along a unit screw axis, in the child link's frame: revolute, prismatic or helical.
-    Screw(ScrewAxis),
+    Screw(ScrewAxis<C>),
 }
 
 /// Its name.
-impl AsRef<str> for Joint {
+impl<C> AsRef<str> for Joint<C> {
     fn as_ref(&self) -> &str {
         &self.name
     }
@@ -125,24 +127,24 @@ pub struct Limits {
 
 /// θ = ratio · θ_source + offset.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mimic {
+pub struct Mimic<C = f64> {
     /// The joint that is followed.
     pub joint: String,
     /// The ratio.
-    pub ratio: f64,
+    pub ratio: C,
     /// The offset: rad or m.
-    pub offset: f64,
+    pub offset: C,
 }
 
 /// A frame fixed to a link.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NamedFrame {
+pub struct NamedFrame<C = f64> {
     /// Unique among links and frames.
     pub name: String,
     /// The link.
     pub link: String,
     /// The frame seen from the link's.
-    pub T: SE3,
+    pub T: SE3<C>,
 }
 
 impl Description {
@@ -202,10 +204,46 @@ pub struct Source<C = f64> {
     pub offset: C,
 }
 
-impl Description {
+impl<C: Real> Description<C> {
+    /// The same robot in numbers of another type.
+    pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Description<U> {
+        let joint = |joint: &Joint<C>| Joint {
+            name: joint.name.clone(),
+            parent: joint.parent.clone(),
+            child: joint.child.clone(),
+            origin: joint.origin.map(f),
+            kind: match joint.kind {
+                JointKind::Fixed => JointKind::Fixed,
+                JointKind::Screw(A) => JointKind::Screw(A.map(f)),
+            },
+            limits: joint.limits,
+            damping: f(joint.damping),
+            friction: f(joint.friction),
+            armature: f(joint.armature),
+            mimic: joint.mimic.as_ref().map(|mimic| Mimic {
+                joint: mimic.joint.clone(),
+                ratio: f(mimic.ratio),
+                offset: f(mimic.offset),
+            }),
+        };
+        let link = |link: &Link<C>| Link { name: link.name.clone(), inertia: link.inertia.map(f) };
+        let frame =
+            |frame: &NamedFrame<C>| NamedFrame { name: frame.name.clone(), link: frame.link.clone(), T: frame.T.map(f) };
+        Description {
+            name: self.name.clone(),
+            links: self.links.iter().map(link).collect(),
+            joints: self.joints.iter().map(joint).collect(),
+            frames: self.frames.iter().map(frame).collect(),
+            end_effector: self.end_effector.clone(),
+            gravity: self.gravity.map(f),
+            base: self.base,
+            free_joint: self.free_joint.clone(),
+        }
+    }
+
     /// The source joint of the joint at this place, by its place; `find` is the place of the joint of a name.
-    pub(crate) fn source_by(&self, joint: usize, find: impl Fn(&str) -> Option<usize>) -> Source {
-        let mut source = Source { joint, ratio: 1.0, offset: 0.0 };
+    pub(crate) fn source_by(&self, joint: usize, find: impl Fn(&str) -> Option<usize>) -> Source<C> {
+        let mut source = Source { joint, ratio: C::one(), offset: C::zero() };
         // ratio · (r θ + o) + offset
         while let Some(mimic) = &self.joints[source.joint].mimic {
             let Some(next) = find(&mimic.joint) else { break };
@@ -217,7 +255,7 @@ impl Description {
 
     /// The source joint of the joint of this name, by its place in [`joints`](Self::joints), through chains of mimic joints. None where there
     /// is no such joint. Of a robot that [`check`](Self::check) passes; where mimic joints follow each other in a circle it does not end.
-    pub fn source_of(&self, name: &str) -> Option<Source> {
+    pub fn source_of(&self, name: &str) -> Option<Source<C>> {
         let find = |name: &str| self.joints.iter().position(|joint| joint.name == name);
         Some(self.source_by(find(name)?, find))
     }

@@ -4,6 +4,7 @@ use super::{FrameId, Model};
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
+use alloc::vec::Vec;
 
 /// Gravity, the base's motion, and the wrenches that the robot applies *to* the environment.
 ///
@@ -32,6 +33,19 @@ impl<S: Scalar> Environment<'_, S> {
     #[inline(always)]
     pub fn with_gravity(gravity: Vec3<S>) -> Self {
         Environment { gravity, base_twist: Twist::zero(), base_acceleration: Twist::zero(), applied: &[] }
+    }
+
+    /// The same in numbers of another type, its wrenches in `applied`.
+    #[inline(always)]
+    pub fn map<'a, U>(&self, f: impl Fn(S) -> U + Copy, applied: &'a mut Vec<(FrameId, Wrench<U>)>) -> Environment<'a, U> {
+        applied.clear();
+        applied.extend(self.applied.iter().map(|&(frame, F)| (frame, F.map(f))));
+        Environment {
+            gravity: self.gravity.map(f),
+            base_twist: self.base_twist.map(f),
+            base_acceleration: self.base_acceleration.map(f),
+            applied,
+        }
     }
 
     /// 𝒱̇₀ of the recursion: gravity is a base accelerating upwards.

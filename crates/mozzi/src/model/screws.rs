@@ -4,7 +4,8 @@ use super::build::normal_form;
 use super::description::{Joint, JointKind, NamedFrame};
 use super::{Description, Error, Model};
 use crate::lie::SE3;
-use crate::spatial::{ScrewAxis, SpatialInertia};
+use crate::scalar::Real;
+use crate::spatial::{ScrewAxis, SpatialInertia, Twist};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -108,7 +109,7 @@ impl Model {
                 return Err(refused("the list of spatial inertias", i + 1));
             }
         }
-        Ok(normal_form(robot))
+        Ok(normal_form(&robot, robot.clone()))
     }
 }
 
@@ -174,19 +175,8 @@ impl Model<f64> {
             joints: self.moving_joints().map(|joint| joint.name.clone()).collect(),
             links: self.moving_joints().map(|joint| joint.child.clone()).collect(),
             parents: self.links.iter().map(|link| link.parent).collect(),
-            M_relative: self
-                .links
-                .iter()
-                .zip(1..)
-                .map(|(link, i)| bodies[link.parent].inverse() * link.M.inverse() * bodies[i])
-                .collect(),
-            G: self
-                .links
-                .iter()
-                .zip(&bodies[1..])
-                .map(|(link, body)| link.G.congruence(body.Ad()))
-                .map(block_diagonal)
-                .collect(),
+            M_relative: (1..homes.len()).map(|slot| self.home_in_parent(slot)).collect(),
+            G: (1..homes.len()).map(|slot| self.body_inertia(slot)).collect(),
             M,
             S,
             A,
@@ -195,8 +185,11 @@ impl Model<f64> {
         }
     }
 
+}
+
+impl<C: Real> Model<C> {
     /// The book's frame {i} seen from the slot's normal frame; the base frame itself for slot 0.
-    pub(crate) fn body_frame(&self, slot: usize) -> SE3 {
+    pub(crate) fn body_frame(&self, slot: usize) -> SE3<C> {
         let link = self.link_frame(slot);
         if slot == 0 {
             return link;
@@ -204,9 +197,21 @@ impl Model<f64> {
         let c = self.links[slot - 1].G.congruence(link.Ad()).center_of_mass();
         link * SE3::translation(c.0)
     }
-}
 
-/// The first moment at the centre of mass is rounding alone.
-fn block_diagonal(G: SpatialInertia) -> SpatialInertia {
-    if G.mass == 0.0 { G } else { SpatialInertia { mc: crate::Vec3::zero(), ..G } }
+    /// M_{p,i}: frame {i} of this slot seen from its parent's when the joint is at 0.
+    pub(crate) fn home_in_parent(&self, slot: usize) -> SE3<C> {
+        let link = &self.links[slot - 1];
+        self.body_frame(link.parent).inverse() * link.M.inverse() * self.body_frame(slot)
+    }
+
+    /// 𝒢_i in frame {i}: block-diagonal; the first moment at the centre of mass is rounding alone.
+    pub(crate) fn body_inertia(&self, slot: usize) -> SpatialInertia<C> {
+        let G = self.links[slot - 1].G.congruence(self.body_frame(slot).Ad());
+        if G.mass == C::zero() { G } else { SpatialInertia { mc: crate::Vec3::zero(), ..G } }
+    }
+
+    /// A_i in frame {i}.
+    pub(crate) fn screw_of(&self, slot: usize) -> Twist<C> {
+        self.body_frame(slot).inverse().Ad() * self.links[slot - 1].A.twist()
+    }
 }

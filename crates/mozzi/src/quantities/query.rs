@@ -3,7 +3,7 @@
 use super::{LIST, place_of};
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame};
-use crate::quantity::{Declaration, Of, Quantity, Subject};
+use crate::quantity::{Declaration, Dim, Of, Quantity, Subject};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -129,9 +129,9 @@ impl<'a> Query<'a> {
         let declared = self.declaration().inputs;
         assert!(inputs.len() == declared.len(), "{} inputs, expected {}", inputs.len(), declared.len());
         for (input, &slice) in declared.iter().zip(inputs) {
-            match input.name {
-                "theta" => model.check_configuration(slice)?,
-                name => model.check_velocities([(name, slice)])?,
+            match input.dim {
+                Dim::Nq => model.check_configuration(slice)?,
+                _ => model.check_velocities([(input.name, slice)])?,
             }
         }
         model.check_environment(environment)

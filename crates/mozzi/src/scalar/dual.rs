@@ -55,6 +55,13 @@ impl<S: Scalar + From<f64>> From<f64> for Dual<S> {
     }
 }
 
+/// The value.
+impl<S: Into<f64>> From<Dual<S>> for f64 {
+    fn from(x: Dual<S>) -> f64 {
+        x.value.into()
+    }
+}
+
 impl<S: Scalar> Add for Dual<S> {
     type Output = Self;
     #[inline(always)]
@@ -92,6 +99,26 @@ impl<S: Scalar> Neg for Dual<S> {
     }
 }
 assign_ops!([S: Scalar] Dual<S>);
+impl<S: Scalar> core::ops::MulAssign for Dual<S> {
+    fn mul_assign(&mut self, o: Self) {
+        *self = *self * o;
+    }
+}
+
+/// For matrices of nalgebra.
+impl<S: Scalar + PartialEq> num_traits::Zero for Dual<S> {
+    fn zero() -> Self {
+        Scalar::zero()
+    }
+    fn is_zero(&self) -> bool {
+        self.value == S::zero() && self.derivative == S::zero()
+    }
+}
+impl<S: Scalar> num_traits::One for Dual<S> {
+    fn one() -> Self {
+        Scalar::one()
+    }
+}
 
 impl<S: PartialEq> PartialEq for Dual<S> {
     fn eq(&self, o: &Self) -> bool {
@@ -126,6 +153,9 @@ impl<S: Scalar> Scalar for Dual<S> {
 }
 
 impl<S: Real> Real for Dual<S> {
+    fn epsilon() -> Self {
+        Dual::constant(S::epsilon())
+    }
     fn atan2(self, x: Self) -> Self {
         let (y, r2) = (self, self.value * self.value + x.value * x.value);
         Dual { value: y.value.atan2(x.value), derivative: (y.derivative * x.value - y.value * x.derivative) / r2 }

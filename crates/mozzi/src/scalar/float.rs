@@ -51,6 +51,7 @@ macro_rules! float {
             }
         }
         impl Real for $f {
+            fn epsilon() -> Self { $f::EPSILON }
             fn atan2(self, x: Self) -> Self { elementary::$f::atan2(self, x) }
             #[inline(always)]
             fn abs(self) -> Self { <$f>::abs(self) }

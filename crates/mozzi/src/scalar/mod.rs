@@ -65,6 +65,9 @@ pub trait Scalar:
 
 /// A [`Scalar`] with an order, for what must look at a value: logarithms, checks and iterations.
 pub trait Real: Scalar + PartialOrd {
+    /// From 1 to the next number.
+    fn epsilon() -> Self;
+
     /// The angle of the point (x, y), in (−π, π]; `self` is y.
     fn atan2(self, x: Self) -> Self;
 

@@ -96,6 +96,13 @@ impl<S: Scalar> Mul<Twist<S>> for SpatialInertia<S> {
     }
 }
 
+impl<S: Scalar + PartialEq> SpatialInertia<S> {
+    /// c; the origin for a massless body.
+    pub fn center_of_mass(&self) -> Vec3<S> {
+        if self.mass == S::zero() { Vec3::zero() } else { self.mc.map(|x| x / self.mass) }
+    }
+}
+
 /// The matrix given for a spatial inertia is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
@@ -128,11 +135,6 @@ impl SpatialInertia<f64> {
             }
         }
         Ok(this)
-    }
-
-    /// c; the origin for a massless body.
-    pub fn center_of_mass(&self) -> Vec3 {
-        if self.mass == 0.0 { Vec3::zero() } else { self.mc.map(|x| x / self.mass) }
     }
 
     /// The rotational inertia about the centre of mass, in this frame's axes.

@@ -3,7 +3,7 @@
 use super::{Twist, Wrench};
 use crate::lie::{Adjoint, LieBracket};
 use crate::linalg::Vec3;
-use crate::scalar::Scalar;
+use crate::scalar::{Real, Scalar};
 use core::ops::Mul;
 
 /// A = (ω, v): with ‖ω‖ = 1 a screw about the line of direction ω through ω × v with the pitch ωᵀv (0: revolute);
@@ -47,19 +47,6 @@ impl ScrewAxis<f64> {
         Self::new([a, b, c], [x, y, z])
     }
 
-    /// The unit screw axis A along a twist V, and the size k > 0 with V = k A: a joint that was described by V and θ is
-    /// described by A and kθ, and its torque by τ/k.
-    ///
-    /// # Errors
-    /// [`NotAScrew`] when V is 0, or too large for the squares of its components.
-    pub fn normalize(V: Twist) -> Result<(Self, f64), NotAScrew> {
-        let (angular, linear) = (V.w.norm(), V.v.norm());
-        let size = if angular > 0.0 { angular } else { linear };
-        let axis = ScrewAxis(V * (1.0 / size));
-        let is_screw = size > 0.0 && size.is_finite() && axis.0.norm().is_finite();
-        if is_screw { Ok((axis, size)) } else { Err(NotAScrew { angular, linear }) }
-    }
-
     /// The turn about the line through `point` with the unit direction `axis`, sliding `pitch` metres per radian.
     ///
     /// # Errors
@@ -82,18 +69,41 @@ impl ScrewAxis<f64> {
         if self.is_prismatic() { f64::INFINITY } else { self.0.w.dot(self.0.v) }
     }
 
-    /// ω = 0?
-    pub fn is_prismatic(self) -> bool {
-        self.0.w == Vec3::zero()
-    }
-
     /// Seen from another frame: A_s = `[Ad_T]` A_b with T = `T_sb`.
     pub fn transformed(self, T_sb: crate::SE3) -> Self {
         ScrewAxis(T_sb.Ad() * self.0)
     }
 }
 
+impl<S: Real + Into<f64>> ScrewAxis<S> {
+    /// The unit screw axis A along a twist V, and the size k > 0 with V = k A: a joint that was described by V and θ is
+    /// described by A and kθ, and its torque by τ/k.
+    ///
+    /// # Errors
+    /// [`NotAScrew`] when V is 0, or too large for the squares of its components.
+    pub fn normalize(V: Twist<S>) -> Result<(Self, S), NotAScrew> {
+        let (angular, linear) = (V.w.norm(), V.v.norm());
+        let size = if angular > S::zero() { angular } else { linear };
+        let axis = ScrewAxis(V * (S::one() / size));
+        let is_screw = size.into() > 0.0 && size.into().is_finite() && axis.0.norm().into().is_finite();
+        if is_screw { Ok((axis, size)) } else { Err(NotAScrew { angular: angular.into(), linear: linear.into() }) }
+    }
+}
+
 impl<S: Scalar> ScrewAxis<S> {
+    /// ω = 0?
+    pub fn is_prismatic(self) -> bool
+    where
+        S: PartialEq,
+    {
+        self.0.w == Vec3::zero()
+    }
+
+    /// Each number by f, a conversion between scalars.
+    pub fn map<U>(self, f: impl Fn(S) -> U + Copy) -> ScrewAxis<U> {
+        ScrewAxis(self.0.map(f))
+    }
+
     /// As a twist: 1 rad/s (or 1 m/s) about the screw.
     pub fn twist(self) -> Twist<S> {
         self.0

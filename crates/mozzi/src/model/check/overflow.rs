@@ -48,7 +48,7 @@ impl Report<'_> {
             see(&frame.T.p.0, Element::Frame(i), "T");
         }
         let (size, element, attribute) = largest;
-        if self.errors == 0 && !(size <= LARGE && ratios <= LARGE_RATIO) && !is_finite(&normal_form(d.clone())) {
+        if self.errors == 0 && !(size <= LARGE && ratios <= LARGE_RATIO) && !is_finite(&normal_form(d, d.clone())) {
             let message = format!(
                 "holds a number of the size {}: what is computed with it is beyond the range of double precision",
                 Rounded(size)

@@ -1,26 +1,36 @@
 //! Where each link is and how it moves, straight from the description: exponentials along the joints' own screws, link by link.
 
-use mozzi::model::description::JointKind;
-use mozzi::{Base, Model, Real, SE3, SpatialInertia, Twist, Vec3, Wrench};
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Base, Description, Model, Real, SE3, Scalar, SpatialInertia, Twist, Vec3, Wrench};
 use std::collections::HashMap;
 
 /// A link of the description.
 pub struct Body<S> {
+    /// Its name.
     pub name: String,
     /// `T_sb`.
     pub T: SE3<S>,
     /// The columns of its body Jacobian.
     pub J: Vec<Twist<S>>,
     /// In its own frame; none of what a fixed base carries.
-    pub G: Option<SpatialInertia>,
+    pub G: Option<SpatialInertia<S>>,
 }
 
-/// The links of a robot, parents before children.
-pub fn bodies<S: Real>(model: &Model, theta: &[S]) -> Vec<Body<S>> {
-    let (robot, n) = (model.description(), model.n());
+/// The joint that a joint follows in the end, itself where it follows none: θ of the joint = ratio · θ of that one + offset.
+pub fn source<'r, C: Scalar>(robot: &'r Description<C>, joint: &'r Joint<C>) -> (&'r Joint<C>, C, C) {
+    let (mut source, mut ratio, mut offset) = (joint, C::one(), C::zero());
+    while let Some(mimic) = &source.mimic {
+        (offset, ratio) = (offset + ratio * mimic.offset, ratio * mimic.ratio);
+        source = robot.joints.iter().find(|other| other.name == mimic.joint).expect("a joint");
+    }
+    (source, ratio, offset)
+}
+
+/// The links of a robot, parents before children. Of `model` the order of its joints is taken, all numbers from `robot`.
+pub fn bodies<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> Vec<Body<S>> {
+    let n = model.n();
     let (positions, velocities) = (model.base().positions(), model.base().velocities());
     let index: HashMap<&str, usize> = model.joint_names().enumerate().map(|(k, name)| (name, k)).collect();
-    let joint_of: HashMap<&str, _> = robot.joints.iter().map(|joint| (joint.name.as_str(), joint)).collect();
     let is_child = |name: &str| robot.joints.iter().any(|joint| joint.child == name);
     let root = robot.links.iter().find(|link| !is_child(&link.name)).expect("a root");
     let floats = model.base() == Base::Floating;
@@ -35,20 +45,15 @@ pub fn bodies<S: Real>(model: &Model, theta: &[S]) -> Vec<Body<S>> {
     while at < all.len() {
         let name = all[at].name.clone();
         for joint in robot.joints.iter().filter(|joint| joint.parent == name) {
-            // θ of the joint = ratio · θ of the source joint + offset, along a chain of mimic joints
-            let (mut source, mut ratio, mut offset) = (joint, 1.0, 0.0);
-            while let Some(mimic) = &source.mimic {
-                (offset, ratio) = (offset + ratio * mimic.offset, ratio * mimic.ratio);
-                source = joint_of[mimic.joint.as_str()];
-            }
+            let (source, ratio, offset) = source(robot, joint);
             let parent = &all[at];
-            let (mut inverse, mut moves) = (joint.origin.map(S::from_f64).inverse(), parent.G.is_some());
+            let (mut inverse, mut moves) = (joint.origin.inverse(), parent.G.is_some());
             let mut column = None;
             if let JointKind::Screw(axis) = joint.kind {
-                let (j, A) = (index[source.name.as_str()], axis.twist().map(S::from_f64));
-                let turned = SE3::exp(A * (S::from_f64(ratio) * theta[positions + j] + S::from_f64(offset)));
+                let (j, A) = (index[source.name.as_str()], axis.twist());
+                let turned = SE3::exp(A * (ratio * theta[positions + j] + offset));
                 inverse = turned.inverse() * inverse;
-                column = Some((velocities + j, A * S::from_f64(ratio)));
+                column = Some((velocities + j, A * ratio));
                 moves = true;
             }
             let mut J: Vec<Twist<S>> = parent.J.iter().map(|&column| inverse.Ad() * column).collect();
@@ -65,12 +70,11 @@ pub fn bodies<S: Real>(model: &Model, theta: &[S]) -> Vec<Body<S>> {
 }
 
 /// A frame's configuration and body Jacobian, by its name.
-pub fn frame<S: Real>(model: &Model, theta: &[S], name: &str) -> (SE3<S>, Vec<Twist<S>>) {
-    let all = bodies(model, theta);
-    let added = model.description().frames.iter().find(|frame| frame.name == name);
+pub fn frame<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S], name: &str) -> (SE3<S>, Vec<Twist<S>>) {
+    let all = bodies(robot, model, theta);
+    let added = robot.frames.iter().find(|frame| frame.name == name);
     let (link, fixed) = added.map_or((name, SE3::identity()), |frame| (&frame.link, frame.T));
     let body = all.into_iter().find(|body| body.name == link).expect("a link");
-    let fixed = fixed.map(S::from_f64);
     (body.T * fixed, body.J.into_iter().map(|column| fixed.inverse().Ad() * column).collect())
 }
 
@@ -80,10 +84,10 @@ pub fn twist<S: Real>(J: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
 }
 
 /// The columns of the momentum's matrix about the origin of {s}: Σ [Ad_T⁻¹]ᵀ 𝒢 J.
-pub fn momentum_columns<S: Real>(model: &Model, theta: &[S]) -> Vec<Wrench<S>> {
+pub fn momentum_columns<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> Vec<Wrench<S>> {
     let mut columns = vec![Wrench::zero(); model.n()];
-    for body in bodies(model, theta) {
-        let Some(G) = body.G.map(|G| G.map(S::from_f64)) else { continue };
+    for body in bodies(robot, model, theta) {
+        let Some(G) = body.G else { continue };
         for (sum, &column) in columns.iter_mut().zip(&body.J) {
             *sum += body.T.inverse().Ad().transpose() * (G * column);
         }
@@ -92,9 +96,9 @@ pub fn momentum_columns<S: Real>(model: &Model, theta: &[S]) -> Vec<Wrench<S>> {
 }
 
 /// The mass, and the mass times the centre of mass in {s}.
-pub fn moments(model: &Model, theta: &[f64]) -> (f64, Vec3) {
-    let masses = bodies(model, theta).into_iter().filter_map(|body| Some((body.G?, body.T)));
-    masses.fold((0.0, Vec3::zero()), |(mass, first), (G, T)| {
-        (mass + G.mass, if G.mass > 0.0 { first + (T.R * G.mc + T.p * G.mass) } else { first })
+pub fn moments<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> (S, Vec3<S>) {
+    let masses = bodies(robot, model, theta).into_iter().filter_map(|body| Some((body.G?, body.T)));
+    masses.fold((S::zero(), Vec3::zero()), |(mass, first), (G, T)| {
+        (mass + G.mass, if G.mass > S::zero() { first + (T.R * G.mc + T.p * G.mass) } else { first })
     })
 }

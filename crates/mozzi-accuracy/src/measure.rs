@@ -1,0 +1,70 @@
+//! Every quantity of a robot in every way.
+
+use crate::errors::Errors;
+use crate::reference::{Neighbours, Reference};
+use crate::robot::Robot;
+use crate::states::States;
+use crate::ways::{Computer, Way};
+use mozzi::quantities::LIST;
+use rayon::prelude::*;
+
+/// Numbers that a chunk of states holds, at most.
+const CHUNK: usize = 1 << 18;
+
+/// What was measured of a quantity.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The quantity's place in the list.
+    pub quantity: usize,
+    /// The way, or another library's name.
+    pub way: &'static str,
+    /// In units.
+    pub errors: Errors,
+}
+
+/// All quantities of a robot in all ways, at these states.
+pub fn all(robot: &Robot, states: &States, seed: u64) -> Vec<Row> {
+    (0..LIST.len()).flat_map(|quantity| one(robot, states, seed, quantity)).collect()
+}
+
+/// One quantity.
+pub fn one(robot: &Robot, states: &States, seed: u64, quantity: usize) -> Vec<Row> {
+    let query = robot.query(quantity);
+    let first = states.inputs(&query, 0, 1);
+    if robot.model.compute(query, &first, &robot.model.environment()).is_err() {
+        return Vec::new(); // of a robot without mass, or whose mass matrix is singular
+    }
+    let size: usize = query.output_lengths(&robot.model).sum::<usize>().max(1);
+    let count = (CHUNK / size).clamp(1, 256);
+    let neighbours = Neighbours::new(&robot.double, robot.frame);
+    let firsts: Vec<usize> = (0..states.len()).step_by(count).collect();
+    // memory and machine code of each thread's own
+    let make = || {
+        let computer = |way| Some((way, Computer::new(robot, query, way)?));
+        (neighbours.memory(), Way::ALL.into_iter().filter_map(computer).collect::<Vec<(Way, Computer)>>())
+    };
+    let chunk = |(memory, computers): &mut (_, Vec<(Way, Computer)>), &first: &usize| {
+        let count = count.min(states.len() - first);
+        let references: Vec<Reference> = (first..first + count)
+            .map(|state| neighbours.at(&query, &states.inputs(&query, state, 1), seed ^ state as u64, memory))
+            .collect();
+        let errors = |(way, computer): &mut (Way, Computer)| {
+            let (found, mut errors) = (computer.compute(states, first, count), Errors::default());
+            for (k, reference) in references.iter().enumerate() {
+                let of_state = |x: &Vec<f64>| x[k * (x.len() / count)..][..x.len() / count].to_vec();
+                errors.add(reference, &found.iter().map(of_state).collect::<Vec<_>>(), way.epsilon());
+            }
+            (*way, errors)
+        };
+        computers.iter_mut().map(errors).collect::<Vec<(Way, Errors)>>()
+    };
+    let chunks: Vec<Vec<(Way, Errors)>> = firsts.par_iter().map_init(make, chunk).collect();
+    let mut rows: Vec<Row> = Vec::new();
+    for (way, errors) in chunks.into_iter().flatten() {
+        match rows.iter_mut().find(|row| row.way == way.name()) {
+            Some(row) => row.errors.join(errors),
+            None => rows.push(Row { quantity, way: way.name(), errors }),
+        }
+    }
+    rows
+}

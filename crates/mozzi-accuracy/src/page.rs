@@ -1,0 +1,224 @@
+//! The page docs/accuracy.md.
+
+use crate::DRAWS;
+use crate::digits::Digits;
+use crate::errors::Summary;
+use crate::measure::Row;
+use crate::peers::Answer;
+use crate::ways::Way;
+use mozzi::quantities::LIST;
+use std::fmt::Write;
+
+/// All that was measured of a robot.
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// The number of its velocities.
+    pub n: usize,
+    /// Hard by design?
+    pub is_hard: bool,
+    /// How many states.
+    pub states: usize,
+    /// How many of them other libraries were asked for.
+    pub asked: usize,
+    /// mozzi's errors.
+    pub rows: Vec<Row>,
+    /// Other libraries'.
+    pub peers: Vec<Answer>,
+    /// How many states the references were compared at, and each quantity's digits.
+    pub references: (usize, Vec<(usize, Digits)>),
+}
+
+/// The largest error that counts as rounding, in units.
+pub const LIMIT: f64 = 30.0;
+
+impl Measured {
+    /// Rows above [`LIMIT`].
+    pub fn above(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !(row.errors.whole().max < LIMIT))
+    }
+}
+
+/// A number of three digits at most.
+fn short(x: f64) -> String {
+    match x {
+        x if x.is_infinite() => "∞".into(),
+        0.0 => "0".into(),
+        x if x < 0.1 => format!("{x:.2}"),
+        x if x < 10.0 => format!("{x:.1}"),
+        x if x < 1000.0 => format!("{x:.0}"),
+        x => format!("{x:.0e}"),
+    }
+}
+
+fn cell(Summary { max, most, median }: Summary) -> String {
+    format!("{} / {} / {}", short(max), short(most), short(median))
+}
+
+fn table(text: &mut String, head: &[String], rows: impl Iterator<Item = Vec<String>>) {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    text.push_str(&line(head));
+    text.push_str(&line(&head.iter().map(|_| "---".to_string()).collect::<Vec<_>>()));
+    rows.for_each(|row| text.push_str(&line(&row)));
+    text.push('\n');
+}
+
+/// The worst summary of some rows; None where there are none.
+fn worst<'r>(rows: impl Iterator<Item = &'r Row>, of: impl Fn(&Row) -> Summary) -> Option<Summary> {
+    rows.map(of).reduce(Summary::worse)
+}
+
+fn of_ways(first: &str) -> Vec<String> {
+    std::iter::once(first).chain(Way::ALL.map(Way::name)).map(str::to_string).collect()
+}
+
+fn ways<'r>(rows: impl Fn(&'static str) -> Option<Summary> + 'r) -> impl Iterator<Item = String> + 'r {
+    Way::ALL.into_iter().map(move |way| rows(way.name()).map_or("–".into(), cell))
+}
+
+/// The page's text.
+pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, versions: &str) -> String {
+    let mut text = String::new();
+    let states = all.iter().map(|robot| robot.states).max().unwrap_or(0);
+    let push = |text: &mut String, part: &str| {
+        text.push_str(part);
+        text.push_str("\n\n");
+    };
+    push(&mut text, "# How many digits are right");
+    push(&mut text, &format!("Written by `{command}`. {versions}. Seed {seed}; up to {states} states of each robot."));
+    push(
+        &mut text,
+        &format!(
+            "The reference is the same kernel on double-double numbers (31 digits), on a model that was built from the file's decimals. It is itself \
+             checked against numbers of 71 digits and against the second way of each quantity: see the last table.\n\n\
+             **Unit.** One unit is the largest change of a result when the robot's constants and the rates, but not the angles, change by ε = 2⁻⁵² \
+             of themselves, up or down at random (the largest of {DRAWS} draws); at least ε times the result. So it is ε times the size of the \
+             terms, found without knowing the formula. An error of one unit is what rounding the robot's own numbers does. For `f32`, ε is \
+             2⁻²³. Errors are of whole outputs: the largest error over the largest unit of a vector's or matrix's entries.\n\n\
+             Each cell is **largest / 99.9 % of the states / median**. – means that there is no such way (machine code that would be too long, \
+             no machine code on the machine)."
+        ),
+    );
+    let published = || all.iter().filter(|robot| !robot.is_hard);
+    let hard = || all.iter().filter(|robot| robot.is_hard);
+
+    push(&mut text, "## Robots");
+    push(&mut text, "The worst quantity of each robot.");
+    let of_robot = |robot: &Measured| {
+        let row = |way: &'static str| worst(robot.rows.iter().filter(|row| row.way == way), |row| row.errors.whole());
+        [format!("{} ({} velocities, {} states)", robot.name, robot.n, robot.states)].into_iter().chain(ways(row)).collect()
+    };
+    table(&mut text, &of_ways("robot"), published().map(of_robot));
+    if !refused.is_empty() {
+        push(&mut text, "Not measured:");
+        push(&mut text, &refused.iter().map(|why| format!("- {why}")).collect::<Vec<_>>().join("\n"));
+    }
+    if hard().next().is_some() {
+        push(&mut text, "## Hard by design");
+        table(&mut text, &of_ways("case"), hard().map(of_robot));
+    }
+
+    push(&mut text, "## Quantities");
+    push(&mut text, "The worst of all robots above that are not hard by design.");
+    let of_quantity = |quantity: usize| {
+        let rows = |way: &'static str| {
+            let rows = published().flat_map(|robot| &robot.rows).filter(|row| (row.quantity, row.way) == (quantity, way));
+            worst(rows, |row| row.errors.whole())
+        };
+        [LIST[quantity].name.to_string()].into_iter().chain(ways(rows)).collect()
+    };
+    table(&mut text, &of_ways("quantity"), (0..LIST.len()).map(of_quantity));
+
+    push(&mut text, "## Entry by entry");
+    push(
+        &mut text,
+        "The error of each entry over that entry's own unit, the worst entry counting: digits of a small entry beside large ones, such as a \
+         finger's in the mass matrix of an arm.",
+    );
+    let matrices = ["mass_matrix", "coriolis_matrix", "mass_matrix_rate"];
+    let entries = all.iter().flat_map(|robot| {
+        matrices.iter().map(move |&name| {
+            let of_way = move |way: &'static str| {
+                let rows = robot.rows.iter().filter(|row| LIST[row.quantity].name == name && row.way == way);
+                worst(rows, |row| row.errors.entries())
+            };
+            [format!("{}: {name}", robot.name)].into_iter().chain(ways(of_way)).collect()
+        })
+    });
+    table(&mut text, &of_ways("robot and matrix"), entries);
+
+    peers(&mut text, all);
+    references(&mut text, all);
+    text
+}
+
+/// mozzi beside the libraries.
+fn peers(text: &mut String, all: &[Measured]) {
+    let asked: Vec<&Measured> = all.iter().filter(|robot| !robot.peers.is_empty()).collect();
+    if asked.is_empty() {
+        text.push_str("Other libraries were not asked: no Python with them was found.\n\n");
+        return;
+    }
+    text.push_str("## Other libraries\n\n");
+    let versions: std::collections::BTreeSet<String> = (asked.iter().flat_map(|robot| &robot.peers))
+        .filter_map(|answer| Some(format!("{} {}", answer.library, answer.rows.as_ref().ok()?.0)))
+        .collect();
+    let versions: Vec<String> = versions.into_iter().collect();
+    writeln!(
+        text,
+        "{} at the same states of the same files, without friction, against the same reference in the same units. **Bold** is where a \
+         library's median and largest error are both smaller than mozzi's by more than a tenth.\n",
+        versions.join(" and ")
+    )
+    .expect("a text grows");
+    let head: Vec<String> =
+        ["robot and quantity", "mozzi, one state", "mozzi, arrays", "Pinocchio", "MuJoCo"].map(String::from).to_vec();
+    let rows = asked.iter().flat_map(|robot| {
+        (0..LIST.len()).filter_map(move |quantity| {
+            let own = |way: Way| robot.rows.iter().find(|row| (row.quantity, row.way) == (quantity, way.name()));
+            let one = own(Way::Fused).or(own(Way::Plain))?.errors.whole();
+            let of_peer = |answer: &Answer| {
+                let rows = answer.rows.as_ref().ok()?;
+                Some(rows.1.iter().find(|row| row.quantity == quantity)?.errors.whole())
+            };
+            let found: Vec<Option<Summary>> = robot.peers.iter().map(of_peer).collect();
+            found.iter().any(Option::is_some).then(|| {
+                let peer = |found: &Option<Summary>| match found {
+                    Some(x) if x.median < 0.9 * one.median && x.max < 0.9 * one.max => format!("**{}**", cell(*x)),
+                    Some(x) => cell(*x),
+                    None => "–".into(),
+                };
+                let arrays = own(Way::Lanes).map_or("–".into(), |row| cell(row.errors.whole()));
+                let name = format!("{}: {}", robot.name, LIST[quantity].name);
+                [name, cell(one), arrays].into_iter().chain(found.iter().map(peer)).collect()
+            })
+        })
+    });
+    table(text, &head, rows);
+    for robot in &asked {
+        for answer in &robot.peers {
+            if let Err(why) = &answer.rows {
+                writeln!(text, "- {}, {}: {why}.", robot.name, answer.library).expect("a text grows");
+            }
+        }
+    }
+    text.push('\n');
+}
+
+/// Do the references agree?
+fn references(text: &mut String, all: &[Measured]) {
+    text.push_str("## The references\n\n");
+    text.push_str(
+        "Digits, of the size of the terms, to which the references agree, the fewest over all quantities: the kernel against its second way (stacked \
+         closed form, links one by one, dual numbers), both on 71 digits; and the kernel on 31 digits against 71.\n\n",
+    );
+    let rows = all.iter().filter(|robot| !robot.references.1.is_empty()).map(|robot| {
+        let (states, digits) = &robot.references;
+        let fewest = |of: fn(&Digits) -> f64| {
+            let fewest = digits.iter().min_by(|a, b| of(&a.1).total_cmp(&of(&b.1)));
+            fewest.map_or("–".into(), |(quantity, digits)| format!("{:.1} ({})", of(digits), LIST[*quantity].name))
+        };
+        vec![robot.name.clone(), states.to_string(), fewest(|digits| digits.ways), fewest(|digits| digits.widths)]
+    });
+    table(text, &["robot", "states", "two ways on 71 digits", "31 and 71 digits"].map(String::from), rows);
+}

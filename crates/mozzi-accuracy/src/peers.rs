@@ -1,0 +1,101 @@
+//! What Pinocchio and MuJoCo compute at the same states of the same file.
+
+use crate::errors::Errors;
+use crate::measure::Row;
+use crate::reference::Neighbours;
+use crate::robot::Robot;
+use crate::states::States;
+use mozzi::quantities::LIST;
+use mozzi_oracle::{Double, read_urdf};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+const SCRIPT: &str = include_str!("peers.py");
+
+/// A library's errors, or why there are none.
+pub struct Answer {
+    /// "Pinocchio" or "MuJoCo".
+    pub library: &'static str,
+    /// Its version and its errors; else what it said.
+    pub rows: Result<(String, Vec<Row>), String>,
+}
+
+/// Both libraries on a robot without friction, at the first so many states.
+pub fn ask(python: &Path, robot: &Robot, states: &States, count: usize, seed: u64) -> Vec<Answer> {
+    [("pinocchio", "Pinocchio"), ("mujoco", "MuJoCo")]
+        .into_iter()
+        .map(|(key, library)| Answer { library, rows: rows(python, robot, states, count, seed, (key, library)) })
+        .collect()
+}
+
+type Library = (&'static str, &'static str);
+
+fn rows(
+    python: &Path,
+    robot: &Robot,
+    states: &States,
+    count: usize,
+    seed: u64,
+    (key, library): Library,
+) -> Result<(String, Vec<Row>), String> {
+    let (model, count) = (&robot.model, count.min(states.len()));
+    if model.has_mimic_joints() {
+        return Err("it moves the joints that follow others on their own".into());
+    }
+    let list = |x: &[f64]| Value::from(x.to_vec());
+    let state = |k: usize| json!([list(states.theta(k)), states.rates(k).map(list)]);
+    let question = json!({
+        "library": key, "text": robot.text, "floating": model.is_floating(), "gravity": model.gravity().0,
+        "frame": model.frame_name(robot.frame), "joints": model.joint_names().collect::<Vec<_>>(),
+        "states": (0..count).map(state).collect::<Value>(),
+    });
+    let answer = run(python, &question)?;
+    if let Some(why) = answer["error"].as_str() {
+        return Err(why.into());
+    }
+    // of the same file without friction, which the libraries do not count among the forces
+    let mut smooth = model.description().clone();
+    let zero = |robot: &mut mozzi::Description<Double>| {
+        for joint in &mut robot.joints {
+            (joint.damping, joint.friction) = (0.0.into(), 0.0.into());
+        }
+    };
+    smooth.end_effector = None;
+    let mut wide = read_urdf::<Double>(&robot.text, &smooth).map_err(|error| error.to_string())?;
+    zero(&mut wide);
+    let wide = wide.build().map_err(|error| error.to_string())?;
+    let (neighbours, mut rows) = (Neighbours::new(&wide, robot.frame), Vec::new());
+    for (quantity, declared) in LIST.iter().enumerate() {
+        let Some(found) = answer["quantities"][declared.name].as_array() else { continue };
+        let (query, mut errors, mut memory) = (robot.query(quantity), Errors::default(), neighbours.memory());
+        for (state, found) in found.iter().enumerate() {
+            let found: Option<Vec<Vec<f64>>> = found.as_array().and_then(|outputs| outputs.iter().map(numbers).collect());
+            let found = found.ok_or_else(|| format!("{} is not as the script writes it", declared.name))?;
+            let inputs = states.inputs(&query, state, 1);
+            errors.add(&neighbours.at(&query, &inputs, seed ^ state as u64, &mut memory), &found, 1.0);
+        }
+        rows.push(Row { quantity, way: library, errors });
+    }
+    Ok((answer["version"].as_str().unwrap_or("unknown").into(), rows))
+}
+
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(|x| if x.is_null() { Some(f64::NAN) } else { x.as_f64() }).collect()
+}
+
+/// The script on a question; an error for one that says nothing.
+fn run(python: &Path, question: &Value) -> Result<Value, String> {
+    let mut command = Command::new(python);
+    command.arg("-c").arg(SCRIPT).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().map_err(|error| format!("{}: {error}", python.display()))?;
+    if let Some(mut stdin) = child.stdin.take() {
+        // a script that ends before it has read says why by its exit
+        let _ = stdin.write_all(question.to_string().as_bytes());
+    }
+    let output = child.wait_with_output().map_err(|error| error.to_string())?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing");
+    serde_json::from_slice(&output.stdout).map_err(|_| last.trim().to_string())
+}

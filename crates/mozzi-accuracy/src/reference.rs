@@ -1,0 +1,108 @@
+//! What is right, and the unit of an error.
+
+use crate::DRAWS;
+use crate::robot::is_of_wrenches;
+use core::cell::RefCell;
+use mozzi::quantities::{Memory, Query};
+use mozzi::random::Random;
+use mozzi::{Entry, Environment, FrameId, Model, Scalar, Wrench};
+use mozzi_oracle::Double;
+
+/// A quantity at one state, to 31 digits.
+#[derive(Debug)]
+pub struct Reference {
+    /// Its outputs.
+    pub values: Vec<Vec<Double>>,
+    /// The unit of an error of each entry, for ε = 2⁻⁵².
+    pub units: Vec<Vec<f64>>,
+}
+
+/// The push on the frame of those quantities that are of wrenches alone.
+pub const PUSH: [f64; 6] = [0.5, -1.0, 2.0, 10.0, -4.0, 8.0];
+
+/// The environment in which a quantity is measured: the robot's own, and a push where nothing else is asked for.
+pub fn applied<S: Scalar>(query: &Query, frame: FrameId) -> Vec<(FrameId, Wrench<S>)> {
+    let push = (frame, Wrench::from_array(PUSH.map(S::from_f64)));
+    is_of_wrenches(query).then_some(push).into_iter().collect()
+}
+
+/// The outputs on any number.
+pub fn evaluate<S: Entry>(
+    query: &Query,
+    model: &Model<S>,
+    frame: FrameId,
+    inputs: &[Vec<S>],
+    memory: &mut Memory<S>,
+) -> Vec<Vec<S>> {
+    let applied = applied(query, frame);
+    let environment = Environment { applied: &applied, ..model.environment() };
+    let mut values: Vec<Vec<S>> =
+        query.output_lengths(model).map(|length| vec![<S as Scalar>::zero(); length]).collect();
+    let mut slices: Vec<&mut [S]> = values.iter_mut().map(Vec::as_mut_slice).collect();
+    let inputs: Vec<&[S]> = inputs.iter().map(Vec::as_slice).collect();
+    query.evaluate(model, &inputs, &environment, memory, &mut slices);
+    values
+}
+
+/// The same numbers, wider.
+pub fn widen<S: Scalar>(inputs: &[&[f64]]) -> Vec<Vec<S>> {
+    inputs.iter().map(|x| x.iter().map(|&x| S::from_f64(x)).collect()).collect()
+}
+
+/// A robot and its neighbours, whose constants differ by ε.
+#[derive(Debug)]
+pub struct Neighbours {
+    models: Vec<Model<Double>>,
+    frame: FrameId,
+}
+
+impl Neighbours {
+    /// Of this robot.
+    pub fn new(model: &Model<Double>, frame: FrameId) -> Self {
+        let neighbour = |seed| {
+            let random = RefCell::new(Random(seed));
+            model.map(|c| changed(c, &mut random.borrow_mut()))
+        };
+        let models = std::iter::once(model.clone()).chain((1..=DRAWS as u64).map(neighbour)).collect();
+        Neighbours { models, frame }
+    }
+
+    /// Memory for [`at`](Self::at).
+    pub fn memory(&self) -> Memory<Double> {
+        Memory::new(&self.models[0])
+    }
+
+    /// The quantity at this state.
+    pub fn at(&self, query: &Query, inputs: &[&[f64]], seed: u64, memory: &mut Memory<Double>) -> Reference {
+        let exact = widen(inputs);
+        let values = evaluate(query, &self.models[0], self.frame, &exact, memory);
+        let mut units: Vec<Vec<f64>> =
+            values.iter().map(|x| x.iter().map(|&x| f64::EPSILON * f64::from(x).abs()).collect()).collect();
+        for (draw, model) in (0_u64..).zip(&self.models[1..]) {
+            let mut random = Random(seed ^ (draw << 56));
+            let mut changed_inputs = exact.clone();
+            for (input, declared) in changed_inputs.iter_mut().zip(query.declaration().inputs) {
+                if declared.name != "theta" {
+                    input.iter_mut().for_each(|x| *x = changed(*x, &mut random));
+                }
+            }
+            let other = evaluate(query, model, self.frame, &changed_inputs, memory);
+            for ((units, other), values) in units.iter_mut().zip(&other).zip(&values) {
+                for ((unit, &other), &value) in units.iter_mut().zip(other).zip(values) {
+                    *unit = unit.max(f64::from(other - value).abs());
+                }
+            }
+        }
+        Reference { values, units }
+    }
+}
+
+/// x (1 ± ε); 0 and ±1 are no measured numbers and stay.
+fn changed(x: Double, random: &mut Random) -> Double {
+    let size = f64::from(x);
+    if size == 0.0 || size.abs() == 1.0 {
+        return x;
+    }
+    let sign = if random.next() < 0.0 { -1.0 } else { 1.0 };
+    x + x * Double::from_f64(sign * f64::EPSILON)
+}
