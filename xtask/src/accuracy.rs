@@ -20,7 +20,8 @@ pub fn run(workspace: &Workspace, options: &[&str]) -> Outcome {
     if let (false, Some(robots)) = (names_robots, oracles::robots(workspace)) {
         cargo.arg("--published").arg(robots);
     }
-    if !options.iter().any(|option| ["--robots", "--quantities", "--page"].iter().any(|part| option.starts_with(part))) {
+    if !options.iter().any(|option| ["--robots", "--quantities", "--page"].iter().any(|part| option.starts_with(part)))
+    {
         cargo.arg("--page").arg(workspace.path(PAGE));
     }
     command::outcome(&mut cargo)

@@ -40,8 +40,7 @@ pub fn of(robot: &Robot, states: &States, count: usize, quantity: usize) -> Opti
         let applied = applied(&query, robot.frame);
         let inputs: Vec<&[Octuple]> = wide.iter().map(Vec::as_slice).collect();
         let environment = Environment { applied: &applied, ..model.environment() };
-        let given =
-            Given { robot: description, model, of: query.subject, inputs: &inputs, environment: &environment };
+        let given = Given { robot: description, model, of: query.subject, inputs: &inputs, environment: &environment };
         let second = second_way(query.index(), given);
         let mut digits = Digits { ways: f64::INFINITY, widths: f64::INFINITY };
         for (k, values) in kernel.iter().enumerate() {

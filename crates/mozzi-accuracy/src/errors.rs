@@ -83,11 +83,7 @@ impl Summary {
 
     /// The worse of each.
     pub fn worse(self, other: Self) -> Self {
-        Summary {
-            max: self.max.max(other.max),
-            most: self.most.max(other.most),
-            median: self.median.max(other.median),
-        }
+        Summary { max: self.max.max(other.max), most: self.most.max(other.most), median: self.median.max(other.median) }
     }
 }
 

@@ -43,8 +43,10 @@ struct Options {
 
 /// States of which other libraries are asked, at most.
 const ASKED: usize = 1000;
-/// Velocities above which the second way on 71 digits takes too long.
-const LARGEST_SECOND: usize = 40;
+/// Velocities above which other libraries are not asked: their answers would be long texts.
+const LARGEST_ASKED: usize = 200;
+/// Moving links above which the second way on 71 digits takes too long.
+const LARGEST_SECOND: usize = 13;
 
 fn main() -> ExitCode {
     let options = Options::parse();
@@ -114,13 +116,13 @@ fn measured(
     let states = States::new(&robot.model, robot.kind, count, options.seed);
     eprintln!("{}: {} states", robot.name, states.len());
     let rows = quantities.iter().flat_map(|&quantity| measure::one(robot, &states, options.seed, quantity)).collect();
-    let references = if robot.model.n() > LARGEST_SECOND { 0 } else { options.references.min(count) };
+    let references = if robot.model.moving_links() > LARGEST_SECOND { 0 } else { options.references.min(count) };
     let of = |&quantity: &usize| Some((quantity, digits::of(robot, &states, references, quantity)?));
     let digits = if references > 0 { quantities.iter().filter_map(of).collect() } else { Vec::new() };
     let asked = count.min(ASKED);
     let peers = match &options.python {
-        Some(python) => peers::ask(python, robot, &states, asked, options.seed),
-        None => Vec::new(),
+        Some(python) if robot.model.n() <= LARGEST_ASKED => peers::ask(python, robot, &states, asked, options.seed),
+        _ => Vec::new(),
     };
     Ok(Measured {
         name: robot.name.clone(),

@@ -11,6 +11,9 @@ use rayon::prelude::*;
 /// Numbers that a chunk of states holds, at most.
 const CHUNK: usize = 1 << 18;
 
+/// Numbers of one state above which a quantity is left out: the regressor of a chain of a thousand.
+const LARGEST: usize = 1 << 22;
+
 /// What was measured of a quantity.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -27,21 +30,31 @@ pub fn all(robot: &Robot, states: &States, seed: u64) -> Vec<Row> {
     (0..LIST.len()).flat_map(|quantity| one(robot, states, seed, quantity)).collect()
 }
 
-/// One quantity.
+/// One quantity: at the states, and in `f32` at the states as that has them.
 pub fn one(robot: &Robot, states: &States, seed: u64, quantity: usize) -> Vec<Row> {
+    let (single, double): (Vec<Way>, Vec<Way>) = Way::ALL.into_iter().partition(|&way| way == Way::Single);
+    let mut rows = in_ways(robot, states, seed, quantity, &double);
+    rows.extend(in_ways(robot, &states.rounded(), seed, quantity, &single));
+    rows
+}
+
+fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[Way]) -> Vec<Row> {
     let query = robot.query(quantity);
     let first = states.inputs(&query, 0, 1);
     if robot.model.compute(query, &first, &robot.model.environment()).is_err() {
         return Vec::new(); // of a robot without mass, or whose mass matrix is singular
     }
     let size: usize = query.output_lengths(&robot.model).sum::<usize>().max(1);
+    if size > LARGEST {
+        return Vec::new();
+    }
     let count = (CHUNK / size).clamp(1, 256);
     let neighbours = Neighbours::new(&robot.double, robot.frame);
     let firsts: Vec<usize> = (0..states.len()).step_by(count).collect();
     // memory and machine code of each thread's own
     let make = || {
         let computer = |way| Some((way, Computer::new(robot, query, way)?));
-        (neighbours.memory(), Way::ALL.into_iter().filter_map(computer).collect::<Vec<(Way, Computer)>>())
+        (neighbours.memory(), ways.iter().copied().filter_map(computer).collect::<Vec<(Way, Computer)>>())
     };
     let chunk = |(memory, computers): &mut (_, Vec<(Way, Computer)>), &first: &usize| {
         let count = count.min(states.len() - first);

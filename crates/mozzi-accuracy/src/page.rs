@@ -91,9 +91,9 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
         &format!(
             "The reference is the same kernel on double-double numbers (31 digits), on a model that was built from the file's decimals. It is itself \
              checked against numbers of 71 digits and against the second way of each quantity: see the last table.\n\n\
-             **Unit.** One unit is the largest change of a result when the robot's constants and the rates, but not the angles, change by ε = 2⁻⁵² \
-             of themselves, up or down at random (the largest of {DRAWS} draws); at least ε times the result. So it is ε times the size of the \
-             terms, found without knowing the formula. An error of one unit is what rounding the robot's own numbers does. For `f32`, ε is \
+             **Unit.** One unit is the largest change of a result when each of the robot's constants and of the rates changes by ε = 2⁻⁵² of itself, and each \
+             angle by ε radians, up or down at random (the largest of {DRAWS} draws); at least ε times the result. So it is ε times the size of the \
+             terms, found without knowing the formula: what rounding the robot's own numbers and its sines does. For `f32`, ε is \
              2⁻²³. Errors are of whole outputs: the largest error over the largest unit of a vector's or matrix's entries.\n\n\
              Each cell is **largest / 99.9 % of the states / median**. – means that there is no such way (machine code that would be too long, \
              no machine code on the machine)."
@@ -106,7 +106,10 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
     push(&mut text, "The worst quantity of each robot.");
     let of_robot = |robot: &Measured| {
         let row = |way: &'static str| worst(robot.rows.iter().filter(|row| row.way == way), |row| row.errors.whole());
-        [format!("{} ({} velocities, {} states)", robot.name, robot.n, robot.states)].into_iter().chain(ways(row)).collect()
+        [format!("{} ({} velocities, {} states)", robot.name, robot.n, robot.states)]
+            .into_iter()
+            .chain(ways(row))
+            .collect()
     };
     table(&mut text, &of_ways("robot"), published().map(of_robot));
     if !refused.is_empty() {
@@ -122,7 +125,8 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
     push(&mut text, "The worst of all robots above that are not hard by design.");
     let of_quantity = |quantity: usize| {
         let rows = |way: &'static str| {
-            let rows = published().flat_map(|robot| &robot.rows).filter(|row| (row.quantity, row.way) == (quantity, way));
+            let rows =
+                published().flat_map(|robot| &robot.rows).filter(|row| (row.quantity, row.way) == (quantity, way));
             worst(rows, |row| row.errors.whole())
         };
         [LIST[quantity].name.to_string()].into_iter().chain(ways(rows)).collect()

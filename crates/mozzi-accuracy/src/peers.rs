@@ -71,7 +71,8 @@ fn rows(
         let Some(found) = answer["quantities"][declared.name].as_array() else { continue };
         let (query, mut errors, mut memory) = (robot.query(quantity), Errors::default(), neighbours.memory());
         for (state, found) in found.iter().enumerate() {
-            let found: Option<Vec<Vec<f64>>> = found.as_array().and_then(|outputs| outputs.iter().map(numbers).collect());
+            let found: Option<Vec<Vec<f64>>> =
+                found.as_array().and_then(|outputs| outputs.iter().map(numbers).collect());
             let found = found.ok_or_else(|| format!("{} is not as the script writes it", declared.name))?;
             let inputs = states.inputs(&query, state, 1);
             errors.add(&neighbours.at(&query, &inputs, seed ^ state as u64, &mut memory), &found, 1.0);

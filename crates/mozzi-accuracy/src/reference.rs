@@ -20,6 +20,9 @@ pub struct Reference {
 /// The push on the frame of those quantities that are of wrenches alone.
 pub const PUSH: [f64; 6] = [0.5, -1.0, 2.0, 10.0, -4.0, 8.0];
 
+/// 0, in 31 digits.
+const NOTHING: f64 = 1e-26;
+
 /// The environment in which a quantity is measured: the robot's own, and a push where nothing else is asked for.
 pub fn applied<S: Scalar>(query: &Query, frame: FrameId) -> Vec<(FrameId, Wrench<S>)> {
     let push = (frame, Wrench::from_array(PUSH.map(S::from_f64)));
@@ -82,15 +85,24 @@ impl Neighbours {
             let mut random = Random(seed ^ (draw << 56));
             let mut changed_inputs = exact.clone();
             for (input, declared) in changed_inputs.iter_mut().zip(query.declaration().inputs) {
-                if declared.name != "theta" {
-                    input.iter_mut().for_each(|x| *x = changed(*x, &mut random));
-                }
+                let is_angle = declared.name == "theta";
+                input
+                    .iter_mut()
+                    .for_each(|x| *x = if is_angle { turned(*x, &mut random) } else { changed(*x, &mut random) });
             }
             let other = evaluate(query, model, self.frame, &changed_inputs, memory);
             for ((units, other), values) in units.iter_mut().zip(&other).zip(&values) {
                 for ((unit, &other), &value) in units.iter_mut().zip(other).zip(values) {
                     *unit = unit.max(f64::from(other - value).abs());
                 }
+            }
+        }
+        for (units, values) in units.iter_mut().zip(&values) {
+            let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            // of an output that is 0, whatever the constants: ε of the numbers that went in
+            if values.iter().all(|&x| f64::from(x).abs() < NOTHING) && largest(units) < NOTHING {
+                let given = inputs.iter().fold(largest(&PUSH), |m, x| m.max(largest(x)));
+                units.fill(f64::EPSILON * given);
             }
         }
         Reference { values, units }
@@ -100,9 +112,14 @@ impl Neighbours {
 /// x (1 ± ε); 0 and ±1 are no measured numbers and stay.
 fn changed(x: Double, random: &mut Random) -> Double {
     let size = f64::from(x);
-    if size == 0.0 || size.abs() == 1.0 {
-        return x;
-    }
-    let sign = if random.next() < 0.0 { -1.0 } else { 1.0 };
-    x + x * Double::from_f64(sign * f64::EPSILON)
+    if size == 0.0 || size.abs() == 1.0 { x } else { x + x * epsilon(random) }
+}
+
+/// x ± ε: of an angle, whatever its size, about what rounding its sine and cosine does.
+fn turned(x: Double, random: &mut Random) -> Double {
+    x + epsilon(random)
+}
+
+fn epsilon(random: &mut Random) -> Double {
+    Double::from_f64(if random.next() < 0.0 { -f64::EPSILON } else { f64::EPSILON })
 }

@@ -20,13 +20,6 @@ pub enum Kind {
     Far,
 }
 
-impl Kind {
-    /// Are all numbers exact in `f32`, so that each way computes of the same state?
-    pub fn is_single(self) -> bool {
-        self != Kind::RightAngles
-    }
-}
-
 /// θ, θ̇, θ̈ and τ of many states.
 #[derive(Debug)]
 pub struct States {
@@ -40,15 +33,14 @@ impl States {
     pub fn new(model: &Model, kind: Kind, count: usize, seed: u64) -> Self {
         let (nq, n, first) = (model.nq(), model.n(), model.base().positions());
         let mut random = Random(seed);
-        let single = |x: f64| f64::from(x as f32);
         let mut theta = Vec::with_capacity(nq * count);
         for _ in 0..count {
             if first > 0 {
                 let q: [f64; 4] = random.array();
                 let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-                theta.extend(q.map(|x| single(x / length)));
+                theta.extend(q.map(|x| x / length));
                 let size = if kind == Kind::Far { 1000.0 } else { 1.0 };
-                theta.extend(random.array::<3>().map(|x| single(x + size)));
+                theta.extend(random.array::<3>().map(|x| x + size));
             }
             for joint in model.joints() {
                 let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
@@ -60,18 +52,21 @@ impl States {
                         let next = [0.0, 0.0, 1e-16, -3e-16, 1e-9, -1e-5][random.below(6)];
                         FRAC_PI_2 * (random.below(9) as f64 - 4.0) + next
                     }
-                    Kind::LargeAngles => single(1e6 * x),
-                    _ => single(low + (high - low) * (0.5 + 0.5 * x)),
+                    Kind::LargeAngles => 1e6 * x,
+                    _ => low + (high - low) * (0.5 + 0.5 * x),
                 });
             }
         }
         let speed = if kind == Kind::Fast { 1e4 } else { 1.0 };
-        let rates = [2.0, 5.0, 20.0].map(|size| {
-            let table = random.vector(n * count, size * speed);
-            table.into_iter().map(single).collect()
-        });
+        let rates = [2.0, 5.0, 20.0].map(|size| random.vector(n * count, size * speed));
         let [dtheta, ddtheta, tau] = rates;
         States { nq, n, tables: [theta, dtheta, ddtheta, tau] }
+    }
+
+    /// The states as `f32` has them.
+    pub fn rounded(&self) -> Self {
+        let round = |table: &Vec<f64>| table.iter().map(|&x| f64::from(x as f32)).collect();
+        States { tables: self.tables.each_ref().map(round), ..*self }
     }
 
     /// How many.

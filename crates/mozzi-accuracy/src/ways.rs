@@ -3,7 +3,7 @@
 use crate::reference::applied;
 use crate::robot::{Robot, is_of_wrenches};
 use crate::states::States;
-use mozzi::quantities::Query;
+use mozzi::quantities::{self, Kernel, Quantity, Query};
 use mozzi::{Environment, fast};
 use mozzi_batch::{Batch, Compiled, Engine, Number, compile};
 
@@ -47,6 +47,18 @@ impl Way {
     }
 }
 
+/// Velocities above which no program is recorded: it would have millions of operations.
+const LARGEST_RECORDED: usize = 80;
+
+/// Do arrays of it run a kernel, or a recorded program?
+fn has_registers(query: &Query) -> bool {
+    macro_rules! answers {
+        ($($Q:ident)*) => { &[$(<quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
+    }
+    const ANSWERS: &[bool] = mozzi::quantities!(answers);
+    ANSWERS[query.index()]
+}
+
 /// A quantity of a robot, ready to be computed in a way.
 pub struct Computer<'r> {
     robot: &'r Robot,
@@ -62,16 +74,18 @@ enum Inner {
 }
 
 impl<'r> Computer<'r> {
-    /// None where there is no such way: without FMA or machine code on this machine, of a program that is too long, of states that are no
-    /// `f32`.
+    /// None where there is no such way: without FMA or machine code on this machine, of a program that is too long.
     pub fn new(robot: &'r Robot, query: Query<'r>, way: Way) -> Option<Self> {
-        let (model, own) = (&robot.model, !is_of_wrenches(&query));
+        let model = &robot.model;
+        let is_short = model.n() <= LARGEST_RECORDED;
+        let own = is_short && !is_of_wrenches(&query);
         let many = || Batch::new(model).with_threads(1).ok();
         let engine = match way {
             Way::Plain => Inner::One(fast::Workspace::portable(model)),
             Way::Fused => Inner::One(fast::Workspace::new(model)).which(|one| one.is_fused())?,
+            Way::Lanes | Way::Single if !is_short && !has_registers(&query) => return None,
             Way::Lanes => Inner::Many(many()?),
-            Way::Single => Inner::Single(Batch::of(model).with_threads(1).ok()?).which(|_| robot.kind.is_single())?,
+            Way::Single => Inner::Single(Batch::of(model).with_threads(1).ok()?),
             Way::MachineCode => {
                 let compiled = own.then(|| compile(model, &[query]).ok()).flatten()?;
                 let is_code = matches!(compiled.engine(query), Engine::MachineCode { .. });

@@ -25,6 +25,8 @@ pub struct Compiled {
 #[derive(Debug)]
 struct Machine {
     index: usize,
+    /// Of the robot alone, so that the index says it all.
+    is_of_robot: bool,
     /// With its rows owned.
     rows: Vec<usize>,
     subject: (Option<mozzi::FrameId>, mozzi::TaskFrame, mozzi::Vec3),
@@ -40,6 +42,7 @@ impl Machine {
         let subject = query.subject;
         Ok(Machine {
             index: query.index(),
+            is_of_robot: query.declaration().of == Of::Robot,
             rows: subject.rows.to_vec(),
             subject: (subject.frame, subject.coordinates, subject.point),
             code: Kernel::condensing(&program, Shape::OneF64, program.outputs().len() - pivots),
@@ -51,7 +54,7 @@ impl Machine {
     fn is_of(&self, query: &Query) -> bool {
         let subject = &query.subject;
         let is_of = || self.subject == (subject.frame, subject.coordinates, subject.point) && self.rows == subject.rows;
-        self.index == query.index() && (query.declaration().of == Of::Robot || is_of())
+        self.index == query.index() && (self.is_of_robot || is_of())
     }
 }
 

@@ -3,10 +3,13 @@
 
 use crate::bodies::{bodies, frame, moments, momentum_columns, source, twist};
 use crate::linear::{inverse, solve};
-use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::model::description::Joint;
+use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
-use mozzi::{ClosedForm, Description, Dual, Entry, Environment, Model, SE3, Scalar, TaskFrame, Twist, Vec3, Wrench, seed_direction};
+use mozzi::{
+    ClosedForm, Description, Dual, Entry, Environment, Model, SE3, Scalar, TaskFrame, Twist, Vec3, Wrench,
+    seed_direction,
+};
 
 /// What a quantity is computed of.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +126,8 @@ impl<S: Entry> Given<'_, S> {
     fn by_theta(&self, of: impl Fn(ClosedForm<Dual<S>>) -> Vec<Dual<S>>) -> DMatrix<S> {
         let (still, (_, model), mut applied) = (Dual::constants(&zeros(self.n())), self.dual_robot(), Vec::new());
         let environment = self.environment.map(Dual::constant, &mut applied);
-        let environment = Environment { applied: environment.applied, ..Environment::with_gravity(environment.gravity) };
+        let environment =
+            Environment { applied: environment.applied, ..Environment::with_gravity(environment.gravity) };
         self.by_each_joint(|theta| derivatives(of(model.closed_form(theta, &still, &environment).expect("lengths"))))
     }
     /// ∂τ/∂(θ, θ̇, θ̈) at θ̈: of the stacked equations, by dual numbers.
@@ -185,7 +189,10 @@ impl<S: Entry> Given<'_, S> {
         momentum_columns(self.robot, self.model, self.theta())
     }
     fn momentum(&self) -> Wrench<S> {
-        self.momentum_columns().into_iter().zip(self.inputs[1]).fold(Wrench::zero(), |h, (column, &rate)| h + column * rate)
+        self.momentum_columns()
+            .into_iter()
+            .zip(self.inputs[1])
+            .fold(Wrench::zero(), |h, (column, &rate)| h + column * rate)
     }
     /// ḣ with θ̇ moving by θ̈.
     fn momentum_rate(&self, ddtheta: &[S]) -> Wrench<S> {

@@ -235,7 +235,10 @@ mod tests {
             ];
             worst = core::array::from_fn(|k| worst[k].max(found[k]));
         }
-        assert!(worst[0] <= 4.0 && worst[1] <= 4.0 && worst[2] <= 5.0 && worst[3] <= 10.0 && worst[4] <= 4.0, "{worst:?}");
+        assert!(
+            worst[0] <= 4.0 && worst[1] <= 4.0 && worst[2] <= 5.0 && worst[3] <= 10.0 && worst[4] <= 4.0,
+            "{worst:?}"
+        );
     }
 
     #[test]

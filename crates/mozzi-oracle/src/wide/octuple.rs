@@ -112,7 +112,14 @@ impl From<Octuple> for f64 {
         let x = x.0;
         let sign = if x.is_sign_negative() { -1.0 } else { 1.0 };
         if x.is_nan() || x.is_infinite() || x.eq_zero() {
-            return sign * if x.is_nan() { f64::NAN } else if x.is_infinite() { f64::INFINITY } else { 0.0 };
+            return sign
+                * if x.is_nan() {
+                    f64::NAN
+                } else if x.is_infinite() {
+                    f64::INFINITY
+                } else {
+                    0.0
+                };
         }
         let (high, low) = x.to_bits();
         let stored_high = STORED - 128;

@@ -45,10 +45,7 @@ impl<C: Real + Into<f64>> Model<C> {
         }
     }
 
-    pub(crate) fn check_velocities<const K: usize>(
-        &self,
-        velocities: [(&'static str, &[C]); K],
-    ) -> Result<(), Error> {
+    pub(crate) fn check_velocities<const K: usize>(&self, velocities: [(&'static str, &[C]); K]) -> Result<(), Error> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
 

@@ -11,8 +11,14 @@ use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, DMatrix, DVect
 use num_traits::{One, Zero};
 
 /// A number of which nalgebra has matrices: `f64`, [`Dual`](crate::Dual), a wide number.
-pub trait Entry: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign {}
-impl<S: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign> Entry for S {}
+pub trait Entry:
+    Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign
+{
+}
+impl<S: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign> Entry
+    for S
+{
+}
 
 /// Every stacked vector and matrix of the closed form at one state, for N moving links and n velocities. Frame {i} is at the
 /// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A floating base is the first of the

@@ -25,6 +25,15 @@ use crate::spatial::{Twist, Wrench};
 pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     model: &Model<C0>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>, C: &mut [S],
 ) {
+    with_base_twist(model, theta, dtheta, base_twist(model, theta, dtheta, Twist::zero()), workspace, C);
+}
+
+/// C at this twist of the base.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
+    model: &Model<C0>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>, C: &mut [S],
+) {
     let n = model.n();
     model.assert_lengths(theta.len(), [dtheta.len()]);
     assert!(C.len() == n * n, "C has {} entries, expected n² = {}", C.len(), n * n);
@@ -33,7 +42,7 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     let half = S::from_f64(0.5);
 
     C.fill(S::zero());
-    V[0] = base_twist(model, theta, dtheta, Twist::zero());
+    V[0] = base_twist;
     let G_0 = model.base_inertia.map(S::from);
     (G_c[0], dG_c[0], P[0]) = (G_0, G_0.rate(V[0]), G_0 * V[0]);
     for (i, link) in model.outward::<S>() {
@@ -86,7 +95,8 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     }
 }
 
-/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest.
+/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is left out: in C + Cᵀ
+/// what it adds would cancel, up to rounding.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -100,7 +110,7 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     dM: &mut [S],
 ) {
-    coriolis_matrix(model, theta, dtheta, workspace, dM);
+    with_base_twist(model, theta, dtheta, Twist::zero(), workspace, dM);
     add_transpose(model.n(), dM);
 }
 
@@ -121,9 +131,14 @@ impl Kernel for CoriolisMatrix {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, _], [C, dM, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
-        coriolis_matrix(c.model, theta, dtheta, w, if dM.is_empty() { C } else { &mut *dM });
+        // one text for both, compiled once
+        let (base, X) = match dM.is_empty() {
+            true => (base_twist(c.model, theta, dtheta, Twist::zero()), C),
+            false => (Twist::zero(), &mut *dM),
+        };
+        with_base_twist(c.model, theta, dtheta, base, w, X);
         if !dM.is_empty() {
-            add_transpose(c.model.n(), dM); // Ṁ = C + Cᵀ
+            add_transpose(c.model.n(), dM);
         }
     }
 }

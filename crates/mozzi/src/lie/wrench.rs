@@ -49,7 +49,7 @@ impl<S: Scalar> Wrench<S> {
     /// The same wrench, or momentum, about a point p of its frame instead of the origin: (m − p × f, f).
     #[inline(always)]
     pub fn about(self, p: Vec3<S>) -> Self {
-        Wrench { m: self.m - p.cross(self.f), f: self.f }
+        Wrench { m: self.f.cross_add(p, self.m), f: self.f }
     }
 
     /// √(‖m‖² + ‖f‖²): a size for tests and tolerances; it mixes units.

@@ -227,8 +227,11 @@ impl<C: Real> Description<C> {
             }),
         };
         let link = |link: &Link<C>| Link { name: link.name.clone(), inertia: link.inertia.map(f) };
-        let frame =
-            |frame: &NamedFrame<C>| NamedFrame { name: frame.name.clone(), link: frame.link.clone(), T: frame.T.map(f) };
+        let frame = |frame: &NamedFrame<C>| NamedFrame {
+            name: frame.name.clone(),
+            link: frame.link.clone(),
+            T: frame.T.map(f),
+        };
         Description {
             name: self.name.clone(),
             links: self.links.iter().map(link).collect(),

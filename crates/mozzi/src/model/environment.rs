@@ -37,7 +37,11 @@ impl<S: Scalar> Environment<'_, S> {
 
     /// The same in numbers of another type, its wrenches in `applied`.
     #[inline(always)]
-    pub fn map<'a, U>(&self, f: impl Fn(S) -> U + Copy, applied: &'a mut Vec<(FrameId, Wrench<U>)>) -> Environment<'a, U> {
+    pub fn map<'a, U>(
+        &self,
+        f: impl Fn(S) -> U + Copy,
+        applied: &'a mut Vec<(FrameId, Wrench<U>)>,
+    ) -> Environment<'a, U> {
         applied.clear();
         applied.extend(self.applied.iter().map(|&(frame, F)| (frame, F.map(f))));
         Environment {

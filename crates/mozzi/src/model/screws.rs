@@ -184,7 +184,6 @@ impl Model<f64> {
             end_effector,
         }
     }
-
 }
 
 impl<C: Real> Model<C> {

@@ -23,6 +23,12 @@ impl<S: Scalar> CoriolisFactor<S> {
         CoriolisFactor { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
     }
 
+    /// The same about the point p, in the same axes: K + 2 `[p][f]`.
+    #[inline(always)]
+    pub fn about(self, p: Vec3<S>) -> Self {
+        CoriolisFactor { K: self.K + Skew(p) * Skew(self.f + self.f), f: self.f }
+    }
+
     /// 𝓑ᵀA, which has no force: Kᵀω + 2 f × v.
     #[inline(always)]
     pub fn transpose_mul(self, A: Twist<S>) -> Vec3<S> {
@@ -52,5 +58,10 @@ mod tests {
         let defined = |A: Twist| -(G * (V.ad() * A)) - V.ad().transpose() * (G * A) - A.ad().transpose() * P;
         assert!((B * A - defined(A)).norm() < 1e-13);
         assert!((B.transpose_mul(A).dot(X.w) - A.dot(defined(X))).abs() < 1e-13);
+        // about another point: of the body's inertia and twist there
+        let p = Vec3([0.3, -0.2, 0.5]);
+        let (G, V) = (G.about(p), V.at(p));
+        let there = CoriolisFactor::new(G, V, G * V);
+        assert!((B.about(p) * X - there * X).norm() < 1e-13);
     }
 }

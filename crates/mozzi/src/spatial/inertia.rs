@@ -52,14 +52,27 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     pub(crate) fn congruence_add(self, Ad: Adjoint<S>, to: Self) -> Self {
         let (SE3 { R, p }, Rt) = (Ad.0, Ad.0.R.matrix().transpose());
-        let shifted = p.mul_add(-self.mass, self.mc);
-        // I about p: I + [mc − mp][p] + [p][mc], whose upper triangle is taken
-        let steiner = Skew(shifted) * Skew(p) + Skew(p) * Skew(self.mc);
+        let about = self.about(p);
         SpatialInertia {
-            mass: self.mass + to.mass,
-            mc: R.matrix().transpose_mul_add(shifted, to.mc),
-            I: (self.I + Sym3::upper(steiner)).congruence_add(Rt, to.I),
+            mass: about.mass + to.mass,
+            mc: R.matrix().transpose_mul_add(about.mc, to.mc),
+            I: about.I.congruence_add(Rt, to.I),
         }
+    }
+
+    /// The same body's inertia about the point p, in the same axes (Steiner).
+    #[inline(always)]
+    pub(crate) fn about(self, p: Vec3<S>) -> Self {
+        let mc = p.mul_add(-self.mass, self.mc);
+        // I about p: I + [mc − mp][p] + [p][mc], whose upper triangle is taken
+        let steiner = Skew(mc) * Skew(p) + Skew(p) * Skew(self.mc);
+        SpatialInertia { mass: self.mass, mc, I: self.I + Sym3::upper(steiner) }
+    }
+
+    /// The same body's inertia in the axes of a frame {a} at the same origin, with R = `R_ba`.
+    #[inline(always)]
+    pub(crate) fn turned(self, R: Mat3<S>) -> Self {
+        SpatialInertia { mass: self.mass, mc: R.transpose_mul(self.mc), I: self.I.congruence(R.transpose()) }
     }
 
     /// The same body's inertia seen from another frame {a}: with this one in {b}, T = `T_ab`.

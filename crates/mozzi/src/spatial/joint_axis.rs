@@ -37,11 +37,10 @@ impl<S: Scalar> JointAxis<S> {
         }
     }
 
-    /// `[Ad_T]`⁻¹ A: this axis in the coordinates of a frame {a}, with T = `T_ia`; R's third row is its direction.
+    /// This axis about the frame's own origin, its direction z in other axes.
     #[inline(always)]
-    pub fn seen_through(self, T: SE3<S>) -> Twist<S> {
-        let (R, [px, py, _]) = (T.R.matrix(), T.p.0);
-        Twist { w: R.z * self.a, v: R.x.mul_add(-(py * self.a), R.y.mul_add(px * self.a, R.z * self.b)) }
+    pub fn along(self, z: Vec3<S>) -> Twist<S> {
+        Twist { w: z * self.a, v: z * self.b }
     }
 
     #[inline(always)]
@@ -128,7 +127,8 @@ mod tests {
             assert!(distance(A.transform(A.sin_cos(q), q, M), SE3::exp(A.twist() * -q) * M) < 1e-15);
             assert!(((V.ad() * (A * q)).twist() - V.ad() * (A.twist() * q)).norm() < 1e-15);
             assert!((V + A * q - (V + A.twist() * q)).norm() == 0.0);
-            assert!((A.seen_through(M) - M.inverse().Ad() * A.twist()).norm() < 1e-15);
+            let turned = SE3 { p: Vec3::zero(), ..M };
+            assert!((A.along(M.R.matrix().z) - turned.inverse().Ad() * A.twist()).norm() < 1e-15);
         }
     }
 }

@@ -162,7 +162,7 @@ mod tests {
         let V = Twist::from_array([1.0, 0.0, 1.0, 0.0, 1.0, 0.0]);
         let (A, k) = ScrewAxis::normalize(V).expect("a screw");
         assert!((A * k - V).norm() < 1e-15 && (A.twist().w.norm() - 1.0).abs() < 1e-15);
-        assert!(ScrewAxis::normalize(Twist::zero()).is_err());
+        assert!(ScrewAxis::normalize(Twist::<f64>::zero()).is_err());
         assert!(ScrewAxis::normalize(Twist::from_array([1e200, 1e200, 0.0, 0.0, 0.0, 0.0])).is_err());
     }
 }
