@@ -48,7 +48,7 @@ pub fn of(robot: &Robot, states: &States, count: usize, quantity: usize) -> Opti
             let agree = |other: &mut dyn Iterator<Item = Octuple>| {
                 let error = values.iter().zip(other).fold(Octuple::zero(), |m, (&a, b)| {
                     let error = (a - b).abs();
-                    if error > m || error != error { error } else { m }
+                    if error <= m { m } else { error }
                 });
                 let error = f64::from(error);
                 if error == 0.0 { f64::INFINITY } else { -(error / terms).log10() }

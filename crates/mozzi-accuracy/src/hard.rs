@@ -14,6 +14,7 @@ impl Text {
 
     /// A link on a joint about `axis`, at `xyz` of its parent's frame, turned by `rpy`: a body of this mass whose size is `length`.
     #[rustfmt::skip]
+    #[allow(clippy::too_many_arguments)] // what a link and its joint are
     fn link(&mut self, name: &str, parent: &str, axis: &str, xyz: &str, rpy: &str, mass: f64, length: f64) {
         let I = |share: f64| format!("{:e}", (share * mass * length * length * 1e6).round() / 1e6);
         let I = |share: f64| if mass * length * length < 1e-3 { format!("{:e}", share * mass * length * length) } else { I(share) };

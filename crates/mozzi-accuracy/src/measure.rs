@@ -11,8 +11,8 @@ use rayon::prelude::*;
 /// Numbers that a chunk of states holds, at most.
 const CHUNK: usize = 1 << 18;
 
-/// Numbers of one state above which a quantity is left out: the regressor of a chain of a thousand.
-const LARGEST: usize = 1 << 22;
+/// Velocities above which quantities are left out that take n³ operations, or have more than n² numbers.
+const LONGEST: usize = 200;
 
 /// What was measured of a quantity.
 #[derive(Clone, Debug)]
@@ -45,7 +45,9 @@ fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[W
         return Vec::new(); // of a robot without mass, or whose mass matrix is singular
     }
     let size: usize = query.output_lengths(&robot.model).sum::<usize>().max(1);
-    if size > LARGEST {
+    let declaration = query.declaration();
+    let is_cubic = declaration.divides && declaration.name != "forward_dynamics";
+    if robot.model.n() > LONGEST && (is_cubic || size > robot.model.n().pow(2)) {
         return Vec::new();
     }
     let count = (CHUNK / size).clamp(1, 256);

@@ -71,7 +71,7 @@ impl States {
 
     /// How many.
     pub fn len(&self) -> usize {
-        if self.nq == 0 { 0 } else { self.tables[0].len() / self.nq }
+        self.tables[0].len().checked_div(self.nq).unwrap_or(0)
     }
 
     /// None?

@@ -66,12 +66,16 @@ pub struct Computer<'r> {
     engine: Inner,
 }
 
+#[allow(clippy::large_enum_variant)] // one a thread
 enum Inner {
     One(fast::Workspace),
     Many(Batch),
     Single(Batch<f32>),
     Compiled(Compiled),
 }
+
+/// Outputs from inputs.
+type OneState<'o> = dyn FnMut(&[&[f64]], &mut [&mut [f64]]) + 'o;
 
 impl<'r> Computer<'r> {
     /// None where there is no such way: without FMA or machine code on this machine, of a program that is too long.
@@ -109,7 +113,7 @@ impl<'r> Computer<'r> {
         let push = applied(&query, self.robot.frame);
         let environment = Environment { applied: &push, ..model.environment() };
         let widths: Vec<usize> = query.input_lengths(model).collect();
-        let mut each = |one: &mut dyn FnMut(&[&[f64]], &mut [&mut [f64]])| {
+        let mut each = |one: &mut OneState| {
             for k in 0..count {
                 let state: Vec<&[f64]> =
                     tables.iter().zip(&widths).map(|(table, &width)| &table[k * width..][..width]).collect();

@@ -34,12 +34,14 @@ pub trait SecondWay: Quantity {
     fn second_way<S: Entry>(given: Given<S>) -> Vec<Vec<S>>;
 }
 
+type Way<S> = fn(Given<S>) -> Vec<Vec<S>>;
+
 /// The outputs of the quantity of this place in the [list](LIST).
 pub fn second_way<S: Entry>(index: usize, given: Given<S>) -> Vec<Vec<S>> {
     macro_rules! ways {
         ($($Q:ident)*) => { &[$(<$Q as SecondWay>::second_way::<S>),*] };
     }
-    let ways: &[fn(Given<S>) -> Vec<Vec<S>>] = mozzi::quantities!(ways);
+    let ways: &[Way<S>] = mozzi::quantities!(ways);
     ways[index](given)
 }
 

@@ -108,7 +108,8 @@ impl<S: Entry> Model<S> {
             form.ad_Adtheta.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&ad);
         }
         let mut power = form.W.clone();
-        while power.iter().any(|&x| x != <S as Scalar>::zero()) && power.iter().all(|x| x == x) {
+        let is_nan = |x: S| Into::<f64>::into(x).is_nan();
+        while power.iter().any(|&x| x != <S as Scalar>::zero()) && !power.iter().any(|&x| is_nan(x)) {
             form.L += &power;
             power = &form.W * power;
         }
