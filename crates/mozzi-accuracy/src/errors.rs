@@ -7,6 +7,9 @@ use mozzi_oracle::Double;
 /// What an entry that is 0 is in 31 digits, over the largest entry.
 const ZERO: f64 = 1e-24;
 
+/// What the unit of such an entry is, over the largest: 31 digits' rounding over that of `f64`.
+const NO_UNIT: f64 = 1e-10;
+
 /// The errors of one quantity in one way.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
@@ -39,7 +42,7 @@ impl Errors {
                 let error = f64::from(Double::from_f64(found) - value).abs();
                 let error = if error.is_nan() { f64::INFINITY } else { error };
                 worst = worst.max(error);
-                if f64::from(value).abs() > ZERO * size || own > ZERO * unit {
+                if f64::from(value).abs() > ZERO * size || own > NO_UNIT * unit {
                     entries = entries.max(over(error, own * epsilon));
                 }
             }

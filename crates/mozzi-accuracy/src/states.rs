@@ -47,7 +47,9 @@ impl States {
                 let [low, high] = joint.limits.position.unwrap_or([-reach, reach]).map(|x| x.clamp(-reach, reach));
                 let (low, high) = if low < high { (low, high) } else { (-reach, reach) };
                 let x = random.next();
+                let slides = joint.kind.name() == "prismatic";
                 theta.push(match kind {
+                    _ if slides => low + (high - low) * (0.5 + 0.5 * x),
                     Kind::RightAngles => {
                         let next = [0.0, 0.0, 1e-16, -3e-16, 1e-9, -1e-5][random.below(6)];
                         FRAC_PI_2 * (random.below(9) as f64 - 4.0) + next

@@ -1,6 +1,8 @@
 //! The centre of mass of all that moves, and how it moves, by the momentum.
 
-use super::momentum::{momentum, momentum_matrix, momentum_rate, total_inertia};
+use super::momentum::{composite_inertia, momentum, momentum_matrix, momentum_rate};
+use crate::kinematics::base_pose;
+use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, Rare, THETA, THREE, output, sized};
@@ -19,7 +21,27 @@ pub fn center_of_mass<S: Scalar + From<C>, C: Scalar>(
     theta: &[S],
     workspace: &mut Workspace<S>,
 ) -> Vec3<S> {
-    total_inertia(model, theta, workspace).mc * one_over_mass(model)
+    base_pose(model, theta) * center_in_base(model, theta, workspace)
+}
+
+/// The centre of mass in the base's frame: to compute about it without the base's distance from {s}, which would cost digits.
+#[cfg_attr(not(test), inline(always))]
+fn center_in_base<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    workspace: &mut Workspace<S>,
+) -> Vec3<S> {
+    composite_inertia(model, theta, workspace).mc * one_over_mass(model)
+}
+
+/// A frame with the axes of {s} and its origin at the centre of mass, seen from the base; the workspace then holds composite inertias.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn centroidal_frame<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    workspace: &mut Workspace<S>,
+) -> SE3<S> {
+    SE3 { R: base_pose(model, theta).R.inverse(), p: center_in_base(model, theta, workspace) }
 }
 
 #[inline(always)]

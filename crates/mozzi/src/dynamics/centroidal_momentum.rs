@@ -1,14 +1,14 @@
 //! The momentum about the centre of mass (Orin, Goswami and Lee 2013).
 
-use super::center_of_mass::center_of_mass;
-use super::momentum::{momentum_matrix, momentum_rate};
+use super::center_of_mass::centroidal_frame;
+use super::momentum::{columns, rate_in_base};
 use crate::quantity::{
     Call, DTHETA, Declaration, JACOBIAN, Kernel, Memory, Quantity, Rare, SIX, THETA, by_rows, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
-/// See [`momentum_matrix`].
+/// See [`momentum_matrix`](super::momentum_matrix).
 #[derive(Clone, Copy, Debug)]
 pub struct CentroidalMomentumMatrix;
 impl Quantity for CentroidalMomentumMatrix {
@@ -26,14 +26,14 @@ impl Kernel for CentroidalMomentumMatrix {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [A, ..], Memory { workspace, wrenches, .. }) = (c.inputs, c.outputs, c.memory);
-        let center = center_of_mass(c.model, theta, workspace);
-        let columns = sized(wrenches, c.model.n(), Wrench::zero());
-        momentum_matrix(c.model, theta, workspace, columns);
-        by_rows(columns.iter().map(|column| column.about(center).to_array()), A);
+        let T_bg = centroidal_frame(c.model, theta, workspace);
+        let found = sized(wrenches, c.model.n(), Wrench::zero());
+        columns(c.model, T_bg, workspace, found);
+        by_rows(found.iter().map(|column| column.to_array()), A);
     }
 }
 
-/// See [`momentum_rate`].
+/// See [`momentum_rate`](super::momentum_rate()).
 #[derive(Clone, Copy, Debug)]
 pub struct CentroidalMomentumBias;
 impl Quantity for CentroidalMomentumBias {
@@ -52,7 +52,8 @@ impl Kernel for CentroidalMomentumBias {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, zero], [b, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
-        let center = center_of_mass(c.model, theta, w);
-        b.copy_from_slice(&momentum_rate(c.model, theta, dtheta, zero, w).about(center).to_array());
+        let T_bg = centroidal_frame(c.model, theta, w);
+        let rate = rate_in_base(c.model, theta, dtheta, zero, w);
+        b.copy_from_slice(&(T_bg.Ad().transpose() * rate).to_array());
     }
 }

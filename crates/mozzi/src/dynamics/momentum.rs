@@ -19,8 +19,7 @@ use crate::spatial::{SpatialInertia, Twist, Wrench};
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
-    composite_inertias(model, theta, workspace);
-    workspace.G_c[0].transformed(base_pose(model, theta))
+    composite_inertia(model, theta, workspace).transformed(base_pose(model, theta))
 }
 
 /// The momentum of all that moves, (angular, linear), about the origin of {s} in its coordinates, {s} at rest:
@@ -66,11 +65,17 @@ pub fn momentum<S: Scalar + From<C>, C: Scalar>(
 pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, A: &mut [Wrench<S>],
 ) {
-    model.assert_lengths(theta.len(), [A.len()]);
-    composite_inertias(model, theta, workspace);
+    composite_inertia(model, theta, workspace);
+    columns(model, base_pose(model, theta).inverse(), workspace, A);
+}
+
+/// The columns in a frame {s}, seen from the base, of the workspace's composite inertias.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE3<S>, workspace: &mut Workspace<S>, A: &mut [Wrench<S>]) {
+    assert!(A.len() == model.n(), "A has {} columns, expected n = {}", A.len(), model.n());
     let Workspace { T, G_c, .. } = workspace;
     A.fill(Wrench::zero());
-    let T_bs: SE3<S> = base_pose(model, theta).inverse();
     if model.is_floating() {
         for (column, axis) in A.iter_mut().zip(Twist::axes()) {
             *column = T_bs.Ad().transpose() * (G_c[0] * axis);
@@ -95,16 +100,26 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
 pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
 ) -> Wrench<S> {
+    let rate = rate_in_base(model, theta, dtheta, ddtheta, workspace);
+    seen_from_space(model, theta, rate)
+}
+
+/// ḣ in the base's coordinates.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn rate_in_base<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
+) -> Wrench<S> {
     let mut tau = core::mem::take(&mut workspace.vector); // its values do not matter
     newton_euler(model, theta, dtheta, ddtheta, &Environment::with_gravity(Vec3::zero()), workspace, &mut tau);
     workspace.vector = tau;
-    seen_from_space(model, theta, workspace.F[0])
+    workspace.F[0]
 }
 
-/// 𝒢ᶜ of every slot; of a fixed base without its own.
+/// 𝒢ᶜ of every slot, of a fixed base without its own; the base's is of all that moves.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
-fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
+pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
     model.assert_lengths(theta.len(), []);
     joint_transforms(model, theta, workspace);
     let Workspace { T, G_c, .. } = workspace;
@@ -116,6 +131,7 @@ fn composite_inertias<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &
         let G = G_c[i].congruence(T[i].Ad());
         G_c[link.parent] += G;
     }
+    G_c[0]
 }
 
 /// 𝒢 of the base as far as it moves.
