@@ -74,13 +74,14 @@ class Pinocchio:
             "center_of_mass": [pin.centerOfMass(model, data, q).copy()] if self.base else None,
         }
         if not self.base:
+            # those of a free base are along other directions
             pin.computeRNEADerivatives(model, data, q, v, a)
-            by = [matrix(data.dtau_dq.copy()), matrix(data.dtau_dv.copy()), matrix(symmetric(data.M))]
-            result["inverse_dynamics_derivatives"] = by
+            inverse = [matrix(data.dtau_dq.copy()), matrix(data.dtau_dv.copy()), matrix(symmetric(data.M))]
             pin.computeABADerivatives(model, data, q, v, tau)
-            inverse = matrix(symmetric(data.Minv))
-            by = [data.ddq[order], matrix(data.ddq_dq.copy()), matrix(data.ddq_dv.copy()), inverse]
-            result["forward_dynamics_derivatives"] = by
+            by = [data.ddq_dq.copy(), data.ddq_dv.copy(), symmetric(data.Minv)]
+            forward = [data.ddq[order], *map(matrix, by)]
+            for of, derivatives in [("inverse", inverse), ("forward", forward)]:
+                result[f"{of}_dynamics_derivatives"] = derivatives
         pin.forwardKinematics(model, data, q, v)
         pin.updateFramePlacements(model, data)
         result["forward_kinematics"] = [data.oMf[self.frame].homogeneous]
