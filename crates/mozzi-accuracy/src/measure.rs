@@ -58,6 +58,11 @@ fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[W
         let computer = |way| Some((way, Computer::new(robot, query, way)?));
         (neighbours.memory(), ways.iter().copied().filter_map(computer).collect::<Vec<(Way, Computer)>>())
     };
+    // a state at which mozzi answers with an error has no number to be judged
+    let own = robot.model.environment();
+    let is_regular = |state: usize| {
+        !declaration.divides || robot.model.compute(query, &states.inputs(&query, state, 1), &own).is_ok()
+    };
     let chunk = |(memory, computers): &mut (_, Vec<(Way, Computer)>), &first: &usize| {
         let count = count.min(states.len() - first);
         let references: Vec<Reference> = (first..first + count)
@@ -65,7 +70,7 @@ fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[W
             .collect();
         let errors = |(way, computer): &mut (Way, Computer)| {
             let (found, mut errors) = (computer.compute(states, first, count), Errors::default());
-            for (k, reference) in references.iter().enumerate() {
+            for (k, reference) in references.iter().enumerate().filter(|&(k, _)| is_regular(first + k)) {
                 let of_state = |x: &Vec<f64>| x[k * (x.len() / count)..][..x.len() / count].to_vec();
                 errors.add(reference, &found.iter().map(of_state).collect::<Vec<_>>(), way.epsilon());
             }
