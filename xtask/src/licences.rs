@@ -20,8 +20,14 @@ const ALLOWED: [&str; 10] = [
     "CC0-1.0",
 ];
 
-/// Packages that name a file instead of an expression: what that file is.
-const READ: [(&str, &str); 1] = [("f256", "BSD-3-Clause")];
+/// Packages that name a file instead of an expression, in the versions whose file was read: what it is.
+const READ: [(&str, &str); 5] = [
+    ("f256 0.11.3", "BSD-3-Clause"),
+    ("f256_pow10_div_pow2_lut 0.11.3", "BSD-3-Clause"),
+    ("f256_pow2_div_pow10_lut 0.11.3", "BSD-3-Clause"),
+    ("f256_pow2_div_pow5_lut 0.11.3", "BSD-3-Clause"),
+    ("f256_pow5_div_pow2_lut 0.11.3", "BSD-3-Clause"),
+];
 
 pub fn check(workspace: &Workspace) -> Outcome {
     let dependencies = match metadata::dependencies(workspace) {
