@@ -59,7 +59,8 @@ fn table(text: &mut String, head: &[String], rows: impl Iterator<Item = Vec<Stri
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     text.push_str(&line(head));
     text.push_str(&line(&head.iter().map(|_| "---".to_string()).collect::<Vec<_>>()));
-    rows.for_each(|row| text.push_str(&line(&row)));
+    let is_measured = |row: &Vec<String>| row[1..].iter().any(|cell| cell != "–");
+    rows.filter(is_measured).for_each(|row| text.push_str(&line(&row)));
     text.push('\n');
 }
 
