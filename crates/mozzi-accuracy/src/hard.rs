@@ -64,7 +64,7 @@ fn hand() -> String {
     text.end()
 }
 
-/// Their names, with how many states each is measured at where more are asked for.
+/// Their names, and the most states that each is measured at.
 pub const NAMES: [(&str, usize); 10] = [
     ("masses from 1e-6 to 1e6 kg", usize::MAX),
     ("a hand on an arm", usize::MAX),

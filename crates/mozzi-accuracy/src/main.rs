@@ -21,7 +21,7 @@ struct Options {
     /// Names of embedded robots and paths of URDF files, `:floating` behind a free base; by default the embedded ones.
     #[arg(long, value_delimiter = ',')]
     robots: Vec<String>,
-    /// Every URDF file below a folder as well; what cannot be measured is told.
+    /// Also measures every URDF file below this folder; the page lists the files that are refused.
     #[arg(long)]
     published: Option<PathBuf>,
     /// Without the cases that are hard by design.
@@ -118,9 +118,8 @@ fn measured(
     let references = if robot.model.moving_links() > LARGEST_SECOND { 0 } else { options.references.min(count) };
     let of = |&quantity: &usize| Some((quantity, digits::of(robot, &states, references, quantity)?));
     let digits = if references > 0 { quantities.iter().filter_map(of).collect() } else { Vec::new() };
-    let asked = count.min(ASKED);
     let peers = match &options.python {
-        Some(python) if robot.model.n() <= LARGEST_ASKED => peers::ask(python, robot, &states, asked, options.seed),
+        Some(python) if robot.model.n() <= LARGEST_ASKED => peers::ask(python, robot, &states, ASKED, options.seed),
         _ => Vec::new(),
     };
     Ok(Measured {
@@ -128,7 +127,6 @@ fn measured(
         n: robot.model.n(),
         is_hard,
         states: count,
-        asked,
         rows,
         peers,
         references: (references, digits),

@@ -19,8 +19,6 @@ pub struct Measured {
     pub is_hard: bool,
     /// How many states.
     pub states: usize,
-    /// How many of them other libraries were asked for.
-    pub asked: usize,
     /// mozzi's errors.
     pub rows: Vec<Row>,
     /// Other libraries'.

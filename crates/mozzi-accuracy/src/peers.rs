@@ -56,16 +56,11 @@ fn rows(
         return Err(why.into());
     }
     // of the same file without friction, which the libraries do not count among the forces
-    let mut smooth = model.description().clone();
-    let zero = |robot: &mut mozzi::Description<Double>| {
-        for joint in &mut robot.joints {
-            (joint.damping, joint.friction) = (0.0.into(), 0.0.into());
-        }
-    };
-    smooth.end_effector = None;
-    let mut wide = read_urdf::<Double>(&robot.text, &smooth).map_err(|error| error.to_string())?;
-    zero(&mut wide);
-    let wide = wide.build().map_err(|error| error.to_string())?;
+    let mut smooth = read_urdf::<Double>(&robot.text, model.description()).map_err(|error| error.to_string())?;
+    for joint in &mut smooth.joints {
+        (joint.damping, joint.friction) = (0.0.into(), 0.0.into());
+    }
+    let wide = smooth.build().map_err(|error| error.to_string())?;
     let (neighbours, mut rows) = (Neighbours::new(&wide, robot.frame), Vec::new());
     for (quantity, declared) in LIST.iter().enumerate() {
         let Some(found) = answer["quantities"][declared.name].as_array() else { continue };

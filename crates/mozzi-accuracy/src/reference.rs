@@ -23,7 +23,7 @@ pub const PUSH: [f64; 6] = [0.5, -1.0, 2.0, 10.0, -4.0, 8.0];
 /// 0, in 31 digits.
 const NOTHING: f64 = 1e-26;
 
-/// The environment in which a quantity is measured: the robot's own, and a push where nothing else is asked for.
+/// The wrenches that a quantity is measured with: a push for a quantity of wrenches alone, none for the others.
 pub fn applied<S: Scalar>(query: &Query, frame: FrameId) -> Vec<(FrameId, Wrench<S>)> {
     let push = (frame, Wrench::from_array(PUSH.map(S::from_f64)));
     is_of_wrenches(query).then_some(push).into_iter().collect()
