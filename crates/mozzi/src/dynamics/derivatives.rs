@@ -1,10 +1,10 @@
 //! The two passes behind ∂τ and ∂θ̈, analytic (Carpentier and Mansard 2018; Singh, Russell and Wensing 2022).
 //!
-//! All twists and wrenches are in the **axes of the base link, about each link's own origin**. So Ad maps are shifts from origin to origin, and what
-//! is left of a joint that turns or slides is its bracket. (About one origin for all, shifts would drop out, and with them the digits of small links far
-//! from it: a wrist's I + mp² cancels, and ∂θ̈ divides by what is left. Measured by `cargo xtask accuracy`: up to 5·10⁵ units of one origin, 350 of these.)
+//! All twists and wrenches are in each link's **own frame**, whose z is the joint's axis. One frame for all would save the transport of wrenches, and
+//! lose digits: the moment of inertia of a slender link about its own joint becomes a difference of large numbers, and ∂θ̈ divides by it. (Measured by
+//! `cargo xtask accuracy` on Tiago: 5·10⁵ units about one origin, 350 in one frame's axes about each link's own origin, 12 in link frames.)
 //!
-//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p. So its rates are, θ̇ and θ̈ being per unit,
+//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p, both seen from the link. So its rates are, θ̇ and θ̈ being per unit,
 //!
 //! > Ȧ = `[ad_𝒱_p]` A, Ä = `[ad_𝒱̇_p]` A + `[ad_𝒱_p]` Ȧ, and 𝒱 = 𝒱_p + A θ̇, 𝒱̇ = 𝒱̇_p + Ȧ θ̇ + A θ̈
 //!
@@ -19,7 +19,7 @@
 //! > ∂𝒱 = 0, ∂𝒱̇ = A, ∂𝓕 = 𝒢 A, by θ̈
 //!
 //! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia and H(P)A = −`[ad_A]`ᵀP, skew. Half of 𝓑 cancels: it is
-//! `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. The axes do not depend on the link, so 𝒢, K, f and 𝓕 add up over all that
+//! `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. Seen from one frame, 𝒢, K, f and 𝓕 add up over all that
 //! hangs from the joint: 28 numbers, no 6 × 6 matrix. A wrench that is applied to a link is constant in its coordinates and adds to
 //! 𝓕 alone.
 //!
@@ -31,7 +31,6 @@
 //! > ∂τ_i/∂θ̇_j = A_iᵀ (2 𝒢ᶜ Ȧ_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
 
 use crate::kinematics::{base_motion, base_pose};
-use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
@@ -55,7 +54,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     inward_pass(model, theta, environment, workspace, true, [Some(d_theta), d_dtheta, M]);
 }
 
-/// Axes with their rates, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
+/// The rates of the axes, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
 pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
@@ -71,31 +70,27 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
     let G = model.base_inertia.map(S::from);
     let P = G * V[0];
-    T[0] = SE3::identity();
     (G_c[0], B[0]) = (G, CoriolisFactor::new(G, V[0], P));
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
 
-    // base to tips: axes with their rates, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
+    // base to tips: rates of the axes, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
     for (i, link) in model.outward::<S>() {
-        let (p, j, R) = (link.parent, link.j, T[i].R * T[link.parent].R);    // R_i0
-        let e = R.inverse_mul(T[i].p);                                       // the parent's origin, seen from the link's
-        T[i] = SE3 { R, p: e };
-        let (V_p, dV_p) = (V[p].at(-e), dV[p].at(-e));
-        let A   = link.A().along(R.matrix().z) * link.ratio();
-        let dA  = V_p.ad() * A;
-        let ddA = dV_p.ad().mul_add(A, V_p.ad() * dA);
-        let V_i  = A.mul_add(dtheta[j], V_p);
-        let dV_i = A.mul_add(ddtheta[j], dA.mul_add(dtheta[j], dV_p));
-        (V[i], dV[i], axes[i]) = (V_i, dV_i, [A, dA, ddA]);
-        let G = link.G().turned(R.matrix());
+        let (p, j, Ad) = (link.parent, link.j, T[i].Ad());
+        let (V_p, dV_p) = (Ad * V[p], Ad * dV[p]);
+        let A    = link.unit();
+        let dA   = (V_p.ad() * A).twist();
+        let ddA  = V_p.ad() * dA + dV_p.ad() * A;
+        let V_i  = V_p + link.A() * link.rate(dtheta);
+        let dV_i = dA.mul_add(dtheta[j], dV_p) + link.A() * link.rate(ddtheta);
+        (V[i], dV[i], axes[i]) = (V_i, dV_i, [dA, ddA]);
+        let G = link.G();
         let P = G * V_i;
         (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V_i, P));
         F[i]  = G * dV_i - V_i.ad().transpose() * P;
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
-        let turned = SE3 { p: Vec3::zero(), ..T[frame.slot] };
-        F[frame.slot] += (frame.T.inverse() * turned).Ad().transpose() * F_b;
+        F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
     }
 }
 
@@ -110,16 +105,16 @@ pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
         _ => Twist::zero(),
     };
     for (i, link) in model.outward::<S>() {
-        let ([A, _, ddA], dV_p, ddq) = (&mut axes[i], dV[link.parent].at(-T[i].p), ddtheta[link.j]);
-        *ddA += dV_p.ad() * *A;
-        dV[i] = dV_p + *A * ddq;
-        U[i]  = U[i] * ddq;
+        let ([_, ddA], dV_p) = (&mut axes[i], T[i].Ad() * dV[link.parent]);
+        *ddA = *ddA + dV_p.ad() * link.unit();
+        dV[i] = dV_p + link.A() * link.rate(ddtheta);
+        U[i]  = U[i] * ddtheta[link.j];
     }
     U[0] = Wrench::zero();
     for (i, link) in model.inward::<S>() {
-        let (p, e, U_i) = (link.parent, T[i].p, U[i]);
-        F[i] += G_c[i] * dV[p].at(-e) + U_i;
-        U[p] += U_i.about(e);
+        let (p, Ad, U_i) = (link.parent, T[i].Ad(), U[i]);
+        F[i] += G_c[i] * (Ad * dV[p]) + U_i;
+        U[p] = Ad.transpose().mul_add(U_i, U[p]);
     }
     F[0] += G_c[0] * dV[0] + U[0];
 }
@@ -154,44 +149,46 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
     let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
 
     for (i, link) in model.inward::<S>() {
-        let (j, [A, dA, ddA], G_i, B_i) = (link.j, axes[i], G_c[i], B[i]);
+        let (j, A, [dA, ddA], G_i, B_i) = (link.j, link.unit(), axes[i], G_c[i], B[i]);
         let (mut GA, GdA) = (G_i * A, G_i * dA);
         let U_i = GA;
-        let mut column  = G_i * ddA + B_i * dA - A.ad().transpose() * F[i];  // ∂𝓕 by θ_j, felt below joint i
+        let mut column  = G_i * ddA + B_i * dA - A.ad_transpose(F[i]);     // ∂𝓕 by θ_j, felt below joint i
         let mut dcolumn = GdA + GdA + B_i * A;                               // by θ̇_j
-        let BtA     = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
+        let mut BtA = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
         if let Some(d_theta) = &mut d_theta {
-            d_theta[j * n + j] += A.dot(column);
+            d_theta[j * n + j] += A * column;
         }
         if let Some(d_dtheta) = &mut d_dtheta {
-            d_dtheta[j * n + j] += A.dot(dcolumn);
+            d_dtheta[j * n + j] += A * dcolumn;
         }
         if let Some(M) = &mut M {
-            M[j * n + j] += A.dot(GA);
+            M[j * n + j] += A * GA;
         }
-        let (mut k, mut e) = (link.parent, T[i].p);
-        while k > 0 {
-            (column, dcolumn, GA) = (column.about(e), dcolumn.about(e), GA.about(e));
-            let (below, [A, dA, ddA]) = (&model.links[k - 1], axes[k]);
+        let mut above = i;
+        for (k, below) in model.to_base::<S>(link.parent) {
+            let Ad = T[above].Ad().transpose();
+            (column, dcolumn, GA, BtA) = (Ad * column, Ad * dcolumn, Ad * GA, T[above].R.inverse_mul(BtA));
+            above = k;
+            let (A, [dA, ddA]) = (below.unit(), axes[k]);
             let (ij, ji) = (below.j * n + j, j * n + below.j);
             if let Some(d_theta) = &mut d_theta {
-                d_theta[ij] += A.dot(column);
+                d_theta[ij] += A * column;
                 d_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
             }
             if let Some(d_dtheta) = &mut d_dtheta {
                 let dAGA = dA.dot(GA);
-                d_dtheta[ij] += A.dot(dcolumn);
-                d_dtheta[ji] += dAGA + dAGA + A.w.dot(BtA);
+                d_dtheta[ij] += A * dcolumn;
+                d_dtheta[ji] += dAGA + dAGA + A.a * BtA.0[2];
             }
             if let Some(M) = &mut M {
-                let entry = A.dot(GA);
+                let entry = A * GA;
                 M[ij] += entry;
                 M[ji] += entry;
             }
-            (k, e) = (below.parent, T[k].p);
         }
         if model.is_floating() {
-            (column, dcolumn, GA) = (column.about(e), dcolumn.about(e), GA.about(e));
+            let Ad = T[above].Ad().transpose();
+            (column, dcolumn, GA, BtA) = (Ad * column, Ad * dcolumn, Ad * GA, T[above].R.inverse_mul(BtA));
             let BtA = Wrench { m: BtA, f: Vec3::zero() };
             let (s_t, ds_t) = (V_s.ad().transpose(), dV_s.ad().transpose());
             let row  = ds_t * GA + s_t * (s_t * GA + BtA);                   // (𝒢A)ᵀÄ_e + (𝓑ᵀA)ᵀȦ_e for each e
@@ -210,10 +207,10 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
             U[i] = U_i;
         }
         if carried && (link.parent > 0 || model.is_floating()) {
-            let (p, e, F_i) = (link.parent, T[i].p, F[i]);
-            G_c[p] += G_i.about(e);
-            B[p]   += B_i.about(e);
-            F[p]   += F_i.about(e);
+            let (p, Ad, F_i) = (link.parent, T[i].Ad(), F[i]);
+            G_c[p] = G_i.congruence_add(Ad, G_c[p]);
+            B[p]  += B_i.congruence(Ad);
+            F[p]   = Ad.transpose().mul_add(F_i, F[p]);
         }
     }
 
@@ -238,13 +235,13 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
 /// What joints and a floating base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
-    let Workspace { F, axes, .. } = workspace;
+    let Workspace { F, .. } = workspace;
     tau.fill(S::zero());
     if model.is_floating() {
         tau[..6].copy_from_slice(&F[0].to_array());
     }
     for (i, link) in model.outward::<S>() {
-        tau[link.j] += axes[i][0].dot(F[i]);
+        tau[link.j] += link.ratio() * (link.A() * F[i]);
     }
 }
 

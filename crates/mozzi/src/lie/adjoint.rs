@@ -57,15 +57,6 @@ impl<S: Scalar> LieBracket<S> {
     }
 }
 
-impl<S: Scalar> LieBracket<S> {
-    /// `[ad_V]` W + `to`.
-    #[inline(always)]
-    pub(crate) fn mul_add(self, W: Twist<S>, to: Twist<S>) -> Twist<S> {
-        let Twist { w, v } = self.0;
-        Twist { w: w.cross_add(W.w, to.w), v: v.cross_add(W.w, w.cross_add(W.v, to.v)) }
-    }
-}
-
 /// The matrix of a linear map, from its columns.
 fn columns<S: Scalar>(map: impl Fn(Twist<S>) -> Twist<S>) -> [[S; 6]; 6] {
     let mut rows = [[S::zero(); 6]; 6];

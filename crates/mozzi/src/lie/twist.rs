@@ -65,12 +65,6 @@ impl<S: Scalar> Twist<S> {
         self.w.dot_add(F.m, self.v.dot(F.f))
     }
 
-    /// The same twist in a frame with the same axes and its origin at the point p: (ω, v + ω × p).
-    #[inline(always)]
-    pub(crate) fn at(self, p: Vec3<S>) -> Self {
-        Twist { w: self.w, v: self.w.cross_add(p, self.v) }
-    }
-
     /// k V + W.
     #[inline(always)]
     pub(crate) fn mul_add(self, k: S, W: Self) -> Self {

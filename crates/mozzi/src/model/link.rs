@@ -71,6 +71,13 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         JointAxis { a: S::from(self.link.A.a), b: S::from(self.link.A.b) }
     }
 
+    /// A for one unit of the source joint's rate.
+    #[inline(always)]
+    pub fn unit(&self) -> JointAxis<S> {
+        let (A, ratio) = (self.A(), self.ratio());
+        JointAxis { a: A.a * ratio, b: A.b * ratio }
+    }
+
     /// 𝒢.
     #[inline(always)]
     pub fn G(&self) -> SpatialInertia<S> {

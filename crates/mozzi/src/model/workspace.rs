@@ -19,8 +19,8 @@ pub struct Workspace<S = f64> {
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
     pub(crate) F: Vec<Wrench<S>>,
-    /// A, Ȧ and Ä of each joint's axis, as the parent carries it.
-    pub(crate) axes: Vec<[Twist<S>; 3]>,
+    /// Ȧ and Ä of each joint's axis, as the parent carries it.
+    pub(crate) axes: Vec<[Twist<S>; 2]>,
     /// Composite inertia 𝒢ᶜ.
     pub(crate) G_c: Vec<SpatialInertia<S>>,
     /// Its rate.
@@ -52,7 +52,7 @@ impl<S: Scalar> Workspace<S> {
             V: vec![Twist::zero(); slots.max(n)],
             dV: vec![Twist::zero(); slots],
             F: vec![Wrench::zero(); slots],
-            axes: vec![[Twist::zero(); 3]; slots],
+            axes: vec![[Twist::zero(); 2]; slots],
             G_c: vec![SpatialInertia::zero(); slots],
             dG_c: vec![SpatialInertia::zero(); slots],
             B: vec![CoriolisFactor { K: Mat3::zero(), f: Vec3::zero() }; slots],
@@ -82,7 +82,7 @@ impl<S: Scalar> Workspace<S> {
         self.dV.fill(V);
         self.F.fill(F);
         self.U.fill(F);
-        self.axes.fill([V; 3]);
+        self.axes.fill([V; 2]);
         self.G_c.fill(G);
         self.dG_c.fill(G);
         self.B.fill(CoriolisFactor { K: Mat3::zero().map(|_: S| nan), f: V.v });

@@ -1,6 +1,7 @@
 //! What a body's velocity adds to the change of its wrench.
 
-use super::{SpatialInertia, Twist, Wrench};
+use super::{JointAxis, SpatialInertia, Twist, Wrench};
+use crate::lie::Adjoint;
 use crate::linalg::{Mat3, Skew, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::ops::Mul;
@@ -29,10 +30,18 @@ impl<S: Scalar> CoriolisFactor<S> {
         CoriolisFactor { K: self.K + Skew(p) * Skew(self.f + self.f), f: self.f }
     }
 
+    /// `[Ad_T]`ᵀ 𝓑 `[Ad_T]`.
+    #[inline(always)]
+    pub fn congruence(self, Ad: Adjoint<S>) -> Self {
+        let (R, about) = (Ad.0.R.matrix(), self.about(Ad.0.p));
+        CoriolisFactor { K: R.transpose() * about.K * R, f: R.transpose_mul(self.f) }
+    }
+
     /// 𝓑ᵀA, which has no force: Kᵀω + 2 f × v.
     #[inline(always)]
-    pub fn transpose_mul(self, A: Twist<S>) -> Vec3<S> {
-        (self.f + self.f).cross_add(A.v, self.K.transpose_mul(A.w))
+    pub fn transpose_mul(self, A: JointAxis<S>) -> Vec3<S> {
+        let ([x, y, z], [fx, fy, _], b) = (self.K.z.0, self.f.0, A.b + A.b);
+        Vec3([A.a.mul_add(x, b * fy), A.a.mul_add(y, -(b * fx)), A.a * z])
     }
 }
 
@@ -45,9 +54,19 @@ impl<S: Scalar> Mul<Twist<S>> for CoriolisFactor<S> {
     }
 }
 
+impl<S: Scalar> Mul<JointAxis<S>> for CoriolisFactor<S> {
+    type Output = Wrench<S>;
+    #[inline(always)]
+    fn mul(self, A: JointAxis<S>) -> Wrench<S> {
+        let ([_, _, x], [_, _, y], [_, _, z], [fx, fy, _], a) = (self.K.x.0, self.K.y.0, self.K.z.0, self.f.0, A.a + A.a);
+        Wrench { m: Vec3([x, y, z]) * A.a, f: Vec3([-(a * fy), a * fx, S::zero()]) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lie::SE3;
     use crate::testing::{inertia, twist};
 
     #[test]
@@ -57,11 +76,16 @@ mod tests {
         let B = CoriolisFactor::new(G, V, P);
         let defined = |A: Twist| -(G * (V.ad() * A)) - V.ad().transpose() * (G * A) - A.ad().transpose() * P;
         assert!((B * A - defined(A)).norm() < 1e-13);
-        assert!((B.transpose_mul(A).dot(X.w) - A.dot(defined(X))).abs() < 1e-13);
+        let A = JointAxis { a: 0.7, b: -0.3 };
+        assert!((B * A - B * A.twist()).norm() < 1e-15);
+        assert!((B.transpose_mul(A).dot(X.w) - A.twist().dot(defined(X))).abs() < 1e-13);
         // about another point: of the body's inertia and twist there
         let p = Vec3([0.3, -0.2, 0.5]);
-        let (G, V) = (G.about(p), V.at(p));
+        let (G, V) = (G.about(p), SE3 { p: -p, ..SE3::identity() }.Ad() * V);
         let there = CoriolisFactor::new(G, V, G * V);
         assert!((B.about(p) * X - there * X).norm() < 1e-13);
+        // and in other axes: `[Ad_T]`ᵀ𝓑`[Ad_T]`
+        let T = SE3::exp(twist(4));
+        assert!((B.congruence(T.Ad()) * X - T.Ad().transpose() * (B * (T.Ad() * X))).norm() < 1e-13);
     }
 }

@@ -69,12 +69,6 @@ impl<S: Scalar> SpatialInertia<S> {
         SpatialInertia { mass: self.mass, mc, I: self.I + Sym3::upper(steiner) }
     }
 
-    /// The same body's inertia in the axes of a frame {a} at the same origin, with R = `R_ba`.
-    #[inline(always)]
-    pub(crate) fn turned(self, R: Mat3<S>) -> Self {
-        SpatialInertia { mass: self.mass, mc: R.transpose_mul(self.mc), I: self.I.congruence(R.transpose()) }
-    }
-
     /// The same body's inertia seen from another frame {a}: with this one in {b}, T = `T_ab`.
     pub fn transformed(self, T_ab: SE3<S>) -> Self {
         self.congruence(T_ab.inverse().Ad())

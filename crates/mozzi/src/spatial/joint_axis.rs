@@ -37,10 +37,11 @@ impl<S: Scalar> JointAxis<S> {
         }
     }
 
-    /// This axis about the frame's own origin, its direction z in other axes.
+    /// `[ad_A]`ᵀF.
     #[inline(always)]
-    pub fn along(self, z: Vec3<S>) -> Twist<S> {
-        Twist { w: z * self.a, v: z * self.b }
+    pub fn ad_transpose(self, F: Wrench<S>) -> Wrench<S> {
+        let ([mx, my, _], [fx, fy, _], o, JointAxis { a, b }) = (F.m.0, F.f.0, S::zero(), self);
+        Wrench { m: Vec3([my.mul_add(a, fy * b), -mx.mul_add(a, fx * b), o]), f: Vec3([fy * a, -(fx * a), o]) }
     }
 
     #[inline(always)]
@@ -101,6 +102,14 @@ impl<S: Scalar> Mul<JointTwist<S>> for LieBracket<S> {
     }
 }
 
+impl<S: Scalar> Mul<JointAxis<S>> for LieBracket<S> {
+    type Output = VelocityProduct<S>;
+    #[inline(always)]
+    fn mul(self, A: JointAxis<S>) -> VelocityProduct<S> {
+        VelocityProduct { V: self.0, A: JointTwist { w: A.a, v: A.b } }
+    }
+}
+
 impl<S: Scalar> Add<VelocityProduct<S>> for Twist<S> {
     type Output = Twist<S>;
     #[inline(always)]
@@ -121,14 +130,14 @@ mod tests {
 
     #[test]
     fn the_short_forms_equal_the_general_ones() {
-        let (V, M, q) = (twist(1), SE3::exp(twist(2)), 0.7);
+        let (V, M, q, F) = (twist(1), SE3::exp(twist(2)), 0.7, Wrench::from_array(twist(3).to_array()));
         for (a, b) in [(1.0, 0.0), (0.0, 1.0), (1.0, 0.3)] {
             let A = JointAxis { a, b };
             assert!(distance(A.transform(A.sin_cos(q), q, M), SE3::exp(A.twist() * -q) * M) < 1e-15);
             assert!(((V.ad() * (A * q)).twist() - V.ad() * (A.twist() * q)).norm() < 1e-15);
             assert!((V + A * q - (V + A.twist() * q)).norm() == 0.0);
-            let turned = SE3 { p: Vec3::zero(), ..M };
-            assert!((A.along(M.R.matrix().z) - turned.inverse().Ad() * A.twist()).norm() < 1e-15);
+            assert!(((V.ad() * A).twist() - V.ad() * A.twist()).norm() < 1e-15);
+            assert!((A.ad_transpose(F) - A.twist().ad().transpose() * F).norm() < 1e-15);
         }
     }
 }
