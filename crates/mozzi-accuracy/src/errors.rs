@@ -17,6 +17,8 @@ pub struct Errors {
     whole: Vec<f32>,
     /// Of each state: the largest error of an entry over the entry's own unit; entries that are 0 do not count.
     entries: Vec<f32>,
+    /// Of each state, where the formula's terms are known: the largest error of an output over ε times the output's largest term.
+    terms: Vec<f32>,
 }
 
 /// The largest, the one that 99.9 % of the states stay below, and the median.
@@ -33,8 +35,8 @@ pub struct Summary {
 impl Errors {
     /// Adds what was found at a state; `epsilon` is the number's own, over 2⁻⁵².
     pub fn add(&mut self, reference: &Reference, found: &[Vec<f64>], epsilon: f64) {
-        let (mut whole, mut entries) = (0.0_f64, 0.0_f64);
-        for ((values, units), found) in reference.values.iter().zip(&reference.units).zip(found) {
+        let (mut whole, mut entries, mut terms) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (output, ((values, units), found)) in reference.values.iter().zip(&reference.units).zip(found).enumerate() {
             let unit = units.iter().fold(0.0_f64, |m, x| m.max(*x));
             let mut worst = 0.0_f64;
             let size = values.iter().fold(0.0_f64, |m, &x| m.max(f64::from(x).abs()));
@@ -47,20 +49,30 @@ impl Errors {
                 }
             }
             whole = whole.max(over(worst, unit * epsilon));
+            if let Some(size) = &reference.terms {
+                terms = terms.max(over(worst, size[output] * f64::EPSILON * epsilon));
+            }
         }
         self.whole.push(whole as f32);
         self.entries.push(entries as f32);
+        self.terms.extend(reference.terms.is_some().then_some(terms as f32));
     }
 
     /// Both together.
     pub fn join(&mut self, other: Errors) {
         self.whole.extend(other.whole);
         self.entries.extend(other.entries);
+        self.terms.extend(other.terms);
     }
 
     /// Of whole outputs.
     pub fn whole(&self) -> Summary {
         Summary::of(&self.whole)
+    }
+
+    /// Of whole outputs, in ε times the largest term of the formula.
+    pub fn terms(&self) -> Option<Summary> {
+        (!self.terms.is_empty()).then(|| Summary::of(&self.terms))
     }
 
     /// Entry by entry.
@@ -97,8 +109,11 @@ mod tests {
     #[test]
     fn errors_are_told_in_units() {
         let number = |x: f64| Double::from_f64(x);
-        let reference =
-            Reference { values: vec![vec![number(1.0), number(0.0)]], units: vec![vec![f64::EPSILON, 0.0]] };
+        let reference = Reference {
+            values: vec![vec![number(1.0), number(0.0)]],
+            units: vec![vec![f64::EPSILON, 0.0]],
+            terms: None,
+        };
         let mut errors = Errors::default();
         errors.add(&reference, &[vec![1.0, 0.0]], 1.0);
         errors.add(&reference, &[vec![1.0 + 4.0 * f64::EPSILON, 0.0]], 1.0);

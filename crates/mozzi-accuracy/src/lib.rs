@@ -15,6 +15,7 @@ pub mod peers;
 pub mod reference;
 pub mod robot;
 pub mod states;
+pub mod terms;
 pub mod ways;
 
 /// Random changes of the constants from which a unit is found.

@@ -4,6 +4,7 @@ use crate::errors::Errors;
 use crate::reference::{Neighbours, Reference};
 use crate::robot::Robot;
 use crate::states::States;
+use crate::terms;
 use crate::ways::{Computer, Way};
 use mozzi::quantities::LIST;
 use rayon::prelude::*;
@@ -66,7 +67,13 @@ fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[W
     let chunk = |(memory, computers): &mut (_, Vec<(Way, Computer)>), &first: &usize| {
         let count = count.min(states.len() - first);
         let references: Vec<Reference> = (first..first + count)
-            .map(|state| neighbours.at(&query, &states.inputs(&query, state, 1), seed ^ state as u64, memory))
+            .map(|state| {
+                let inputs = states.inputs(&query, state, 1);
+                let reference = neighbours.at(&query, &inputs, seed ^ state as u64, memory);
+                let rounded: Vec<Vec<f64>> =
+                    reference.values.iter().map(|x| x.iter().map(|&x| x.into()).collect()).collect();
+                Reference { terms: terms::of(robot, &query, &inputs, &rounded), ..reference }
+            })
             .collect();
         let errors = |(way, computer): &mut (Way, Computer)| {
             let (found, mut errors) = (computer.compute(states, first, count), Errors::default());

@@ -42,6 +42,7 @@ fn short(x: f64) -> String {
     match x {
         x if x.is_infinite() => "∞".into(),
         0.0 => "0".into(),
+        x if x < 0.005 => format!("{x:.0e}"),
         x if x < 0.1 => format!("{x:.2}"),
         x if x < 10.0 => format!("{x:.1}"),
         x if x < 1000.0 => format!("{x:.0}"),
@@ -161,30 +162,38 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
 fn above(text: &mut String, all: &[Measured]) {
     writeln!(text, "## Above {LIMIT} units\n").expect("a text grows");
     text.push_str(
-        "What is above rounding divides by the mass matrix M, and there are two reasons.\n\n\
-         - **M is rounded entry by entry.** M⁻¹, Λ, η and the forward dynamics that solve with M see M's entries rounded one by one; the robot's constants \
-         cannot change M like that. Where a light link hangs behind heavy ones, or three axes meet in a point, the inverse shows it. \
-         `forward_dynamics`, the articulated-body algorithm, never forms M, and keeps the digits: prefer it.\n\
-         - **∂θ̈ turns inertias into the base link's axes.** There the small moment of a slender link about its own joint (4·10⁻⁶ kg m² of Tiago's \
-         wrist) is a difference of large ones (10⁻³), and M⁻¹ divides by it. The axes of each link would keep the digits and cost time; that has not been tried.\n\n\
+        "What is above rounding on a published robot divides by the mass matrix M, but for Ṁ. **M is rounded entry by entry**: M⁻¹, Λ, η, ∂θ̈ and the forward dynamics \
+         that solve with M see M's entries rounded one by one; the robot's constants cannot change M like that. Where a light link hangs \
+         behind heavy ones, or three axes meet in a point, the inverse shows it. `forward_dynamics`, the articulated-body algorithm, never \
+         forms M, and keeps the digits: prefer it.\n\n\
+         Ṁ = C + Cᵀ loses what the first joints' motion adds to C and cancels in the sum; where the outer joints hardly move, it is all.\n\n\
+         In brackets the same error in ε times the largest term of the formula, which counts both: |M⁻¹| |M| |X| of X = M⁻¹B, likewise of Λ and η; \
+         |C| + |C|ᵀ of Ṁ.\n\n\
          The worst way of each quantity, in units:\n\n",
     );
     let mut lines: Vec<String> = Vec::new();
     for robot in all {
-        let mut worst: std::collections::BTreeMap<usize, f64> = std::collections::BTreeMap::new();
+        let mut worst: std::collections::BTreeMap<usize, (f64, Option<f64>)> = std::collections::BTreeMap::new();
         for row in robot.above() {
-            let most = worst.entry(row.quantity).or_default();
-            *most = most.max(row.errors.whole().max);
+            let (units, terms) = worst.entry(row.quantity).or_default();
+            *units = units.max(row.errors.whole().max);
+            *terms = row.errors.terms().map(|found| found.max.max(terms.unwrap_or(0.0)));
         }
         if !worst.is_empty() {
             let told: Vec<String> =
-                worst.iter().map(|(&quantity, &most)| format!("{} {}", LIST[quantity].name, short(most))).collect();
+                worst.iter().map(|(&quantity, &(units, terms))| told(LIST[quantity].name, units, terms)).collect();
             lines.push(format!("- {}: {}", robot.name, told.join(", ")));
         }
     }
     let none = || vec!["- none".to_string()];
     text.push_str(&if lines.is_empty() { none() } else { lines }.join("\n"));
     text.push_str("\n\n");
+}
+
+/// A quantity's error in units, and in the formula's terms.
+fn told(name: &str, units: f64, terms: Option<f64>) -> String {
+    let terms = terms.map_or(String::new(), |terms| format!(" ({})", short(terms)));
+    format!("{name} {}{terms}", short(units))
 }
 
 /// mozzi beside the libraries.

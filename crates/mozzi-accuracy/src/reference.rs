@@ -15,6 +15,8 @@ pub struct Reference {
     pub values: Vec<Vec<Double>>,
     /// The unit of an error of each entry, for ε = 2⁻⁵².
     pub units: Vec<Vec<f64>>,
+    /// The largest term of each output's formula, where [`terms`](crate::terms) knows it.
+    pub terms: Option<Vec<f64>>,
 }
 
 /// The push on the frame of those quantities that are of wrenches alone.
@@ -105,7 +107,7 @@ impl Neighbours {
                 units.fill(f64::EPSILON * given);
             }
         }
-        Reference { values, units }
+        Reference { values, units, terms: None }
     }
 }
 

@@ -69,13 +69,18 @@ impl Robot {
         Ok(Robot { name: name.into(), text: text.into(), model, double, octuple, frame, rows, kind })
     }
 
+    /// The task of the quantities that have one.
+    pub fn task(&self) -> Task<'_> {
+        Task { frame: self.frame, coordinates: TaskFrame::Body, rows: &self.rows }
+    }
+
     /// The quantity of this place in the list, of this robot's frame and task.
     pub fn query(&self, index: usize) -> Query<'_> {
         let query = Query::at(index);
         match LIST[index].of {
             Of::Robot => query,
             Of::Frame => query.of(self.frame),
-            Of::Task => query.of_task(Task { frame: self.frame, coordinates: TaskFrame::Body, rows: &self.rows }),
+            Of::Task => query.of_task(self.task()),
             Of::Point => query.about(Vec3([0.25, -0.5, 0.125])),
         }
     }

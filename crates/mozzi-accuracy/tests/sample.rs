@@ -17,6 +17,9 @@ fn every_quantity_is_within_rounding_of_the_reference() {
         for row in rows {
             let worst = row.errors.whole().max;
             assert!(worst < LIMIT, "{name}, {}, {}: {worst} units", LIST[row.quantity].name, row.way);
+            if let Some(terms) = row.errors.terms() {
+                assert!(terms.max < LIMIT, "{name}, {}, {}: {terms:?} of the terms", LIST[row.quantity].name, row.way);
+            }
         }
     }
 }

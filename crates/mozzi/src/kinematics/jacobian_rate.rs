@@ -1,6 +1,6 @@
 //! Rates of the Jacobians along a motion.
 
-use super::jacobian::{body_columns, twist_of};
+use super::{base_pose, base_twist};
 use crate::model::{FrameId, Model, Workspace};
 use crate::quantity::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::Scalar;
@@ -34,10 +34,10 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     }
 }
 
-/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns,
-/// J̇_s = `[Ad_T_sb]` (`[ad_V_b]` `J_b` + J̇_b).
+/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns, J̇_i = `[ad_𝒱]` J_i, 𝒱 the twist
+/// of the link that carries joint i. (By J̇_b and the frame's own twist, the joints between would cancel.)
 ///
-/// Cost O(n), no allocation.
+/// Cost O(depth), no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `dJ` not n.
@@ -50,12 +50,24 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     dJ: &mut [Twist<S>],
 ) {
-    body_jacobian_rate(model, theta, dtheta, frame, dJ);
-    let J = &mut workspace.V[..model.n()];
-    let T_sb = body_columns(model, theta, frame, J);
-    let V_b = twist_of(J, dtheta);
-    for (dJ_i, &J_i) in dJ.iter_mut().zip(&*J) {
-        *dJ_i = T_sb.Ad() * (V_b.ad() * J_i + *dJ_i);
+    model.assert_lengths(theta.len(), [dtheta.len(), dJ.len()]);
+    dJ.fill(Twist::zero());
+    let path = &mut workspace.path;
+    path.clear();
+    path.extend(model.to_base::<S>(model.frame_at::<S>(frame).slot).map(|(i, _)| i));
+    let mut T = base_pose(model, theta); // T_{s,i}
+    let mut V = T.Ad() * base_twist(model, theta, dtheta, Twist::zero());
+    if model.is_floating() {
+        for (column, e) in dJ.iter_mut().zip(Twist::axes()) {
+            *column = V.ad() * (T.Ad() * e);
+        }
+    }
+    for &i in path.iter().rev() {
+        let link = model.link::<S>(i);
+        T = T * link.transform(theta).inverse();
+        let J_i = T.Ad() * link.A().twist();
+        dJ[link.j] += V.ad() * J_i * link.ratio();
+        V += J_i * link.rate(dtheta);
     }
 }
 

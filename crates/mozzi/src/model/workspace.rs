@@ -15,7 +15,8 @@ pub struct Workspace<S = f64> {
     pub(crate) sin_cos: Vec<(S, S)>,
     /// T_{i,i−1}.
     pub(crate) T: Vec<SE3<S>>,
-    /// At least n of them.
+    /// The slots between a frame and the base.
+    pub(crate) path: Vec<usize>,
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
     pub(crate) F: Vec<Wrench<S>>,
@@ -49,7 +50,8 @@ impl<S: Scalar> Workspace<S> {
         Workspace {
             sin_cos: vec![(o, o); slots],
             T: vec![SE3::identity(); slots],
-            V: vec![Twist::zero(); slots.max(n)],
+            path: Vec::with_capacity(slots),
+            V: vec![Twist::zero(); slots],
             dV: vec![Twist::zero(); slots],
             F: vec![Wrench::zero(); slots],
             axes: vec![[Twist::zero(); 2]; slots],

@@ -58,7 +58,8 @@ impl<S: Scalar> Mul<JointAxis<S>> for CoriolisFactor<S> {
     type Output = Wrench<S>;
     #[inline(always)]
     fn mul(self, A: JointAxis<S>) -> Wrench<S> {
-        let ([_, _, x], [_, _, y], [_, _, z], [fx, fy, _], a) = (self.K.x.0, self.K.y.0, self.K.z.0, self.f.0, A.a + A.a);
+        let ([_, _, x], [_, _, y], [_, _, z], [fx, fy, _], a) =
+            (self.K.x.0, self.K.y.0, self.K.z.0, self.f.0, A.a + A.a);
         Wrench { m: Vec3([x, y, z]) * A.a, f: Vec3([-(a * fy), a * fx, S::zero()]) }
     }
 }
