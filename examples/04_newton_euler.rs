@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let F_tip = Wrench::from_array([0.1, -0.2, 0.3, 4.0, 5.0, -6.0]);
 
     // the constants, numbered from 1 as in the book: M[i] is M_{i,i−1}
-    let lists = model.screws();
+    let lists = model.screws()?;
     let (_, M_tip) = lists.end_effector.ok_or("the UR5 ends in its tool")?;
     let (A, G) = (|i: usize| lists.A[i - 1], |i: usize| lists.G[i - 1]);
     let mut M = vec![SE3::identity()];

@@ -1,6 +1,7 @@
 //! States at random, the same on every machine.
 
 use core::f64::consts::{FRAC_PI_2, PI};
+use mozzi::Freedom;
 use mozzi::Model;
 use mozzi::quantities::Query;
 use mozzi::random::Random;
@@ -42,7 +43,14 @@ impl States {
                 let size = if kind == Kind::Far { 1000.0 } else { 1.0 };
                 theta.extend(random.array::<3>().map(|x| x + size));
             }
-            for joint in model.joints() {
+            for (joint, place) in model.joints().zip(model.places()) {
+                if place.freedom != Freedom::One {
+                    let q: [f64; 4] = random.array();
+                    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    theta.extend(q.map(|x| x / length));
+                    theta.extend(random.vector(place.freedom.positions() - 4, 1.0));
+                    continue;
+                }
                 let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
                 let [low, high] = joint.limits.position.unwrap_or([-reach, reach]).map(|x| x.clamp(-reach, reach));
                 let (low, high) = if low < high { (low, high) } else { (-reach, reach) };

@@ -84,8 +84,8 @@ impl<T: Number> Batch<T> {
                         .map(|()| [])
                         .map_err(|error| error.after(first))
                 };
-                let base = alone.model().base();
-                let mut motion: Motion<T> = Motion::start_many(base, robots, 0.0, theta, dtheta, accelerations)?;
+                let space = alone.model().configuration_space();
+                let mut motion: Motion<T> = Motion::start_many(space, robots, 0.0, theta, dtheta, accelerations)?;
                 for k in 1..=steps {
                     motion.step(method, h, k as f64 * h, accelerations)?;
                 }

@@ -12,7 +12,7 @@ pub fn names(model: &Model, group: &str) -> Vec<String> {
     let all: Vec<&str> =
         if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() };
     let name = |(j, name): (usize, &&str)| {
-        if model.is_floating() { format!("{group}_{name}") } else { format!("{group}_{}", j + 1) }
+        if !model.configuration_space().is_flat() { format!("{group}_{name}") } else { format!("{group}_{}", j + 1) }
     };
     all.iter().enumerate().map(name).collect()
 }

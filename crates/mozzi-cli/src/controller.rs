@@ -73,7 +73,7 @@ impl Controller {
                 self.file
             )));
         }
-        // of each joint; a floating base has no motors
+        // of each velocity of a joint; a floating base has no motors
         let base = model.base().velocities();
         let list = |key: &str| Ok::<_, Failure>([vec![0.0; base], self.list(key, model.n() - base)?].concat());
         let gains = |p: &str, d: &str| Ok::<_, Failure>(Gains { p: list(p)?, d: list(d)? });

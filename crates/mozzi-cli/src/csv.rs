@@ -10,6 +10,7 @@ use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, number};
 use crate::progress::Progress;
 use crate::tables::samples::Samples;
+use mozzi::Freedom;
 use mozzi::Model;
 use mozzi::quantities::INPUTS;
 use std::cell::Cell;
@@ -177,18 +178,25 @@ impl Places {
 /// How the columns of a group go on.
 fn entries(model: &Model) -> String {
     let joints: Vec<&str> = model.joint_names().collect();
-    if !model.is_floating() {
+    if model.configuration_space().is_flat() {
         return format!("joints from 1 to {} or by name ({})", joints.len(), joints.join(", "));
     }
-    let list = |names: Vec<&str>| names.join(", ");
-    let (positions, velocities) = (model.base().positions(), model.base().velocities());
+    let one: Vec<&str> = joints
+        .iter()
+        .zip(model.places())
+        .filter(|(_, place)| place.freedom == Freedom::One)
+        .map(|(name, _)| *name)
+        .collect();
+    let several = |names: &mut dyn Iterator<Item = &'_ str>| {
+        names.filter(|name| !one.contains(name)).map(str::to_string).collect::<Vec<_>>().join(", ")
+    };
     format!(
         "entries by number (theta from 1 to {}, the others from 1 to {}) or by name (theta: {}; the others: {}; joints: {})",
         model.nq(),
         model.n(),
-        list(model.position_names().take(positions).collect()),
-        list(model.velocity_names().take(velocities).collect()),
-        joints.join(", ")
+        several(&mut model.position_names()),
+        several(&mut model.velocity_names()),
+        one.join(", ")
     )
 }
 

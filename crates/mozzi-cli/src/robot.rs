@@ -154,8 +154,9 @@ pub fn space_frame(model: &Model) -> &'static str {
 impl Units {
     /// A floating base turns and slides, too.
     pub fn of(model: &Model) -> Self {
+        let is_free = |place: &mozzi::Place| place.freedom == mozzi::Freedom::Free;
         match model.joints().filter(|joint| joint.kind.name() == "prismatic").count() {
-            _ if model.is_floating() => Units::Both,
+            _ if model.configuration_space().places().iter().any(is_free) => Units::Both,
             0 => Units::Turning,
             all if all == model.n() => Units::Sliding,
             _ => Units::Both,

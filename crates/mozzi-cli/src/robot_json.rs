@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::{json, json_file};
 use mozzi::model::description::{FreeJoint, Joint, JointKind, Limits, Mimic, NamedFrame};
-use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia};
+use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia, Vec3};
 use serde_json::{Value, json};
 
 pub fn write(model: &Model) -> String {
@@ -14,8 +14,13 @@ pub fn write(model: &Model) -> String {
             "M": json::pose(joint.origin),
             "A": match joint.kind {
                 JointKind::Screw(A) => json::vector(&A.twist().to_array()),
-                JointKind::Fixed => Value::Null,
+                JointKind::Fixed | JointKind::Ball(_) | JointKind::Free => Value::Null,
             },
+            "ball": match joint.kind {
+                JointKind::Ball(center) => json::vector(&center.0),
+                _ => Value::Null,
+            },
+            "free": joint.kind == JointKind::Free,
             "position": joint.limits.position.map(|limits| json::vector(&limits)),
             "velocity": joint.limits.velocity, "effort": joint.limits.effort,
             "damping": joint.damping, "friction": joint.friction, "armature": joint.armature,
@@ -35,7 +40,7 @@ pub fn write(model: &Model) -> String {
         "frames": robot.frames.iter().map(|frame| json!({
             "name": frame.name, "link": frame.link, "T": json::pose(frame.T),
         })).collect::<Value>(),
-        "lists": json::screws(&model.screws()),
+        "lists": model.screws().ok().map(|lists| json::screws(&lists)), // of joints of one axis
     }))
 }
 
@@ -133,9 +138,22 @@ fn base(at: &At) -> Read<Base> {
     }
 }
 
-fn joint(at: &At) -> Read<Joint> {
+/// By its axis A, its centre `ball`, or `free`; fixed where there is none of them.
+fn kind(at: &At) -> Read<JointKind> {
     let axis =
         |at: &At| ScrewAxis::from_array(at.vector()?).or_else(|why| at.wrong(format_args!("a screw axis: {why}")));
+    let is_free = |at: &At| at.value.as_bool().map_or_else(|| at.wrong("true or false"), Ok);
+    let axis = at.get("A").some(axis)?.map(JointKind::Screw);
+    let ball = at.get("ball").some(At::vector)?.map(|center| JointKind::Ball(Vec3(center)));
+    let free = at.get("free").some(is_free)?.and_then(|is_free| is_free.then_some(JointKind::Free));
+    let mut kinds = [axis, ball, free].into_iter().flatten();
+    match (kinds.next(), kinds.next()) {
+        (kind, None) => Ok(kind.unwrap_or(JointKind::Fixed)),
+        _ => Err(format!("{} has several of A, ball and free, expected one of them", at.place)),
+    }
+}
+
+fn joint(at: &At) -> Read<Joint> {
     let mimic = |at: &At| {
         let (ratio, offset) = (at.get("ratio").number()?, at.get("offset").number()?);
         Ok(Mimic { joint: at.get("joint").text()?, ratio, offset })
@@ -146,7 +164,7 @@ fn joint(at: &At) -> Read<Joint> {
         parent: at.get("parent").text()?,
         child: at.get("child").text()?,
         origin: at.get("M").pose()?,
-        kind: at.get("A").some(axis)?.map_or(JointKind::Fixed, JointKind::Screw),
+        kind: kind(at)?,
         limits: Limits {
             position: at.get("position").some(At::vector)?,
             velocity: at.get("velocity").some(At::number)?,
@@ -165,7 +183,7 @@ fn lists_agree(at: &At, robot: &Description) -> Read<()> {
         return Ok(());
     }
     let model = robot.clone().build().map_err(|error| error.to_string())?;
-    let expected = json::screws(&model.screws());
+    let expected = json::screws(&model.screws().map_err(|error| error.to_string())?);
     for key in ["joints", "links", "parents", "M", "M_relative", "S", "A", "B", "G", "end_effector"] {
         let found = at.get(key);
         if !found.value.is_null() && !alike(found.value, &expected[key]) {

@@ -144,7 +144,7 @@ pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f
 /// One number for each name; of a floating base, `layout` tells what stands before the joints.
 fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str) -> Result<Vec<f64>> {
     if !model.is_floating() {
-        return numbers_for(flag, text, names.into_iter());
+        return numbers_for(flag, text, names.into_iter()); // by name: a ball has several
     }
     let found = numbers(flag, text)?;
     if found.len() == names.len() {

@@ -6,7 +6,7 @@ use crate::question::Question;
 use crate::report_text::Finding;
 use crate::verdict::{Verdict, judge};
 use crate::{BOUND, Error, Result, Source, report_json, report_text, vocabulary};
-use mozzi::Model;
+use mozzi::{Freedom, Model};
 use mozzi_text::Page;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -43,6 +43,13 @@ pub struct Comparison {
 /// # Errors
 /// See [`Error`].
 pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Comparison> {
+    let several = model.joints().zip(model.places()).find(|(_, place)| place.freedom != Freedom::One);
+    if let Some((joint, _)) = several {
+        let found = format!("`{}`, a {} joint", joint.name, joint.kind.name());
+        return Err(
+            mozzi::Error::BadArgument { what: "a joint to compare", found, expected: "joints of one axis" }.into()
+        );
+    }
     let robot = model.description();
     let question = Question::new(source, robot, options.states, options.seed)?;
     let mut peers = vec![Peer::Pinocchio, Peer::MuJoCo];

@@ -68,7 +68,7 @@ impl Constants {
                 .fold(SpatialInertia::zero(), |sum, (link, _)| sum + inertia[link].transformed(home[*link]));
             let axis = match joint.kind {
                 JointKind::Screw(A) => A.transformed(home[&joint.child]).twist().to_array(),
-                JointKind::Fixed => [0.0; 6],
+                _ => [0.0; 6], // fixed; others are not compared
             };
             JointConstants {
                 name: joint.name.clone(),

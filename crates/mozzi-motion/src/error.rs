@@ -1,6 +1,7 @@
 //! What can go wrong with a motion, with the numbers.
 
 use crate::inverse_kinematics::Residual;
+use mozzi::{Freedom, Model};
 
 /// Why a motion could not be found.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -112,4 +113,27 @@ pub(crate) fn check(
     expected: &'static str,
 ) -> Result<(), Error> {
     if fine { Ok(()) } else { Err(mozzi::Error::BadArgument { what, found: found.to_string(), expected }.into()) }
+}
+
+/// Has every velocity a motor? A floating base and a free joint have none.
+pub(crate) fn check_driven(model: &Model, what: &'static str) -> Result<(), Error> {
+    check(!model.is_floating(), what, "on a free base", "a fixed base: no motor moves a free one")?;
+    only(model, what, |freedom| freedom != Freedom::Free, "joints that motors move")
+}
+
+/// Are positions numbers that can be added?
+pub(crate) fn check_flat(model: &Model, what: &'static str) -> Result<(), Error> {
+    check(!model.is_floating(), what, "on a free base", "a fixed base: positions that can be added")?;
+    only(model, what, |freedom| freedom == Freedom::One, "joints of one axis: positions that can be added")
+}
+
+fn only(
+    model: &Model,
+    what: &'static str,
+    fits: impl Fn(Freedom) -> bool,
+    expected: &'static str,
+) -> Result<(), Error> {
+    let other = model.joints().zip(model.places()).find(|(_, place)| !fits(place.freedom));
+    let found = other.map(|(joint, _)| format!("with `{}`, a {} joint", joint.name, joint.kind.name()));
+    check(found.is_none(), what, found.unwrap_or_default(), expected)
 }

@@ -1,7 +1,7 @@
 //! Where each link is and how it moves, straight from the description: exponentials along the joints' own screws, link by link.
 
 use mozzi::model::description::{Joint, JointKind};
-use mozzi::{Base, Description, Model, Real, SE3, Scalar, SpatialInertia, Twist, Vec3, Wrench};
+use mozzi::{Base, Description, Model, Place, Real, SE3, SO3, Scalar, SpatialInertia, Twist, Vec3, Wrench};
 use std::collections::HashMap;
 
 /// A link of the description.
@@ -29,8 +29,7 @@ pub fn source<'r, C: Scalar>(robot: &'r Description<C>, joint: &'r Joint<C>) -> 
 /// The links of a robot, parents before children. Of `model` the order of its joints is taken, all numbers from `robot`.
 pub fn bodies<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> Vec<Body<S>> {
     let n = model.n();
-    let (positions, velocities) = (model.base().positions(), model.base().velocities());
-    let index: HashMap<&str, usize> = model.joint_names().enumerate().map(|(k, name)| (name, k)).collect();
+    let index: HashMap<&str, Place> = model.joint_names().zip(model.places().iter().copied()).collect();
     let is_child = |name: &str| robot.joints.iter().any(|joint| joint.child == name);
     let root = robot.links.iter().find(|link| !is_child(&link.name)).expect("a root");
     let floats = model.base() == Base::Floating;
@@ -48,16 +47,36 @@ pub fn bodies<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) ->
             let (source, ratio, offset) = source(robot, joint);
             let parent = &all[at];
             let (mut inverse, mut moves) = (joint.origin.inverse(), parent.G.is_some());
-            let mut column = None;
-            if let JointKind::Screw(axis) = joint.kind {
-                let (j, A) = (index[source.name.as_str()], axis.twist());
-                let turned = SE3::exp(A * (ratio * theta[positions + j] + offset));
-                inverse = turned.inverse() * inverse;
-                column = Some((velocities + j, A * ratio));
-                moves = true;
+            let mut columns = Vec::new();
+            if let Some(Place { q, j, .. }) = index.get(source.name.as_str()) {
+                let theta = &theta[*q..];
+                let moved = match joint.kind {
+                    JointKind::Fixed => SE3::identity(),
+                    JointKind::Screw(axis) => {
+                        columns.push((*j, axis.twist() * ratio));
+                        SE3::exp(axis.twist() * (ratio * theta[0] + offset))
+                    }
+                    JointKind::Ball(center) => {
+                        let (there, back) =
+                            (SE3 { p: center, ..SE3::identity() }, SE3 { p: -center, ..SE3::identity() });
+                        columns.extend((0..3).map(|k| (*j + k, there.Ad() * Twist::axes()[k])));
+                        there
+                            * SE3 {
+                                R: SO3::from_quaternion(theta[0], Vec3([theta[1], theta[2], theta[3]])),
+                                p: Vec3::zero(),
+                            }
+                            * back
+                    }
+                    JointKind::Free => {
+                        columns.extend((0..6).map(|k| (*j + k, Twist::axes()[k])));
+                        SE3::from_pose(std::array::from_fn(|k| theta[k]))
+                    }
+                };
+                inverse = moved.inverse() * inverse;
+                moves |= joint.kind != JointKind::Fixed;
             }
             let mut J: Vec<Twist<S>> = parent.J.iter().map(|&column| inverse.Ad() * column).collect();
-            if let Some((j, A)) = column {
+            for (j, A) in columns {
                 J[j] += A;
             }
             let inertia = robot.links.iter().find(|link| link.name == joint.child).expect("a link").inertia;

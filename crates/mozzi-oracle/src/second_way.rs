@@ -165,14 +165,15 @@ impl<S: Entry> Given<'_, S> {
         let of = |k| by_kernel(query, &self.model.with_parameters(&unit(p, k)), inputs, environment);
         DMatrix::from_columns(&(0..p).map(|k| vector(&of(k))).collect::<Vec<DVector<S>>>())
     }
-    /// Of each joint: the place of its source joint among the velocities, the joint's ratio, and what `of` says.
+    /// Of each velocity of each joint: the place of its source joint's, the joint's ratio, and what `of` says.
     fn at_joints(&self, of: impl Fn(&Joint<S>) -> [S; 2]) -> Vec<(usize, S, [S; 2])> {
-        let (names, first): (Vec<&str>, usize) = (self.model.joint_names().collect(), self.model.base().velocities());
+        let places: Vec<_> = self.model.joint_names().zip(self.model.places()).collect();
         let at = |joint: &Joint<S>| {
-            let (source, ratio, _) = source(self.robot, joint);
-            Some((first + names.iter().position(|name| *name == source.name)?, ratio, of(joint)))
+            let ((source, ratio, _), of) = (source(self.robot, joint), of(joint));
+            let place = places.iter().find(|(name, _)| *name == source.name).map(|(_, place)| place.velocities());
+            place.into_iter().flatten().map(move |j| (j, ratio, of)).collect::<Vec<_>>()
         };
-        self.robot.joints.iter().filter_map(at).collect()
+        self.robot.joints.iter().flat_map(at).collect()
     }
     fn kinetic_energy(&self) -> S {
         let (V_s, half) = (self.environment.base_twist, S::from_f64(0.5));

@@ -61,7 +61,8 @@ fn inertia<W: Wide>(link: Node) -> Read<SpatialInertia<W>> {
 fn kind<W: Wide>(joint: Node) -> Read<JointKind<W>> {
     let direction = || Ok(Vec3(numbers(child(joint, "axis"), "xyz", "1 0 0")?));
     let twist = match joint.attribute("type") {
-        Some("fixed" | "floating") => return Ok(JointKind::Fixed),
+        Some("fixed") => return Ok(JointKind::Fixed),
+        Some("floating") => return Ok(JointKind::Free),
         Some("revolute" | "continuous") => Twist { w: direction()?, v: Vec3::zero() },
         Some("prismatic") => Twist::linear(direction()?),
         other => return Err(NotRead(format!("a joint of type {}", other.unwrap_or("none")))),
@@ -92,7 +93,7 @@ pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description
     for joint in &mut wide.joints {
         let node = named("joint", &joint.name)?;
         (joint.origin, joint.kind) = (origin(node)?, kind(node)?);
-        let dynamics = child(node, "dynamics");
+        let dynamics = child(node, "dynamics").filter(|_| joint.kind != JointKind::Free); // of which it says nothing
         (joint.damping, joint.friction) = (number(dynamics, "damping", "0")?, number(dynamics, "friction", "0")?);
         if let (Some(mimic), Some(node)) = (&mut joint.mimic, child(node, "mimic")) {
             let (ratio, offset) = (number(Some(node), "multiplier", "1")?, number(Some(node), "offset", "0")?);
@@ -118,7 +119,7 @@ fn agree(second: &Description, first: &Description) -> Read<()> {
     for (a, b) in second.joints.iter().zip(&first.joints) {
         let screw = |kind: JointKind| match kind {
             JointKind::Screw(A) => A.twist().to_array(),
-            JointKind::Fixed => [0.0; 6],
+            other => [f64::from(u8::from(other == JointKind::Free)); 6], // URDF has no balls
         };
         near(&b.name, a.origin.to_matrix().as_flattened(), b.origin.to_matrix().as_flattened())?;
         near(&b.name, &screw(a.kind), &screw(b.kind))?;

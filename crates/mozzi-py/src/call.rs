@@ -118,6 +118,12 @@ impl Robot {
             .map(|first| if joints > 1 { format!(" ({first}, …)") } else { format!(" ({first})") });
         let (robot, first) = (&model.description().name, first.unwrap_or_default());
         match (model.is_floating(), name) {
+            (false, "theta") if !model.configuration_space().is_flat() => {
+                format!("{} positions of {joints} joints of '{robot}'{first}: see position_names", model.nq())
+            }
+            (false, _) if !model.configuration_space().is_flat() => {
+                format!("{} velocities of {joints} joints of '{robot}'{first}: see velocity_names", model.n())
+            }
             (false, _) => format!("one value per joint of '{robot}'{first}"),
             (true, "theta") => {
                 format!("base quaternion (w, x, y, z), base origin, then {joints} joints of '{robot}'{first}")

@@ -2,7 +2,7 @@
 
 use mozzi::model::Base;
 use mozzi::model::description::{Description, FreeJoint, Joint, JointKind, Limits, Link, Mimic, NamedFrame};
-use mozzi::{SE3, ScrewAxis, SpatialInertia};
+use mozzi::{SE3, ScrewAxis, SpatialInertia, Vec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -10,19 +10,28 @@ type Pose = [[f64; 4]; 4];
 type LinkState = (String, [f64; 10]);
 type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>);
 type MimicState = Option<(String, f64, f64)>;
-type JointState = (String, String, String, Pose, Option<[f64; 6]>, LimitState, [f64; 3], MimicState);
+/// What moves a joint, and its numbers: a screw axis, a ball's centre.
+type KindState = (String, Vec<f64>);
+type JointState = (String, String, String, Pose, KindState, LimitState, [f64; 3], MimicState);
 type FrameState = (String, String, Pose);
 
 /// Everything of a [`Description`].
 pub type State =
     (String, Vec<LinkState>, Vec<JointState>, Vec<FrameState>, Option<String>, [f64; 3], Option<(String, String)>);
 
+const FIXED: &str = "fixed";
+const SCREW: &str = "screw";
+const BALL: &str = "ball";
+const FREE: &str = "free";
+
 pub fn to_state(robot: &Description) -> State {
     let link = |link: &Link| (link.name.clone(), link.inertia.to_parameters());
     let joint = |joint: &Joint| {
-        let axis = match joint.kind {
-            JointKind::Fixed => None,
-            JointKind::Screw(axis) => Some(axis.twist().to_array()),
+        let (kind, numbers) = match joint.kind {
+            JointKind::Fixed => (FIXED, Vec::new()),
+            JointKind::Screw(axis) => (SCREW, axis.twist().to_array().to_vec()),
+            JointKind::Ball(center) => (BALL, center.0.to_vec()),
+            JointKind::Free => (FREE, Vec::new()),
         };
         let Limits { position, velocity, effort } = joint.limits;
         let mimic = joint.mimic.as_ref().map(|mimic| (mimic.joint.clone(), mimic.ratio, mimic.offset));
@@ -31,7 +40,7 @@ pub fn to_state(robot: &Description) -> State {
             joint.parent.clone(),
             joint.child.clone(),
             joint.origin.to_matrix(),
-            axis,
+            (kind.to_string(), numbers),
             (position, velocity, effort),
             [joint.damping, joint.friction, joint.armature],
             mimic,
@@ -57,12 +66,27 @@ pub fn from_state((name, links, joints, frames, end_effector, gravity, free): St
     for (name, parameters) in links {
         robot = robot.link(name, SpatialInertia::from_parameters(parameters));
     }
-    for (name, parent, child, origin, axis, (position, velocity, effort), [damping, friction, armature], mimic) in
-        joints
+    for (
+        name,
+        parent,
+        child,
+        origin,
+        (kind, numbers),
+        (position, velocity, effort),
+        [damping, friction, armature],
+        mimic,
+    ) in joints
     {
-        let kind = match axis {
-            None => JointKind::Fixed,
-            Some(axis) => JointKind::Screw(ScrewAxis::from_array(axis).map_err(refused)?),
+        let kind = match (kind.as_str(), numbers.as_slice()) {
+            (FIXED, []) => JointKind::Fixed,
+            (SCREW, &[a, b, c, x, y, z]) => {
+                JointKind::Screw(ScrewAxis::from_array([a, b, c, x, y, z]).map_err(refused)?)
+            }
+            (BALL, &[x, y, z]) => JointKind::Ball(Vec3([x, y, z])),
+            (FREE, []) => JointKind::Free,
+            (kind, numbers) => {
+                return Err(refused(format!("joint `{name}`: {kind} with {numbers:?}, expected a kind of joint")));
+            }
         };
         let mut joint = Joint::new(name, parent, child, pose(origin)?, kind);
         joint.limits = Limits { position, velocity, effort };

@@ -350,8 +350,10 @@ impl PyModel {
 
     /// The book's lists of this robot, over its N moving links, base to tips: `joints`, `links`, `parents`, `M` (N, 4, 4) and
     /// `M_relative`, `S`, `A` and `B` (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
+    ///
+    /// Raises `ValueError` for a robot with a ball or a free joint, which have no one screw axis.
     fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let lists = self.0.model.screws();
+        let lists = self.0.model.screws().map_err(of_model)?;
         let (poses, axes) = (
             |list: &[mozzi::SE3]| {
                 array(py, &[list.len(), 4, 4], list.iter().flat_map(|M| M.to_matrix().into_iter().flatten()))

@@ -44,7 +44,7 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
             let parent = body_of(&joint.parent).unwrap_or(0);
             let A = match joint.kind {
                 JointKind::Screw(A) => A.twist(),
-                JointKind::Fixed => Twist::from_array([0.0; 6]), // which no moving joint is
+                _ => Twist::from_array([0.0; 6]), // of a ball and a free joint its kind and its quaternion tell
             };
             let M = home(parent).inverse() * home(k + 1) * SE3::exp(A * -offset);
             json!({

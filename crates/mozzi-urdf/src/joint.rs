@@ -26,7 +26,7 @@ pub(crate) enum Freedoms {
     OneOrNone,
     /// By slides and a turn.
     Planar([ScrewAxis; 3]),
-    /// In SE(3); its kind is fixed as long as nobody reads this.
+    /// In SE(3).
     Six,
 }
 
@@ -70,6 +70,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         }
     };
     let [damping, friction] = read_dynamics(&children, &mut place, cx);
+    let is_several = matches!(kind, Some("planar" | "floating"));
     if let Some(kind @ ("planar" | "floating")) = kind {
         let is_rough = damping != 0.0 || friction != 0.0;
         several_freedoms(kind, &children, is_rough, &element, cx);
@@ -82,10 +83,13 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         parent,
         child,
         origin: origin.unwrap_or_else(SE3::identity),
-        kind: screw.map_or(JointKind::Fixed, JointKind::Screw),
+        kind: match (&freedoms, screw) {
+            (Freedoms::Six, _) => JointKind::Free,
+            (_, screw) => screw.map_or(JointKind::Fixed, JointKind::Screw),
+        },
         limits,
-        damping,
-        friction,
+        damping: if is_several { 0.0 } else { damping },
+        friction: if is_several { 0.0 } else { friction },
         armature: 0.0,
         mimic: children.get("mimic").and_then(|mimic| read_mimic(mimic, &mut place, cx)),
     };
@@ -129,8 +133,8 @@ fn read_type(element: &Element, cx: &mut Context) -> Option<&'static str> {
     cx.findings.add(match value.text {
         "ball" | "spherical" => {
             let message = format!("{subject}: type: is `{}`, which turns about every axis", value.text);
-            let help = "three hinges in its place, with massless links between, move as it does, away from the position where two \
-                        of them line up";
+            let help = "URDF has no balls, MJCF has; or three hinges in its place, with massless links between, which move as it does, away from \
+                        the position where two of them line up";
             Finding::error("unsupported_joint", value.span, message).help(help)
         }
         other => {

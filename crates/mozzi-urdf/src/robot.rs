@@ -55,7 +55,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
     let before = cx.findings.errors();
     root.check_children(&ROBOT, cx);
     places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
-    floating::free_base(&floating_joints, &mut description, &mut places, cx);
+    floating::free_base(&floating_joints, &mut description, &mut places);
     Some((description, places))
 }
 

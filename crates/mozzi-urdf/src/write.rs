@@ -1,5 +1,6 @@
 //! Back to URDF text.
 
+use crate::floating::frees_the_base;
 use crate::xacro::has_expression;
 use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
@@ -24,7 +25,7 @@ impl std::error::Error for NotUrdf {}
 /// centre of mass, orientations through roll, pitch and yaw).
 ///
 /// # Errors
-/// [`NotUrdf`] with all that would be lost: helical joints, axes beside the child's frame, armature, further frames, a
+/// [`NotUrdf`] with all that would be lost: balls, helical joints, axes beside the child's frame, armature, further frames, a
 /// named end effector, gravity other than (0, 0, −9.81), control characters in names, names
 /// that xacro would evaluate.
 pub fn write(description: &Description) -> Result<String, NotUrdf> {
@@ -40,7 +41,7 @@ pub fn write(description: &Description) -> Result<String, NotUrdf> {
 
 fn not_urdf(d: &Description) -> Vec<String> {
     let mut reasons = Vec::new();
-    for joint in &d.joints {
+    for (i, joint) in d.joints.iter().enumerate() {
         let name = &joint.name;
         match joint.kind {
             JointKind::Screw(A) if !A.is_prismatic() && A.twist().v != Vec3::zero() => {
@@ -48,6 +49,18 @@ fn not_urdf(d: &Description) -> Vec<String> {
                     "helical" => format!("joint `{name}`: a helical joint"),
                     _ => format!("joint `{name}`: an axis that misses the child's frame"),
                 });
+            }
+            JointKind::Ball(_) => reasons.push(format!("joint `{name}`: a ball")),
+            JointKind::Free if d.base == Base::Fixed && frees_the_base(i, d) => {
+                reasons.push(format!(
+                    "joint `{name}`: a free joint on an empty base, which would be read as a floating base"
+                ));
+            }
+            JointKind::Free if joint.damping != 0.0 || joint.friction != 0.0 => {
+                reasons.push(format!(
+                    "joint `{name}`: damping {} and friction {} of a free joint",
+                    joint.damping, joint.friction
+                ));
             }
             _ => {}
         }
@@ -139,6 +152,7 @@ fn joint(text: &mut String, joint: &Joint) -> fmt::Result {
         JointKind::Screw(A) if A.is_prismatic() => "prismatic",
         JointKind::Screw(_) if is_bounded => "revolute",
         JointKind::Screw(_) => "continuous",
+        JointKind::Ball(_) | JointKind::Free => "floating", // a ball was refused
     };
     writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&joint.name))?;
     writeln!(text, "    <parent link=\"{}\"/>", escaped(&joint.parent))?;

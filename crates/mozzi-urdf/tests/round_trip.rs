@@ -31,6 +31,7 @@ fn axis(joint: &mozzi::model::description::Joint) -> [f64; 6] {
     match joint.kind {
         mozzi::model::description::JointKind::Fixed => [0.0; 6],
         mozzi::model::description::JointKind::Screw(A) => A.twist().to_array(),
+        mozzi::model::description::JointKind::Ball(_) | mozzi::model::description::JointKind::Free => [1.0; 6],
     }
 }
 

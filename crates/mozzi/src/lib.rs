@@ -58,8 +58,8 @@ pub use kinematics::*;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{
-    Base, Description, Environment, Error, Frame, FrameId, HomeFrames, Model, Pivots, Screws, Task, TaskFrame,
-    TaskMemory, Workspace, least_is_clear,
+    Base, Description, Environment, Error, Frame, FrameId, Freedom, HomeFrames, Model, Pivots, Place, Screws, Task,
+    TaskFrame, TaskMemory, Workspace, least_is_clear,
 };
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};

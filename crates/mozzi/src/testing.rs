@@ -3,7 +3,7 @@
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
 use crate::model::description::{Joint, JointKind, Mimic};
-use crate::model::{Base, Description, Model};
+use crate::model::{Base, Description, Freedom, Model};
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
 
@@ -83,9 +83,33 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
+/// The same with balls and free joints among the others, here and there.
+pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
+    let mut robot = tree(seed, links, mimics).description().clone();
+    let followed: alloc::vec::Vec<_> =
+        robot.joints.iter().filter_map(|joint| Some(joint.mimic.as_ref()?.joint.clone())).collect();
+    let of_one_axis = |joint: &&mut Joint| matches!(joint.kind, JointKind::Screw(_)) && joint.mimic.is_none();
+    let free = robot.joints.iter_mut().filter(of_one_axis).filter(|joint| !followed.contains(&joint.name));
+    for (k, joint) in free.enumerate() {
+        match (k as u64 + seed) % 4 {
+            0 => joint.kind = JointKind::Ball(Vec3(Random(seed + k as u64).array())),
+            2 if k % 3 == 2 => {
+                (joint.kind, joint.friction, joint.armature) = (JointKind::Free, 0.0, 0.0);
+            }
+            _ => {}
+        }
+    }
+    robot.build().expect("a sound robot")
+}
+
 /// The same on a floating base.
 pub fn floating_tree(seed: u64, links: usize, mimics: usize) -> Model {
     tree(seed, links, mimics).with_base(Base::Floating).expect("a sound robot")
+}
+
+/// Balls and free joints on a floating base.
+pub fn floating_mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
+    mixed_tree(seed, links, mimics).with_base(Base::Floating).expect("a sound robot")
 }
 
 pub use crate::kinematics::seed_direction as moving;
@@ -94,8 +118,9 @@ pub use crate::kinematics::seed_direction as moving;
 pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {
     let mut random = Random(seed + 4000);
     let mut theta = random.vector(model.nq(), 3.0);
-    if let (Some(pose), true) = (theta.first_chunk_mut(), model.is_floating()) {
-        *pose = SE3::exp(Twist::from_array(random.array()) * 2.0).to_pose();
+    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
+        let pose = SE3::exp(Twist::from_array(random.array()) * 2.0).to_pose();
+        theta[place.positions()].copy_from_slice(&pose[..place.freedom.positions()]);
     }
     [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
 }

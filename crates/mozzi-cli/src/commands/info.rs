@@ -7,6 +7,7 @@ use crate::text::{Page, column, column_of_some, column_within, largest, rows_of,
 use clap::Args;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, Error, Model, SE3, SpatialInertia};
+use mozzi::{Freedom, Place};
 use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
@@ -69,6 +70,10 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     if model.is_floating() {
         page.title("the base, free").lines(&base(model));
     }
+    let several = several(model);
+    if !several.is_empty() {
+        page.title("joints of several axes").lines(&several);
+    }
     page.title("joints").lines(&joints(model));
     page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.input(0), units.input(1), units.input(3))]);
     let folded = folded(model);
@@ -95,6 +100,25 @@ fn base(model: &Model) -> Vec<String> {
         "coordinates; gravity is in {s}".to_string(),
         format!("it weighs {} kg with all that is fixed to it, centre of mass at {} m", scalar(G.mass), tuple(&G.center_of_mass().0)),
     ]
+}
+
+/// What balls and free joints add to the state.
+fn several(model: &Model) -> Vec<String> {
+    let of_joint = |(joint, place): (&Joint, &Place)| {
+        let list = |names: Vec<&str>| names.join(" ");
+        let (q, j) = (place.positions(), place.velocities());
+        let positions = list(model.position_names().skip(q.start).take(q.len()).collect());
+        let velocities = list(model.velocity_names().skip(j.start).take(j.len()).collect());
+        let says = match place.freedom {
+            Freedom::One => return None,
+            Freedom::Ball => {
+                "the quaternion (w, x, y, z) turns its link's axes from where they are at 0; ω in its link's axes"
+            }
+            Freedom::Free => "pose seen from where its link is at 0; twist (ω, v) in its link's coordinates",
+        };
+        Some(format!("{}: θ has {positions}, θ̇ has {velocities}: {says}", joint.name))
+    };
+    model.joints().zip(model.places()).filter_map(of_joint).collect()
 }
 
 fn joints(model: &Model) -> Vec<String> {
@@ -209,7 +233,11 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
             "child": joint.child,
             "screw_axis": match joint.kind {
                 JointKind::Screw(A) => Some(json::vector(&A.twist().to_array())),
-                JointKind::Fixed => None,
+                JointKind::Fixed | JointKind::Ball(_) | JointKind::Free => None,
+            },
+            "center": match joint.kind {
+                JointKind::Ball(center) => Some(json::vector(&center.0)),
+                _ => None,
             },
             "origin": json::pose(joint.origin),
             "limits": {

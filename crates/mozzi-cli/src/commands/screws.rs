@@ -22,7 +22,7 @@ pub struct ScrewsArguments {
 
 pub fn run(arguments: &ScrewsArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    let lists = model.screws();
+    let lists = model.screws()?;
     if arguments.robot.json {
         let mut object = json::screws(&lists);
         object["base"] = json::base(&model).into();
@@ -39,7 +39,7 @@ pub fn run(arguments: &ScrewsArguments) -> Result<String> {
 
 /// The robot as Python's literals.
 pub fn python(model: &Model) -> Result<String> {
-    let lists = model.screws();
+    let lists = model.screws()?;
     let serial = lists.parents.iter().enumerate().all(|(i, &parent)| parent == i);
     if !serial || model.has_mimic_joints() {
         return Err(Failure::wrong(format!(

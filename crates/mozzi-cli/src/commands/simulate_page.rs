@@ -77,9 +77,9 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
 
 /// Positions that a row has room for: eight, or a floating base's seven.
 fn shown_positions(model: &Model) -> usize {
-    match model.base().positions() {
-        0 => 8,
-        base => base,
+    match model.is_floating() {
+        true => 7,
+        false => 8,
     }
 }
 
@@ -89,7 +89,7 @@ pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
     let picked: Vec<usize> = (0..=shown).map(|k| k * last / shown.max(1)).collect();
     let mut picked = picked;
     picked.dedup();
-    let positions: Vec<String> = match model.is_floating() {
+    let positions: Vec<String> = match !model.configuration_space().is_flat() {
         true => model.position_names().take(n).map(str::to_string).collect(),
         false => (1..=n).map(|j| format!("θ_{j}")).collect(),
     };

@@ -46,7 +46,7 @@ pub fn run() -> Result<String> {
 }
 
 fn robot(model: &Model, page: &mut Page) {
-    let lists = model.screws();
+    let Ok(lists) = model.screws() else { return };
     page.title("1  a robot is a list of screws and a list of masses");
     page.lines(&[
         "At θ = 0, in base coordinates: joint i at 1 rad/s moves what hangs on it at the twist S_i = (ω, v),"

@@ -12,6 +12,7 @@ use crate::robot::{RobotArguments, Units};
 use crate::state::positions;
 use crate::text::{Decimals, Page, about, scalar, table};
 use clap::{Args, ValueEnum};
+use mozzi::Freedom;
 use mozzi::{Model, SE3};
 use mozzi_motion::Goal;
 use mozzi_motion::trajectories::{
@@ -228,10 +229,9 @@ fn columns(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Columns 
 
 /// A sentence for each limit that the motion passes: positions as the robot has them, the others as they were asked for.
 fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits) -> Vec<String> {
-    let (positions, velocities) = (model.base().positions(), model.base().velocities());
     let mut told = Vec::new();
-    for (k, joint) in model.joints().enumerate() {
-        let (q, v) = (positions + k, velocities + k);
+    for (joint, place) in model.joints().zip(model.places()).filter(|(_, place)| place.freedom == Freedom::One) {
+        let (q, v) = (place.q, place.j);
         let [low, high] = joint.limits.position.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
         let mut say = |what: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
             let excess = |row: usize| (low - asked(row)).max(asked(row) - high);

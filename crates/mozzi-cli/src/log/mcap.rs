@@ -5,6 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapResult, WriteOptions, Writer};
+use mozzi::{Freedom, Place};
 use mozzi::{Model, Trajectory};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -15,9 +16,11 @@ pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
     let _writing = Writing::to(file);
     let to = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
     let mut log = Log::new(to).map_err(|error| cannot(&error))?;
-    let names: Vec<&str> = model.joint_names().collect();
+    // JointState speaks of joints of one axis; the others are in the transforms
+    let of_one_axis: Vec<(&str, &Place)> =
+        model.joint_names().zip(model.places()).filter(|(_, place)| place.freedom == Freedom::One).collect();
+    let names: Vec<&str> = of_one_axis.iter().map(|(name, _)| *name).collect();
     let space = ros::space_frame(model);
-    let (positions, velocities) = (model.base().positions(), model.base().velocities());
     let topics = [
         ("/joint_states", JOINT_STATE),
         ("/tf", TRANSFORMS),
@@ -33,7 +36,11 @@ pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
         let poses = model.frame_poses(row.theta)?;
         let frames: Vec<_> =
             model.frames().map(|(_, name)| name).zip(poses).filter(|(name, _)| *name != space).collect();
-        let joints = [&row.theta[positions..], &row.dtheta[velocities..], &row.tau[velocities..]];
+        let of = |list: &[f64], at: fn(&Place) -> usize| -> Vec<f64> {
+            of_one_axis.iter().map(|(_, place)| list[at(place)]).collect()
+        };
+        let joints = [of(row.theta, |place| place.q), of(row.dtheta, |place| place.j), of(row.tau, |place| place.j)];
+        let joints = joints.each_ref().map(Vec::as_slice);
         let messages = [
             ros::joint_state(time, &names, joints),
             ros::transforms(time, space, &frames),

@@ -4,6 +4,7 @@ use super::Precision;
 use super::names::in_comment;
 use crate::arguments::Arguments;
 use crate::program::Program;
+use mozzi::Freedom;
 use mozzi::quantities::Query;
 use mozzi::{FrameId, Model};
 
@@ -57,13 +58,22 @@ pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -
         );
         lines.push("of forces the wrench (m, f) on it in its own coordinates, N m and N.".to_string());
     }
-    let (positions, velocities) = (model.nq() - model.joint_names().len(), model.n() - model.joint_names().len());
-    for (k, name) in model.joint_names().enumerate() {
+    let is_flat = model.configuration_space().is_flat();
+    for (name, place) in model.joint_names().zip(model.places()) {
         let kind = joints.iter().find(|(known, _)| *known == name).map_or("", |(_, kind)| kind);
-        let units = if kind == "prismatic" { "m, m/s, m/s^2, N" } else { "rad, rad/s, rad/s^2, N m" };
-        let places = match model.is_floating() {
-            true => format!("theta[{}], others [{}]", positions + k, velocities + k),
-            false => format!("[{k}]"),
+        let units = match place.freedom {
+            Freedom::One if kind == "prismatic" => "m, m/s, m/s^2, N",
+            Freedom::One => "rad, rad/s, rad/s^2, N m",
+            Freedom::Ball => "unit quaternion (w, x, y, z); w in its link's axes, rad/s; its rate; m, N m",
+            Freedom::Free => {
+                "unit quaternion (w, x, y, z), origin in m; twist (w, v) in its link's coordinates; its rate; wrench (m, f)"
+            }
+        };
+        let (q, j) = (place.positions(), place.velocities());
+        let places = match place.freedom {
+            Freedom::One if is_flat => format!("[{}]", place.j),
+            Freedom::One => format!("theta[{}], others [{}]", place.q, place.j),
+            _ => format!("theta[{}..{}], others [{}..{}]", q.start, q.end - 1, j.start, j.end - 1),
         };
         lines.push(format!("  {places} {}: {kind}; {units}", in_comment(name)));
     }

@@ -2,7 +2,7 @@
 
 use super::{Gains, errors};
 use crate::Error;
-use crate::error::check;
+use crate::error::check_driven;
 use crate::trajectories::Reference;
 use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::simulation::Input;
@@ -27,12 +27,7 @@ impl<'m, R: Reference> ComputedTorque<'m, R> {
     /// moves.
     pub fn new(model: &'m Model, reference: R, gains: Gains) -> Result<Self, Error> {
         gains.check(model)?;
-        check(
-            !model.is_floating(),
-            "the base of a robot under computed torque",
-            "free",
-            "a fixed base: no motor moves a free one",
-        )?;
+        check_driven(model, "a robot under computed torque")?;
         Ok(ComputedTorque {
             model,
             reference,

@@ -4,9 +4,9 @@ use super::{Gains, errors};
 use crate::Error;
 use crate::trajectories::Reference;
 use mozzi::simulation::Input;
-use mozzi::{Model, Workspace, gravity_forces};
+use mozzi::{Freedom, Model, Place, Workspace, gravity_forces};
 
-/// τ = g(θ) + K_p e + K_d ė, with K_p in N m/rad or N/m. Along a moving reference it lags: it knows of no accelerations. A floating base has no
+/// τ = g(θ) + K_p e + K_d ė, with K_p in N m/rad or N/m. Along a moving reference it lags: it knows of no accelerations. A floating base and a free joint have no
 /// motors.
 pub struct PdGravity<'m, R> {
     model: &'m Model,
@@ -32,7 +32,7 @@ impl<R: Reference> Input for PdGravity<'_, R> {
     fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
         let [e, de] = errors(self.model, &self.reference.at(t), theta, dtheta)?;
         gravity_forces(self.model, theta, self.model.gravity(), &mut self.workspace, &mut self.g);
-        for j in self.model.base().velocities()..self.model.n() {
+        for j in self.model.places().iter().filter(|place| place.freedom != Freedom::Free).flat_map(Place::velocities) {
             tau[j] += self.g[j] + self.gains.p[j] * e[j] + self.gains.d[j] * de[j];
         }
         Ok(())

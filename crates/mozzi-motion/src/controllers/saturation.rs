@@ -32,10 +32,9 @@ pub struct Saturated<I> {
 impl<I: Input> Saturated<I> {
     /// With the effort limits of the robot's description.
     pub fn new(model: &Model, input: I, policy: Policy) -> Self {
-        let base = model.base().velocities();
         let mut limits = vec![f64::INFINITY; model.n()];
-        for (limit, joint) in limits[base..].iter_mut().zip(model.joints()) {
-            *limit = joint.limits.effort.unwrap_or(f64::INFINITY);
+        for (place, joint) in model.places().iter().zip(model.joints()) {
+            limits[place.velocities()].fill(joint.limits.effort.unwrap_or(f64::INFINITY));
         }
         Saturated {
             input,

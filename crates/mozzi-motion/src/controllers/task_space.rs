@@ -2,7 +2,7 @@
 
 use super::Gains;
 use crate::Error;
-use crate::error::check;
+use crate::error::{check, check_driven};
 use crate::trajectories::Reference;
 use mozzi::nalgebra::{DVector, Vector6};
 use mozzi::simulation::Input;
@@ -65,7 +65,7 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
             let fine = list.iter().all(|x| *x >= 0.0 && x.is_finite());
             check(fine, what, format!("{list:?}"), "finite numbers that are not negative")?;
         }
-        check(!model.is_floating(), "the base of a robot under task-space control", "free", "a fixed base")?;
+        check_driven(model, "a robot under task-space control")?;
         Ok(TaskSpace { model, reference, frame, law, posture })
     }
 

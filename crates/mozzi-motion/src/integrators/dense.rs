@@ -1,7 +1,7 @@
 //! The motion within a step.
 
 use super::State;
-use mozzi::{Model, Twist, difference, integrate, rate_of_logarithm};
+use mozzi::{Model, difference, integrate};
 
 /// θ = θ₀ ⊕ u(x) and θ̇(x) for x from 0 to 1 of a step, by polynomials.
 #[derive(Clone, Debug)]
@@ -16,10 +16,7 @@ pub(super) struct Dense {
 /// u̇ of θ = θ₀ ⊕ u, that moves with θ̇.
 pub(super) fn rate(model: &Model, u: &[f64], dtheta: &[f64], du: &mut [f64]) {
     du.copy_from_slice(dtheta);
-    if let (Some(&u), Some(&V), true) = (u.first_chunk(), dtheta.first_chunk(), model.is_floating()) {
-        let rate = rate_of_logarithm(Twist::from_array(u), Twist::from_array(V));
-        du[..6].copy_from_slice(&rate.to_array());
-    }
+    model.configuration_space().rate(u, du);
 }
 
 impl Dense {

@@ -3,7 +3,8 @@
 use super::State;
 use super::dense::Dense;
 use crate::inverse_kinematics::Bounds;
-use mozzi::Model;
+use mozzi::{Freedom, Model};
+use std::rc::Rc;
 
 /// Which zeros of an event's function count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,11 +41,16 @@ impl<'a> Event<'a> {
     /// A joint that reaches an end of its way, from within: an event for each limit of position that there is, called
     /// `lower limit of shoulder`. A mimic joint's limits are its source joint's.
     pub fn joint_limits(model: &Model) -> Vec<Self> {
-        let Bounds { positions, joints, .. } = Bounds::of(model);
+        let all = Rc::new(Bounds::of(model));
         let mut events = Vec::new();
-        for (k, (bounds, joint)) in joints.into_iter().zip(model.joint_names()).enumerate() {
+        for (k, (bounds, joint)) in all.joints.iter().zip(model.joint_names()).enumerate() {
+            let is_ball = all.places[k].freedom == Freedom::Ball; // which cannot turn less than not at all
             for (limit, side, sign) in [(bounds[0], "lower", -1.0), (bounds[1], "upper", 1.0)] {
-                let beyond = move |_: f64, theta: &[f64], _: &[f64]| sign * (theta[positions + k] - limit);
+                if is_ball && side == "lower" {
+                    continue;
+                }
+                let all = Rc::clone(&all);
+                let beyond = move |_: f64, theta: &[f64], _: &[f64]| sign * (all.value(theta, k) - limit);
                 let event = Event::new(format!("{side} limit of {joint}"), beyond);
                 events.extend(limit.is_finite().then_some(Event { direction: Direction::Rising, ..event }));
             }

@@ -3,7 +3,7 @@
 //! > θ_m = θ[k] ⊕ ½hv,  M(θ_m)v = p[k] + ½h ṗ(θ_m, v),  θ[k+1] = θ[k] ⊕ hv,  p[k+1] = p[k] + hṗ
 //!
 //! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. The rule is symplectic in (θ, p), so that the energy's error stays bounded; in
-//! (θ, θ̇) it would not be, because M depends on θ. On SE(3), with p_b the base's rows of p and F those of ṗ less `[ad_v]`ᵀp_b, it is the
+//! (θ, θ̇) it would not be, because M depends on θ. On SE(3), and on SO(3) of a ball, with p_b the rows of p there and F those of ṗ less `[ad_v]`ᵀp_b, it is the
 //! variational integrator of the Lagrangian at the midpoint (Bou-Rabee and Marsden 2009), which keeps momentum exactly:
 //!
 //! > P = p_b[k] + h`[Ad_e^{−½hv}]`ᵀF,  p_b(θ_m, v) = Σ (`[ad_hv]`ᵀ)ʲP/(j+1)! − ½h Σ (−½`[ad_hv]`ᵀ)ʲF/(j+1)!,  p_b[k+1] = `[Ad_e^{hv}]`ᵀP
@@ -13,7 +13,7 @@ use super::{State, step_to};
 use crate::Error;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::simulation::Input;
-use mozzi::{SE3, Twist, Workspace, Wrench, integrate, mass_matrix_rate};
+use mozzi::{Freedom, Place, SE3, Twist, Workspace, Wrench, integrate, mass_matrix_rate};
 
 /// v is found by iteration, to rounding; more than this many means that the step is too long.
 const ITERATIONS: usize = 60;
@@ -49,7 +49,8 @@ impl Midpoint {
         };
         let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
         let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
-        let (mut powers, mut M, mut after) = ([0.0; 3], DMatrix::zeros(0, 0), [0.0; 6]);
+        let curved = || model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One);
+        let (mut powers, mut M, mut after) = ([0.0; 3], DMatrix::zeros(0, 0), DVector::zeros(n));
         for _ in 0..ITERATIONS {
             theta.copy_from_slice(&from.theta);
             integrate(model, &mut theta, v.as_slice(), half);
@@ -60,10 +61,13 @@ impl Midpoint {
             let dM = DMatrix::from_row_slice(n, n, &self.dM); // symmetric
             let rate = &M * DVector::from_column_slice(&self.ddtheta) + dM * &v; // ṗ
             let mut momentum = &p + &rate * half;
-            if model.is_floating() {
-                let base = on_the_group(&p, &rate, &(&M * &v), &v, h);
-                momentum.rows_mut(0, 6).copy_from_slice(&base.middle);
-                after = base.end;
+            let Mv = &M * &v;
+            for place in curved() {
+                let of_place = |x: &DVector<f64>| padded(x, place);
+                let found = on_the_group(of_place(&p), of_place(&rate), of_place(&Mv), of_place(&v), h);
+                let k = place.velocities().len();
+                momentum.rows_mut(place.j, k).copy_from_slice(&found.middle[..k]);
+                after.rows_mut(place.j, k).copy_from_slice(&found.end[..k]);
             }
             let mut next = factors.solve(&momentum);
             if !driven.held.is_empty() {
@@ -83,8 +87,8 @@ impl Midpoint {
             return Err(Error::NoConvergence { time: from.t, step: h, iterations: ITERATIONS });
         }
         let mut p = M * &v * 2.0 - p;
-        if model.is_floating() {
-            p.rows_mut(0, 6).copy_from_slice(&after);
+        for place in curved() {
+            p.as_mut_slice()[place.velocities()].copy_from_slice(&after.as_slice()[place.velocities()]);
         }
         let mut to = State { t: end, ..from.clone() };
         to.theta.copy_from_slice(&from.theta);
@@ -102,21 +106,25 @@ impl Midpoint {
     }
 }
 
-/// A floating base's momentum at the midpoint and at the end of a step.
-struct BaseMomentum {
+/// The rows of a place as (ω, v) or (m, f): a ball's are followed by zeros.
+fn padded(x: &DVector<f64>, place: &Place) -> [f64; 6] {
+    std::array::from_fn(|k| if k < place.velocities().len() { x[place.j + k] } else { 0.0 })
+}
+
+/// The momentum of a floating base, a free joint or a ball at the midpoint and at the end of a step.
+struct GroupMomentum {
     middle: [f64; 6],
     end: [f64; 6],
 }
 
 /// From p at the step's start, ṗ and Mv at its middle.
-fn on_the_group(p: &DVector<f64>, rate: &DVector<f64>, Mv: &DVector<f64>, v: &DVector<f64>, h: f64) -> BaseMomentum {
-    let six = |x: &DVector<f64>| std::array::from_fn(|k| x[k]);
-    let V = Twist::from_array(six(v));
-    let F = Wrench::from_array(six(rate)) - V.ad().transpose() * Wrench::from_array(six(Mv));
+fn on_the_group(p: [f64; 6], rate: [f64; 6], Mv: [f64; 6], v: [f64; 6], h: f64) -> GroupMomentum {
+    let V = Twist::from_array(v);
+    let F = Wrench::from_array(rate) - V.ad().transpose() * Wrench::from_array(Mv);
     let way = V * h;
     let half_way_back = SE3::exp(way * -0.5).Ad().transpose();
-    let P = Wrench::from_array(six(p)) + half_way_back * F * h;
-    BaseMomentum {
+    let P = Wrench::from_array(p) + half_way_back * F * h;
+    GroupMomentum {
         middle: (series(way, P) - series(way * -0.5, F) * (0.5 * h)).to_array(),
         end: (SE3::exp(way).Ad().transpose() * P).to_array(),
     }

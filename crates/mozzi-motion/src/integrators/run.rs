@@ -62,10 +62,11 @@ impl Stepper {
                 let (h, next) = step_to(*step, from.t, until);
                 let known = from.ddtheta.clone();
                 let State { t, theta, dtheta, powers, .. } = from;
-                let mut motion: Motion<f64, 3> = Motion::start(model.base(), *t, theta, dtheta, |_, _, _, ddtheta| {
-                    ddtheta.copy_from_slice(&known);
-                    Ok::<_, mozzi::Error>(*powers)
-                })?;
+                let mut motion: Motion<f64, 3> =
+                    Motion::start(model.configuration_space(), *t, theta, dtheta, |_, _, _, ddtheta| {
+                        ddtheta.copy_from_slice(&known);
+                        Ok::<_, mozzi::Error>(*powers)
+                    })?;
                 motion.integrals = from.works;
                 motion.step(*method, h, next, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
                 let Motion { t, theta, dtheta, ddtheta, rates, integrals, .. } = motion;
@@ -203,7 +204,9 @@ impl<'a> Simulation<'a> {
         let mut equation = Equation::new(model, input, &options).with_forward_dynamics(self.forward_dynamics)?;
         let mut stops = Stops::new(model, self.stops, theta)?;
         let mut motion: Motion<f64, 3> =
-            Motion::start(model.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
+            Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
+                equation.evaluate(t, q, dq, ddq)
+            })?;
         let mut run = Run { motion: Trajectory::new(model), events: Vec::new(), stops: Vec::new() };
         let mut row = |motion: &Motion<f64, 3>, equation: &mut Equation<_>| {
             let energy = equation.energy(&motion.theta, &motion.dtheta, motion.integrals);

@@ -7,8 +7,8 @@ use super::events::{Direction, first_zero};
 use crate::inverse_kinematics::Bounds;
 use crate::policy::Policy;
 use crate::{Error, error::check};
-use mozzi::Model;
 use mozzi::simulation::Input;
+use mozzi::{Freedom, Model};
 
 /// A joint that came to the end of its way.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +40,16 @@ impl Stops {
     pub fn new(model: &Model, policy: Policy, start: &[f64]) -> Result<Self, Error> {
         let bounds = Bounds::of(model);
         let names: Vec<String> = model.joint_names().map(str::to_string).collect();
-        for ((q, &[low, high]), name) in start[bounds.positions..].iter().zip(&bounds.joints).zip(&names) {
-            let fine = policy != Policy::Respect || (low..=high).contains(q);
+        for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(&names) {
+            let q = bounds.value(start, k);
+            let is_ball = bounds.places[k].freedom == Freedom::Ball && high.is_finite();
+            check(
+                policy != Policy::Respect || !is_ball,
+                "limits to respect",
+                format!("that of `{name}`, a ball, which may turn by {high} rad"),
+                "limits of joints of one axis; those of balls are only reported",
+            )?;
+            let fine = policy != Policy::Respect || (low..=high).contains(&q);
             check(
                 fine,
                 "the start",
@@ -71,7 +79,7 @@ impl Stops {
 
     /// How far joint k is beyond its lower (0) or upper (1) bound.
     fn excess(&self, theta: &[f64], k: usize, side: usize) -> f64 {
-        let ([low, high], q) = (self.bounds.joints[k], theta[self.bounds.positions + k]);
+        let ([low, high], q) = (self.bounds.joints[k], self.bounds.value(theta, k));
         if side == 0 { low - q } else { q - high }
     }
 
@@ -113,7 +121,7 @@ impl Stops {
         until: f64,
         held: &[(usize, f64)],
     ) -> Option<(f64, usize, usize)> {
-        let free = self.sides().filter(|&(k, _)| !held.iter().any(|&(j, _)| j == self.bounds.velocities + k));
+        let free = self.sides().filter(|&(k, _)| !held.iter().any(|&(j, _)| j == self.bounds.places[k].j));
         let impacts = free.filter_map(|(k, side)| {
             let found = first_zero(model, dense, until, Direction::Rising, |state| self.excess(&state.theta, k, side));
             found.map(|t| (t, k, side))
@@ -148,9 +156,9 @@ impl Stops {
         driven: &mut Driven<I>,
     ) -> Result<(), Error> {
         self.note(state.t, k, side, 0.0, true);
-        state.theta[self.bounds.positions + k] = self.bounds.joints[k][side];
+        state.theta[self.bounds.places[k].q] = self.bounds.joints[k][side];
         let before = driven.energy(state).kinetic;
-        driven.held.push((self.bounds.velocities + k, if side == 0 { -1.0 } else { 1.0 }));
+        driven.held.push((self.bounds.places[k].j, if side == 0 { -1.0 } else { 1.0 }));
         let M = driven.factored(&state.theta)?;
         driven.let_go(&M, &state.dtheta.clone());
         driven.bring_to_rest(&M, &mut state.dtheta);

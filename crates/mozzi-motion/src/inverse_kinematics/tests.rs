@@ -16,8 +16,10 @@ fn within(model: &Model, random: &mut Random) -> Vec<f64> {
 }
 
 fn assert_within(model: &Model, theta: &[f64]) {
-    for (&[low, high], q) in Bounds::of(model).joints.iter().zip(&theta[model.base().positions()..]) {
-        assert!((low..=high).contains(q), "{q} of {low} … {high}");
+    let bounds = Bounds::of(model);
+    for (k, &[low, high]) in bounds.joints.iter().enumerate() {
+        let q = bounds.value(theta, k);
+        assert!((low..=high).contains(&q), "{q} of {low} … {high}");
     }
 }
 

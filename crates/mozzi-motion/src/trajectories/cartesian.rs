@@ -2,7 +2,6 @@
 
 use super::path::Path;
 use super::spline::{Ends, Spline};
-use crate::error::check;
 use crate::inverse_kinematics::{Goal, InverseKinematics, Options};
 use crate::{Error, error};
 use mozzi::{FrameId, Model, SE3, SO3, Twist, Vec3, forward_kinematics};
@@ -60,7 +59,7 @@ impl Cartesian {
         tolerance: f64,
     ) -> Result<Self, Error> {
         error::check(tolerance > 0.0, "the tolerance of a path", tolerance, "a positive number")?;
-        check(!model.is_floating(), "the base of a robot on a Cartesian path", "free", "a fixed base")?;
+        error::check_flat(model, "a robot on a Cartesian path")?;
         let start = model.forward_kinematics(from, frame)?;
         let pose = |s: f64| shape.at(start, goal, s);
         let options = Options { starts: 1, angle: 1e-10, distance: 1e-10, ..Options::default() };

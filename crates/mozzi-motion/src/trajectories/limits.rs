@@ -22,12 +22,12 @@ impl Limits {
         Limits { velocity: none.clone(), acceleration: none.clone(), torque: none }
     }
 
-    /// The velocity and effort limits of the robot's description; it has none of accelerations.
+    /// The velocity and effort limits of the robot's description, a ball's of each of its three velocities; it has none of accelerations.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
-        for (j, joint) in (model.base().velocities()..).zip(model.joints()) {
-            limits.velocity[j] = joint.limits.velocity.unwrap_or(f64::INFINITY);
-            limits.torque[j] = joint.limits.effort.unwrap_or(f64::INFINITY);
+        for (place, joint) in model.places().iter().zip(model.joints()) {
+            limits.velocity[place.velocities()].fill(joint.limits.velocity.unwrap_or(f64::INFINITY));
+            limits.torque[place.velocities()].fill(joint.limits.effort.unwrap_or(f64::INFINITY));
         }
         limits
     }

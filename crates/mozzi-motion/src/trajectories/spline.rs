@@ -2,7 +2,7 @@
 
 use super::path::{Path, Point};
 use crate::Error;
-use crate::error::check;
+use crate::error::{check, check_flat};
 use mozzi::Model;
 
 /// What a spline does at its ends.
@@ -33,12 +33,7 @@ impl Spline {
     /// [`mozzi::Error::BadArgument`] for fewer than two points, an s that does not increase, or a floating base;
     /// [`mozzi::Error::WrongLength`].
     pub fn new(model: &Model, s: &[f64], points: &[Vec<f64>], ends: Ends) -> Result<Self, Error> {
-        check(
-            !model.is_floating(),
-            "the base of a spline's robot",
-            "free",
-            "a fixed base: positions that can be added",
-        )?;
+        check_flat(model, "a spline's robot")?;
         check(points.len() >= 2, "the number of via points", points.len(), "at least 2")?;
         if s.len() != points.len() {
             let (found, expected) = (s.len(), points.len());

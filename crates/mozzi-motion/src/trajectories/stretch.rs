@@ -5,7 +5,7 @@ use super::limits::Limits;
 use super::path::Path;
 use super::profile::Profile;
 use crate::Error;
-use crate::error::check;
+use crate::error::{check, check_driven};
 use mozzi::Model;
 
 /// The profile, run through in the shortest time that keeps the limits at N + 1 equal times: with y the old duration over the new one, θ̇
@@ -23,12 +23,7 @@ pub fn stretched(
 ) -> Result<Profile, Error> {
     limits.check(model)?;
     check(samples >= 2, "the number of samples", samples, "at least 2")?;
-    check(
-        !model.is_floating(),
-        "the base of a robot on a timed path",
-        "free",
-        "a fixed base: torques are its motors'",
-    )?;
+    check_driven(model, "a robot on a timed path")?;
     let times: Vec<f64> = (0..=samples).map(|k| profile.duration() * k as f64 / samples as f64).collect();
     let progress: Vec<_> = times.iter().map(|&t| profile.at(t)).collect();
     let demands = demands_of_a_motion(model, path, &progress.iter().map(|p| p.s).collect::<Vec<_>>())?;

@@ -13,7 +13,7 @@ use super::linear_program::{HalfPlane, maximize};
 use super::path::Path;
 use super::profile::Profile;
 use crate::Error;
-use crate::error::check;
+use crate::error::{check, check_driven};
 use mozzi::Model;
 
 /// What no limit bounds: ṡ² and |s̈| of a path between 0 and 1.
@@ -34,12 +34,7 @@ const CORRECTIONS: usize = 3;
 pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
     limits.check(model)?;
     check(intervals >= 2, "the number of intervals", intervals, "at least 2")?;
-    check(
-        !model.is_floating(),
-        "the base of a robot on a timed path",
-        "free",
-        "a fixed base: torques are its motors'",
-    )?;
+    check_driven(model, "a robot on a timed path")?;
     let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
     let grid = demands_of_a_motion(model, path, &s)?;
     let parts = BETWEEN + 1;

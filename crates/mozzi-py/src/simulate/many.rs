@@ -159,9 +159,9 @@ impl Robots<'_> {
                 .map_err(|error| of_batch(error, self.leading))?;
             Ok::<[f64; 0], PyErr>([])
         };
-        let (base, robots) = (self.model.base(), dtheta.len() / self.model.n());
+        let (space, robots) = (self.model.configuration_space(), dtheta.len() / self.model.n());
         let mut motion =
-            Motion::start_many(base, robots, 0.0, theta, dtheta, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
+            Motion::start_many(space, robots, 0.0, theta, dtheta, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
         record.write(0.0, &motion.theta, &motion.dtheta, &tau);
         for step in 1..=self.options.steps {
             let (h, t) = (self.options.step(), self.options.time(step));
@@ -240,11 +240,15 @@ pub fn simulate<'py>(
             robots.move_steadily(py, start, tau.slice()?, &mut record)?;
         }
         Torque::GravityCompensation => {
-            let base = model.base().velocities(); // without motors
+            // without motors: a floating base and free joints
+            let space = model.configuration_space();
+            let free: Vec<_> = space.places().iter().filter(|place| place.freedom == mozzi::Freedom::Free).collect();
             let compensation = |_, theta: &[f64], _: &[f64], tau: &mut [f64]| {
                 py.detach(|| robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau]))
                     .map_err(|error| of_batch(error, leading))?;
-                tau.chunks_exact_mut(n).for_each(|tau| tau[..base].fill(0.0));
+                for tau in tau.chunks_exact_mut(n) {
+                    free.iter().for_each(|place| tau[place.velocities()].fill(0.0));
+                }
                 Ok(())
             };
             robots.move_driven(py, start, compensation, &mut record)?;

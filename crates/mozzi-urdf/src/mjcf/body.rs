@@ -65,7 +65,7 @@ impl<'a> Model<'a> {
         if let Some(value) = element.attribute("name") {
             place.set("name", value.span);
         }
-        let is_free = self.free(&contents, carrier.link, cx);
+        let is_free = self.free(&contents, carrier.link, &name.shown(), cx);
         let is_static = carrier.is_static && contents.joints.is_empty() && !is_free;
         let inertia = self.inertia(&element, &contents, &mut place, is_static, cx);
         // joints act one after the other, the first at the parent; between them are massless links

@@ -1,4 +1,4 @@
-//! `<freejoint>`, and joints of type `free`: the base, which hangs on nothing.
+//! `<freejoint>`, and joints of type `free`: a body that hangs on nothing, and, where it is all that moves, the robot's base.
 
 use super::Model;
 use super::attributes::Item;
@@ -6,37 +6,34 @@ use super::contents::{Contents, Inside};
 use super::tree::{Free, Joint, Name};
 use super::vocabulary;
 use crate::context::Context;
-use crate::finding::Finding;
+use crate::places::Place;
+use mozzi::SE3;
 use mozzi::model::description::JointKind;
 
 impl<'a> Model<'a> {
-    /// Is the body, whose link comes next, free? A free joint that cannot be is refused.
-    pub fn free(&mut self, contents: &Contents<'a>, carrier: usize, cx: &mut Context) -> bool {
+    /// Is the body, whose link comes next, free? Adds its joint; a free joint that cannot be is refused.
+    pub fn free(&mut self, contents: &Contents<'a>, carrier: usize, body: &str, cx: &mut Context) -> bool {
         let Some(Inside { item, .. }) = contents.free.first() else { return false };
         self.tree.degrees += contents.free.len();
         let is_word = item.element.name() == "freejoint";
-        let name = Name::of(&item.element.called("joint"), "of a free body".to_string(), cx);
+        let name = Name::of(&item.element.called("joint"), format!("{body}:free"), cx);
         let subject =
             name.given.as_ref().map_or_else(|| item.element.subject.clone(), |_| format!("joint `{}`", name.shown()));
         let item = Item { element: item.element.called(subject), ..item.clone() };
         item.element.check_attributes(if is_word { &vocabulary::FREE_JOINT } else { &vocabulary::JOINT }, cx);
         let why = if carrier != 0 {
-            Some("is a free joint inside the tree: only a body of the world can be free".to_string())
+            Some("is a free joint inside the tree: in MJCF only a body of the world can be free")
         } else if contents.joints.len() + contents.free.len() > 1 {
-            Some("is a free joint beside other joints of its body, expected it alone".to_string())
-        } else if let Some(first) = &self.tree.free {
-            let first = self.tree.links[first.link].name.shown();
-            Some(format!("is a second free joint: body `{first}` is free already, expected one robot"))
+            Some("is a free joint beside other joints of its body, expected it alone")
         } else {
             None
         };
         if let Some(why) = why {
-            let help = "the base of a robot can be free; inside the tree, three slides and three hinges in one body move as a free \
-                        joint does, away from the position where two hinges line up";
-            cx.findings.add(item.error("unsupported_joint", "", &why).help(help));
+            let help = "MuJoCo refuses it, too; inside the tree, a ball and three slides in one body move as a free joint does";
+            cx.findings.add(item.error("unsupported_joint", "", why).help(help));
             return false;
         }
-        self.forces(&item, cx);
+        let damping = self.forces(&item, cx);
         let aligned = match item.word("align", &["auto", "true", "false"], cx).filter(|_| is_word) {
             Some("true") => true,
             Some("false") => false,
@@ -47,50 +44,59 @@ impl<'a> Model<'a> {
             let help = "set align=\"false\": positions are then those of the frame that the file says";
             cx.findings.add(item.error("unsupported_attribute", "align", message).help(help));
         }
-        self.tree.free = Some(Free { link: self.tree.links.len(), joint: name.given });
+        let mut place = Place::new(item.element.span());
+        if let Some(value) = item.value("damping") {
+            place.set("damping", value.span);
+        }
+        let link = self.tree.links.len();
+        // its positions are the pose in the world, wherever the body is at first
+        let added = self.tree.joint(name, [carrier, link], SE3::identity(), place);
+        (added.joint.kind, added.joint.damping) = (JointKind::Free, damping);
         true
     }
 
-    /// What would act between the world and the base: forces are told, an inertia is not left out.
-    fn forces(&mut self, item: &Item<'a>, cx: &mut Context) {
+    /// What acts between the world and the body: its damping; other forces are told, an inertia is not left out.
+    fn forces(&mut self, item: &Item<'a>, cx: &mut Context) -> f64 {
         if item.element.name() == "freejoint" {
-            return;
+            return 0.0;
         }
         if item.number("armature", 0.0, cx) != 0.0 {
-            let message = "armature: would add an inertia between the world and the base, which mozzi does not";
+            let message = "armature: would add an inertia between the world and the body, which mozzi does not";
             let help = "set armature=\"0\" on the free joint";
             cx.findings.add(item.error("unsupported_attribute", "armature", message).help(help));
         }
-        let (damper, spring) = (self.options.damper, self.options.spring);
-        if damper && item.overlaid::<3>("damping", cx) != [0.0; 3] {
-            self.ignored.force("free damping", item, "damping", "a damping of the floating base");
+        let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
+        if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
+            self.ignored.force("damping", item, "damping", "a damping that is not linear");
         }
         if self.options.friction && item.number("frictionloss", 0.0, cx) != 0.0 {
-            self.ignored.force("free frictionloss", item, "frictionloss", "a friction of the floating base");
+            self.ignored.force("free frictionloss", item, "frictionloss", "a friction of a free body");
         }
-        if spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
-            self.ignored.force("free stiffness", item, "stiffness", "a spring of the floating base");
+        if self.options.spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
+            self.ignored.force("free stiffness", item, "stiffness", "a spring of a free body");
         }
+        if self.options.damper { linear } else { 0.0 }
     }
 
-    /// Where a body is free, it alone with all that it carries is the robot. What else moves in the world would be lost.
-    pub fn leave_the_world(&mut self, cx: &mut Context) {
-        let Some(free) = &mut self.tree.free else { return };
-        let base = self.tree.links[free.link].name.shown();
+    /// Where one free body, undamped, with all that it carries is all that moves, it alone is the robot: its base floats. Else the world is the base.
+    pub fn leave_the_world(&mut self) {
+        let mut free = self.tree.joints.iter().filter(|joint| joint.joint.kind == JointKind::Free);
+        let (Some(base), None) = (free.next(), free.next()) else { return };
+        let link = base.child;
         let mut stays = vec![false; self.tree.links.len()];
-        stays[free.link] = true;
+        stays[link] = true;
         // parents stand before their children
-        for joint in &self.tree.joints {
+        for joint in self.tree.joints.iter().filter(|joint| joint.child != link) {
             stays[joint.child] = stays[joint.parent];
         }
-        for Joint { name, joint, place, .. } in self.tree.joints.iter().filter(|joint| !stays[joint.child]) {
-            if joint.kind != JointKind::Fixed {
-                let message =
-                    format!("joint `{}`: moves beside the free body `{base}`, expected one robot", name.shown());
-                let help = "remove the one or the other: mozzi computes one tree, on the ground or free";
-                cx.findings.add(Finding::error("unsupported_joint", place.span(""), message).help(help));
-            }
+        let beside = |joint: &Joint| !stays[joint.child] && joint.joint.kind != JointKind::Fixed;
+        if base.joint.damping != 0.0 || self.tree.joints.iter().any(beside) {
+            return;
         }
+        let joint = base.name.given.clone();
+        self.tree.joints.retain(|joint| joint.child != link);
+        let mut free = Free { link, joint };
+        let base = self.tree.links[free.link].name.shown();
         for (link, _) in self.tree.links.iter().zip(&stays).skip(1).filter(|(_, stays)| !**stays) {
             self.ignored.beside("body", &link.name.shown(), link.place.span(""), &base);
         }
@@ -112,5 +118,6 @@ impl<'a> Model<'a> {
             (joint.parent, joint.child) = (numbers[joint.parent], numbers[joint.child]);
         }
         self.tree.sites.iter_mut().for_each(|site| site.link = numbers[site.link]);
+        self.tree.free = Some(free);
     }
 }

@@ -1,4 +1,4 @@
-//! `<joint>`: hinges and slides.
+//! `<joint>`: hinges, slides and balls.
 
 use super::Model;
 use super::attributes::Item;
@@ -37,24 +37,22 @@ impl<'a> Model<'a> {
             }
         }
         let kind = item.word("type", &["hinge", "slide", "ball", "free"], cx).unwrap_or("hinge");
-        if kind == "ball" {
-            let message = format!("{}: is a ball joint, which turns about every axis", item.element.subject);
-            let help = "three hinges in its place, one after the other in the same body, move as it does, away from the position \
-                        where two of them line up";
-            cx.findings.add(Finding::error("unsupported_joint", item.element.span(), message).help(help));
-        }
-        let is_slide = kind == "slide";
-        let screw = screw(&item, inside.T, is_slide, cx);
+        let (is_slide, is_ball) = (kind == "slide", kind == "ball");
+        let screw = if is_ball { None } else { screw(&item, inside.T, is_slide, cx) };
         let position = |x: f64| if is_slide { x } else { self.compiler.angle(x) };
-        let reference = position(item.number("ref", 0.0, cx));
+        let reference = if is_ball { 0.0 } else { position(item.number("ref", 0.0, cx)) };
         let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
         let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
         let armature = item.number("armature", 0.0, cx);
+        let center = item.vector::<3>("pos", cx).unwrap_or([0.0; 3]);
         // the file's own configuration is at `ref`
         let back = screw.map_or(SE3::identity(), |screw| SE3::exp(screw.twist() * -reference));
         let added = self.tree.joint(name, ends, origin * back, place);
-        added.joint.kind = screw.map_or(JointKind::Fixed, JointKind::Screw);
+        added.joint.kind = match is_ball {
+            true => JointKind::Ball(inside.T * Vec3(center)),
+            false => screw.map_or(JointKind::Fixed, JointKind::Screw),
+        };
         added.joint.limits = Limits { position: limits, velocity: None, effort };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
         added.reference = reference;

@@ -129,7 +129,7 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     }
     model.scale_to_total_mass(cx);
     model.closures(&sections, cx);
-    model.leave_the_world(cx);
+    model.leave_the_world();
     model.ignored.sections(&sections);
     model.ignored.tell(cx);
     if cx.findings.is_full() {

@@ -15,12 +15,12 @@ pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 pub use task_space::TaskSpaceDynamics;
 
-use crate::model::{Environment, Error, FrameId, Model};
+use crate::model::{Environment, Error, FrameId, Freedom, Model};
 use crate::scalar::{Real, Scalar};
 use alloc::format;
 
 impl<C: Real + Into<f64>> Model<C> {
-    /// Every argument as long as it must be: θ nq, the others, with their names, n; and a floating base's quaternion of length 1, to 10⁻³.
+    /// Every argument as long as it must be: θ nq, the others, with their names, n; and every quaternion (a floating base's, a ball's, a free joint's) of length 1, to 10⁻³.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for the quaternion.
@@ -33,16 +33,30 @@ impl<C: Real + Into<f64>> Model<C> {
         self.check_velocities(velocities)
     }
 
-    /// Is θ as long as it must be, and its quaternion, where the base floats, of length 1 to 10⁻³?
+    /// Is θ as long as it must be, and is each quaternion in it of length 1 to 10⁻³?
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::BadArgument`].
     pub fn check_configuration(&self, theta: &[C]) -> Result<(), Error> {
         check_length("theta", theta, self.nq())?;
-        match theta.first_chunk() {
-            Some(q) if self.is_floating() => check_unit(q.map(Into::into)),
-            _ => Ok(()),
+        for (k, place) in self.configuration_space().places().iter().enumerate() {
+            if place.freedom != Freedom::One {
+                let q = core::array::from_fn(|i| theta[place.q + i].into());
+                check_unit(q).map_err(|error| match error {
+                    Error::BadArgument { found, .. } if k > 0 || !self.is_floating() => {
+                        let joint = self.joint_names().nth(k - usize::from(self.is_floating())).unwrap_or_default();
+                        let expected = "a unit quaternion (w, x, y, z), to 1e-3";
+                        Error::BadArgument {
+                            what: "a joint's orientation in theta",
+                            found: format!("{found}, of `{joint}`"),
+                            expected,
+                        }
+                    }
+                    error => error,
+                })?;
+            }
         }
+        Ok(())
     }
 
     pub(crate) fn check_velocities<const K: usize>(&self, velocities: [(&'static str, &[C]); K]) -> Result<(), Error> {

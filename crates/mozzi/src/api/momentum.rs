@@ -91,14 +91,14 @@ mod tests {
     use super::*;
     use crate::dynamics as kernel;
     use crate::model::Workspace;
-    use crate::testing::{floating_tree, moving, state, tree, wrench};
+    use crate::testing::{floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, wrench};
     use crate::{Dual, Environment};
     use alloc::vec::Vec;
 
     fn models() -> impl Iterator<Item = (u64, Model)> {
         [(5, 0), (9, 2), (14, 3)].into_iter().enumerate().flat_map(|(k, (links, mimics))| {
             let seed = 300 + k as u64;
-            [(seed, tree(seed, links, mimics)), (seed, floating_tree(seed, links, mimics))]
+            [tree, floating_tree, mixed_tree, floating_mixed_tree].map(|make| (seed, make(seed, links, mimics)))
         })
     }
 

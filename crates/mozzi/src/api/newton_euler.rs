@@ -58,18 +58,18 @@ impl Model<f64> {
         for (dV, V) in dV.iter_mut().zip(&V) {
             dV.v -= V.w.cross(V.v);
         }
-        let frames: Vec<SE3> = (1..=self.moving_links())
+        let frames: Vec<(usize, SE3)> = (self.moving_slots())
             .map(|slot| match frame {
-                BodyFrame::Link => self.link_frame(slot),
-                BodyFrame::CenterOfMass => self.body_frame(slot),
+                BodyFrame::Link => (slot, self.link_frame(slot)),
+                BodyFrame::CenterOfMass => (slot, self.body_frame(slot)),
             })
             .collect();
-        let twists = |list: &[Twist]| list[1..].iter().zip(&frames).map(|(&V, T)| T.inverse().Ad() * V).collect();
+        let twists = |list: &[Twist]| frames.iter().map(|(slot, T)| T.inverse().Ad() * list[*slot]).collect();
         let G = self.base_inertia;
         Ok(NewtonEuler {
             twists: twists(&V),
             accelerations: twists(&dV),
-            wrenches: F[1..].iter().zip(&frames).map(|(&F, T)| T.Ad().transpose() * F).collect(),
+            wrenches: frames.iter().map(|(slot, T)| T.Ad().transpose() * F[*slot]).collect(),
             base_reaction: match self.base() {
                 Base::Fixed => F[0] + G * dV[0] - V[0].ad().transpose() * (G * V[0]),
                 Base::Floating => F[0],

@@ -1,23 +1,34 @@
 //! The order in which another library has the joints.
 
-use crate::model::{Base, Error, Model};
+use crate::model::{Error, Model, Place};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// mozzi's number of the other's k-th joint, at k.
+/// The joints as the other has them.
 #[derive(Clone, Debug)]
 pub(super) struct JointOrder {
-    base: Base,
+    /// mozzi's number of the other's k-th joint, at k.
     joints: Vec<usize>,
+    /// mozzi's place of each, after that of a floating base.
+    places: Vec<Place>,
+    /// mozzi's number of the other's k-th velocity, at k: linear first, where there are both.
+    velocities: Vec<usize>,
 }
 
 impl JointOrder {
     /// By number.
     pub fn new(model: &Model, joints: Vec<usize>) -> Self {
-        JointOrder { base: model.base(), joints }
+        let base = model.is_floating().then_some(model.configuration_space().places()[0]);
+        let places: Vec<Place> = base.into_iter().chain(joints.iter().map(|&k| model.places()[k])).collect();
+        let of_place = |place: &Place| {
+            let (j, n) = (place.j, place.freedom.velocities());
+            (0..n).map(move |k| if n == 6 { j + (k + 3) % 6 } else { j + k })
+        };
+        let velocities = places.iter().flat_map(of_place).collect();
+        JointOrder { joints, places, velocities }
     }
 
     /// By name: each independent joint once.
@@ -42,21 +53,22 @@ impl JointOrder {
         &self.joints
     }
 
-    pub fn is_floating(&self) -> bool {
-        self.base == Base::Floating
+    /// mozzi's place of each of the other's, a floating base's first.
+    pub fn places(&self) -> &[Place] {
+        &self.places
     }
 
     /// The length of θ.
     pub fn nq(&self) -> usize {
-        self.base.positions() + self.joints.len()
+        self.places.iter().map(|place| place.freedom.positions()).sum()
     }
 
     /// The length of θ̇, and of the other's velocities.
     pub fn n(&self) -> usize {
-        self.base.velocities() + self.joints.len()
+        self.velocities.len()
     }
 
-    /// A vector of velocities or forces in the other's order of joints, and linear first where the base floats.
+    /// A vector of velocities or forces in the other's order of joints, and linear first where there are both.
     pub fn velocities_to(&self, what: &'static str, mine: &[f64]) -> Result<DVector<f64>, Error> {
         check_length(what, mine.len(), self.n())?;
         Ok(DVector::from_fn(self.n(), |k, _| mine[self.velocity(k)]))
@@ -88,10 +100,7 @@ impl JointOrder {
 
     /// mozzi's number of the other's k-th velocity.
     pub fn velocity(&self, k: usize) -> usize {
-        match k.checked_sub(self.base.velocities()) {
-            Some(joint) => self.base.velocities() + self.joints[joint],
-            None => (k + 3) % 6,
-        }
+        self.velocities[k]
     }
 
     pub fn check_matrix(&self, what: &'static str, matrix: &DMatrix<f64>) -> Result<(), Error> {

@@ -3,9 +3,11 @@
 use super::JointOrder;
 use super::joint_order::check_length;
 use crate::api::check_unit;
-use crate::lie::SO3;
+use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
-use crate::model::{Error, Model};
+use crate::model::{Error, Freedom, Model};
+use crate::spatial::Twist;
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 /// States, forces and matrices of a model in the coordinates of MuJoCo, and back.
@@ -19,6 +21,9 @@ use nalgebra::{DMatrix, DVector};
 /// | mass matrix | M | XᵀMX, with θ̇ = X `qvel` |
 /// | h | h | Xᵀ(h + Mβ), with θ̈ = X `qacc` + β, β = (0, −ω × v, 0) |
 ///
+/// A ball has the quaternion and ω in both. A free joint inside the robot is as a floating base; MuJoCo, which has them on the world alone, takes the pose in
+/// {s} where mozzi's is seen from where the joint's frame is at 0.
+///
 /// h is no [`force`](Self::force) alone: it is what θ̈ = 0 needs, and `qfrc_bias` what `qacc` = 0 needs.
 ///
 /// All is exact to the rounding of one rotation; permutations, and all of a fixed robot, to the bit. Where mozzi's methods take θ
@@ -26,12 +31,14 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Clone, Debug)]
 pub struct MuJoCo {
     order: JointOrder,
+    /// Of each free joint (and a floating base) by its number among the places, where MuJoCo sees its configuration from: at 0 of it, seen from {s}.
+    homes: Vec<(usize, SE3)>,
 }
 
 impl MuJoCo {
     /// Joints in mozzi's own order, as MuJoCo has it too when it reads the same file: depth first, siblings as they stand.
     pub fn new(model: &Model) -> Self {
-        MuJoCo { order: JointOrder::new(model, (0..model.joint_names().len()).collect()) }
+        MuJoCo::of(model, JointOrder::new(model, (0..model.joint_names().len()).collect()))
     }
 
     /// Joints as a MuJoCo model names them, the free one left out.
@@ -39,7 +46,13 @@ impl MuJoCo {
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NoSuchJoint`], [`Error::BadArgument`]: unless these are the independent joints, each once.
     pub fn with_joints(model: &Model, names: &[&str]) -> Result<Self, Error> {
-        Ok(MuJoCo { order: JointOrder::by_name(model, names)? })
+        Ok(MuJoCo::of(model, JointOrder::by_name(model, names)?))
+    }
+
+    fn of(model: &Model, order: JointOrder) -> Self {
+        let free = order.places().iter().enumerate().filter(|(_, place)| place.freedom == Freedom::Free);
+        let homes = free.map(|(k, place)| (k, model.home_on_base(place).unwrap_or(SE3::identity()))).collect();
+        MuJoCo { order, homes }
     }
 
     /// mozzi's number, among the joints, of each of MuJoCo's.
@@ -53,7 +66,18 @@ impl MuJoCo {
     /// [`Error::WrongLength`].
     pub fn configuration(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
         check_length("theta", theta.len(), self.order.nq())?;
-        Ok(DVector::from_fn(self.order.nq(), |k, _| theta[self.position(k)]))
+        let mut qpos = Vec::with_capacity(theta.len());
+        for (k, place) in self.order.places().iter().enumerate() {
+            let mine = &theta[place.positions()];
+            match (place.freedom, mine) {
+                (Freedom::Free, &[w, x, y, z, px, py, pz]) => {
+                    let [w, x, y, z, px, py, pz] = seen([w, x, y, z, px, py, pz], self.home(k));
+                    qpos.extend([px, py, pz, w, x, y, z]);
+                }
+                _ => qpos.extend(mine),
+            }
+        }
+        Ok(DVector::from_vec(qpos))
     }
 
     /// θ from `qpos`.
@@ -62,8 +86,18 @@ impl MuJoCo {
     /// [`Error::WrongLength`].
     pub fn from_configuration(&self, qpos: &[f64]) -> Result<DVector<f64>, Error> {
         check_length("qpos", qpos.len(), self.order.nq())?;
-        let mut theta = DVector::zeros(self.order.nq());
-        (0..self.order.nq()).for_each(|k| theta[self.position(k)] = qpos[k]);
+        let (mut theta, mut rest) = (DVector::zeros(self.order.nq()), qpos);
+        for (k, place) in self.order.places().iter().enumerate() {
+            let (theirs, others) = rest.split_at(place.freedom.positions());
+            rest = others;
+            let mine = &mut theta.as_mut_slice()[place.positions()];
+            match (place.freedom, theirs) {
+                (Freedom::Free, &[px, py, pz, w, x, y, z]) => {
+                    mine.copy_from_slice(&seen([w, x, y, z, px, py, pz], self.home(k).map(SE3::inverse)));
+                }
+                _ => mine.copy_from_slice(theirs),
+            }
+        }
         Ok(theta)
     }
 
@@ -72,7 +106,7 @@ impl MuJoCo {
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
     pub fn velocity(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
-        let R = self.orientation(theta)?;
+        let R = self.orientations(theta)?;
         Ok(turned(self.order.velocities_to("dtheta", dtheta)?, R))
     }
 
@@ -89,7 +123,7 @@ impl MuJoCo {
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
     pub fn acceleration(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64]) -> Result<DVector<f64>, Error> {
-        let (R, beta) = (self.orientation(theta)?, self.spin(dtheta)?);
+        let (R, beta) = (self.orientations(theta)?, self.spin(dtheta)?);
         check_length("ddtheta", ddtheta.len(), self.order.n())?;
         Ok(turned(self.order.velocities_to("ddtheta", (DVector::from_column_slice(ddtheta) - beta).as_slice())?, R))
     }
@@ -108,7 +142,7 @@ impl MuJoCo {
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
     pub fn force(&self, theta: &[f64], tau: &[f64]) -> Result<DVector<f64>, Error> {
-        let R = self.orientation(theta)?;
+        let R = self.orientations(theta)?;
         Ok(turned(self.order.velocities_to("tau", tau)?, R))
     }
 
@@ -125,7 +159,7 @@ impl MuJoCo {
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
     pub fn mass_matrix(&self, theta: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-        let R = self.orientation(theta)?;
+        let R = self.orientations(theta)?;
         Ok(congruent(self.order.matrix_to("M", M)?, R))
     }
 
@@ -134,9 +168,9 @@ impl MuJoCo {
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
     pub fn from_mass_matrix(&self, qpos: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-        let R = self.orientation(self.from_configuration(qpos)?.as_slice())?;
+        let R = self.orientations(self.from_configuration(qpos)?.as_slice())?;
         self.order.check_matrix("M", M)?;
-        self.order.matrix_from("M", &congruent(M.clone(), R.map(SO3::inverse)))
+        self.order.matrix_from("M", &congruent(M.clone(), back(R)))
     }
 
     /// `qfrc_bias` from h and M, both mozzi's: Xᵀ(h + Mβ), β = (0, −ω × v, 0).
@@ -152,7 +186,7 @@ impl MuJoCo {
     ) -> Result<DVector<f64>, Error> {
         self.order.check_matrix("M", M)?;
         check_length("h", h.len(), self.order.n())?;
-        if !self.order.is_floating() {
+        if self.homes.is_empty() {
             return self.order.velocities_to("h", h);
         }
         self.force(theta, (DVector::from_column_slice(h) + M * self.spin(dtheta)?).as_slice())
@@ -171,68 +205,83 @@ impl MuJoCo {
     ) -> Result<DVector<f64>, Error> {
         self.order.check_matrix("M", M)?;
         let h = self.turned_back(qpos, "qfrc_bias", qfrc_bias)?;
-        if !self.order.is_floating() {
+        if self.homes.is_empty() {
             return Ok(h);
         }
         Ok(h - M * self.spin(self.from_velocity(qpos, qvel)?.as_slice())?)
     }
 
-    /// mozzi's number of MuJoCo's k-th position.
-    fn position(&self, k: usize) -> usize {
-        let base = self.order.nq() - self.joints().len();
-        match k.checked_sub(base) {
-            Some(joint) => base + self.joints()[joint],
-            None => (k + 4) % 7,
-        }
+    /// Where MuJoCo sees the configuration of this place from, unless from the same frame.
+    fn home(&self, k: usize) -> Option<SE3> {
+        self.homes.iter().find(|(place, home)| *place == k && *home != SE3::identity()).map(|(_, home)| *home)
     }
 
-    /// `R_sb` of a floating base.
-    fn orientation(&self, theta: &[f64]) -> Result<Option<SO3>, Error> {
+    /// Of each free joint, where its linear velocity stands in `qvel`, and the rotation from its axes to MuJoCo's.
+    fn orientations(&self, theta: &[f64]) -> Result<Vec<(usize, SO3)>, Error> {
         check_length("theta", theta.len(), self.order.nq())?;
-        let (Some(&[w, x, y, z]), true) = (theta.first_chunk(), self.order.is_floating()) else { return Ok(None) };
-        check_unit([w, x, y, z])?;
-        Ok(Some(SO3::from_quaternion(w, Vec3([x, y, z]))))
+        let (mut turns, mut at) = (Vec::new(), 0);
+        for (k, place) in self.order.places().iter().enumerate() {
+            if let (Freedom::Free, &[w, x, y, z, ..]) = (place.freedom, &theta[place.positions()]) {
+                check_unit([w, x, y, z])?;
+                let R = SO3::from_quaternion(w, Vec3([x, y, z]));
+                turns.push((at, self.home(k).map_or(R, |home| home.R * R)));
+            }
+            at += place.freedom.velocities();
+        }
+        Ok(turns)
     }
 
     /// β = Ẋ `qvel`: −ω × v in the rows of v, for the body's axes turn under the velocity.
     fn spin(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
         check_length("dtheta", dtheta.len(), self.order.n())?;
         let mut beta = DVector::zeros(self.order.n());
-        if let (&[wx, wy, wz, vx, vy, vz, ..], true) = (dtheta, self.order.is_floating()) {
-            let turning = Vec3([vx, vy, vz]).cross(Vec3([wx, wy, wz]));
-            (0..3).for_each(|i| beta[3 + i] = turning.0[i]);
+        for place in self.order.places().iter().filter(|place| place.freedom == Freedom::Free) {
+            let V = Twist::from_array(core::array::from_fn(|k| dtheta[place.j + k]));
+            let turning = V.v.cross(V.w);
+            (0..3).for_each(|i| beta[place.j + 3 + i] = turning.0[i]);
         }
         Ok(beta)
     }
 
     /// X `theirs`, which X⁻ᵀ is too: a rotation and a permutation.
     fn turned_back(&self, qpos: &[f64], what: &'static str, theirs: &[f64]) -> Result<DVector<f64>, Error> {
-        let R = self.orientation(self.from_configuration(qpos)?.as_slice())?;
+        let R = self.orientations(self.from_configuration(qpos)?.as_slice())?;
         check_length(what, theirs.len(), self.order.n())?;
-        let turned = turned(DVector::from_column_slice(theirs), R.map(SO3::inverse));
+        let turned = turned(DVector::from_column_slice(theirs), back(R));
         self.order.velocities_from(what, turned.as_slice())
     }
 }
 
-/// R times the first three entries.
-fn turned(mut list: DVector<f64>, R: Option<SO3>) -> DVector<f64> {
-    if let Some(R) = R {
-        let first = R * Vec3([list[0], list[1], list[2]]);
-        (0..3).for_each(|i| list[i] = first.0[i]);
-    }
+/// A configuration seen from another frame, at T of it.
+fn seen(pose: [f64; 7], T: Option<SE3>) -> [f64; 7] {
+    T.map_or(pose, |T| (T * SE3::from_pose(pose)).to_pose())
+}
+
+fn back(turns: Vec<(usize, SO3)>) -> Vec<(usize, SO3)> {
+    turns.into_iter().map(|(at, R)| (at, R.inverse())).collect()
+}
+
+/// R times the three entries from each place on.
+fn turned(mut list: DVector<f64>, turns: Vec<(usize, SO3)>) -> DVector<f64> {
+    turn(list.as_mut_slice(), &turns);
     list
 }
 
+fn turn(list: &mut [f64], turns: &[(usize, SO3)]) {
+    for &(at, R) in turns {
+        let three = R * Vec3([list[at], list[at + 1], list[at + 2]]);
+        list[at..at + 3].copy_from_slice(&three.0);
+    }
+}
+
 /// Diag(R, I) M diag(R, I)ᵀ.
-fn congruent(mut M: DMatrix<f64>, R: Option<SO3>) -> DMatrix<f64> {
-    if let Some(R) = R {
-        for _ in 0..2 {
-            M.column_iter_mut().for_each(|mut column| {
-                let first = R * Vec3([column[0], column[1], column[2]]);
-                (0..3).for_each(|i| column[i] = first.0[i]);
-            });
-            M = M.transpose();
-        }
+fn congruent(mut M: DMatrix<f64>, turns: Vec<(usize, SO3)>) -> DMatrix<f64> {
+    if turns.is_empty() {
+        return M;
+    }
+    for _ in 0..2 {
+        M.column_iter_mut().for_each(|mut column| turn(column.as_mut_slice(), &turns));
+        M = M.transpose();
     }
     M
 }
@@ -242,12 +291,18 @@ mod tests {
     use super::*;
     use crate::kinematics::integrate;
     use crate::model::Environment;
-    use crate::testing::{Random, floating_tree, state, tree};
-    use alloc::vec::Vec;
+    use crate::testing::{Random, floating_mixed_tree, floating_tree, mixed_tree, state, tree};
 
     /// A model, its conversion with the joints the other way round, and its state.
     fn cases() -> impl Iterator<Item = (Model, MuJoCo, [Vec<f64>; 3])> {
-        [tree(4, 7, 0), floating_tree(4, 7, 2), floating_tree(9, 3, 0)].into_iter().zip(1..).map(|(model, seed)| {
+        let models = [
+            tree(4, 7, 0),
+            floating_tree(4, 7, 2),
+            floating_tree(9, 3, 0),
+            mixed_tree(4, 7, 0),
+            floating_mixed_tree(5, 9, 2),
+        ];
+        models.into_iter().zip(1..).map(|(model, seed)| {
             let names: Vec<&str> = model.joint_names().collect();
             let names: Vec<&str> = names.into_iter().rev().collect();
             let mujoco = MuJoCo::with_joints(&model, &names).expect("its joints");
@@ -314,7 +369,7 @@ mod tests {
     fn there_and_back() {
         for (model, mujoco, [theta, dtheta, ddtheta]) in cases() {
             // a rotation there and one back: a few ε of the sizes of what is turned, nothing where nothing turns
-            let bound = if model.is_floating() { 16.0 * f64::EPSILON } else { 0.0 };
+            let bound = if !model.configuration_space().is_flat() { 16.0 * f64::EPSILON } else { 0.0 };
             let close = |found: DVector<f64>, given: &[f64], size: f64| {
                 let error = (found - DVector::from_column_slice(given)).amax();
                 assert!(error <= bound * size, "{error:e} of {size}");

@@ -4,7 +4,7 @@ use super::JointOrder;
 use super::joint_order::check_length;
 use crate::kinematics::Jacobian;
 use crate::model::description::Joint;
-use crate::model::{Error, Model};
+use crate::model::{Error, Freedom, Model, Place};
 use crate::scalar::{Real, Scalar};
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -19,6 +19,8 @@ use nalgebra::{DMatrix, DVector};
 /// | velocity | (ω, v, joints), in the base link's coordinates | `v` = (v, ω, joints), in the same |
 /// | acceleration | its derivative | `a`, its derivative: the spatial one, in the same |
 /// | force | (m, f, joints) | `tau` = (f, m, joints) |
+///
+/// A ball is its `JointModelSpherical`: (q_x, q_y, q_z, q_w), and ω in both. A free joint inside the robot is as a floating base.
 ///
 /// Joints stand as Pinocchio's reader of URDF orders them: depth first, siblings by the alphabet. One that turns without limits
 /// (URDF: continuous) has two positions, (cos θ, sin θ). Mimic joints have none, as with `mimic=True`.
@@ -58,13 +60,20 @@ impl Pinocchio {
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NoSuchJoint`], [`Error::BadArgument`]: unless these are the independent joints, each once,
-    /// with 1 or 2 positions.
+    /// with 1 or 2 positions, of a ball 4, of a free joint 7.
     pub fn with_joints(model: &Model, names: &[&str], nqs: &[usize]) -> Result<Self, Error> {
         let order = JointOrder::by_name(model, names)?;
         check_length("the list of joints' numbers of positions", nqs.len(), names.len())?;
-        if let Some(k) = nqs.iter().position(|nq| ![1, 2].contains(nq)) {
-            let found = alloc::format!("{} of `{}`", nqs[k], names[k]);
-            return Err(Error::BadArgument { what: "a joint's number of positions", found, expected: "1 or 2" });
+        for ((k, &nq), &joint) in nqs.iter().enumerate().zip(order.joints()) {
+            let (expected, fits) = match model.places()[joint].freedom {
+                Freedom::One => ("1 or 2", [1, 2].contains(&nq)),
+                Freedom::Ball => ("4 of a ball", nq == 4),
+                Freedom::Free => ("7 of a free joint", nq == 7),
+            };
+            if !fits {
+                let found = alloc::format!("{nq} of `{}`", names[k]);
+                return Err(Error::BadArgument { what: "a joint's number of positions", found, expected });
+            }
         }
         Ok(Pinocchio { order, is_circle: nqs.iter().map(|&nq| nq == 2).collect() })
     }
@@ -72,6 +81,12 @@ impl Pinocchio {
     /// mozzi's number, among the joints, of each of Pinocchio's.
     pub fn joints(&self) -> &[usize] {
         self.order.joints()
+    }
+
+    /// mozzi's places in Pinocchio's order, a floating base's first, and which of them have the positions (cos θ, sin θ).
+    fn places(&self) -> impl Iterator<Item = (&Place, bool)> {
+        let base = self.order.places().len() - self.is_circle.len();
+        self.order.places().iter().zip(core::iter::repeat_n(false, base).chain(self.is_circle.iter().copied()))
     }
 
     /// Pinocchio's `nq`: a continuous joint has two positions.
@@ -86,19 +101,15 @@ impl Pinocchio {
     pub fn configuration(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
         check_length("theta", theta.len(), self.order.nq())?;
         let mut q = Vec::with_capacity(self.nq());
-        let joints = match (theta, self.order.is_floating()) {
-            (&[w, x, y, z, px, py, pz, ref joints @ ..], true) => {
-                q.extend([px, py, pz, x, y, z, w]);
-                joints
-            }
-            _ => theta,
-        };
-        for (&j, &is_circle) in self.joints().iter().zip(&self.is_circle) {
-            if is_circle {
-                let (sin, cos) = Scalar::sin_cos(joints[j]);
-                q.extend([cos, sin]);
-            } else {
-                q.push(joints[j]);
+        for (place, is_circle) in self.places() {
+            match (place.freedom, &theta[place.positions()]) {
+                (Freedom::Free, &[w, x, y, z, px, py, pz]) => q.extend([px, py, pz, x, y, z, w]),
+                (Freedom::Ball, &[w, x, y, z]) => q.extend([x, y, z, w]),
+                (_, angle) if is_circle => {
+                    let (sin, cos) = Scalar::sin_cos(angle[0]);
+                    q.extend([cos, sin]);
+                }
+                (_, mine) => q.extend(mine),
             }
         }
         Ok(DVector::from_vec(q))
@@ -110,20 +121,17 @@ impl Pinocchio {
     /// [`Error::WrongLength`].
     pub fn from_configuration(&self, q: &[f64]) -> Result<DVector<f64>, Error> {
         check_length("q", q.len(), self.nq())?;
-        let mut theta = vec![0.0; self.order.nq()];
-        let mut rest = q;
-        if let (&[px, py, pz, x, y, z, w, ref joints @ ..], true) = (q, self.order.is_floating()) {
-            theta[..7].copy_from_slice(&[w, x, y, z, px, py, pz]);
-            rest = joints;
-        }
-        let start = theta.len() - self.joints().len();
-        for (&j, &is_circle) in self.joints().iter().zip(&self.is_circle) {
-            theta[start + j] = match *rest {
-                [cos, sin, ..] if is_circle => Real::atan2(sin, cos),
-                [angle, ..] => angle,
-                [] => f64::NAN, // not with the length that was checked
-            };
-            rest = &rest[1 + usize::from(is_circle)..];
+        let (mut theta, mut rest) = (vec![0.0; self.order.nq()], q);
+        for (place, is_circle) in self.places() {
+            let (theirs, others) = rest.split_at(place.freedom.positions() + usize::from(is_circle));
+            rest = others;
+            let mine = &mut theta[place.positions()];
+            match (place.freedom, theirs) {
+                (Freedom::Free, &[px, py, pz, x, y, z, w]) => mine.copy_from_slice(&[w, x, y, z, px, py, pz]),
+                (Freedom::Ball, &[x, y, z, w]) => mine.copy_from_slice(&[w, x, y, z]),
+                (_, &[cos, sin]) => mine[0] = Real::atan2(sin, cos),
+                (_, theirs) => mine.copy_from_slice(theirs),
+            }
         }
         Ok(DVector::from_vec(theta))
     }

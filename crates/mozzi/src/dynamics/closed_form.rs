@@ -4,7 +4,7 @@
 use super::joint_friction::joint_friction;
 use crate::kinematics::base_pose;
 use crate::lie::SE3;
-use crate::model::{Environment, Error, Model};
+use crate::model::{Environment, Error, Model, Motion};
 use crate::scalar::{Real, Scalar};
 use crate::spatial::{Twist, Wrench};
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, DMatrix, DVector};
@@ -22,7 +22,8 @@ impl<S: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + Clo
 
 /// Every stacked vector and matrix of the closed form at one state, for N moving links and n velocities. Frame {i} is at the
 /// centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A floating base is the first of the
-/// N moving links, with the axes I, in the base link's own frame.
+/// N moving links, with the axes I, in the base link's own frame. A ball is three links and a free joint six, massless but for the last, in frames of
+/// their own axes that stand still in the last; so the whole joint's twist is in the first one's block of [ad_𝒜θ̇], and nothing in the others'.
 ///
 /// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
 /// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
@@ -65,7 +66,7 @@ impl<S: Entry> Model<S> {
         self.check_lengths(theta, [("dtheta", dtheta)])?;
         self.check_environment(environment)?;
         let (n, base) = (self.n(), usize::from(self.is_floating()));
-        let N = base + self.moving_links();
+        let N = base + self.links.len();
         let mut form = ClosedForm {
             A: DMatrix::zeros(6 * N, n),
             G: DMatrix::zeros(6 * N, 6 * N),
@@ -90,8 +91,16 @@ impl<S: Entry> Model<S> {
             form.dV_base.rows_mut(0, 6).copy_from(&(&Ad * vector6(environment.proper_base_acceleration())));
         }
         for (i, link) in self.links.iter().enumerate() {
-            let (A, q) = (self.screw_of(i + 1), link.ratio * theta[link.q] + link.offset);
-            let T = SE3::exp(A * -q) * self.home_in_parent(i + 1).inverse(); // T_{i,p} = e^{−[A]q} M_{i,p}
+            let A = self.screw_of(i + 1);
+            let frame = |slot: usize| self.body_frame(slot);
+            let T = match link.motion {
+                // T_{i,p} = e^{−[A]q} M_{i,p}
+                Motion::Screw => {
+                    let q = link.ratio * theta[link.q] + link.offset;
+                    SE3::exp(A * -q) * self.home_in_parent(i + 1).inverse()
+                }
+                _ => frame(i + 1).inverse() * self.link::<S>(i + 1).transform(theta) * frame(link.parent),
+            };
             let Ad = matrix6(T.Ad().to_matrix());
             let G = matrix6(self.body_inertia(i + 1).to_matrix());
             let i = base + i;
@@ -104,7 +113,19 @@ impl<S: Entry> Model<S> {
             }
             form.A.view_mut((6 * i, link.j), (6, 1)).copy_from(&vector6(A * link.ratio));
             form.G.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&G);
-            let ad = matrix6((A * (link.ratio * dtheta[link.j])).ad().to_matrix());
+            let own = match link.motion {
+                Motion::Screw => A * (link.ratio * dtheta[link.j]),
+                Motion::Ball | Motion::Free => {
+                    // (ω, v) in the axes of the joint's first link, which are the link's y, z and x
+                    let V: [S; 6] = core::array::from_fn(|k| match link.motion {
+                        Motion::Ball if k > 2 => <S as Scalar>::zero(),
+                        _ => dtheta[link.j + k / 3 * 3 + (k + 1) % 3],
+                    });
+                    Twist::from_array(V)
+                }
+                Motion::Next => Twist::zero(),
+            };
+            let ad = matrix6(own.ad().to_matrix());
             form.ad_Adtheta.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&ad);
         }
         let mut power = form.W.clone();

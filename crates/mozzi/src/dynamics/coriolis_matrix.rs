@@ -1,6 +1,7 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
 use crate::kinematics::{base_twist, joint_transforms};
+use crate::lie::SE3;
 use crate::linalg::add_transpose;
 use crate::model::{Model, Workspace};
 use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output};
@@ -51,6 +52,9 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
         G_c[i]  = link.G();
         dG_c[i] = link.G().rate(V[i]);
         P[i]    = link.G() * V[i];                                             // momentum
+        if link.is_last && link.is_next() {
+            moved_by_all(model, i, T, V, dV);
+        }
     }
     for (i, link) in model.inward::<S>() {
         let (j, A) = (link.j, link.A().twist() * link.ratio());
@@ -92,6 +96,22 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
                 C[s * n + r] = entry;
             }
         }
+    }
+}
+
+/// The rates of the axes of a ball or a free joint, whose last is i: its link moves them all.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+fn moved_by_all<S: Scalar + From<C0>, C0: Scalar>(model: &Model<C0>, i: usize, T: &[SE3<S>], V: &[Twist<S>], dV: &mut [Twist<S>]) {
+    let mut V_J = V[i];
+    let mut above = i;
+    for (k, link) in model.to_base::<S>(model.links[i - 1].parent) {
+        V_J = T[above].inverse().Ad() * V_J;
+        dV[k] = (V_J.ad() * link.unit()).twist();
+        if !link.is_next() {
+            break;
+        }
+        above = k;
     }
 }
 

@@ -14,7 +14,7 @@
 //!
 //! > ∂𝒱 = Ȧ, ∂𝒱̇ = Ä − `[ad_𝒱]` Ȧ, ∂𝓕 = 𝒢 Ä + (−𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢) Ȧ − `[ad_Ȧ]`ᵀ 𝒢𝒱 = 𝒢 Ä + 𝓑 Ȧ, by θ
 //! >
-//! > ∂𝒱 = A, ∂𝒱̇ = 2 Ȧ − `[ad_𝒱]` A, ∂𝓕 = 2 𝒢 Ȧ + 𝓑 A, by θ̇
+//! > ∂𝒱 = A, ∂𝒱̇ = D − `[ad_𝒱]` A, ∂𝓕 = 𝒢 D + 𝓑 A, by θ̇, with D = Ȧ + `[ad_𝒱_J]` A, 𝒱_J the twist of the link that the joint carries: 2 Ȧ for a joint of one axis
 //! >
 //! > ∂𝒱 = 0, ∂𝒱̇ = A, ∂𝓕 = 𝒢 A, by θ̈
 //!
@@ -28,10 +28,14 @@
 //!
 //! > ∂τ_i/∂θ_j = A_iᵀ (𝒢ᶜ_i Ä_j + 𝓑ᶜ_i Ȧ_j), j at or before i; A_iᵀ (𝒢ᶜ_j Ä_j + 𝓑ᶜ_j Ȧ_j − `[ad_A_j]`ᵀ 𝓕ᶜ_j), j beyond i
 //! >
-//! > ∂τ_i/∂θ̇_j = A_iᵀ (2 𝒢ᶜ Ȧ_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
+//! > ∂τ_i/∂θ̇_j = A_iᵀ (𝒢ᶜ D_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
+//!
+//! The axes of one ball or free joint are carried together: for two of them, j is never beyond i.
 
 use crate::kinematics::{base_motion, base_pose};
+use crate::lie::SE3;
 use crate::linalg::Vec3;
+use crate::model::Rates;
 use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
@@ -62,7 +66,7 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, axes, G_c, B, .. } = workspace;
+    let Workspace { T, V, dV, F, carrier, axes, G_c, B, .. } = workspace;
     let (T, V, dV, F) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
     let (axes, G_c, B) = (&mut axes[..slots], &mut G_c[..slots], &mut B[..slots]);
 
@@ -77,12 +81,21 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         let (p, j, Ad) = (link.parent, link.j, T[i].Ad());
         let (V_p, dV_p) = (Ad * V[p], Ad * dV[p]);
+        let [V_c, dV_c] = match link.is_next() {                             // of the link that carries the joint
+            true  => carrier[p].map(|V| Ad * V),
+            false => [V_p, dV_p],
+        };
         let A    = link.unit();
-        let dA   = (V_p.ad() * A).twist();
-        let ddA  = V_p.ad() * dA + dV_p.ad() * A;
+        let dA   = (V_c.ad() * A).twist();
+        let ddA  = V_c.ad() * dA + dV_c.ad() * A;
         let V_i  = V_p + link.A() * link.rate(dtheta);
         let dV_i = dA.mul_add(dtheta[j], dV_p) + link.A() * link.rate(ddtheta);
-        (V[i], dV[i], axes[i]) = (V_i, dV_i, [dA, ddA]);
+        (V[i], dV[i], axes[i]) = (V_i, dV_i, Rates { dA: dA.w, ddA, D: dA + dA });
+        if !link.is_last {
+            carrier[i] = [V_c, dV_c];
+        } else if link.is_next() {
+            several_axes(model, i, T, V, axes);
+        }
         let G = link.G();
         let P = G * V_i;
         (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V_i, P));
@@ -99,14 +112,20 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
-    let Workspace { T, dV, F, U, axes, G_c, .. } = workspace;
+    let Workspace { T, dV, F, U, carrier, axes, G_c, .. } = workspace;
     dV[0] = match ddtheta.first_chunk() {
         Some(&dV) if model.is_floating() => Twist::from_array(dV),
         _ => Twist::zero(),
     };
     for (i, link) in model.outward::<S>() {
-        let ([_, ddA], dV_p) = (&mut axes[i], T[i].Ad() * dV[link.parent]);
-        *ddA = *ddA + dV_p.ad() * link.unit();
+        let (Ad, p) = (T[i].Ad(), link.parent);
+        let dV_p = Ad * dV[p];
+        let dV_c = if link.is_next() { Ad * carrier[p][1] } else { dV_p };
+        if !link.is_last {
+            carrier[i][1] = dV_c;
+        }
+        let ddA = &mut axes[i].ddA;
+        *ddA = *ddA + dV_c.ad() * link.unit();
         dV[i] = dV_p + link.A() * link.rate(ddtheta);
         U[i]  = U[i] * ddtheta[link.j];
     }
@@ -149,14 +168,17 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
     let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
 
     for (i, link) in model.inward::<S>() {
-        let (j, A, [dA, ddA], G_i, B_i) = (link.j, link.unit(), axes[i], G_c[i], B[i]);
-        let (mut GA, GdA) = (G_i * A, G_i * dA);
+        let (j, A, Rates { dA, ddA, D }, G_i, B_i) = (link.j, link.unit(), axes[i], G_c[i], B[i]);
+        let mut GA = G_i * A;
         let U_i = GA;
-        let mut column  = G_i * ddA + B_i * dA - A.ad_transpose(F[i]);     // ∂𝓕 by θ_j, felt below joint i
-        let mut dcolumn = GdA + GdA + B_i * A;                               // by θ̇_j
+        let mut column  = G_i * ddA + B_i * dA - A.ad_transpose(F[i]);       // ∂𝓕 by θ_j, felt below joint i
+        let mut dcolumn = G_i * D + B_i * A;                                 // by θ̇_j
         let mut BtA = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
         if let Some(d_theta) = &mut d_theta {
             d_theta[j * n + j] += A * column;
+            if link.is_next() {
+                carried_together(model, i, T, A.ad_transpose(F[i]), d_theta);
+            }
         }
         if let Some(d_dtheta) = &mut d_dtheta {
             d_dtheta[j * n + j] += A * dcolumn;
@@ -169,16 +191,15 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
             let Ad = T[above].Ad().transpose();
             (column, dcolumn, GA, BtA) = (Ad * column, Ad * dcolumn, Ad * GA, T[above].R.inverse_mul(BtA));
             above = k;
-            let (A, [dA, ddA]) = (below.unit(), axes[k]);
+            let (A, Rates { dA, ddA, D }) = (below.unit(), axes[k]);
             let (ij, ji) = (below.j * n + j, j * n + below.j);
             if let Some(d_theta) = &mut d_theta {
                 d_theta[ij] += A * column;
-                d_theta[ji] += ddA.dot(GA) + dA.w.dot(BtA);
+                d_theta[ji] += ddA.dot(GA) + dA.dot(BtA);
             }
             if let Some(d_dtheta) = &mut d_dtheta {
-                let dAGA = dA.dot(GA);
                 d_dtheta[ij] += A * dcolumn;
-                d_dtheta[ji] += dAGA + dAGA + A.a * BtA.0[2];
+                d_dtheta[ji] += D.dot(GA) + A.a * BtA.0[2];
             }
             if let Some(M) = &mut M {
                 let entry = A * GA;
@@ -220,15 +241,50 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
         for (r, e) in Twist::axes().into_iter().enumerate() {
             let de = V_s.ad() * e;
             if let Some(d_theta) = &mut d_theta {
-                set_column(d_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de);
+                set_column(d_theta, n, r, G * (dV_s.ad() * e + V_s.ad() * de) + B * de.w);
             }
             if let Some(d_dtheta) = &mut d_dtheta {
-                set_column(d_dtheta, n, r, G * (de + V[0].ad() * e) + B * e);
+                set_column(d_dtheta, n, r, G * (de + V[0].ad() * e) + B * e.w);
             }
             if let Some(M) = &mut M {
                 set_column(M, n, r, G * e);
             }
         }
+    }
+}
+
+/// D of a ball's or a free joint's axes, whose last is i: `[ad_𝒱_J]` A once, instead of Ȧ twice, 𝒱_J seen from each axis.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+fn several_axes<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, i: usize, T: &[SE3<S>], V: &[Twist<S>], axes: &mut [Rates<S>],
+) {
+    let (mut k, mut V_J) = (i, V[i]);
+    loop {
+        let link = model.link::<S>(k);
+        let D = &mut axes[k].D;
+        *D = *D * S::from_f64(0.5) + (V_J.ad() * link.unit()).twist();
+        if !link.is_next() {
+            break;
+        }
+        (k, V_J) = (link.parent, T[k].inverse().Ad() * V_J);
+    }
+}
+
+/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W = `[ad_A]`ᵀ𝓕ᶜ.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+fn carried_together<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, i: usize, T: &[SE3<S>], W: Wrench<S>, d_theta: &mut [S],
+) {
+    let (n, j, mut above, mut W) = (model.n(), model.links[i - 1].j, i, W);
+    for (k, below) in model.to_base::<S>(model.links[i - 1].parent) {
+        W = T[above].Ad().transpose() * W;
+        d_theta[below.j * n + j] += below.unit() * W;
+        if !below.is_next() {
+            break;
+        }
+        above = k;
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::joint_friction::joint_friction;
 use crate::kinematics::{base_motion, joint_sines};
-use crate::model::{Environment, Model, Workspace};
+use crate::lie::SE3;
+use crate::model::{Environment, Lifted, Model, Workspace};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
-use crate::spatial::Wrench;
+use crate::spatial::{Twist, Wrench};
 
 /// The joint forces and torques τ that produce the motion (θ, θ̇, θ̈):
 ///
@@ -53,7 +54,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
     joint_sines(model, theta, workspace);
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, sin_cos, .. } = workspace;
+    let Workspace { T, V, dV, F, carrier, sin_cos, .. } = workspace;
     let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
 
     // base: its twist, accelerating against gravity; nothing hangs from it yet
@@ -71,11 +72,15 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         let (A, p) = (link.A(), link.parent);
         let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
         let T_i  = link.transform_with(sin_cos[i], theta);                                // T_{i,i−1}(θ) (8.50)
-        let V_i  = T_i.Ad() * V[p].spin() + A * dq;                                       // (8.51)
-        let dV_i = T_i.Ad() * dV[p] + V_i.ad() * (A * dq) + A * ddq;                      // (8.52)
-        let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
-        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
-        F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
+        let (V_p, V_c) = carried(&link, T_i, V[p], &mut carrier[..], i);
+        let V_i  = V_p + A * dq;                                                          // (8.51)
+        let dV_i = T_i.Ad() * dV[p] + V_c.ad() * (A * dq) + A * ddq;                      // (8.52)
+        (T[i], V[i], dV[i], F[i]) = (T_i, V_i, dV_i, Wrench::zero());
+        if link.is_last {
+            let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
+            (V[i], dV[i]) = (V_i.twist(), dV_i);
+            F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);               // (8.53), its own part
+        }
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
@@ -91,6 +96,28 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     if model.is_floating() {
         for (tau, F) in tau.iter_mut().zip(F[0].to_array()) { *tau += F; }                // (8.54) with A = I
     }
+}
+
+/// The parent's twist, and that of the link that carries the joint: the same, but for a further axis of one joint. The observer
+/// of a link moves with its origin, so that what a joint's first axis takes over is a spin.
+#[inline(always)]
+pub(super) fn carried<S: Scalar + From<C>, C: Scalar>(
+    link: &Lifted<C, S>,
+    T: SE3<S>,
+    V_p: Twist<S>,
+    carrier: &mut [[Twist<S>; 2]],
+    i: usize,
+) -> (Twist<S>, Twist<S>) {
+    if link.is_next() {
+        let V_c = T.Ad() * carrier[link.parent][0];
+        carrier[i][0] = V_c;
+        return (T.Ad() * V_p, V_c);
+    }
+    let V_p = T.Ad() * V_p.spin();
+    if !link.is_last {
+        carrier[i][0] = V_p;
+    }
+    (V_p, V_p)
 }
 
 /// See [`inverse_dynamics`].

@@ -21,7 +21,7 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// > F_k = 𝒢_k 𝒱̇ − `[ad_𝒱]`ᵀ 𝒢_k 𝒱, Y_jk = Σ ratio A_jᵀ `[Ad_T]`ᵀ F_k
 ///
-/// A joint's armature, damping and friction have the columns θ̈_j, θ̇_j and sgn θ̇_j in its own row. Entries are N m or N over
+/// A joint's armature, damping and friction have the columns θ̈_j, θ̇_j and sgn θ̇_j in its own row, and of a ball in each of its three. Entries are N m or N over
 /// the parameter's unit.
 ///
 /// Cost O(N · depth), no allocation.
@@ -61,9 +61,11 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
             }
         }
     }
-    for (k, j) in (model.base().velocities()..n).enumerate() {
-        let column = p - 3 * (n - model.base().velocities()) + 3 * k;
-        Y[j * p + column..][..3].copy_from_slice(&[ddtheta[j], dtheta[j], dtheta[j].sgn()]);
+    for (k, place) in model.places().iter().enumerate() {
+        let column = 10 * model.bodies().count() + 3 * k;
+        for j in place.velocities() {
+            Y[j * p + column..][..3].copy_from_slice(&[ddtheta[j], dtheta[j], dtheta[j].sgn()]);
+        }
     }
 }
 
@@ -107,8 +109,8 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
         potential[10 * body] = -gravity.dot(p);
         potential[10 * body + 1..][..3].copy_from_slice(&(-down).0);
     }
-    for (armature, &rate) in kinetic[10 * model.bodies().len()..].iter_mut().step_by(3).zip(&dtheta[model.base().velocities()..]) {
-        *armature = half * rate * rate;
+    for (armature, place) in kinetic[10 * model.bodies().count()..].iter_mut().step_by(3).zip(model.places()) {
+        *armature = place.velocities().fold(S::zero(), |sum, j| (half * dtheta[j]).mul_add(dtheta[j], sum));
     }
 }
 

@@ -2,25 +2,89 @@
 
 use crate::lie::{SE3, SO3, series};
 use crate::linalg::Vec3;
-use crate::model::{Base, Model};
+use crate::model::{Freedom, Model, Place};
 use crate::scalar::{Dual, Real, Scalar};
 use crate::spatial::Twist;
+use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
+/// Where configurations are: lines and angles, SO(3) of balls, SE(3) of a floating base and of free joints, each with its place in θ and in θ̇.
+#[derive(Clone, Debug)]
+pub struct ConfigurationSpace(pub(crate) Arc<[Place]>);
+
 impl<C: Scalar> Model<C> {
+    /// The space of the robot's configurations.
+    pub fn configuration_space(&self) -> &ConfigurationSpace {
+        &self.structure.space
+    }
+
     /// The positions at which every joint is at 0 and a floating base at {s}: nq numbers.
     pub fn neutral_configuration<S: Scalar>(&self) -> Vec<S> {
         let mut theta = vec![S::zero(); self.nq()];
-        if self.is_floating() {
-            theta[0] = S::one();
+        for place in &*self.structure.space.0 {
+            if place.freedom != Freedom::One {
+                theta[place.q] = S::one();
+            }
         }
         theta
     }
 }
 
-/// θ ← θ ⊕ θ̇h: where the velocities θ̇, kept for the time h, lead to. θ + θ̇h for joints, `T_sb` e^{`[𝒱_b]`h} for a floating base; its
-/// quaternion leaves with length 1, and with the sign that is nearer to the one it came with.
+impl ConfigurationSpace {
+    /// Of n numbers.
+    pub fn of_numbers(n: usize) -> Self {
+        ConfigurationSpace((0..n).map(|k| Place { freedom: Freedom::One, q: k, j: k }).collect())
+    }
+
+    /// A floating base's place, then each independent joint's.
+    pub fn places(&self) -> &[Place] {
+        &self.0
+    }
+
+    /// Is it one of numbers alone, so that ⊕ is + ?
+    pub fn is_flat(&self) -> bool {
+        self.0.iter().all(|place| place.freedom == Freedom::One)
+    }
+
+    /// θ ← θ ⊕ θ̇h: see [`integrate`].
+    ///
+    /// # Panics
+    /// When θ or θ̇ is too short.
+    pub fn advance<S: Real>(&self, theta: &mut [S], dtheta: &[S], h: S) {
+        for &Place { freedom, q, j } in &*self.0 {
+            match (freedom, &mut theta[q..], &dtheta[j..]) {
+                (Freedom::One, [q, ..], [dq, ..]) => *q += *dq * h,
+                (Freedom::Ball, [w, x, y, z, ..], &[a, b, c, ..]) => {
+                    let turn = turned([*w, *x, *y, *z], Vec3([a, b, c]) * h);
+                    [*w, *x, *y, *z] = turn;
+                }
+                (_, theta, V) => {
+                    let (Some(pose), Some(&V)) = (theta.first_chunk_mut(), V.first_chunk()) else {
+                        panic!("theta or dtheta is too short");
+                    };
+                    *pose = moved(*pose, Twist::from_array(V) * h);
+                }
+            }
+        }
+    }
+
+    /// u̇ for θ = θ₀ ⊕ u that moves with θ̇: θ̇ itself of lines, [`rate_of_logarithm`] of a twist.
+    ///
+    /// # Panics
+    /// When a slice is too short.
+    pub fn rate<S: Real>(&self, u: &[S], dtheta: &mut [S]) {
+        for place in self.0.iter().filter(|place| place.freedom != Freedom::One) {
+            let (V, u) = (&mut dtheta[place.velocities()], &u[place.velocities()]);
+            let twist = |x: &[S]| Twist::from_array(core::array::from_fn(|k| x.get(k).copied().unwrap_or(S::zero())));
+            let rate = rate_of_logarithm(twist(u), twist(V)).to_array();
+            V.copy_from_slice(&rate[..V.len()]);
+        }
+    }
+}
+
+/// θ ← θ ⊕ θ̇h: where the velocities θ̇, kept for the time h, lead to. θ + θ̇h for joints of one axis, R e^{`[ω]`h} for a ball, T e^{`[𝒱]`h} for a floating
+/// base and a free joint; quaternions leave with length 1, and with the sign that is nearer to the one they came with.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -28,11 +92,11 @@ impl<C: Scalar> Model<C> {
 /// When θ is not nq long, or θ̇ not n.
 pub fn integrate<S: Real, C: Scalar>(model: &Model<C>, theta: &mut [S], dtheta: &[S], h: S) {
     model.assert_lengths(theta.len(), [dtheta.len()]);
-    advance(model.base(), theta, dtheta, h);
+    model.configuration_space().advance(theta, dtheta, h);
 }
 
-/// θ₁ ⊖ θ₀, n numbers: the velocities that lead from θ₀ to θ₁ in one second. θ₁ − θ₀ for joints, log(T₀⁻¹T₁) for a floating base, by
-/// the shorter way round.
+/// θ₁ ⊖ θ₀, n numbers: the velocities that lead from θ₀ to θ₁ in one second. θ₁ − θ₀ for joints of one axis, log(R₀⁻¹R₁) for a ball, log(T₀⁻¹T₁) for a
+/// floating base and a free joint, by the shorter way round.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -41,13 +105,18 @@ pub fn integrate<S: Real, C: Scalar>(model: &Model<C>, theta: &mut [S], dtheta: 
 pub fn difference<S: Real, C: Scalar>(model: &Model<C>, theta0: &[S], theta1: &[S], difference: &mut [S]) {
     model.assert_lengths(theta0.len(), [difference.len()]);
     model.assert_lengths(theta1.len(), []);
-    let (positions, velocities) = (model.base().positions(), model.base().velocities());
-    if let (Some(&from), Some(&to), true) = (theta0.first_chunk(), theta1.first_chunk(), model.is_floating()) {
-        let way = (SE3::from_pose(from).inverse() * SE3::from_pose(to)).log();
-        difference[..6].copy_from_slice(&way.to_array());
-    }
-    for ((d, &q0), &q1) in difference[velocities..].iter_mut().zip(&theta0[positions..]).zip(&theta1[positions..]) {
-        *d = q1 - q0;
+    for place in &*model.configuration_space().places() {
+        let (from, to, way) =
+            (&theta0[place.positions()], &theta1[place.positions()], &mut difference[place.velocities()]);
+        let turn = |q: &[S]| SO3::from_quaternion(q[0], Vec3([q[1], q[2], q[3]]));
+        match place.freedom {
+            Freedom::One => way[0] = to[0] - from[0],
+            Freedom::Ball => way.copy_from_slice(&(turn(from).inverse() * turn(to)).log().0),
+            Freedom::Free => {
+                let pose = |q: &[S]| SE3::from_pose(core::array::from_fn(|k| q[k]));
+                way.copy_from_slice(&(pose(from).inverse() * pose(to)).log().to_array());
+            }
+        }
     }
 }
 
@@ -62,27 +131,23 @@ pub fn seed_direction<S: Real, C: Scalar>(model: &Model<C>, theta: &[S], along: 
     theta
 }
 
-/// [`integrate`] by what of the model it needs.
-pub(crate) fn advance<S: Real>(base: Base, theta: &mut [S], dtheta: &[S], h: S) {
-    if let (Some(pose), Some(&V), Base::Floating) = (theta.first_chunk_mut(), dtheta.first_chunk(), base) {
-        *pose = moved(*pose, Twist::from_array(V) * h);
-    }
-    for (q, &dq) in theta[base.positions()..].iter_mut().zip(&dtheta[base.velocities()..]) {
-        *q += dq * h;
-    }
-}
-
 /// T e^{`[ξ]`}, by quaternions, so that no sign jumps and no rounding adds up.
 fn moved<S: Real>([w, x, y, z, px, py, pz]: [S; 7], xi: Twist<S>) -> [S; 7] {
-    let v = Vec3([x, y, z]);
-    let half = xi.w * S::from_f64(0.5);
+    let R = SO3::from_quaternion(w, Vec3([x, y, z]));
+    let [px, py, pz] = (Vec3([px, py, pz]) + R * (SO3::left_jacobian(xi.w) * xi.v)).0;
+    let [w, x, y, z] = turned([w, x, y, z], xi.w);
+    [w, x, y, z, px, py, pz]
+}
+
+/// R e^{`[ω]`}.
+fn turned<S: Real>([w, x, y, z]: [S; 4], omega: Vec3<S>) -> [S; 4] {
+    let (v, half) = (Vec3([x, y, z]), omega * S::from_f64(0.5));
     let square = half.dot(half);
     let (s, turn) = (S::one() - square * series::cosc(square), half * series::sinc(square)); // of e^[ω]
-    let p = Vec3([px, py, pz]) + SO3::from_quaternion(w, v) * (SO3::left_jacobian(xi.w) * xi.v);
     let (s, v) = (w * s - v.dot(turn), turn * w + v * s + v.cross(turn));
     let one_over = S::one() / (s * s + v.dot(v)).sqrt();
-    let ([x, y, z], [px, py, pz]) = ((v * one_over).0, p.0);
-    [s * one_over, x, y, z, px, py, pz]
+    let [x, y, z] = (v * one_over).0;
+    [s * one_over, x, y, z]
 }
 
 /// u̇ for T = T₀ e^{`[u]`} that moves with the body twist 𝒱: 𝒱 + ½`[ad_u]`𝒱 + ¹⁄₁₂`[ad_u]`²𝒱, to the third order in u, as a method of

@@ -24,9 +24,13 @@ pub fn frame_acceleration<S: Scalar + From<C>, C: Scalar>(
     let frame = model.frame_at::<S>(frame);
     let mut T = frame.T.inverse();                                        // T_{b,i}
     let (mut V, mut dV) = (Twist::zero(), Twist::zero());                 // of the frame seen from link i
+    let mut V_J = V;                                                      // and from the joint's link
     for (_, link) in model.to_base::<S>(frame.slot) {
         let J_i = T.Ad() * link.A().twist();
-        dV += J_i * link.rate(ddtheta) + J_i.ad() * V * link.rate(dtheta);
+        if link.is_last {
+            V_J = V;
+        }
+        dV += J_i * link.rate(ddtheta) + J_i.ad() * V_J * link.rate(dtheta);
         V  += J_i * link.rate(dtheta);
         T   = T * link.transform(theta);
     }

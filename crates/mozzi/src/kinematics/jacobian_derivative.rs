@@ -22,7 +22,11 @@ pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     H: &mut [Twist<S>],
 ) {
-    brackets(model, theta, frame, workspace, H, |outer, inner, bracket, H, n| H[inner * n + outer] += bracket);
+    brackets(model, theta, frame, workspace, H, |outer, inner, bracket, is_one_joint, H, n| {
+        if !is_one_joint {
+            H[inner * n + outer] += bracket;
+        }
+    });
 }
 
 /// ∂J_i/∂θ_j of the space Jacobian, at `H[i * n + j]`: `[ad_{J_j}]` J_i where joint j is between the base and joint i,
@@ -40,8 +44,12 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     H: &mut [Twist<S>],
 ) {
-    let T_sb =
-        brackets(model, theta, frame, workspace, H, |outer, inner, bracket, H, n| H[outer * n + inner] += bracket);
+    let T_sb = brackets(model, theta, frame, workspace, H, |outer, inner, bracket, is_one_joint, H, n| {
+        H[outer * n + inner] += bracket;
+        if is_one_joint {
+            H[inner * n + outer] += -bracket;
+        }
+    });
     for entry in H.iter_mut() {
         *entry = T_sb.Ad() * *entry;
     }
@@ -56,7 +64,8 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of joints on the frame's path; returns `T_sb`.
+/// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and says whether they are axes of one ball or
+/// free joint, which all move with the link that they carry; returns `T_sb`.
 #[cfg_attr(not(test), inline(always))]
 fn brackets<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -64,7 +73,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
     frame: FrameId,
     workspace: &mut Workspace<S>,
     H: &mut [Twist<S>],
-    add: impl Fn(usize, usize, Twist<S>, &mut [Twist<S>], usize),
+    add: impl Fn(usize, usize, Twist<S>, bool, &mut [Twist<S>], usize),
 ) -> SE3<S> {
     let n = model.n();
     model.assert_lengths(theta.len(), []);
@@ -76,7 +85,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
     for (i, inner) in model.to_base::<S>(frame.slot) {
         J[i] = T.Ad() * inner.A().twist() * inner.ratio();
         for (k, outer) in model.to_base::<S>(frame.slot).take_while(|&(k, _)| k != i) {
-            add(outer.j, inner.j, J[i].ad() * J[k], H, n);
+            add(outer.j, inner.j, J[i].ad() * J[k], model.is_one_joint(i, k), H, n);
         }
         T = T * inner.transform(theta);
     }
@@ -84,7 +93,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
         for (j, axis) in Twist::axes().into_iter().enumerate() {
             let J_j = T.Ad() * axis;
             for (k, outer) in model.to_base::<S>(frame.slot) {
-                add(outer.j, j, J_j.ad() * J[k], H, n);
+                add(outer.j, j, J_j.ad() * J[k], false, H, n);
             }
         }
     }

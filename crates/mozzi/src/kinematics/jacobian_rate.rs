@@ -7,7 +7,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` takes its n columns,
-/// J̇_i = `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame.
+/// J̇_i = `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link beyond all three.
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -20,10 +20,13 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     dJ.fill(Twist::zero());
     let frame = model.frame_at::<S>(frame);
     let mut T = frame.T.inverse();                                        // T_{b,i}
-    let mut V = Twist::zero();                                            // of the frame seen from link i
+    let (mut V, mut V_J) = (Twist::zero(), Twist::zero());                // of the frame seen from link i, and from the joint's link
     for (_, link) in model.to_base::<S>(frame.slot) {
         let J_i = T.Ad() * link.A().twist();
-        dJ[link.j] += J_i.ad() * V * link.ratio();
+        if link.is_last {
+            V_J = V;
+        }
+        dJ[link.j] += J_i.ad() * V_J * link.ratio();
         V += J_i * link.rate(dtheta);
         T = T * link.transform(theta);
     }
@@ -35,7 +38,8 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
 }
 
 /// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns, J̇_i = `[ad_𝒱]` J_i, 𝒱 the twist
-/// of the link that carries joint i. (By J̇_b and the frame's own twist, the joints between would cancel.)
+/// of the link that carries joint i; of a ball's axes, which move with what they carry, the twist of the link beyond all three.
+/// (By J̇_b and the frame's own twist, the joints between would cancel.)
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -62,12 +66,28 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
             *column = V.ad() * (T.Ad() * e);
         }
     }
-    for &i in path.iter().rev() {
+    for (at, &i) in path.iter().enumerate().rev() {
         let link = model.link::<S>(i);
         T = T * link.transform(theta).inverse();
         let J_i = T.Ad() * link.A().twist();
-        dJ[link.j] += V.ad() * J_i * link.ratio();
-        V += J_i * link.rate(dtheta);
+        if link.is_last && link.is_next() {
+            V += J_i * link.rate(dtheta);
+            // all axes of the joint, whose columns were kept
+            for slot in path[at..].iter().copied() {
+                let axis = model.link::<S>(slot);
+                let J = if slot == i { J_i } else { dJ[axis.j] };
+                dJ[axis.j] = V.ad() * J;
+                if !axis.is_next() {
+                    break;
+                }
+            }
+        } else if link.is_last {
+            dJ[link.j] += V.ad() * J_i * link.ratio();
+            V += J_i * link.rate(dtheta);
+        } else {
+            dJ[link.j] = J_i;
+            V += J_i * link.rate(dtheta);
+        }
     }
 }
 

@@ -15,12 +15,11 @@ mod link_twists;
 mod tests;
 
 pub(crate) use base::{base_motion, base_pose, base_twist};
-pub(crate) use configuration::advance;
 pub(crate) use jacobian::twist_of;
 pub(crate) use joint_transforms::{joint_sines, joint_transforms};
 pub(crate) use link_twists::link_twists;
 
-pub use configuration::{difference, integrate, rate_of_logarithm, seed_direction};
+pub use configuration::{ConfigurationSpace, difference, integrate, rate_of_logarithm, seed_direction};
 pub use exponentials::{
     body_jacobian_of_screws, body_product_of_exponentials, product_of_exponentials, space_jacobian_of_screws,
 };

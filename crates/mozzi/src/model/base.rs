@@ -16,9 +16,6 @@ pub enum Base {
     Floating,
 }
 
-const POSITIONS: [&str; 7] = ["base.qw", "base.qx", "base.qy", "base.qz", "base.x", "base.y", "base.z"];
-const VELOCITIES: [&str; 6] = ["base.wx", "base.wy", "base.wz", "base.vx", "base.vy", "base.vz"];
-
 impl Base {
     /// The number of positions that it has in θ: 0 or 7.
     #[inline(always)]
@@ -54,15 +51,5 @@ impl<C: Scalar> Model<C> {
     /// 𝒢_b of the base link with all that is fixed to it, in its frame; it moves, and counts, where the base floats.
     pub fn base_inertia(&self) -> SpatialInertia<C> {
         self.base_inertia
-    }
-
-    /// The names of the nq positions: of a floating base `base.qw` … `base.z`, then the independent joints.
-    pub fn position_names(&self) -> impl Iterator<Item = &str> {
-        POSITIONS[..self.base.positions()].iter().copied().chain(self.joint_names())
-    }
-
-    /// The names of the n velocities and forces: of a floating base `base.wx` … `base.vz`, then the independent joints.
-    pub fn velocity_names(&self) -> impl Iterator<Item = &str> {
-        VELOCITIES[..self.base.velocities()].iter().copied().chain(self.joint_names())
     }
 }

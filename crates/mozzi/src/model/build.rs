@@ -1,7 +1,9 @@
 //! From a description to the screw normal form.
 
 use super::description::{Joint, JointKind};
-use super::{Description, Error, Frame, FrameId, Link, Model, Severity, Structure};
+use super::places::names_of;
+use super::{Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Severity, Structure};
+use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
 use crate::scalar::Real;
@@ -46,22 +48,29 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
                 JointKind::Fixed => Frame { slot: carrier.slot, T: home },
                 JointKind::Screw(A) => {
                     let (axis, normal) = normal_frame(A);
-                    links.push(Link {
-                        parent: carrier.slot,
-                        q: 0,
-                        j: 0,
-                        A: axis,
-                        M: (home * normal).inverse(),
-                        G: SpatialInertia::zero(),
-                        ratio: C::one(),
-                        offset: C::zero(),
-                    });
-                    moving_joints.push(i);
-                    inertias.push(SpatialInertia::zero());
+                    links.push(massless(carrier.slot, Motion::Screw, axis, (home * normal).inverse()));
                     Frame { slot: links.len(), T: normal.inverse() }
+                }
+                JointKind::Ball(center) => {
+                    let normal = SE3::translation(center.0);
+                    let M = (home * normal).inverse();
+                    several(&mut links, carrier.slot, Motion::Ball, M, &[TURN; 3]);
+                    Frame { slot: links.len(), T: normal.inverse() }
+                }
+                JointKind::Free => {
+                    several(
+                        &mut links,
+                        carrier.slot,
+                        Motion::Free,
+                        home.inverse(),
+                        &[TURN, TURN, TURN, SLIDE, SLIDE, SLIDE],
+                    );
+                    Frame { slot: links.len(), T: SE3::identity() }
                 }
             };
         }
+        moving_joints.resize(links.len(), joint.unwrap_or_default());
+        inertias.resize(links.len() + 1, SpatialInertia::zero());
         let Frame { slot, T } = frames[link];
         inertias[slot] += description.links[link].inertia.transformed(T);
         stack
@@ -78,16 +87,19 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         let Frame { slot, T } = frames[link_index[frame.link.as_str()]];
         frames.push(Frame { slot, T: T * frame.T });
     }
-    let names =
+    let frame_names =
         description.links.iter().map(|link| &link.name).chain(description.frames.iter().map(|frame| &frame.name));
     let end_effector = match &description.end_effector {
-        Some(name) => names.into_iter().position(|known| known == name).map(FrameId),
+        Some(name) => frame_names.into_iter().position(|known| known == name).map(FrameId),
         None if leaves.len() == 1 => leaves.first().copied(),
         None => None,
     };
 
-    let joints = couple(description, &moving_joints, &mut links);
-    let n = description.base.velocities() + joints.len();
+    let (joints, places) = couple(description, &moving_joints, &mut links);
+    let base_name = (description.base == Base::Floating).then_some("base");
+    let owners = base_name.into_iter().chain(joints.iter().map(|&i| description.joints[i].name.as_str()));
+    let names = names_of(owners.zip(places.iter().map(|place| place.freedom)));
+    let n = places.last().map_or(0, |place: &Place| place.velocities().end);
     let sum = |of: fn(&Joint<C>, C) -> C| {
         let mut total = vec![C::zero(); n];
         for (link, &i) in links.iter().zip(&moving_joints) {
@@ -105,11 +117,13 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         base: description.base,
         structure: Arc::new(Structure {
             pattern: Pattern::new(description.base.velocities(), n, links.iter().map(|link| (link.parent, link.j))),
-            coupled: joints.len() < links.len(),
+            coupled: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
             base,
             moving_joints,
+            names,
             joints,
+            space: ConfigurationSpace(places.into()),
             end_effector,
             leaves,
             description: rounded,
@@ -135,22 +149,57 @@ fn branches<C>(description: &Description<C>, link_index: &BTreeMap<&str, usize>)
 }
 
 /// Numbers the independent joints in the order of their links, and gives each mimic joint its source joint's number, ratio and
-/// offset, through chains of mimic joints. Returns the description's joint of each number.
-fn couple<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &mut [Link<C>]) -> Vec<usize> {
+/// offset, through chains of mimic joints. Returns the description's joint of each number, and the places of a floating base and of them.
+fn couple<C: Real>(
+    description: &Description<C>,
+    moving_joints: &[usize],
+    links: &mut [Link<C>],
+) -> (Vec<usize>, Vec<Place>) {
     let joint_index = index(description.joints.iter().map(|joint| joint.name.as_str()));
-    let mimic = |i: usize| description.joints[i].mimic.as_ref();
-    let joints: Vec<usize> = moving_joints.iter().copied().filter(|&i| mimic(i).is_none()).collect();
-    let mut number = vec![0; description.joints.len()];
-    for (j, &i) in joints.iter().enumerate() {
-        number[i] = j;
+    let mut joints: Vec<usize> =
+        moving_joints.iter().copied().filter(|&i| description.joints[i].mimic.is_none()).collect();
+    joints.dedup();
+    let base = (description.base == Base::Floating).then_some(Freedom::Free);
+    let (mut places, mut q, mut j) = (Vec::new(), 0, 0);
+    for freedom in base.into_iter().chain(joints.iter().filter_map(|&i| description.joints[i].kind.freedom())) {
+        let place = Place { freedom, q, j };
+        (q, j) = (place.positions().end, place.velocities().end);
+        places.push(place);
     }
+    let mut place_of = vec![Place { freedom: Freedom::One, q: 0, j: 0 }; description.joints.len()];
+    for (&i, &place) in joints.iter().zip(&places[usize::from(base.is_some())..]) {
+        place_of[i] = place;
+    }
+    let mut axis = 0; // of its joint
     for (link, &i) in links.iter_mut().zip(moving_joints) {
+        axis = if link.motion == Motion::Next { axis + 1 } else { 0 };
         let source = description.source_by(i, |name| joint_index.get(name).copied());
         (link.ratio, link.offset) = (source.ratio, source.offset);
-        let base = description.base;
-        (link.q, link.j) = (base.positions() + number[source.joint], base.velocities() + number[source.joint]);
+        (link.q, link.j) = (place_of[source.joint].q, place_of[source.joint].j + axis);
     }
-    joints
+    (joints, places)
+}
+
+const TURN: [bool; 2] = [true, false];
+const SLIDE: [bool; 2] = [false, true];
+
+/// A link without mass, and not yet in a place of θ.
+fn massless<C: Real>(parent: usize, motion: Motion, A: JointAxis<C>, M: SE3<C>) -> Link<C> {
+    let (ratio, offset) = (C::one(), C::zero());
+    Link { parent, q: 0, j: 0, A, motion, is_last: true, M, G: SpatialInertia::zero(), ratio, offset }
+}
+
+/// A link for each axis of a joint: the first has the joint's configuration.
+fn several<C: Real>(links: &mut Vec<Link<C>>, parent: usize, motion: Motion, M: SE3<C>, axes: &[[bool; 2]]) {
+    let one = |is: bool| if is { C::one() } else { C::zero() };
+    for (k, &[turns, slides]) in axes.iter().enumerate() {
+        let A = JointAxis { a: one(turns), b: one(slides) };
+        let link = match k {
+            0 => massless(parent, motion, A, M),
+            _ => massless(links.len(), Motion::Next, A, SE3::identity()),
+        };
+        links.push(Link { is_last: k + 1 == axes.len(), ..link });
+    }
 }
 
 /// The joint's axis in the normal form, and the normal frame seen from the link's: z along the screw, the origin on it.

@@ -1,7 +1,8 @@
 //! A robot as its file tells it: plain data, nothing computed.
 
-use super::Base;
+use super::{Base, Freedom};
 use crate::lie::SE3;
+use crate::linalg::Vec3;
 use crate::scalar::Real;
 use crate::spatial::{ScrewAxis, SpatialInertia};
 use alloc::string::String;
@@ -93,6 +94,12 @@ pub enum JointKind<C = f64> {
     Fixed,
     /// About and along a unit screw axis, in the child link's frame: revolute, prismatic or helical.
     Screw(ScrewAxis<C>),
+    /// About a point, seen from the child link's frame. Four positions, the unit quaternion (w, x, y, z) of the rotation that takes the child from its
+    /// axes at 0; three velocities, the angular velocity of the child relative to the parent in the child's axes.
+    Ball(Vec3<C>),
+    /// Not held at all. Seven positions, the child's configuration seen from where it is at 0, as of a floating base: the quaternion (w, x, y, z)
+    /// and the origin (x, y, z); six velocities, the child's twist (ω, v) relative to the parent in its own coordinates.
+    Free,
 }
 
 /// Its name.
@@ -103,13 +110,27 @@ impl<C> AsRef<str> for Joint<C> {
 }
 
 impl JointKind {
-    /// "fixed", "revolute", "prismatic" or "helical".
+    /// "fixed", "revolute", "prismatic", "helical", "ball" or "free".
     pub fn name(self) -> &'static str {
         match self {
             JointKind::Fixed => "fixed",
             JointKind::Screw(A) if A.is_prismatic() => "prismatic",
             JointKind::Screw(A) if A.pitch().abs() < 1e-12 => "revolute",
             JointKind::Screw(_) => "helical",
+            JointKind::Ball(_) => "ball",
+            JointKind::Free => "free",
+        }
+    }
+}
+
+impl<C> JointKind<C> {
+    /// How many positions and velocities; none of a fixed joint.
+    pub(crate) fn freedom(&self) -> Option<Freedom> {
+        match self {
+            JointKind::Fixed => None,
+            JointKind::Screw(_) => Some(Freedom::One),
+            JointKind::Ball(_) => Some(Freedom::Ball),
+            JointKind::Free => Some(Freedom::Free),
         }
     }
 }
@@ -117,7 +138,7 @@ impl JointKind {
 /// Limits of a joint, each `None` where there is none. A revolute joint without position limits is continuous.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// Lowest and highest position: rad or m.
+    /// Lowest and highest position: rad or m. Of a ball, 0 and the largest angle that it turns from 0; of a free joint none.
     pub position: Option<[f64; 2]>,
     /// rad/s or m/s.
     pub velocity: Option<f64>,
@@ -215,6 +236,8 @@ impl<C: Real> Description<C> {
             kind: match joint.kind {
                 JointKind::Fixed => JointKind::Fixed,
                 JointKind::Screw(A) => JointKind::Screw(A.map(f)),
+                JointKind::Ball(center) => JointKind::Ball(center.map(f)),
+                JointKind::Free => JointKind::Free,
             },
             limits: joint.limits,
             damping: f(joint.damping),

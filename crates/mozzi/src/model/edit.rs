@@ -61,7 +61,7 @@ impl Model<f64> {
     /// The same robot with joints held at these positions; their mimic joints are held where they follow to.
     ///
     /// # Errors
-    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint or a position that is not finite.
+    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a ball or a free joint, or a position that is not finite.
     pub fn with_locked_joints(&self, positions: &[(&str, f64)]) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         for &(name, position) in positions {
@@ -77,6 +77,12 @@ impl Model<f64> {
             if !position.is_finite() {
                 let found = alloc::format!("{position} for `{name}`");
                 return Err(Error::BadArgument { what: "the position to lock at", found, expected: "a finite number" });
+            }
+            let kind = robot.joints[i].kind;
+            if matches!(kind, JointKind::Ball(_) | JointKind::Free) {
+                let found = alloc::format!("`{name}`, a {} joint", kind.name());
+                let expected = "a joint of one axis";
+                return Err(Error::BadArgument { what: "the joint to lock", found, expected });
             }
             // mimic joints of mimic joints too: each round locks those whose source joint was locked in the one before
             let mut locked = alloc::vec![(i, position)];

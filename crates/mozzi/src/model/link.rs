@@ -1,10 +1,29 @@
 //! A moving link in the screw normal form.
 
-use crate::lie::SE3;
+use crate::lie::{SE3, SO3};
+use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
 use crate::spatial::{JointAxis, SpatialInertia};
 use core::marker::PhantomData;
 use core::ops::Deref;
+
+/// How θ moves a link. A ball is three axes at one place, a free joint six (three turns, then three slides), each with a link of its own, of which all but the last
+/// are massless: so every pivot is a number, and every axis along z. The axes are those of the joint's link itself, x, y, z in turn, so that the
+/// first link's axes are the joint's link's y, z, x, and each next has those of the one before in turn.
+///
+/// Such axes are carried **all by the joint's parent**: in 𝒱̇ = 𝒱̇_p + `[ad_𝒱]` 𝒱_J + 𝒱̇_J the joint's own part of 𝒱 cancels, so that each of them adds
+/// `[ad_𝒱_p]` A θ̇, 𝒱_p being the parent's twist and not that of the axis before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    /// The one axis of its joint: T = e^{−`[A]`q} M.
+    Screw,
+    /// The first axis of a ball, with its whole configuration: T = P R(q)ᵀ M.
+    Ball,
+    /// The first axis of a free joint: T = P T(q)⁻¹ M.
+    Free,
+    /// A further axis of the same joint as the link before: T = P.
+    Next,
+}
 
 /// One moving link, with all that is fixed to it, in the frame whose z-axis is its joint's screw axis.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +36,11 @@ pub(crate) struct Link<C> {
     pub j: usize,
     /// A = (0, 0, a, 0, 0, b).
     pub A: JointAxis<C>,
-    /// M_{i,i−1}: the parent's frame seen from this one when the joint is at 0.
+    /// How θ moves it.
+    pub motion: Motion,
+    /// Is this the joint's last axis, whose link is not massless?
+    pub is_last: bool,
+    /// M_{i,i−1}: the parent's frame seen from this one when the joint is at 0; of a ball's or a free joint's first axis, seen from the link's frame.
     pub M: SE3<C>,
     /// 𝒢.
     pub G: SpatialInertia<C>,
@@ -33,6 +56,8 @@ impl<C: Scalar> Link<C> {
             q: self.q,
             j: self.j,
             A: JointAxis { a: f(self.A.a), b: f(self.A.b) },
+            motion: self.motion,
+            is_last: self.is_last,
             M: self.M.map(f),
             G: self.G.map(f),
             ratio: f(self.ratio),
@@ -105,13 +130,32 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     /// T_{i,i−1}(θ), given the sine and cosine of the joint's angle.
     #[inline(always)]
     pub fn transform_with(&self, sin_cos: (S, S), theta: &[S]) -> SE3<S> {
-        self.A().transform(sin_cos, self.own(theta), self.link.M.map(S::from))
+        let M = || self.link.M.map(S::from);
+        match self.motion {
+            Motion::Screw => self.A().transform(sin_cos, self.own(theta), M()),
+            Motion::Ball => {
+                let [w, x, y, z] = core::array::from_fn(|k| theta[self.q + k]);
+                let (R, M) = (SO3::from_quaternion(w, Vec3([x, y, z])).inverse(), M());
+                in_turn(SE3 { R: R * M.R, p: R * M.p })
+            }
+            Motion::Free => in_turn(SE3::from_pose(core::array::from_fn(|k| theta[self.q + k])).inverse() * M()),
+            Motion::Next => in_turn(SE3::identity()),
+        }
     }
 
     /// The sine and cosine of the joint's angle.
     #[inline(always)]
     pub fn sin_cos(&self, theta: &[S]) -> (S, S) {
-        self.A().sin_cos(self.own(theta))
+        match self.motion {
+            Motion::Screw => self.A().sin_cos(self.own(theta)),
+            _ => (S::zero(), S::one()),
+        }
+    }
+
+    /// Is it a further axis of the joint whose first axes are its ancestors'?
+    #[inline(always)]
+    pub fn is_next(&self) -> bool {
+        self.motion == Motion::Next
     }
 
     /// The joint's own rate, ratio · θ̇; likewise its acceleration.
@@ -119,4 +163,11 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     pub fn rate(&self, dtheta: &[S]) -> S {
         self.ratio() * dtheta[self.link.j]
     }
+}
+
+/// P T: what is seen from a frame, seen from the one whose axes are its y, z and x.
+#[inline(always)]
+fn in_turn<S: Scalar>(T: SE3<S>) -> SE3<S> {
+    let (R, [x, y, z]) = (T.R.matrix(), T.p.0);
+    SE3 { R: SO3(Mat3 { x: R.y, y: R.z, z: R.x }), p: Vec3([y, z, x]) }
 }

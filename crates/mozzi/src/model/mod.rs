@@ -12,6 +12,7 @@ mod frame;
 mod link;
 mod parameters;
 mod pivots;
+mod places;
 mod provenance;
 mod reduced;
 mod screws;
@@ -20,9 +21,11 @@ mod traverse;
 mod variation;
 mod workspace;
 
+use crate::kinematics::ConfigurationSpace;
 use crate::linalg::{Vec3, ldlt::Pattern};
 use crate::scalar::Scalar;
 use crate::spatial::SpatialInertia;
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -32,12 +35,14 @@ pub use description::Description;
 pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
-pub(crate) use link::{Lifted, Link};
+pub(crate) use link::{Lifted, Link, Motion};
 pub use pivots::{Pivots, clearance, least_is_clear};
+pub use places::{Freedom, Place};
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub use task::{Task, TaskFrame, TaskMemory};
 pub use variation::Variation;
+pub(crate) use workspace::Rates;
 pub use workspace::Workspace;
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
@@ -69,12 +74,16 @@ pub(crate) struct Structure {
     pub description: Description,
     /// The link of the description that no joint moves.
     pub base: usize,
-    /// The joint of the description that moves slot i, at i − 1.
+    /// The joint of the description that moves slot i, at i − 1; of a ball all three.
     pub moving_joints: Vec<usize>,
     /// The link of the description that it moves.
     pub moving_links: Vec<usize>,
     /// The independent joints of the description, in the order of θ.
     pub joints: Vec<usize>,
+    /// A floating base's place, then those joints'.
+    pub space: ConfigurationSpace,
+    /// Of the positions and of the velocities.
+    pub names: [Vec<String>; 2],
     /// The first frames are those of the description's links, in its order; then its further frames.
     pub end_effector: Option<FrameId>,
     /// Candidates, where the end effector must be named.
@@ -85,14 +94,15 @@ pub(crate) struct Structure {
 }
 
 impl<C: Scalar> Model<C> {
-    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, after six of a floating base.
+    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, three for a ball, six for a free joint, after six of a
+    /// floating base.
     pub fn n(&self) -> usize {
         self.armature.len()
     }
 
-    /// The number of positions: the length of θ. n, and one more where the base floats: a quaternion has four entries.
+    /// The number of positions: the length of θ. n, and one more for a floating base, each ball and each free joint: a quaternion has four entries.
     pub fn nq(&self) -> usize {
-        self.base.positions() + self.structure.joints.len()
+        self.structure.space.0.last().map_or(0, |place| place.positions().end)
     }
 
     /// The mass of all that moves, kg: of the moving links, and of a floating base.
@@ -101,9 +111,21 @@ impl<C: Scalar> Model<C> {
         self.links.iter().fold(base, |sum, link| sum + link.G.mass)
     }
 
-    /// The number N of moving links; larger than n where joints follow others.
+    /// The number N of moving links: of joints that move, independent or not.
     pub fn moving_links(&self) -> usize {
-        self.links.len()
+        self.moving_slots().count()
+    }
+
+    /// Are the axes of these slots, the inner one first, of one ball or free joint?
+    #[inline(always)]
+    pub(crate) fn is_one_joint(&self, inner: usize, outer: usize) -> bool {
+        // the axes of one joint stand together: each but the first is a next one
+        self.links[inner..outer].iter().all(|link| link.motion == Motion::Next)
+    }
+
+    /// The slots of moving links: of a ball or a free joint the last axis, which carries the link.
+    pub(crate) fn moving_slots(&self) -> impl Iterator<Item = usize> {
+        (1..).zip(&self.links).filter(|(_, link)| link.is_last).map(|(slot, _)| slot)
     }
 
     /// Does some joint follow another (mimic)?
@@ -132,18 +154,18 @@ impl<C: Scalar> Model<C> {
     }
 
     /// The joint of each moving link as described, base to tips, mimic joints included.
-    pub fn moving_joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
-        self.structure.moving_joints.iter().map(|&joint| &self.structure.description.joints[joint])
+    pub fn moving_joints(&self) -> impl Iterator<Item = &description::Joint> {
+        let joint = |slot: usize| &self.structure.description.joints[self.structure.moving_joints[slot - 1]];
+        self.moving_slots().map(joint)
     }
 
     /// The independent joint that each moving joint follows in the end, itself where it follows none, by its place in
     /// [`joint_names`](Self::joint_names); in the order of [`moving_joints`](Self::moving_joints).
-    pub fn sources(&self) -> impl ExactSizeIterator<Item = description::Source<C>> {
-        let first = self.base.velocities();
-        self.links.iter().map(move |link| description::Source {
-            joint: link.j - first,
-            ratio: link.ratio,
-            offset: link.offset,
+    pub fn sources(&self) -> impl Iterator<Item = description::Source<C>> {
+        let joint_of = |j: usize| self.places().partition_point(|place| place.j <= j) - 1;
+        self.moving_slots().map(move |slot| {
+            let link = &self.links[slot - 1];
+            description::Source { joint: joint_of(link.j), ratio: link.ratio, offset: link.offset }
         })
     }
 

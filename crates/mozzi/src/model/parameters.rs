@@ -15,7 +15,7 @@ const OF_JOINT: [&str; 3] = ["armature", "damping", "friction"];
 impl<C: Scalar> Model<C> {
     /// The length of π: ten for each moving link and a floating base, three for each independent joint.
     pub fn parameter_count(&self) -> usize {
-        10 * self.bodies().len() + 3 * self.structure.joints.len()
+        10 * self.bodies().count() + OF_JOINT.len() * self.places().len()
     }
 
     /// π, the parameters in which τ and the energies are linear:
@@ -23,7 +23,7 @@ impl<C: Scalar> Model<C> {
     /// - of a floating base and then of each moving link, base to tips, ten numbers in the coordinates of that **link's frame in
     ///   the file**: mass, m c, and the rotational inertia about the frame's origin, (m, m c_x, m c_y, m c_z, I_xx, I_xy,
     ///   I_xz, I_yy, I_yz, I_zz) in kg, kg m, kg m². What is fixed to the link is counted in;
-    /// - of each independent joint its armature, damping and Coulomb friction, those of its mimic joints counted in as M and f
+    /// - of each independent joint its armature, damping and Coulomb friction (of a ball or a free joint the same for each of its velocities), those of its mimic joints counted in as M and f
     ///   have them: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ.
     ///
     /// Names: [`parameter_names`](Self::parameter_names). Their matrix: [`regressor`](crate::dynamics::regressor()).
@@ -32,8 +32,10 @@ impl<C: Scalar> Model<C> {
             let G = if slot == 0 { self.base_inertia } else { self.links[slot - 1].G };
             G.congruence(self.link_frame(slot).Ad()).to_parameters()
         });
-        let joints =
-            (self.base.velocities()..self.n()).flat_map(|j| [self.armature[j], self.damping[j], self.friction[j]]);
+        let joints = self
+            .places()
+            .iter()
+            .flat_map(|place| [&self.armature, &self.damping, &self.friction].map(|list| list[place.j]));
         bodies.chain(joints).collect()
     }
 
@@ -54,7 +56,7 @@ impl<C: Scalar> Model<C> {
         let (found, expected) = (parameters.len(), self.parameter_count());
         assert!(found == expected, "there are {found} parameters, expected {expected}");
         let mut model = self.map(U::from);
-        let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().len());
+        let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().count());
         for (slot, parameters) in self.bodies().zip(of_bodies.as_chunks().0) {
             let G = SpatialInertia::from_parameters(*parameters).transformed(model.link_frame(slot));
             match slot.checked_sub(1) {
@@ -62,15 +64,17 @@ impl<C: Scalar> Model<C> {
                 Some(i) => model.links[i].G = G,
             }
         }
-        for (j, &[armature, damping, friction]) in (self.base.velocities()..).zip(of_joints.as_chunks().0) {
-            (model.armature[j], model.damping[j], model.friction[j]) = (armature, damping, friction);
+        for (place, &[armature, damping, friction]) in self.places().iter().zip(of_joints.as_chunks().0) {
+            for j in place.velocities() {
+                (model.armature[j], model.damping[j], model.friction[j]) = (armature, damping, friction);
+            }
         }
         model
     }
 
     /// The slots of all that moves: of a floating base, and of the moving links.
-    pub(crate) fn bodies(&self) -> core::ops::Range<usize> {
-        usize::from(!self.is_floating())..self.links.len() + 1
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = usize> {
+        self.is_floating().then_some(0).into_iter().chain(self.moving_slots())
     }
 
     /// The link of the description whose frame a slot's body is told in: the base, or the one that a joint moves.

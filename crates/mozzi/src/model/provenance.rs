@@ -30,14 +30,16 @@ impl<C: Scalar> Model<C> {
         let mut bodies = vec![FoldedBody { joint: None, links: Vec::new() }];
         bodies.extend(self.moving_joints().map(|joint| FoldedBody { joint: Some(&joint.name), links: Vec::new() }));
         let (base, moving) = (self.structure.base, &self.structure.moving_links);
-        for &i in core::iter::once(&base).chain(moving) {
-            bodies[self.frames[i].slot].links.push((&links[i].name, links[i].inertia.mass));
+        let mut body_of = vec![0; self.links.len() + 1];
+        for (body, slot) in (1..).zip(self.moving_slots()) {
+            body_of[slot] = body;
+            bodies[body].links.push((&links[moving[slot - 1]].name, links[moving[slot - 1]].inertia.mass));
         }
-        let is_first = |i: usize, slot: usize| if slot == 0 { i == base } else { moving[slot - 1] == i };
+        bodies[0].links.push((&links[base].name, links[base].inertia.mass));
         for (i, link) in links.iter().enumerate() {
             let slot = self.frames[i].slot;
-            if !is_first(i, slot) {
-                bodies[slot].links.push((&link.name, link.inertia.mass));
+            if i != slot.checked_sub(1).map_or(base, |k| moving[k]) {
+                bodies[body_of[slot]].links.push((&link.name, link.inertia.mass));
             }
         }
         bodies

@@ -1,6 +1,6 @@
 //! The same robot with fewer numbers that are not zero, for recordings of its dynamics.
 
-use super::Model;
+use super::{Model, Motion};
 use crate::linalg::{Sym3, Vec3};
 use crate::spatial::SpatialInertia;
 use alloc::vec::Vec;
@@ -29,7 +29,7 @@ impl Model<f64> {
             link.M.R.0 = R.map(|x| if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) });
             let p = link.M.p;
             link.M.p = p.map(|x| clean(x, largest(p)));
-            if link.A.b == 0.0 {
+            if link.motion == Motion::Screw && link.A.b == 0.0 {
                 let G = link.G;
                 let ([.., z], J) = (G.mc.0, G.I.yy);
                 let axial = SpatialInertia { mass: G.mass, mc: Vec3([0.0, 0.0, z]), I: Sym3::diagonal(J, J, 0.0) };

@@ -2,7 +2,7 @@
 
 use super::build::normal_form;
 use super::description::{Joint, JointKind, NamedFrame};
-use super::{Description, Error, Model};
+use super::{Description, Error, Freedom, Model};
 use crate::lie::SE3;
 use crate::scalar::Real;
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist};
@@ -149,7 +149,18 @@ impl ScrewLists {
 
 impl Model<f64> {
     /// The book's M_i, S_i, B_i, A_i and 𝒢_i of this model.
-    pub fn screws(&self) -> ScrewLists {
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for a robot with a ball or a free joint, which have no one screw axis.
+    pub fn screws(&self) -> Result<ScrewLists, Error> {
+        if let Some((joint, _)) = self.joints().zip(self.places()).find(|(_, place)| place.freedom != Freedom::One) {
+            let found = format!("`{}`, a {} joint", joint.name, joint.kind.name());
+            return Err(Error::BadArgument {
+                what: "a joint of the screw lists",
+                found,
+                expected: "joints of one axis",
+            });
+        }
         let mut homes = alloc::vec![SE3::identity()]; // of the normal frames
         for link in &self.links {
             homes.push(homes[link.parent] * link.M.inverse());
@@ -159,7 +170,7 @@ impl Model<f64> {
         let A: Vec<ScrewAxis> = (self.moving_joints().zip(&bodies[1..]).enumerate())
             .filter_map(|(k, (joint, &body))| match joint.kind {
                 JointKind::Screw(A) => Some(A.transformed(body.inverse() * self.link_frame(k + 1))),
-                JointKind::Fixed => None,
+                _ => None,
             })
             .collect();
         let S: Vec<ScrewAxis> = A.iter().zip(&M).map(|(A, &M)| A.transformed(M)).collect();
@@ -171,7 +182,7 @@ impl Model<f64> {
             Some((_, tip)) => S.iter().map(|S| S.transformed(tip.inverse())).collect(),
             None => Vec::new(),
         };
-        ScrewLists {
+        Ok(ScrewLists {
             joints: self.moving_joints().map(|joint| joint.name.clone()).collect(),
             links: self.moving_joints().map(|joint| joint.child.clone()).collect(),
             parents: self.links.iter().map(|link| link.parent).collect(),
@@ -182,13 +193,16 @@ impl Model<f64> {
             A,
             B,
             end_effector,
-        }
+        })
     }
 }
 
 impl<C: Real> Model<C> {
     /// The book's frame {i} seen from the slot's normal frame; the base frame itself for slot 0.
     pub(crate) fn body_frame(&self, slot: usize) -> SE3<C> {
+        if slot > 0 && !self.links[slot - 1].is_last {
+            return SE3::identity(); // an axis that carries no link
+        }
         let link = self.link_frame(slot);
         if slot == 0 {
             return link;

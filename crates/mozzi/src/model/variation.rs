@@ -1,7 +1,7 @@
 //! A model whose parameters vary: constants that are dual numbers, their derivatives along a change of the robot.
 
 use super::description::Joint;
-use super::{Error, Model};
+use super::{Error, Model, Motion};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::scalar::Dual;
@@ -109,12 +109,12 @@ impl Model<f64> {
                     *inertia(&mut model, self.frames[i].slot) += moved;
                 }
                 Variation::Axis { joint, motion } => {
-                    let slot = self.slot_of(joint)?;
+                    let slot = self.slot_of_one_axis(joint)?;
                     // the slot's normal frame moves along: all that is seen from it moves back
                     move_contents(&mut model, slot, small_motion(self.link_frame(slot), -motion));
                 }
                 Variation::Pitch { joint } => {
-                    let slot = self.slot_of(joint)?;
+                    let slot = self.slot_of_one_axis(joint)?;
                     if self.links[slot - 1].A.a == 0.0 {
                         return Err(bad_joint(joint, "prismatic", "a joint that turns"));
                     }
@@ -133,15 +133,17 @@ impl Model<f64> {
         if found != expected {
             return Err(Error::WrongLength { what: "a rate of the parameters", found, expected });
         }
-        let (of_bodies, of_joints) = rate.split_at(10 * self.bodies().len());
+        let (of_bodies, of_joints) = rate.split_at(10 * self.bodies().count());
         for (slot, rate) in self.bodies().zip(of_bodies.as_chunks().0) {
             let rate = SpatialInertia::from_parameters(*rate).transformed(self.link_frame(slot));
             *inertia(model, slot) += rate.map(seed);
         }
-        for (j, &[armature, damping, friction]) in (self.base.velocities()..).zip(of_joints.as_chunks().0) {
-            model.armature[j] += seed(armature);
-            model.damping[j] += seed(damping);
-            model.friction[j] += seed(friction);
+        for (place, &[armature, damping, friction]) in self.places().iter().zip(of_joints.as_chunks().0) {
+            for j in place.velocities() {
+                model.armature[j] += seed(armature);
+                model.damping[j] += seed(damping);
+                model.friction[j] += seed(friction);
+            }
         }
         Ok(())
     }
@@ -193,7 +195,16 @@ impl Model<f64> {
         })
     }
 
-    /// The slot that a joint moves.
+    fn slot_of_one_axis(&self, name: &str) -> Result<usize, Error> {
+        let slot = self.slot_of(name)?;
+        match self.links[slot - 1].motion {
+            Motion::Screw => Ok(slot),
+            Motion::Ball => Err(bad_joint(name, "a ball", "a joint of one axis")),
+            _ => Err(bad_joint(name, "free", "a joint of one axis")),
+        }
+    }
+
+    /// The slot that a joint moves; of a ball or a free joint that of its first axis.
     fn slot_of(&self, name: &str) -> Result<usize, Error> {
         let joint = self.description().joint_at(name)?;
         let slot = self.structure.moving_joints.iter().position(|&moving| moving == joint);

@@ -8,6 +8,17 @@ use crate::spatial::{ArticulatedInertia, CoriolisFactor, SpatialInertia, Twist, 
 use alloc::vec;
 use alloc::vec::Vec;
 
+/// How a joint's axis A moves, for the derivatives of the dynamics.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rates<S> {
+    /// The angular part of Ȧ, as the joint's parent carries A; what the linear one multiplies is 0.
+    pub dA: Vec3<S>,
+    /// Ä likewise.
+    pub ddA: Twist<S>,
+    /// Ȧ and once more Ȧ, as the link carries A that the joint moves.
+    pub D: Twist<S>,
+}
+
 /// Memory for the kernels, without meaning between calls. Slot 0 is the base, slot i moving link i.
 #[derive(Clone, Debug)]
 pub struct Workspace<S = f64> {
@@ -19,9 +30,10 @@ pub struct Workspace<S = f64> {
     pub(crate) path: Vec<usize>,
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
+    /// 𝒱 and 𝒱̇ of the parent of a joint with several axes, seen from each but its last.
+    pub(crate) carrier: Vec<[Twist<S>; 2]>,
     pub(crate) F: Vec<Wrench<S>>,
-    /// Ȧ and Ä of each joint's axis, as the parent carries it.
-    pub(crate) axes: Vec<[Twist<S>; 2]>,
+    pub(crate) axes: Vec<Rates<S>>,
     /// Composite inertia 𝒢ᶜ.
     pub(crate) G_c: Vec<SpatialInertia<S>>,
     /// Its rate.
@@ -53,8 +65,9 @@ impl<S: Scalar> Workspace<S> {
             path: Vec::with_capacity(slots),
             V: vec![Twist::zero(); slots],
             dV: vec![Twist::zero(); slots],
+            carrier: vec![[Twist::zero(); 2]; slots],
             F: vec![Wrench::zero(); slots],
-            axes: vec![[Twist::zero(); 2]; slots],
+            axes: vec![Rates { dA: Vec3::zero(), ddA: Twist::zero(), D: Twist::zero() }; slots],
             G_c: vec![SpatialInertia::zero(); slots],
             dG_c: vec![SpatialInertia::zero(); slots],
             B: vec![CoriolisFactor { K: Mat3::zero(), f: Vec3::zero() }; slots],
@@ -82,9 +95,10 @@ impl<S: Scalar> Workspace<S> {
         self.T.fill(T);
         self.V.fill(V);
         self.dV.fill(V);
+        self.carrier.fill([V; 2]);
         self.F.fill(F);
         self.U.fill(F);
-        self.axes.fill([V; 2]);
+        self.axes.fill(Rates { dA: V.w, ddA: V, D: V });
         self.G_c.fill(G);
         self.dG_c.fill(G);
         self.B.fill(CoriolisFactor { K: Mat3::zero().map(|_: S| nan), f: V.v });

@@ -2,7 +2,7 @@
 
 use crate::dynamics::gravity_forces;
 use crate::linalg::Vec3;
-use crate::model::{Error, FrameId, Model, Workspace};
+use crate::model::{Error, FrameId, Freedom, Model, Workspace};
 use crate::spatial::Wrench;
 use alloc::boxed::Box;
 use alloc::vec;
@@ -97,9 +97,9 @@ impl Input for GravityCompensation<'_> {
             return Err(Error::WrongLength { what: "theta", found: theta.len(), expected: self.model.nq() });
         }
         gravity_forces(self.model, theta, self.gravity, &mut self.workspace, &mut self.g);
-        let base = self.model.base().velocities(); // without motors
-        for (tau, g) in tau.iter_mut().zip(&self.g).skip(base) {
-            *tau += g;
+        // nothing drives a floating base or a free body
+        for place in self.model.places().iter().filter(|place| place.freedom != Freedom::Free) {
+            place.velocities().for_each(|j| tau[j] += self.g[j]);
         }
         Ok(())
     }

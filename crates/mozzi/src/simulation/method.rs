@@ -1,9 +1,7 @@
 //! One step of an integration: explicit Euler (Modern Robotics, section 8.5), semi-implicit Euler, Runge-Kutta.
 
-use crate::kinematics::{advance, rate_of_logarithm};
-use crate::model::Base;
+use crate::kinematics::ConfigurationSpace;
 use crate::scalar::{Real, Scalar};
-use crate::spatial::Twist;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -42,7 +40,7 @@ impl Method {
 /// model, side by side.
 #[derive(Clone, Debug)]
 pub struct Motion<S = f64, const K: usize = 0> {
-    base: Base,
+    space: ConfigurationSpace,
     robots: usize,
     /// Time in seconds.
     pub t: f64,
@@ -73,14 +71,13 @@ struct Stage<S> {
 }
 
 /// θ ← θ ⊕ θ̇h of each robot.
-fn advance_each<S: Real>(base: Base, robots: usize, theta: &mut [S], dtheta: &[S], h: S) {
+fn advance_each<S: Real>(space: &ConfigurationSpace, robots: usize, theta: &mut [S], dtheta: &[S], h: S) {
     let (nq, n) = (theta.len() / robots.max(1), dtheta.len() / robots.max(1));
-    match base {
-        Base::Fixed => advance(base, theta, dtheta, h), // number by number
-        Base::Floating => {
-            for (theta, dtheta) in theta.chunks_exact_mut(nq).zip(dtheta.chunks_exact(n)) {
-                advance(base, theta, dtheta, h);
-            }
+    if space.is_flat() {
+        add(theta, dtheta, h); // number by number
+    } else {
+        for (theta, dtheta) in theta.chunks_exact_mut(nq).zip(dtheta.chunks_exact(n)) {
+            space.advance(theta, dtheta, h);
         }
     }
 }
@@ -93,18 +90,18 @@ fn add<S: Scalar>(x: &mut [S], k: &[S], h: S) {
 }
 
 impl<S: Real, const K: usize> Motion<S, K> {
-    /// At time t, of a robot on this base, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations and returns the further rates.
+    /// At time t, of a robot with these configurations, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations and returns the further rates.
     ///
     /// # Errors
     /// Those of F.
     pub fn start<E>(
-        base: Base,
+        space: &ConfigurationSpace,
         t: f64,
         theta: &[S],
         dtheta: &[S],
         F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
     ) -> Result<Self, E> {
-        Self::start_many(base, 1, t, theta, dtheta, F)
+        Self::start_many(space, 1, t, theta, dtheta, F)
     }
 
     /// As [`start`](Self::start), of this many robots: θ has the positions of one after the other, θ̇ their velocities, and F is asked of
@@ -113,7 +110,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
     /// # Errors
     /// Those of F.
     pub fn start_many<E>(
-        base: Base,
+        space: &ConfigurationSpace,
         robots: usize,
         t: f64,
         theta: &[S],
@@ -124,7 +121,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
         let mut ddtheta = zeros.clone();
         let rates = F(t, theta, dtheta, &mut ddtheta)?;
         Ok(Motion {
-            base,
+            space: space.clone(),
             robots,
             t,
             theta: theta.to_vec(),
@@ -158,13 +155,13 @@ impl<S: Real, const K: usize> Motion<S, K> {
         let dt = S::from_f64(h);
         match method {
             Method::Euler => {
-                advance_each(self.base, self.robots, &mut self.theta, &self.dtheta, dt);
+                advance_each(&self.space, self.robots, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.dtheta, &self.ddtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
             Method::SemiImplicitEuler => {
                 add(&mut self.dtheta, &self.ddtheta, dt);
-                advance_each(self.base, self.robots, &mut self.theta, &self.dtheta, dt);
+                advance_each(&self.space, self.robots, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
             Method::RungeKutta4 => self.runge_kutta_4(h, t_next, &mut F)?,
@@ -175,7 +172,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
     }
 
     /// x ⊕ h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts from
-    /// x again, along the k before it. A floating base's k is the rate of log(T₀⁻¹T) (Munthe-Kaas).
+    /// x again, along the k before it. The k of a ball and of a floating base is the rate of log(T₀⁻¹T) (Munthe-Kaas).
     fn runge_kutta_4<E>(
         &mut self,
         h: f64,
@@ -198,17 +195,16 @@ impl<S: Real, const K: usize> Motion<S, K> {
         for (along, t, weight) in stages {
             let along = S::from_f64(along);
             theta.copy_from_slice(&self.theta);
-            advance_each(self.base, self.robots, theta, dtheta, along); // with the velocity of the stage before
+            advance_each(&self.space, self.robots, theta, dtheta, along); // with the velocity of the stage before
             u.copy_from_slice(dtheta);
             dtheta.copy_from_slice(&self.dtheta);
             add(dtheta, ddtheta, along);
             let rates = F(t, theta, dtheta, ddtheta)?;
-            if self.base == Base::Floating {
+            if !self.space.is_flat() {
                 let n = dtheta.len() / self.robots;
+                u.iter_mut().for_each(|u| *u = *u * along);
                 for (V, u) in dtheta.chunks_exact_mut(n).zip(u.chunks_exact(n)) {
-                    if let (Some(V), Some(&u)) = (V.first_chunk_mut(), u.first_chunk()) {
-                        *V = rate_of_logarithm(Twist::from_array(u) * along, Twist::from_array(*V)).to_array();
-                    }
+                    self.space.rate(u, V);
                 }
             }
             add(mean_dtheta, dtheta, weight);
@@ -216,7 +212,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
             add(&mut mean_rates, &rates, weight);
         }
         let dt = S::from_f64(h);
-        advance_each(self.base, self.robots, &mut self.theta, mean_dtheta, dt);
+        advance_each(&self.space, self.robots, &mut self.theta, mean_dtheta, dt);
         add(&mut self.dtheta, mean_ddtheta, dt);
         add(&mut self.integrals, &mean_rates, dt);
         Ok(())
@@ -305,7 +301,8 @@ mod tests {
                 a[0] = t - x[0];
                 Ok::<_, Infallible>([x[0]])
             };
-            let mut motion = Motion::start(Base::Fixed, 0.0, &[1.0], &[0.0], &mut F).expect("infallible");
+            let mut motion =
+                Motion::start(&ConfigurationSpace::of_numbers(1), 0.0, &[1.0], &[0.0], &mut F).expect("infallible");
             motion.step(method, 0.5, 0.5, &mut F).expect("infallible");
             [motion.theta[0], motion.dtheta[0], motion.ddtheta[0], motion.integrals[0]]
         };
@@ -325,7 +322,7 @@ mod tests {
             forward_dynamics(model, q, dq, &tau, &model.environment(), &mut workspace, ddq);
             Ok::<_, Infallible>([])
         };
-        let mut motion = Motion::start(model.base(), 0.0, theta, dtheta, &mut F).expect("infallible");
+        let mut motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, &mut F).expect("infallible");
         motion.step(Method::RungeKutta4, 0.01, 0.01, &mut F).expect("infallible");
         [motion.theta, motion.dtheta].concat()
     }

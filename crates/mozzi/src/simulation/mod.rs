@@ -109,8 +109,9 @@ impl<I: Input> Equation<'_, I> {
         options.check()?;
 
         let steps = options.steps;
-        let mut motion =
-            Motion::start(model.base(), 0.0, theta, dtheta, |t, q, dq, ddq| equation.evaluate(t, q, dq, ddq))?;
+        let mut motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
+            equation.evaluate(t, q, dq, ddq)
+        })?;
         let mut trajectory = Trajectory::new(model);
         trajectory.record(motion.sample(equation));
         for k in 1..=steps {

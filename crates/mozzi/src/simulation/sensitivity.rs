@@ -194,7 +194,7 @@ fn step<S: Real + From<C>, C: Scalar, E>(
         Ok([])
     };
     let h = options.step();
-    let mut motion = Motion::start(model.base(), 0.0, theta, dtheta, &mut F)?;
+    let mut motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, &mut F)?;
     motion.step(options.method, h, h, &mut F)?;
     Ok(motion)
 }
@@ -204,12 +204,12 @@ mod tests {
     use super::*;
     use crate::kinematics::integrate;
     use crate::simulation::{Method, torque};
-    use crate::testing::{Random, floating_tree, state, tree};
+    use crate::testing::{Random, floating_tree, mixed_tree, state, tree};
 
     const METHODS: [Method; 3] = [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4];
 
-    fn models() -> [Model; 3] {
-        [tree(3, 5, 0), tree(5, 6, 2), floating_tree(2, 4, 0)]
+    fn models() -> [Model; 4] {
+        [tree(3, 5, 0), tree(5, 6, 2), floating_tree(2, 4, 0), mixed_tree(4, 4, 0)]
     }
 
     fn options(method: Method, steps: usize) -> Options {

@@ -45,12 +45,12 @@ impl<S: Scalar> CoriolisFactor<S> {
     }
 }
 
-/// 𝓑A.
-impl<S: Scalar> Mul<Twist<S>> for CoriolisFactor<S> {
+/// 𝓑A, by A's angular part: the linear one meets zeros.
+impl<S: Scalar> Mul<Vec3<S>> for CoriolisFactor<S> {
     type Output = Wrench<S>;
     #[inline(always)]
-    fn mul(self, A: Twist<S>) -> Wrench<S> {
-        Wrench { m: self.K * A.w, f: A.w.cross(self.f + self.f) }
+    fn mul(self, w: Vec3<S>) -> Wrench<S> {
+        Wrench { m: self.K * w, f: w.cross(self.f + self.f) }
     }
 }
 
@@ -76,17 +76,17 @@ mod tests {
         let P = G * V;
         let B = CoriolisFactor::new(G, V, P);
         let defined = |A: Twist| -(G * (V.ad() * A)) - V.ad().transpose() * (G * A) - A.ad().transpose() * P;
-        assert!((B * A - defined(A)).norm() < 1e-13);
+        assert!((B * A.w - defined(A)).norm() < 1e-13);
         let A = JointAxis { a: 0.7, b: -0.3 };
-        assert!((B * A - B * A.twist()).norm() < 1e-15);
+        assert!((B * A - B * A.twist().w).norm() < 1e-15);
         assert!((B.transpose_mul(A).dot(X.w) - A.twist().dot(defined(X))).abs() < 1e-13);
         // about another point: of the body's inertia and twist there
         let p = Vec3([0.3, -0.2, 0.5]);
         let (G, V) = (G.about(p), SE3 { p: -p, ..SE3::identity() }.Ad() * V);
         let there = CoriolisFactor::new(G, V, G * V);
-        assert!((B.about(p) * X - there * X).norm() < 1e-13);
+        assert!((B.about(p) * X.w - there * X.w).norm() < 1e-13);
         // and in other axes: `[Ad_T]`ᵀ𝓑`[Ad_T]`
         let T = SE3::exp(twist(4));
-        assert!((B.congruence(T.Ad()) * X - T.Ad().transpose() * (B * (T.Ad() * X))).norm() < 1e-13);
+        assert!((B.congruence(T.Ad()) * X.w - T.Ad().transpose() * (B * (T.Ad() * X).w)).norm() < 1e-13);
     }
 }

@@ -30,8 +30,8 @@ pub fn page(terms: &Terms) -> String {
         page.lines(&numbered(model.velocity_names().collect()));
         page.line("in this order in the rows and columns of all matrices; the base's are in its own coordinates");
     } else {
-        page.line(format!("{}, {} joints:", model.description().name, model.n()));
-        page.lines(&numbered(model.joint_names().collect()));
+        page.line(format!("{}, {} joints:", model.description().name, model.joint_names().len()));
+        page.lines(&numbered(model.velocity_names().collect()));
     }
     page.title("the state").lines(&state(terms)).lines(&wrench(terms));
     if let Some(tip) = terms.tip {

@@ -5,7 +5,7 @@ mod numbers;
 mod regressor;
 
 use crate::model::{Environment, Model, Workspace};
-use crate::testing::{floating_tree, moving, state, tree, twist, wrench};
+use crate::testing::{floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, twist, wrench};
 use crate::{Dual, Scalar, dynamics as kernel};
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +14,12 @@ const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12
 pub fn models() -> impl Iterator<Item = (u64, Model)> {
     TREES.iter().enumerate().flat_map(|(k, &(links, mimics))| {
         (0..6).map(move |s| {
-            let make = if s % 3 == 2 { floating_tree } else { tree };
+            let make = match s {
+                1 | 4 => mixed_tree,
+                2 => floating_tree,
+                5 => floating_mixed_tree,
+                _ => tree,
+            };
             (10 * k as u64 + s, make(10 * k as u64 + s, links, mimics))
         })
     })
@@ -134,7 +139,7 @@ fn identities_of_the_coriolis_matrix() {
         let mut M = alloc::vec![Dual::zero(); n * n];
         kernel::mass_matrix(&dual, &moving, &mut Workspace::new(&dual), &mut M);
         close(&DMatrix::from_fn(n, n, |i, j| M[i * n + j].derivative), &dM, scale, 1000.0, "Ṁ");
-        if model.is_floating() {
+        if !model.configuration_space().is_flat() {
             continue; // a twist is no coordinates' rate
         }
         // and C against the Christoffel symbols Γ_ijk = ½(∂M_ij/∂θ_k + ∂M_ik/∂θ_j − ∂M_jk/∂θ_i), by dual numbers
@@ -214,11 +219,11 @@ fn the_mass_matrix_is_the_sum_over_links_of_jacobians_and_inertias() {
     // M = Σ J_ibᵀ 𝒢_i J_ib + armature, with the kernels' body Jacobians of the centre-of-mass frames
     for (seed, model) in models() {
         let [theta, _, _] = state(&model, seed);
-        let lists = model.screws();
         let mut sum = DMatrix::from_diagonal(&DVector::from_column_slice(&model.armature));
-        let base = model.is_floating().then_some((0, &model.base_inertia));
-        for (slot, G) in base.into_iter().chain((1..=model.moving_links()).zip(&lists.G)) {
-            let name = if slot == 0 { "link0" } else { &lists.links[slot - 1] };
+        let base = model.is_floating().then_some((0, "link0"));
+        let moving = model.moving_slots().zip(model.moving_joints().map(|joint| joint.child.as_str()));
+        for (slot, name) in base.into_iter().chain(moving) {
+            let G = if slot == 0 { model.base_inertia } else { model.body_inertia(slot) };
             let link = model.frame(name).expect("a link");
             let T = model.link_frame(slot).inverse() * model.body_frame(slot);
             let J = model.with_frame("{i}", link, T).expect("a new name");

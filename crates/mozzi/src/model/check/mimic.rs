@@ -43,6 +43,11 @@ impl Report<'_> {
                     format!("joint `{}` is fixed, expected one that moves", mimic.joint),
                 );
             }
+            for other in [i, k].into_iter().filter(|&other| is_of_several_axes(d.joints[other].kind)) {
+                let Joint { name, kind, .. } = &d.joints[other];
+                let message = format!("`{name}` is a {} joint, expected joints of one axis", kind.name());
+                self.error(element, "mimic", "mimic_of_several_axes", message);
+            }
             if circular[i] {
                 let message = if k == i {
                     format!("follows itself, `{}`, expected another joint", mimic.joint)
@@ -55,6 +60,10 @@ impl Report<'_> {
             }
         }
     }
+}
+
+fn is_of_several_axes(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Ball(_) | JointKind::Free)
 }
 
 /// Which joints lead into a circle; each joint is walked over twice at most.

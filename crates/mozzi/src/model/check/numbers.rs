@@ -1,6 +1,7 @@
 //! Finite numbers, masses and frictions of the right sign.
 
 use super::{Element, Report};
+use crate::model::description::JointKind;
 use crate::spatial::SpatialInertia;
 use alloc::format;
 use alloc::string::ToString;
@@ -35,6 +36,16 @@ impl Report<'_> {
             if !joint.origin.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
                 self.error(element, "origin", "not_finite", "has entries that are not finite".to_string());
             }
+            if let JointKind::Ball(center) = joint.kind
+                && !center.0.iter().all(|x| x.is_finite())
+            {
+                self.error(
+                    element,
+                    "kind",
+                    "not_finite",
+                    format!("is a ball at {:?}, expected finite numbers", center.0),
+                );
+            }
             for (attribute, x) in
                 [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)]
             {
@@ -49,6 +60,7 @@ impl Report<'_> {
             }
             if let Some([low, high]) = joint.limits.position
                 && !(low <= high)
+                && !matches!(joint.kind, JointKind::Ball(_) | JointKind::Free)
             {
                 self.error(
                     element,
@@ -56,6 +68,18 @@ impl Report<'_> {
                     "reversed_limits",
                     format!("go from {low} to {high}, expected the lower first"),
                 );
+            }
+            match (joint.kind, joint.limits.position) {
+                (JointKind::Ball(_), Some([low, high])) if !(low == 0.0 && high >= 0.0) => {
+                    let message =
+                        format!("go from {low} to {high}, expected 0 and the largest angle that a ball turns");
+                    self.error(element, "limits", "reversed_limits", message);
+                }
+                (JointKind::Free, Some([low, high])) => {
+                    let message = format!("go from {low} to {high}, expected none of a free joint");
+                    self.error(element, "limits", "reversed_limits", message);
+                }
+                _ => {}
             }
             for (attribute, limit) in [("velocity limit", joint.limits.velocity), ("effort limit", joint.limits.effort)]
             {

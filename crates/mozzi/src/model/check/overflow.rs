@@ -3,6 +3,7 @@
 use super::{Element, Report};
 use crate::model::Model;
 use crate::model::build::normal_form;
+use crate::model::description::JointKind;
 use crate::spatial::Rounded;
 use alloc::format;
 use core::cell::Cell;
@@ -36,8 +37,10 @@ impl Report<'_> {
             see(&[joint.damping], element, "damping");
             see(&[joint.friction], element, "friction");
             see(&[joint.armature], element, "armature");
-            if let crate::model::description::JointKind::Screw(A) = joint.kind {
-                see(&A.twist().to_array(), element, "kind");
+            match joint.kind {
+                JointKind::Screw(A) => see(&A.twist().to_array(), element, "kind"),
+                JointKind::Ball(center) => see(&center.0, element, "kind"),
+                JointKind::Fixed | JointKind::Free => {}
             }
             if let Some(mimic) = &joint.mimic {
                 see(&[mimic.ratio, mimic.offset], element, "mimic");
