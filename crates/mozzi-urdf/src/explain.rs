@@ -7,7 +7,7 @@ use crate::spelling::nearest;
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // a code in three lines
-const CODES: [Entry; 57] = [
+const CODES: [Entry; 58] = [
     ("circular_mimic",
         "A joint that follows another (mimic) follows, over one or more steps, itself. Its position is then defined by nothing.",
         "let one of the joints follow none"),
@@ -68,6 +68,9 @@ const CODES: [Entry; 57] = [
     ("massless_leaf",
         "The last link of a branch moves by a joint but has no inertia about its axis. Inverse dynamics is fine; forward dynamics would divide by zero, and answers with an error that names the joint.",
         "give the link its mass and inertia, or make the joint fixed"),
+    ("mimic_of_several_axes",
+        "A joint follows a ball or a free joint, or one of these follows another. They have several positions, and what would be followed is not said.",
+        "let joints of one axis follow each other"),
     ("missing_attribute",
         "An attribute that has to be there is not. Nothing is assumed in its place.",
         "write it, with its value"),
@@ -165,8 +168,8 @@ const CODES: [Entry; 57] = [
         "A link hangs in a ring of joints that is not connected to the base.",
         "one of the joints of the ring has the wrong parent"),
     ("unsupported_joint",
-        "A floating joint stands inside the tree, or a joint is a ball. Every joint of mozzi has one number as its position; only the base can be free, by a floating joint between an empty root link and the base. A quaternion inside the tree would need columns and brackets of its own in every algorithm.",
-        "build it from joints of one freedom with massless links between: `revolute`, `continuous`, `prismatic`; three hinges move as a ball does, away from the position where two of them line up"),
+        "A joint is a ball, of which URDF has no word and other readers know nothing, or a planar or floating joint is to follow another (mimic).",
+        "MJCF and mozzi's JSON have balls; in URDF, three hinges with massless links between move as a ball does, away from the position where two of them line up"),
     ("wrong_count",
         "A vector has not as many numbers as it needs.",
         "numbers are separated by spaces: `0 0 0.5`"),

@@ -11,7 +11,7 @@
 //! - A `floating` joint at the root is a floating base ([`mozzi::Base`]); the empty link that carries it is the space frame, and no link
 //!   of the robot. A `planar` joint `j` becomes the slides `j.x` and `j.y` and the turn `j.theta` about its axis, with massless links
 //!   between: x is along the joint frame's x-axis projected onto the plane (its y-axis where |axis_x| > 0.9), y along axis × x.
-//!   Floating joints inside the tree and ball joints are refused.
+//!   Any other `floating` joint is a free joint of the tree. Ball joints, which URDF does not have, are refused.
 //! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
 //!   namespaces) silent, other unknown ones a warning once per kind.
 //! - A file that xacro has not expanded is an error, with the command that expands it. Meshes do not matter to a robot's dynamics: [`geometry`]

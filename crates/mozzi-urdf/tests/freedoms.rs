@@ -1,6 +1,7 @@
 //! Joints of several freedoms: floating bases and planar joints, and what becomes of them.
 #![allow(clippy::unwrap_used)]
 
+use mozzi::model::description::JointKind;
 use mozzi::{Base, Twist};
 use mozzi_urdf::{Policy, parse_with};
 
@@ -97,4 +98,43 @@ fn a_free_body_is_the_base_and_the_world_is_left() {
     let at = [1.0, 0.0, 0.0, 0.0, 3.0, 0.0, 1.0, 0.0];
     let foot = model.forward_kinematics(&at, model.frame("foot").unwrap()).unwrap();
     assert_eq!(foot.p.0, [3.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_floating_joint_inside_the_tree_is_a_free_joint() {
+    let text = "<robot name='r'><link name='base'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>\
+                <link name='box'><inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>\
+                <joint name='j' type='floating'><origin xyz='0 0 3'/><parent link='base'/><child link='box'/></joint></robot>";
+    let robot = parse_with("r.urdf", text, Policy::Strict).unwrap();
+    assert_eq!((robot.description.base, robot.description.joints[0].kind), (Base::Fixed, JointKind::Free));
+    let again = parse_with("r.urdf", mozzi_urdf::write(&robot.description).unwrap(), Policy::Strict).unwrap();
+    assert_eq!(again.description.joints, robot.description.joints);
+    let model = robot.build().unwrap();
+    assert_eq!((model.nq(), model.n()), (7, 6));
+    assert_eq!(model.velocity_names().collect::<Vec<_>>(), ["j.wx", "j.wy", "j.wz", "j.vx", "j.vy", "j.vz"]);
+    let at = model.forward_kinematics(&model.neutral_configuration::<f64>(), model.frame("box").unwrap()).unwrap();
+    assert_eq!(at.p.0, [0.0, 0.0, 3.0]);
+}
+
+#[test]
+fn balls_and_several_free_bodies_of_mjcf() {
+    let text = "<mujoco model='m'><compiler angle='radian'/><worldbody><body name='cup' pos='1 0 2'><freejoint/><geom size='0.1' mass='2'/></body>\
+                <body name='arm' pos='0 0 1'><joint name='shoulder' type='ball' pos='0 0 0.2' damping='0.5' armature='0.1' range='0 1.5'/>\
+                <geom size='0.1' pos='0.3 0 0' mass='1'/></body><body name='lid'><joint name='slip' type='free' damping='3'/><geom size='0.1' mass='1'/>\
+                </body></worldbody></mujoco>";
+    let robot = parse_with("m.xml", text, Policy::Default).unwrap();
+    let d = &robot.description;
+    assert_eq!((d.base, d.links[0].name.as_str()), (Base::Fixed, "world"));
+    let shoulder = d.joints.iter().find(|joint| joint.name == "shoulder").unwrap();
+    assert_eq!(shoulder.kind, JointKind::Ball(mozzi::Vec3([0.0, 0.0, 0.2])));
+    assert_eq!((shoulder.limits.position, shoulder.damping, shoulder.armature), (Some([0.0, 1.5]), 0.5, 0.1));
+    assert_eq!(d.joints.iter().find(|joint| joint.name == "slip").unwrap().damping, 3.0);
+    let model = robot.build().unwrap();
+    assert_eq!((model.nq(), model.n()), (18, 15));
+    assert_eq!(model.position_names().nth(7), Some("shoulder.qw"));
+    assert_eq!(model.velocity_names().next(), Some("cup:free.wx"));
+    // the pose of a free body is that in the world
+    let mut theta = model.neutral_configuration::<f64>();
+    theta[4..7].copy_from_slice(&[3.0, 4.0, 5.0]);
+    assert_eq!(model.forward_kinematics(&theta, model.frame("cup").unwrap()).unwrap().p.0, [3.0, 4.0, 5.0]);
 }

@@ -3,7 +3,7 @@
 use crate::explain::Entry;
 
 #[rustfmt::skip] // a code in three lines
-pub(crate) const CODES: [Entry; 36] = [
+pub(crate) const CODES: [Entry; 37] = [
     ("actuator_armature",
         "An actuator has an inertia of its own, which MuJoCo adds to that of its joint, times the square of its gear. It would change the mass matrix, so it is not ignored. Give it as the joint's armature.",
         "give the joint the armature, times the square of the gear"),
@@ -49,6 +49,9 @@ pub(crate) const CODES: [Entry; 36] = [
     ("mesh_inertia",
         "A body that moves has no <inertial>, and one of the geoms that its inertia is to be computed from is a mesh. mozzi reads no meshes. MuJoCo can compute the inertia and write it into the file (saveinertial).",
         "give the body an <inertial>, or the geom the mass 0"),
+    ("mimic_of_several_axes",
+        "A joint follows a ball or a free joint, or one of these follows another. They have several positions, and what would be followed is not said.",
+        "let joints of one axis follow each other"),
     ("misplaced_joint",
         "A joint stands in the world, which does not move. It belongs into the body that it moves.",
         "move it into the body that it moves"),
@@ -101,8 +104,8 @@ pub(crate) const CODES: [Entry; 36] = [
         "An equality is not a straight line between the positions of two joints. Only that is a mimic joint; anything else would be lost in silence, so the file is refused.",
         "remove it, or set active=\"false\", if the tree without it is what you want to compute"),
     ("unsupported_joint",
-        "A joint is a ball, or a free joint stands where it frees nothing: inside the tree, beside other joints of its body, or beside another free body. Or something else moves in the world beside a free body. Every joint of mozzi has one number as its position; only the base can be free. A quaternion inside the tree would need columns and brackets of its own in every algorithm.",
-        "three hinges in one body move as a ball does, away from the position where two of them line up"),
+        "A free joint stands inside the tree, or beside other joints of its body. MuJoCo refuses it, too.",
+        "a ball and three slides in one body move as a free joint does"),
     ("unsupported_tendon",
         "A tendon has a force, an inertia or limits of its own, and would act on several joints at once.",
         "remove it if the tree without it is what you want to compute"),

@@ -1,22 +1,24 @@
-//! MuJoCo's models (MJCF): the tree of bodies with hinges and slides, on the ground or free.
+//! MuJoCo's models (MJCF): the tree of bodies with hinges, slides and balls, on the ground or free, and several trees beside each other.
 //!
 //! [`load`](crate::load), [`parse`](crate::parse) and [`open`](crate::open) read them too: the root element `<mujoco>`
 //! tells, whatever the file is called.
 //!
 //! # What is read
-//! Bodies, frames and sites with every way to write an orientation; a free body of the world; hinges and slides, several in a body, with `ref`,
+//! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls, several in a body, with `ref`,
 //! `range`, `armature`, `damping` and `frictionloss`; inertias, given or computed from geoms; default classes;
 //! includes; the compiler's settings that matter; gravity; an equality of two joints that is affine, as a mimic joint.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
 //!   MuJoCo's `qpos`, with `ref`. Between two joints of one body stands a massless link `body:joint`.
-//! - Where a body of the world is free, it is the robot's base instead ([`mozzi::Base`]), and its positions are MuJoCo's with the
-//!   quaternion first; its velocities are in the body's axes, angular first. The world, and what else stands in it, is no link then.
+//! - Where one body of the world is free, undamped, and with what it carries all that moves, it is the robot's base instead ([`mozzi::Base`]), and its
+//!   positions are MuJoCo's with the quaternion first; its velocities are in the body's axes, angular first. The world, and what else stands in
+//!   it, is no link then. Any other free body hangs on the world by a free joint with the same positions and velocities.
+//! - A ball has MuJoCo's quaternion and angular velocity; its spring is not computed.
 //! - What has no name is called by its number in MuJoCo: `body3`, `joint1`.
 //! - A coupling of joints is rigid here; in MuJoCo its solver keeps it approximately.
 //!
 //! # What is not
-//! - Refused by name: ball joints, anything that moves beside a free body, closures (`connect`, `weld`, curved couplings, tendons with forces or limits),
+//! - Refused by name: closures (`connect`, `weld`, curved couplings, tendons with forces or limits),
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes where the inertia would be needed, shells.
 //! - Loaded with a warning that names the force: springs, nonlinear damping, gravity compensation, fluids.
 //! - Listed in warnings of the codes `ignored_element` and `ignored_attribute`, once per kind, which the strict policy lets

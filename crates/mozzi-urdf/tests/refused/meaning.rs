@@ -28,11 +28,6 @@ fn joints() {
             "joint `j`: type: is `revolut`, expected one of `revolute`, `continuous`, `prismatic`, `fixed`, `planar`, `floating`",
         ),
         (
-            joint("type='§floating'", "<origin rpy='0 0 1'/>"),
-            "unsupported_joint",
-            "joint `j`: type: is `floating`, but its origin is [0.0, 0.0, 0.0] m, turned by [0.0, 0.0, 1.0] rad",
-        ),
-        (
             joint("type='§spherical'", ""),
             "unsupported_joint",
             "joint `j`: type: is `spherical`, which turns about every axis",

@@ -23,9 +23,9 @@ fn what_is_left_out_is_said() {
             "body `b`: gravcomp: is `1`, a compensation of gravity, which mozzi does not compute",
         ),
         (
-            body!("<joint type='free' damping='§1'/><geom size='1'/>"),
+            body!("<joint type='free' frictionloss='§1'/><geom size='1'/>"),
             "ignored_force",
-            "body `b`: joint: damping: is `1`, a damping of the floating base, which mozzi does not compute",
+            "body `b`: joint: frictionloss: is `1`, a friction of a free body, which mozzi does not compute",
         ),
         (
             "<mujoco><option density='§1.2'/></mujoco>",
