@@ -90,4 +90,6 @@ fn step_to(step: f64, t: f64, until: f64) -> (f64, f64) {
 }
 
 #[cfg(test)]
+mod balls;
+#[cfg(test)]
 mod tests;
