@@ -67,6 +67,7 @@ fn kinds(verdict: &Verdict) -> Vec<&'static str> {
         Cause::Armature(_) => "armature",
         Cause::Damping(_) => "damping",
         Cause::Friction(_) => "friction",
+        Cause::Stiffness(_) => "stiffness",
         Cause::Constraints(_) => "constraints",
         Cause::Force(name) if name == "spring" => "spring",
         Cause::Force(name) if name == "gravcomp" => "gravcomp",

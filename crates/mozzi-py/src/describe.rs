@@ -10,7 +10,7 @@ type Pose = [[f64; 4]; 4];
 type LinkState = (String, [f64; 10]);
 type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>);
 type MimicState = Option<(String, f64, f64)>;
-type JointState = (String, String, String, Pose, Option<[f64; 6]>, LimitState, [f64; 3], MimicState);
+type JointState = (String, String, String, Pose, Option<[f64; 6]>, LimitState, [f64; 5], MimicState);
 type FrameState = (String, String, Pose);
 
 /// Everything of a [`Description`].
@@ -33,7 +33,7 @@ pub fn to_state(robot: &Description) -> State {
             joint.origin.to_matrix(),
             axis,
             (position, velocity, effort),
-            [joint.damping, joint.friction, joint.armature],
+            [joint.damping, joint.friction, joint.armature, joint.stiffness, joint.spring_reference],
             mimic,
         )
     };
@@ -57,16 +57,14 @@ pub fn from_state((name, links, joints, frames, end_effector, gravity, free): St
     for (name, parameters) in links {
         robot = robot.link(name, SpatialInertia::from_parameters(parameters));
     }
-    for (name, parent, child, origin, axis, (position, velocity, effort), [damping, friction, armature], mimic) in
-        joints
-    {
+    for (name, parent, child, origin, axis, (position, velocity, effort), numbers, mimic) in joints {
         let kind = match axis {
             None => JointKind::Fixed,
             Some(axis) => JointKind::Screw(ScrewAxis::from_array(axis).map_err(refused)?),
         };
         let mut joint = Joint::new(name, parent, child, pose(origin)?, kind);
         joint.limits = Limits { position, velocity, effort };
-        (joint.damping, joint.friction, joint.armature) = (damping, friction, armature);
+        [joint.damping, joint.friction, joint.armature, joint.stiffness, joint.spring_reference] = numbers;
         joint.mimic = mimic.map(|(joint, ratio, offset)| Mimic { joint, ratio, offset });
         robot = robot.joint(joint);
     }

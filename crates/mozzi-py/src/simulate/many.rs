@@ -9,7 +9,7 @@ use crate::numpy::Fresh;
 use crate::results::named;
 use crate::signature::{INPUTS, Slot};
 use crate::threads::Threads;
-use mozzi::quantities::{ForwardDynamics, GravityForces, KineticEnergy, PotentialEnergy, Query};
+use mozzi::quantities::{ForwardDynamics, GravityForces, KineticEnergy, PotentialEnergy, Query, SpringForces};
 use mozzi::simulation::{LARGEST, Motion, Options};
 use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, BatchEnvironment};
@@ -242,8 +242,13 @@ pub fn simulate<'py>(
         Torque::GravityCompensation => {
             let base = model.base().velocities(); // without motors
             let compensation = |_, theta: &[f64], _: &[f64], tau: &mut [f64]| {
-                py.detach(|| robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau]))
-                    .map_err(|error| of_batch(error, leading))?;
+                let mut springs = vec![0.0; tau.len()];
+                py.detach(|| {
+                    robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau])?;
+                    robots.batch.compute(SpringForces, &[theta], &environment, &mut [&mut springs])
+                })
+                .map_err(|error| of_batch(error, leading))?;
+                tau.iter_mut().zip(springs).for_each(|(tau, spring)| *tau += spring);
                 tau.chunks_exact_mut(n).for_each(|tau| tau[..base].fill(0.0));
                 Ok(())
             };

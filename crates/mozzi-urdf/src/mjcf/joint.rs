@@ -31,6 +31,8 @@ impl<'a> Model<'a> {
             ("damping", "damping"),
             ("frictionloss", "friction"),
             ("armature", "armature"),
+            ("stiffness", "stiffness"),
+            ("springref", "spring reference"),
         ] {
             if let Some(value) = item.value(name) {
                 place.set(check, value.span);
@@ -47,9 +49,11 @@ impl<'a> Model<'a> {
         let screw = screw(&item, inside.T, is_slide, cx);
         let position = |x: f64| if is_slide { x } else { self.compiler.angle(x) };
         let reference = position(item.number("ref", 0.0, cx));
+        let rest = position(item.number("springref", 0.0, cx));
         let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
         let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
+        let stiffness = self.stiffness(&item, cx);
         let armature = item.number("armature", 0.0, cx);
         // the file's own configuration is at `ref`
         let back = screw.map_or(SE3::identity(), |screw| SE3::exp(screw.twist() * -reference));
@@ -57,6 +61,7 @@ impl<'a> Model<'a> {
         added.joint.kind = screw.map_or(JointKind::Fixed, JointKind::Screw);
         added.joint.limits = Limits { position: limits, velocity: None, effort };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
+        (added.joint.stiffness, added.joint.spring_reference) = (stiffness, rest);
         added.reference = reference;
         shown
     }
@@ -96,14 +101,11 @@ impl<'a> Model<'a> {
         (low == -high && high > 0.0).then_some(high)
     }
 
-    /// Damping and Coulomb friction; springs are told.
+    /// Damping and Coulomb friction.
     fn friction(&mut self, item: &Item, cx: &mut Context) -> [f64; 2] {
         let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
         if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
             self.ignored.force("damping", item, "damping", "a damping that is not linear");
-        }
-        if self.options.spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
-            self.ignored.force("stiffness", item, "stiffness", "a spring");
         }
         let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
         if time > 0.0 && ratio > 0.0 {
@@ -112,6 +114,22 @@ impl<'a> Model<'a> {
         }
         let loss = item.number("frictionloss", 0.0, cx);
         [if self.options.damper { linear } else { 0.0 }, if self.options.friction { loss } else { 0.0 }]
+    }
+
+    /// The stiffness of a spring; what of it is not linear is told.
+    fn stiffness(&mut self, item: &Item, cx: &mut Context) -> f64 {
+        let [linear, quadratic, cubic] = item.overlaid::<3>("stiffness", cx);
+        let springyield = item.number("springyield", 0.0, cx);
+        if !self.options.spring {
+            return 0.0;
+        }
+        if quadratic != 0.0 || cubic != 0.0 {
+            self.ignored.force("stiffness", item, "stiffness", "a spring that is not linear");
+        }
+        if springyield > 0.0 && linear != 0.0 {
+            self.ignored.force("springyield", item, "springyield", "a spring that yields");
+        }
+        linear
     }
 }
 

@@ -1,7 +1,7 @@
 //! From a description to the screw normal form.
 
 use super::description::{Joint, JointKind};
-use super::{Description, Error, Frame, FrameId, Link, Model, Severity, Structure};
+use super::{Description, Error, Frame, FrameId, Link, Model, Severity, Spring, Structure};
 use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
 use crate::scalar::Real;
@@ -95,11 +95,14 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         }
         total
     };
+    let (springs, spring_energy) = springs(description, &moving_joints, &links);
     Model {
         base_inertia: inertias[0],
         armature: sum(|joint, ratio| ratio * ratio * joint.armature),
         damping: sum(|joint, ratio| ratio * ratio * joint.damping),
         friction: sum(|joint, ratio| ratio.abs() * joint.friction),
+        springs,
+        spring_energy,
         frames,
         gravity: Vec3(description.gravity),
         base: description.base,
@@ -151,6 +154,24 @@ fn couple<C: Real>(description: &Description<C>, moving_joints: &[usize], links:
         (link.q, link.j) = (base.positions() + number[source.joint], base.velocities() + number[source.joint]);
     }
     joints
+}
+
+/// The springs by independent joints, and their energy at θ = 0.
+fn springs<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &[Link<C>]) -> (Vec<Spring<C>>, C) {
+    let (mut springs, mut energy) = (BTreeMap::new(), C::zero());
+    for (link, &i) in links.iter().zip(moving_joints) {
+        let Joint { stiffness, spring_reference, .. } = description.joints[i];
+        if stiffness.is_identically_zero() {
+            continue;
+        }
+        let (moment, stretch) = (link.ratio * stiffness, spring_reference - link.offset);
+        let none = Spring { q: link.q, j: link.j, stiffness: C::zero(), preload: C::zero() };
+        let spring = springs.entry(link.j).or_insert(none);
+        spring.stiffness += link.ratio * moment;
+        spring.preload += moment * stretch;
+        energy += C::from_f64(0.5) * stiffness * stretch * stretch;
+    }
+    (springs.into_values().collect(), energy)
 }
 
 /// The joint's axis in the normal form, and the normal frame seen from the link's: z along the screw, the origin on it.

@@ -1,4 +1,4 @@
-//! Finite numbers, masses and frictions of the right sign.
+//! Finite numbers, masses, frictions and stiffnesses of the right sign.
 
 use super::{Element, Report};
 use crate::spatial::SpatialInertia;
@@ -35,9 +35,12 @@ impl Report<'_> {
             if !joint.origin.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
                 self.error(element, "origin", "not_finite", "has entries that are not finite".to_string());
             }
-            for (attribute, x) in
-                [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)]
-            {
+            for (attribute, x) in [
+                ("damping", joint.damping),
+                ("friction", joint.friction),
+                ("armature", joint.armature),
+                ("stiffness", joint.stiffness),
+            ] {
                 if !(x >= 0.0 && x.is_finite()) {
                     self.error(
                         element,
@@ -46,6 +49,10 @@ impl Report<'_> {
                         format!("is {x}, expected a finite number, at least 0"),
                     );
                 }
+            }
+            if !joint.spring_reference.is_finite() {
+                let message = format!("is {}, expected a finite number", joint.spring_reference);
+                self.error(element, "spring reference", "not_finite", message);
             }
             if let Some([low, high]) = joint.limits.position
                 && !(low <= high)

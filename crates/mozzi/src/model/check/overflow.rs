@@ -36,6 +36,8 @@ impl Report<'_> {
             see(&[joint.damping], element, "damping");
             see(&[joint.friction], element, "friction");
             see(&[joint.armature], element, "armature");
+            see(&[joint.stiffness], element, "stiffness");
+            see(&[joint.spring_reference], element, "spring reference");
             if let crate::model::description::JointKind::Screw(A) = joint.kind {
                 see(&A.twist().to_array(), element, "kind");
             }
