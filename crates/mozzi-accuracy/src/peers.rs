@@ -58,7 +58,7 @@ fn rows(
     // of the same file without friction, which the libraries do not count among the forces
     let mut smooth = read_urdf::<Double>(&robot.text, model.description()).map_err(|error| error.to_string())?;
     for joint in &mut smooth.joints {
-        (joint.damping, joint.friction) = (0.0.into(), 0.0.into());
+        (joint.damping, joint.friction, joint.stiffness) = (0.0.into(), 0.0.into(), 0.0.into());
     }
     let wide = smooth.build().map_err(|error| error.to_string())?;
     let (neighbours, mut rows) = (Neighbours::new(&wide, robot.frame), Vec::new());

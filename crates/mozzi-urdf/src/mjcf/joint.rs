@@ -3,6 +3,8 @@
 use super::Model;
 use super::attributes::Item;
 use super::contents::Inside;
+use super::option::Options;
+use super::spring::SpringDamper;
 use super::tree::Name;
 use super::vocabulary;
 use crate::axis;
@@ -33,6 +35,7 @@ impl<'a> Model<'a> {
             ("armature", "armature"),
             ("stiffness", "stiffness"),
             ("springref", "spring reference"),
+            ("springdamper", "springdamper"),
         ] {
             if let Some(value) = item.value(name) {
                 place.set(check, value.span);
@@ -54,6 +57,9 @@ impl<'a> Model<'a> {
         let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
         let stiffness = self.stiffness(&item, cx);
+        let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
+        let Options { spring, damper, .. } = self.options;
+        let spring_damper = (time > 0.0 && ratio > 0.0).then_some(SpringDamper { time, ratio, spring, damper });
         let armature = item.number("armature", 0.0, cx);
         // the file's own configuration is at `ref`
         let back = screw.map_or(SE3::identity(), |screw| SE3::exp(screw.twist() * -reference));
@@ -62,7 +68,7 @@ impl<'a> Model<'a> {
         added.joint.limits = Limits { position: limits, velocity: None, effort };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
         (added.joint.stiffness, added.joint.spring_reference) = (stiffness, rest);
-        added.reference = reference;
+        (added.reference, added.spring_damper) = (reference, spring_damper);
         shown
     }
 
@@ -106,11 +112,6 @@ impl<'a> Model<'a> {
         let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
         if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
             self.ignored.force("damping", item, "damping", "a damping that is not linear");
-        }
-        let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
-        if time > 0.0 && ratio > 0.0 {
-            let message = "springdamper: lets MuJoCo choose a spring and a damping, which mozzi does not";
-            cx.findings.add(item.error("unsupported_attribute", "springdamper", message).help("give `damping` itself"));
         }
         let loss = item.number("frictionloss", 0.0, cx);
         [if self.options.damper { linear } else { 0.0 }, if self.options.friction { loss } else { 0.0 }]

@@ -5,7 +5,7 @@
 //!
 //! # What is read
 //! Bodies, frames and sites with every way to write an orientation; a free body of the world; hinges and slides, several in a body, with `ref`,
-//! `range`, `armature`, `damping` and `frictionloss`; inertias, given or computed from geoms; default classes;
+//! `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and `springdamper`; inertias, given or computed from geoms; default classes;
 //! includes; the compiler's settings that matter; gravity; an equality of two joints that is affine, as a mimic joint.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
@@ -18,7 +18,7 @@
 //! # What is not
 //! - Refused by name: ball joints, anything that moves beside a free body, closures (`connect`, `weld`, curved couplings, tendons with forces or limits),
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes where the inertia would be needed, shells.
-//! - Loaded with a warning that names the force: springs, nonlinear damping, gravity compensation, fluids.
+//! - Loaded with a warning that names the force: springs and damping that are not linear, gravity compensation, fluids.
 //! - Listed in warnings of the codes `ignored_element` and `ignored_attribute`, once per kind, which the strict policy lets
 //!   pass: actuators, sensors, contacts, assets, keyframes, settings of MuJoCo's solver and what is for the eye only.
 //!
@@ -40,6 +40,7 @@ mod option;
 mod orientation;
 #[cfg(test)]
 mod schema;
+mod spring;
 mod tree;
 mod vocabulary;
 
@@ -136,5 +137,8 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
         return None;
     }
     let name = root.attribute("model").map_or("mujoco", |value| value.text);
-    Some(model.tree.describe(name, model.options.gravity, cx))
+    let tunings = spring::tunings(&model.tree.joints);
+    let (mut description, places) = model.tree.describe(name, model.options.gravity, cx);
+    spring::tune(&mut description, &tunings, cx);
+    Some((description, places))
 }
