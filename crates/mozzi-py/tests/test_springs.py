@@ -29,6 +29,7 @@ def test_mujoco(robot, random):
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(ROBOT)
     model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     data = mujoco.MjData(model)
     before = None
     for _ in range(20):
