@@ -110,7 +110,7 @@ fn springs_are_written_and_read() {
     let spring =
         |joint: &mozzi::model::description::Joint| (joint.name.clone(), joint.stiffness, joint.spring_reference);
     assert!(again.description.joints.iter().map(spring).eq(description.joints.iter().map(spring)));
-    let message = mozzi_urdf::parse("a.urdf", &text.replace("\"12.5\"", "\"-1\"")).expect_err("negative").to_string();
+    let message = mozzi_urdf::parse("a.urdf", text.replace("\"12.5\"", "\"-1\"")).expect_err("negative").to_string();
     assert!(message.contains("stiffness: is -1, expected a finite number, at least 0"), "{message}");
 }
 

@@ -51,8 +51,8 @@ fn a_mimic_joints_spring_acts_on_its_own_variable() {
 fn a_mass_on_a_spring_oscillates_at_its_frequency() {
     let model = springs();
     // M = m r² + ratio² m, K = k + ratio² k, rest at p / K
-    let (M, K, p) = (0.5 + 12.0, 27.0, 7.0 * 0.4 + 2.0 * 5.0 * 0.4);
-    let (rest, omega) = (p / K, (K / M as f64).sqrt());
+    let (M, K, p) = (0.5 + 12.0, 27.0_f64, 7.0 * 0.4 + 2.0 * 5.0 * 0.4);
+    let (rest, omega) = (p / K, (K / M).sqrt());
     let options = Options { method: Method::RungeKutta4, ..Options::new(2.0, 2000) };
     let motion = model.simulate(&[1.0], &[0.0], Zero, &options).expect("a motion");
     let expected = rest + (1.0 - rest) * (2.0 * omega).cos();
