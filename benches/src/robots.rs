@@ -23,7 +23,7 @@ pub fn legged(folder: &Path) -> Result<[(&'static str, Model); 2], String> {
         let name = path.to_str().ok_or_else(|| format!("{}: no text", path.display()))?;
         let mut robot = mozzi_urdf::open(name).map_err(|error| error.to_string())?.description;
         for joint in &mut robot.joints {
-            (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
+            (joint.damping, joint.friction, joint.armature, joint.stiffness) = (0.0, 0.0, 0.0, 0.0);
         }
         robot.floating().build().map_err(|error| error.to_string())
     };

@@ -210,7 +210,7 @@ fn peers(text: &mut String, all: &[Measured]) {
     let versions: Vec<String> = versions.into_iter().collect();
     writeln!(
         text,
-        "{} at the same states of the same files, without friction, against the same reference in the same units. **Bold** is where a \
+        "{} at the same states of the same files, without friction and springs, against the same reference in the same units. **Bold** is where a \
          library's median and largest error are both smaller than mozzi's by more than a tenth.\n",
         versions.join(" and ")
     )

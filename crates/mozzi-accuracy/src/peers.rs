@@ -22,7 +22,7 @@ pub struct Answer {
     pub rows: Result<(String, Vec<Row>), String>,
 }
 
-/// Both libraries on a robot without friction, at the first so many states.
+/// Both libraries on a robot without friction and springs, at the first so many states.
 pub fn ask(python: &Path, robot: &Robot, states: &States, count: usize, seed: u64) -> Vec<Answer> {
     [("pinocchio", "Pinocchio"), ("mujoco", "MuJoCo")]
         .into_iter()
@@ -55,10 +55,10 @@ fn rows(
     if let Some(why) = answer["error"].as_str() {
         return Err(why.into());
     }
-    // of the same file without friction, which the libraries do not count among the forces
+    // of the same file without friction and springs, which the libraries do not count among the forces
     let mut smooth = read_urdf::<Double>(&robot.text, model.description()).map_err(|error| error.to_string())?;
     for joint in &mut smooth.joints {
-        (joint.damping, joint.friction) = (0.0.into(), 0.0.into());
+        (joint.damping, joint.friction, joint.stiffness) = (0.0.into(), 0.0.into(), 0.0.into());
     }
     let wide = smooth.build().map_err(|error| error.to_string())?;
     let (neighbours, mut rows) = (Neighbours::new(&wide, robot.frame), Vec::new());

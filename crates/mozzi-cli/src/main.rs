@@ -149,7 +149,7 @@ true for less than a quarter of a step may be overlooked.
 CSV files are as of `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
 
 A controller is a JSON object; gains are one number for all, or lists:
-  {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + p e + d ė; N m/rad, N m s/rad
+  {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + k(θ − θ₀) + p e + d ė; N m/rad, N m s/rad
   {\"controller\": \"computed-torque\", \"p\": 100, \"d\": 20}          ë + d ė + p e = 0; 1/s², 1/s
   {\"controller\": \"task-space\", \"frame\": \"tool0\", \"p\": 100, \"d\": 20, \"posture_p\": 25, \"posture_d\": 10}
   {\"controller\": \"impedance\", \"frame\": \"tool0\", \"stiffness\": [20, 20, 20, 500, 500, 500], \"damping\": [1, 1, 1, 50, 50, 50],

@@ -24,6 +24,7 @@ pub fn write(model: &Model) -> String {
             "position": joint.limits.position.map(|limits| json::vector(&limits)),
             "velocity": joint.limits.velocity, "effort": joint.limits.effort,
             "damping": joint.damping, "friction": joint.friction, "armature": joint.armature,
+            "stiffness": joint.stiffness, "spring_reference": joint.spring_reference,
             "mimic": joint.mimic.as_ref().map(|m| json!({ "joint": m.joint, "ratio": m.ratio, "offset": m.offset })),
         })
     };
@@ -173,6 +174,8 @@ fn joint(at: &At) -> Read<Joint> {
         damping: size("damping")?,
         friction: size("friction")?,
         armature: size("armature")?,
+        stiffness: size("stiffness")?,
+        spring_reference: size("spring_reference")?,
         mimic: at.get("mimic").some(mimic)?,
     })
 }

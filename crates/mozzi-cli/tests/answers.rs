@@ -82,7 +82,7 @@ fn terms_satisfy_the_equation_of_motion() {
     let of = |name: &str| numbers(&found[name]);
     let ddtheta = of("ddtheta");
     let mut tau = times(&rows(&found["mass_matrix"]), &ddtheta);
-    for name in ["bias_forces", "tip_forces", "joint_friction"] {
+    for name in ["bias_forces", "tip_forces", "joint_friction", "spring_forces"] {
         tau = tau.iter().zip(of(name)).map(|(a, b)| a + b).collect();
     }
     assert_close(&tau, &of("inverse_dynamics"), 1e-12);

@@ -54,8 +54,9 @@ fn explain_tells_the_work() {
     for (entry, declaration) in work.iter().zip(LIST) {
         assert_eq!(entry["quantity"], declaration.name.replace('_', "-"));
         let flops = |when: &str| entry[when]["flops"].as_u64().expect("a count");
-        // no wrench is an argument, and the robot's joints have no friction
-        let is_nothing = declaration.uses == Uses::WRENCHES || declaration.name == "joint_friction";
+        // no wrench is an argument, and the robot's joints have neither friction nor springs
+        let is_nothing =
+            declaration.uses == Uses::WRENCHES || ["joint_friction", "spring_forces"].contains(&declaration.name);
         assert!((0 < flops("after")) != is_nothing && flops("after") < flops("before").max(1), "{entry}");
         let code = entry["machine_code"].as_array().expect("a list");
         assert!(code.len() == 2 && code[0]["states"] == 1);

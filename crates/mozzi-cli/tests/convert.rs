@@ -69,6 +69,12 @@ fn mjcf_is_read_by_every_command() {
     let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-compare/tests/peers/springs.xml");
     let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
     assert!(text(&["convert", robot, &path("springs.json")]).contains("2 independent joints"));
+    let read: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(path("springs.json")).expect("a file")).expect("JSON");
+    assert_eq!(
+        (read["joints"][0]["stiffness"].as_f64(), read["joints"][0]["spring_reference"].as_f64()),
+        (Some(3.0), Some(0.0))
+    );
     text(&["convert", robot, &path("springs.py")]);
     let (code, message) = complaint(&["convert", robot, &path("springs.urdf")]);
     assert!(code == 1 && message.contains("armature 0.01; .json has words for all"), "{message}");

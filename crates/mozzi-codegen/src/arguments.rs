@@ -11,7 +11,7 @@ use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};
 /// away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Arguments<'a> {
-    /// `parameters`: [`Model::parameters`], the masses, inertias and frictions. Geometry stays constant.
+    /// `parameters`: [`Model::parameters`], the masses, inertias, frictions and springs. Geometry stays constant.
     pub parameters: bool,
     /// `gravity`: three numbers, in {s}.
     pub gravity: bool,

@@ -115,6 +115,7 @@ fn joint(value: &Value) -> Option<JointConstants> {
         armature: first("armature")?,
         damping: first("damping")?,
         friction: first("friction")?,
+        stiffness: 0.0,
     })
 }
 

@@ -37,6 +37,7 @@ pub enum Cause {
     Armature(Vec<Change>),
     Damping(Vec<Change>),
     Friction(Vec<Change>),
+    Stiffness(Vec<Change>),
     /// The forces of such constraints, which their τ contains.
     Constraints(Vec<String>),
     /// A force that their τ contains.
@@ -63,6 +64,7 @@ impl Cause {
             Cause::Armature(changes) => each(changes, |joint, value| joint.armature = value),
             Cause::Damping(changes) => each(changes, |joint, value| joint.damping = value),
             Cause::Friction(changes) => each(changes, |joint, value| joint.friction = value),
+            Cause::Stiffness(changes) => each(changes, |joint, value| joint.stiffness = value),
             Cause::Mimics(list) => {
                 list.iter().for_each(|freed| joints(robot, &freed.joint).for_each(|joint| joint.mimic = None));
             }
@@ -84,6 +86,9 @@ impl Cause {
                 }
             }
             Cause::Force(name) => {
+                if name == "spring" {
+                    robot.joints.iter_mut().for_each(|joint| joint.stiffness = 0.0); // the linear part is here, too
+                }
                 for (state, force) in theirs.states.iter_mut().zip(from.forces.get(name).into_iter().flatten()) {
                     state.tau += force; // the library's inverse dynamics is less by it
                 }
@@ -164,13 +169,16 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
         };
         mine.joints.iter().filter_map(change).collect()
     };
-    // Pinocchio keeps both and leaves them out of its inverse dynamics; MuJoCo makes a constraint of dry friction
+    // Pinocchio keeps damping and friction and leaves them out of its inverse dynamics, and has no springs; MuJoCo makes a constraint of dry
+    // friction, and of its springs the force is told
     let pinocchio = answer.library == "Pinocchio";
     type Make = fn(Vec<Change>) -> Cause;
-    let lists: [(Make, Vec<Change>); 3] = [
+    let stiffness = if pinocchio { changes(|joint| joint.stiffness, true) } else { Vec::new() };
+    let lists: [(Make, Vec<Change>); 4] = [
         (Cause::Armature, changes(|joint| joint.armature, false)),
         (Cause::Damping, changes(|joint| joint.damping, pinocchio)),
         (Cause::Friction, changes(|joint| joint.friction, true)),
+        (Cause::Stiffness, stiffness),
     ];
     causes.extend(lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(cause, list)| cause(list)));
     if !from.constraints.is_empty() {

@@ -24,6 +24,8 @@ pub struct JointConstants {
     pub armature: f64,
     pub damping: f64,
     pub friction: f64,
+    /// 0 of a library, whose springs are among its forces.
+    pub stiffness: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -81,6 +83,7 @@ impl Constants {
                 armature: joint.armature,
                 damping: joint.damping,
                 friction: joint.friction,
+                stiffness: joint.stiffness,
             }
         };
         let joints = moving.iter().zip(&bodies[1..]).map(joint).collect();

@@ -100,6 +100,7 @@ fn cause(cause: &Cause) -> Value {
         Cause::Armature(list) => changes("armature", list),
         Cause::Damping(list) => changes("damping", list),
         Cause::Friction(list) => changes("friction", list),
+        Cause::Stiffness(list) => changes("stiffness", list),
         Cause::Constraints(kinds) => json!({ "kind": "constraints", "constraints": kinds }),
         Cause::Force(name) => json!({ "kind": "force", "force": name }),
         Cause::Bodies(reason, list) => json!({

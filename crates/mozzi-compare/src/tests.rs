@@ -67,6 +67,7 @@ fn kinds(verdict: &Verdict) -> Vec<&'static str> {
         Cause::Armature(_) => "armature",
         Cause::Damping(_) => "damping",
         Cause::Friction(_) => "friction",
+        Cause::Stiffness(_) => "stiffness",
         Cause::Constraints(_) => "constraints",
         Cause::Force(name) if name == "spring" => "spring",
         Cause::Force(name) if name == "gravcomp" => "gravcomp",
@@ -90,8 +91,8 @@ fn every_record_is_explained_by_its_causes() {
         &["mimic joints", "friction", "constraints", "balanced", "dropped", "shapes"],
         &[],
         &["gravity", "bounded"],
-        &["damping", "friction"],
-        &["friction", "constraints", "fluid", "gravcomp", "spring"],
+        &["damping", "friction", "stiffness"],
+        &["friction", "constraints", "fluid", "gravcomp"],
         &[],
         &[],
     ];
@@ -107,6 +108,9 @@ fn every_record_is_explained_by_its_causes() {
     let workarounds: Vec<Workaround> =
         answer("massless_mujoco.json").attempts.iter().map(|(_, workaround)| *workaround).collect();
     assert_eq!(workarounds, [Workaround::Geometry, Workaround::Fixed, Workaround::Bound]);
+    // other springs there
+    let (verdict, _) = judged(6, |robot| robot.joints.iter_mut().for_each(|joint| joint.stiffness *= 2.0));
+    assert!(kinds(&verdict).contains(&"spring") && verdict.is_explained(), "{verdict:?}");
     let (verdict, _) = judged(0, |_| {});
     assert!(verdict.order.is_some(), "Pinocchio sorts siblings by name");
 }

@@ -49,6 +49,7 @@ pub fn cause(cause: &Cause, answer: &Answer) -> String {
         Cause::Friction(list) => {
             format!("friction: μ sgn θ̇ here, the force of a constraint (frictionloss) in {library}: {}", changes(list))
         }
+        Cause::Stiffness(list) => format!("springs: τ contains k(θ − θ₀) here, {library} has none: {}", changes(list)),
         Cause::Constraints(kinds) => format!(
             "constraints: τ of {library} contains their forces (qfrc_constraint), of {}; mozzi computes none",
             kinds.join(", ")
@@ -70,7 +71,7 @@ fn changes(list: &[Change]) -> String {
 
 fn force(name: &str, library: &str) -> String {
     let what = match name {
-        "spring" => "springs: stiffness (qfrc_spring)",
+        "spring" => "springs that are not linear (qfrc_spring)",
         "gravcomp" => "gravity compensation of bodies (qfrc_gravcomp)",
         "fluid" => "the drag of a fluid (qfrc_fluid)",
         other => other,

@@ -162,8 +162,9 @@ impl<S: Entry> Given<'_, S> {
     /// A quantity that is linear in the parameters, one parameter after the other.
     fn by_parameters(&self, query: Query, environment: &Environment<S>) -> DMatrix<S> {
         let (p, inputs) = (self.model.parameter_count(), &self.inputs[..query.declaration().inputs.len()]);
-        let of = |k| by_kernel(query, &self.model.with_parameters(&unit(p, k)), inputs, environment);
-        DMatrix::from_columns(&(0..p).map(|k| vector(&of(k))).collect::<Vec<DVector<S>>>())
+        let of = |pi: &[S]| vector(&by_kernel(query, &self.model.with_parameters(pi), inputs, environment));
+        let constant = of(&zeros(p)); // the springs' energy at θ = 0
+        DMatrix::from_columns(&(0..p).map(|k| of(&unit(p, k)) - &constant).collect::<Vec<DVector<S>>>())
     }
     /// Of each velocity of each joint: the place of its source joint's, the joint's ratio, and what `of` says.
     fn at_joints(&self, of: impl Fn(&Joint<S>) -> [S; 2]) -> Vec<(usize, S, [S; 2])> {
@@ -174,6 +175,17 @@ impl<S: Entry> Given<'_, S> {
             place.into_iter().flatten().map(move |j| (j, ratio, of)).collect::<Vec<_>>()
         };
         self.robot.joints.iter().flat_map(at).collect()
+    }
+    /// Of each joint's spring: the place of its source joint among the velocities, k, its stretch q − θ₀ and the joint's ratio.
+    fn springs(&self) -> Vec<(usize, [S; 3])> {
+        let more = self.model.base().positions() - self.model.base().velocities();
+        let at = |(j, ratio, [k, rest]): (usize, S, [S; 2])| (j, [k, ratio * self.theta()[j + more] - rest, ratio]);
+        let rest = |joint: &Joint<S>| joint.spring_reference - source(self.robot, joint).2;
+        self.at_joints(|joint| [joint.stiffness, rest(joint)]).into_iter().map(at).collect()
+    }
+    fn spring_energy(&self) -> S {
+        let half = S::from_f64(0.5);
+        self.springs().into_iter().fold(<S as Scalar>::zero(), |sum, (_, [k, x, _])| sum + half * k * x * x)
     }
     fn kinetic_energy(&self) -> S {
         let (V_s, half) = (self.environment.base_twist, S::from_f64(0.5));
@@ -267,7 +279,7 @@ second_ways! {
         vec![list(&g.form(&zeros(g.n()), &Environment::with_gravity(g.environment.gravity)).gravity_forces())]
     };
     BiasForces: |g| {
-        // friction is the difference of τ and c where nothing else acts
+        // friction and springs are the difference of τ and c where nothing else acts
         let (still, moving) = (DVector::zeros(g.n()), g.moving());
         let friction = moving.inverse_dynamics(&still) - moving.velocity_product();
         vec![list(&(g.form(g.inputs[1], g.environment).inverse_dynamics(&still) - friction))]
@@ -281,8 +293,15 @@ second_ways! {
         }
         vec![f]
     };
+    SpringForces: |g| {
+        let mut f = zeros(g.n());
+        for (j, [k, x, ratio]) in g.springs() {
+            f[j] += ratio * k * x;
+        }
+        vec![f]
+    };
     KineticEnergy: |g| vec![vec![g.kinetic_energy()]];
-    PotentialEnergy: |g| vec![vec![-g.environment.gravity.dot(g.moments().1)]];
+    PotentialEnergy: |g| vec![vec![g.spring_energy() - g.environment.gravity.dot(g.moments().1)]];
     ForwardKinematics: |g| vec![pose(g.pose_and_jacobian().0)];
     FramePoses: |g| {
         vec![g.model.frames().flat_map(|(_, name)| pose(frame(g.robot, g.model, g.theta(), name).0)).collect()]

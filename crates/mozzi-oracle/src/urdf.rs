@@ -95,6 +95,8 @@ pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description
         (joint.origin, joint.kind) = (origin(node)?, kind(node)?);
         let dynamics = child(node, "dynamics").filter(|_| joint.kind != JointKind::Free); // of which it says nothing
         (joint.damping, joint.friction) = (number(dynamics, "damping", "0")?, number(dynamics, "friction", "0")?);
+        joint.stiffness = number(dynamics, "spring_stiffness", "0")?;
+        joint.spring_reference = number(dynamics, "spring_reference", "0")?;
         if let (Some(mimic), Some(node)) = (&mut joint.mimic, child(node, "mimic")) {
             let (ratio, offset) = (number(Some(node), "multiplier", "1")?, number(Some(node), "offset", "0")?);
             *mimic = Mimic { joint: mimic.joint.clone(), ratio, offset };
@@ -124,6 +126,8 @@ fn agree(second: &Description, first: &Description) -> Read<()> {
         near(&b.name, a.origin.to_matrix().as_flattened(), b.origin.to_matrix().as_flattened())?;
         near(&b.name, &screw(a.kind), &screw(b.kind))?;
         near(&b.name, &[a.damping, a.friction], &[b.damping, b.friction])?;
+        near(&b.name, &[a.stiffness], &[b.stiffness])?;
+        near(&b.name, &[a.spring_reference], &[b.spring_reference])?;
         let mimic = |mimic: &Option<Mimic>| mimic.as_ref().map_or([1.0, 0.0], |mimic| [mimic.ratio, mimic.offset]);
         near(&b.name, &mimic(&a.mimic), &mimic(&b.mimic))?;
     }

@@ -12,7 +12,7 @@ type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>);
 type MimicState = Option<(String, f64, f64)>;
 /// What moves a joint, and its numbers: a screw axis, a ball's centre.
 type KindState = (String, Vec<f64>);
-type JointState = (String, String, String, Pose, KindState, LimitState, [f64; 3], MimicState);
+type JointState = (String, String, String, Pose, KindState, LimitState, [f64; 5], MimicState);
 type FrameState = (String, String, Pose);
 
 /// Everything of a [`Description`].
@@ -42,7 +42,7 @@ pub fn to_state(robot: &Description) -> State {
             joint.origin.to_matrix(),
             (kind.to_string(), numbers),
             (position, velocity, effort),
-            [joint.damping, joint.friction, joint.armature],
+            [joint.damping, joint.friction, joint.armature, joint.stiffness, joint.spring_reference],
             mimic,
         )
     };
@@ -66,31 +66,21 @@ pub fn from_state((name, links, joints, frames, end_effector, gravity, free): St
     for (name, parameters) in links {
         robot = robot.link(name, SpatialInertia::from_parameters(parameters));
     }
-    for (
-        name,
-        parent,
-        child,
-        origin,
-        (kind, numbers),
-        (position, velocity, effort),
-        [damping, friction, armature],
-        mimic,
-    ) in joints
-    {
-        let kind = match (kind.as_str(), numbers.as_slice()) {
+    for (name, parent, child, origin, (kind, axis), (position, velocity, effort), numbers, mimic) in joints {
+        let kind = match (kind.as_str(), axis.as_slice()) {
             (FIXED, []) => JointKind::Fixed,
             (SCREW, &[a, b, c, x, y, z]) => {
                 JointKind::Screw(ScrewAxis::from_array([a, b, c, x, y, z]).map_err(refused)?)
             }
             (BALL, &[x, y, z]) => JointKind::Ball(Vec3([x, y, z])),
             (FREE, []) => JointKind::Free,
-            (kind, numbers) => {
-                return Err(refused(format!("joint `{name}`: {kind} with {numbers:?}, expected a kind of joint")));
+            (kind, axis) => {
+                return Err(refused(format!("joint `{name}`: {kind} with {axis:?}, expected a kind of joint")));
             }
         };
         let mut joint = Joint::new(name, parent, child, pose(origin)?, kind);
         joint.limits = Limits { position, velocity, effort };
-        (joint.damping, joint.friction, joint.armature) = (damping, friction, armature);
+        [joint.damping, joint.friction, joint.armature, joint.stiffness, joint.spring_reference] = numbers;
         joint.mimic = mimic.map(|(joint, ratio, offset)| Mimic { joint, ratio, offset });
         robot = robot.joint(joint);
     }

@@ -59,7 +59,7 @@ impl<'py> ArrayEnvironment<'py> {
             environment.base_acceleration = Twist::from_array(numbers);
         }
         if let Some(parameters) = given.get(Slot::Parameters) {
-            let expected = "ten numbers a body, three a joint, as Model.parameters";
+            let expected = "ten numbers a body, five a joint, as Model.parameters";
             let numbers = table("parameters", parameters, model.parameter_count(), expected)?;
             environment.parameters = Some(environment.count(numbers));
         }

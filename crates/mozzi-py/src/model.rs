@@ -328,7 +328,7 @@ impl PyModel {
         array(py, &[self.0.model.joint_names().len()], limits)
     }
 
-    /// π: ten numbers a body, three a joint. See `regressor`.
+    /// π: ten numbers a body, five a joint. See `regressor`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let parameters = self.0.model.parameters();

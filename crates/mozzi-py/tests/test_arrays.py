@@ -222,7 +222,7 @@ def test_parameters_of_each_state(method, ur5, random):
 
 
 def test_what_depends_on_parameters_takes_them(ur5, random):
-    parameters, loaded = ur5.parameters * random.uniform(0.9, 1.1, 78) + 0.01, ur5.with_payload("tool0", 2.0)
+    parameters, loaded = ur5.parameters * random.uniform(0.9, 1.1, 90) + 0.01, ur5.with_payload("tool0", 2.0)
     for method in METHODS:
         given = arguments(ur5, METHODS[method], random)
         options = {"tip_wrench": random.uniform(-1, 1, 6)} if method in taking("tip_wrench") else {}
@@ -250,7 +250,7 @@ def test_tables_of_each_state_go_together(ur5, random):
     assert_close(found, many, tolerance=1e-4)
     with pytest.raises(ValueError, match=r"gravity has leading axes \(4,\), which do not go with \(5,\)"):
         ur5.gravity_forces(theta, gravity=gravity[:4])
-    with pytest.raises(ValueError, match=r"parameters has shape \(5, 77\), expected \(..., 78\): ten numbers a body"):
+    with pytest.raises(ValueError, match=r"parameters has shape \(5, 89\), expected \(..., 90\): ten numbers a body"):
         ur5.gravity_forces(theta, parameters=parameters[:, 1:])
 
 

@@ -28,16 +28,15 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         })
         .collect();
 
-    let parameters = model.parameters();
+    let (parameters, names) = (model.parameters(), model.parameter_names());
     let is_floating = model.is_floating();
-    let (of_bodies, of_joints) = parameters.split_at(parameters.len() - 3 * model.joints().len());
-    let mut inertias = of_bodies.chunks(10);
+    let mut inertias = parameters.chunks(10);
     let base_inertia = match is_floating {
         true => inertias.next().map(<[f64]>::to_vec).unwrap_or_default(),
         false => model.base_inertia().to_parameters().to_vec(),
     };
-    let armature: Vec<f64> =
-        std::iter::repeat_n(0.0, model.base().velocities()).chain(of_joints.chunks(3).map(|joint| joint[0])).collect();
+    let of_joints = names.iter().zip(&parameters).filter(|(name, _)| name.ends_with(".armature")).map(|(_, &x)| x);
+    let armature: Vec<f64> = std::iter::repeat_n(0.0, model.base().velocities()).chain(of_joints).collect();
     let joints = model.moving_joints().zip(model.sources());
     let bodies: Value = (joints.zip(inertias).enumerate())
         .map(|(k, ((joint, Source { joint: j, ratio, offset }), inertia))| {

@@ -87,7 +87,7 @@ const CODES: [Entry; 58] = [
         "An element that URDF does not know is one slip away from one that it knows. Ignored, what it says would be lost in silence.",
         "correct the name"),
     ("negative_friction",
-        "Damping, friction and armature are at least 0; negative, they would drive the joint.",
+        "Damping, friction, armature and stiffness are at least 0; negative, they would drive the joint.",
         "write the size of it, without a sign: friction always brakes"),
     ("negative_limit",
         "The limits of velocity and effort are magnitudes, at least 0.",

@@ -69,10 +69,10 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
             (screw, limit::read(kind, children.get("limit"), &element, &mut place, cx))
         }
     };
-    let [damping, friction] = read_dynamics(&children, &mut place, cx);
+    let [damping, friction, stiffness, spring_reference] = read_dynamics(&children, &mut place, cx);
     let is_several = matches!(kind, Some("planar" | "floating"));
     if let Some(kind @ ("planar" | "floating")) = kind {
-        let is_rough = damping != 0.0 || friction != 0.0;
+        let is_rough = [damping, friction, stiffness].iter().any(|x| *x != 0.0);
         several_freedoms(kind, &children, is_rough, &element, cx);
     }
     if let Some(value) = element.attribute("type") {
@@ -91,6 +91,8 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         damping: if is_several { 0.0 } else { damping },
         friction: if is_several { 0.0 } else { friction },
         armature: 0.0,
+        stiffness: if is_several { 0.0 } else { stiffness },
+        spring_reference: if is_several { 0.0 } else { spring_reference },
         mimic: children.get("mimic").and_then(|mimic| read_mimic(mimic, &mut place, cx)),
     };
     if kind != Some("fixed") && joint.kind == JointKind::Fixed {
@@ -159,14 +161,20 @@ fn read_end(name: &'static str, element: &Element, children: &Children, place: &
     place.note(name, value)
 }
 
-/// Damping and friction.
-fn read_dynamics(children: &Children, place: &mut Place, cx: &mut Context) -> [f64; 2] {
-    let Some(dynamics) = children.get("dynamics") else { return [0.0; 2] };
+/// Damping, friction, and a spring by the names that SDF has for it: URDF itself has no springs.
+fn read_dynamics(children: &Children, place: &mut Place, cx: &mut Context) -> [f64; 4] {
+    let Some(dynamics) = children.get("dynamics") else { return [0.0; 4] };
     dynamics.check_attributes(&DYNAMICS, cx);
     dynamics.check_children(&DYNAMICS, cx);
-    ["damping", "friction"].map(|name| {
+    let names = [
+        ("damping", "damping"),
+        ("friction", "friction"),
+        ("spring_stiffness", "stiffness"),
+        ("spring_reference", "spring reference"),
+    ];
+    names.map(|(name, check)| {
         if let Some(value) = dynamics.attribute(name) {
-            place.set(name, value.span);
+            place.set(check, value.span);
         }
         dynamics.number(name, cx).unwrap_or(0.0)
     })

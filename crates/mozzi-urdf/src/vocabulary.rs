@@ -47,7 +47,8 @@ pub(crate) const LIMIT: Vocabulary = Vocabulary {
     silent: &["acceleration", "deceleration", "jerk"],
     ..NOTHING
 };
-pub(crate) const DYNAMICS: Vocabulary = Vocabulary { attributes: &["damping", "friction"], ..NOTHING };
+pub(crate) const DYNAMICS: Vocabulary =
+    Vocabulary { attributes: &["damping", "friction", "spring_stiffness", "spring_reference"], ..NOTHING };
 pub(crate) const MIMIC: Vocabulary = Vocabulary { attributes: &["joint", "multiplier", "offset"], ..NOTHING };
 
 /// The types of joints that mozzi computes.

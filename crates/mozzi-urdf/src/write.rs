@@ -162,14 +162,26 @@ fn joint(text: &mut String, joint: &Joint) -> fmt::Result {
         writeln!(text, "    <axis xyz=\"{}\"/>", triple(direction(A)))?;
         limit(text, joint)?;
     }
-    if joint.damping != 0.0 || joint.friction != 0.0 {
-        writeln!(text, "    <dynamics damping=\"{:?}\" friction=\"{:?}\"/>", joint.damping, joint.friction)?;
-    }
+    dynamics(text, joint)?;
     if let Some(mimic) = &joint.mimic {
         let (source, ratio, offset) = (escaped(&mimic.joint), mimic.ratio, mimic.offset);
         writeln!(text, "    <mimic joint=\"{source}\" multiplier=\"{ratio:?}\" offset=\"{offset:?}\"/>")?;
     }
     text.write_str("  </joint>\n")
+}
+
+/// A spring by the names that SDF has for it, which readers of URDF pass over.
+fn dynamics(text: &mut String, joint: &Joint) -> fmt::Result {
+    let is_springy = joint.stiffness != 0.0 || joint.spring_reference != 0.0;
+    if joint.damping == 0.0 && joint.friction == 0.0 && !is_springy {
+        return Ok(());
+    }
+    write!(text, "    <dynamics damping=\"{:?}\" friction=\"{:?}\"", joint.damping, joint.friction)?;
+    if is_springy {
+        let (k, rest) = (joint.stiffness, joint.spring_reference);
+        write!(text, " spring_stiffness=\"{k:?}\" spring_reference=\"{rest:?}\"")?;
+    }
+    text.write_str("/>\n")
 }
 
 fn limit(text: &mut String, joint: &Joint) -> fmt::Result {

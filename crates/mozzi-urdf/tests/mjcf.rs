@@ -44,7 +44,41 @@ fn what_is_switched_off_is_off() {
     assert_eq!(robot.warnings.len(), 1, "{:?}", robot.warnings);
     assert_eq!(robot.description.gravity, [0.0; 3]);
     let a = &robot.description.joints[0];
-    assert_eq!((a.damping, a.friction, &a.mimic), (0.0, 0.0, &None));
+    assert_eq!((a.damping, a.friction, a.stiffness, &a.mimic), (0.0, 0.0, 0.0, &None));
+}
+
+#[test]
+fn springs_are_read() {
+    let text = |spring: &str, flag: &str| {
+        format!(
+            "<mujoco><compiler angle='degree'/><option><flag {flag}/></option><worldbody><body><joint name='a' axis='0 1 0' \
+             stiffness='3' {spring} springref='20' ref='10' damping='0.1' armature='0.02'/><geom size='0.1' pos='0.2 0 0.3'/><body \
+             pos='0 0 0.4'><joint name='b' type='slide' axis='1 0 1' stiffness='50' springref='0.1'/><geom size='0.1' pos='0.1 0.1 0'/>\
+             </body></body></worldbody></mujoco>"
+        )
+    };
+    let robot = model(&text("", ""));
+    assert!(robot.warnings.is_empty(), "{:?}", robot.warnings);
+    let springs: Vec<[f64; 2]> =
+        robot.description.joints.iter().map(|joint| [joint.stiffness, joint.spring_reference]).collect();
+    assert_eq!(springs, [[3.0, 20_f64.to_radians()], [50.0, 0.1]]);
+    // mj_inverse, qfrc_spring and energy of MuJoCo 4.0.0 at this state
+    let (robot, close) =
+        (robot.description.build().unwrap(), |a: f64, b: f64| assert!((a - b).abs() < 1e-8, "{a} {b}"));
+    let tau = robot.inverse_dynamics(&[0.5, 0.3], &[0.7, -0.2], &[1.0, 2.0], &robot.environment()).unwrap();
+    let f = robot.spring_forces(&[0.5, 0.3]).unwrap();
+    for j in 0..2 {
+        close(tau[j], [-27.81531112, 36.16492633][j]);
+        close(f[j], [0.45280245, 10.0][j]);
+    }
+    close(robot.potential_energy(&[0.5, 0.3]).unwrap(), 29.81879207);
+    // jnt_stiffness and dof_damping that MuJoCo 4.0.0 chooses
+    for (given, [k, d]) in [("0.1 1", [112.16518239, 22.43303648]), ("0.3 0.5", [49.85119217, 7.47767883])] {
+        let tuned = |flag: &str| model(&text(&format!("springdamper='{given}'"), flag)).description.joints.remove(0);
+        close(tuned("").stiffness, k);
+        close(tuned("").damping, d);
+        assert_eq!((tuned("spring='disable'").stiffness, tuned("damper='disable'").damping), (0.0, 0.0));
+    }
 }
 
 #[test]

@@ -101,6 +101,21 @@ fn names_for_xacro_are_not_written() {
 }
 
 #[test]
+fn springs_are_written_and_read() {
+    let mut description = open("ur5").expect("embedded").description;
+    (description.joints[1].stiffness, description.joints[1].spring_reference) = (12.5, -0.3);
+    let text = write(&description).expect("URDF");
+    assert!(text.contains(" spring_stiffness=\"12.5\" spring_reference=\"-0.3\"/>"), "{text}");
+    let again = mozzi_urdf::parse("again.urdf", &text).expect("sound");
+    assert!(again.warnings.is_empty(), "{:?}", again.warnings);
+    let spring =
+        |joint: &mozzi::model::description::Joint| (joint.name.clone(), joint.stiffness, joint.spring_reference);
+    assert!(again.description.joints.iter().map(spring).eq(description.joints.iter().map(spring)));
+    let message = mozzi_urdf::parse("a.urdf", text.replace("\"12.5\"", "\"-1\"")).expect_err("negative").to_string();
+    assert!(message.contains("stiffness: is -1, expected a finite number, at least 0"), "{message}");
+}
+
+#[test]
 fn what_would_be_lost_is_refused() {
     let mut description = open("ur5").expect("embedded").description;
     description.gravity = [0.0, 0.0, -1.62];

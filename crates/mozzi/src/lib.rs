@@ -1,6 +1,6 @@
 //! Dynamics of open-chain robots in the screw notation of Lynch and Park, *Modern Robotics*:
 //!
-//! > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇)
+//! > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇)
 //!
 //! ```
 //! use mozzi::{Description, HomeFrames, SE3, ScrewAxis, Screws, Solid};

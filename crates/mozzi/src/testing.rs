@@ -38,7 +38,7 @@ pub fn distance(a: SE3, b: SE3) -> f64 {
 }
 
 /// A random tree of moving links: revolute, prismatic and helical joints, axes and masses off every frame, masses over
-/// four decades, fixed links folded in between, friction and armature; `mimic joints` of the last joints follow others.
+/// four decades, fixed links folded in between, friction, armature and springs; `mimic joints` of the last joints follow others.
 pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut random = Random(seed + 3000);
     let mut robot = Description::new("tree").link("link0", inertia(seed));
@@ -63,6 +63,9 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
         );
         if i % 3 == 0 {
             (joint.damping, joint.friction, joint.armature) = (0.3 + random.next() * 0.2, 0.5, 0.1);
+        }
+        if i % 4 < 2 {
+            (joint.stiffness, joint.spring_reference) = (0.7 * i as f64, 0.9 - 0.3 * i as f64);
         }
         if i > links - mimics {
             let joint_followed = format!("joint{}", 1 + (i * 7) % (links - mimics));
@@ -92,9 +95,13 @@ pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     let free = robot.joints.iter_mut().filter(of_one_axis).filter(|joint| !followed.contains(&joint.name));
     for (k, joint) in free.enumerate() {
         match (k as u64 + seed) % 4 {
-            0 => joint.kind = JointKind::Ball(Vec3(Random(seed + k as u64).array())),
+            0 => {
+                joint.kind = JointKind::Ball(Vec3(Random(seed + k as u64).array()));
+                (joint.stiffness, joint.spring_reference) = (0.0, 0.0);
+            }
             2 if k % 3 == 2 => {
                 (joint.kind, joint.friction, joint.armature) = (JointKind::Free, 0.0, 0.0);
+                (joint.stiffness, joint.spring_reference) = (0.0, 0.0);
             }
             _ => {}
         }

@@ -31,7 +31,7 @@ pub struct CodegenArguments {
     /// The folder of the files, made where there is none
     #[arg(long, value_name = "DIR", requires = "lang")]
     out: Option<PathBuf>,
-    /// An argument of the functions instead of numbers in them: parameters (masses, inertias, frictions), gravity, base-twist,
+    /// An argument of the functions instead of numbers in them: parameters (masses, inertias, frictions, springs), gravity, base-twist,
     /// base-acceleration, about (the point of a momentum), wrench (what the end effector applies) or wrench=FRAME; may be repeated
     #[arg(long, value_name = "WHAT", value_parser = argument)]
     argument: Vec<Argument>,

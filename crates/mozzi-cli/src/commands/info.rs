@@ -150,6 +150,8 @@ fn joints(model: &Model) -> Vec<String> {
         ("damping", of(|joint| (joint.damping != 0.0).then_some(joint.damping))),
         ("friction", of(|joint| (joint.friction != 0.0).then_some(joint.friction))),
         ("rotor", of(|joint| (joint.armature != 0.0).then_some(joint.armature))),
+        ("stiffness", of(|joint| (joint.stiffness != 0.0).then_some(joint.stiffness))),
+        ("rests at", of(|joint| (joint.stiffness != 0.0).then_some(joint.spring_reference))),
         ("follows", text(&follows)),
     ];
     columns.retain(|(name, cells)| *name == "joint" || cells.iter().any(|cell| !cell.is_empty() && cell != "–"));
@@ -248,6 +250,8 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
             "damping": joint.damping,
             "friction": joint.friction,
             "armature": joint.armature,
+            "stiffness": joint.stiffness,
+            "spring_reference": joint.spring_reference,
             "mimic": joint.mimic.as_ref().map(|mimic| json!({
                 "joint": mimic.joint, "ratio": mimic.ratio, "offset": mimic.offset,
             })),

@@ -40,7 +40,7 @@ pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -
         }
     }
     if arguments.parameters {
-        lines.push("Masses, inertias and frictions are an argument; geometry is built in.".to_string());
+        lines.push("Masses, inertias, frictions and springs are an argument; geometry is built in.".to_string());
     }
     lines.push(format!(
         "Results that depend on NaN or an angle beyond {:?} rad are NaN; nothing else is checked.",
@@ -114,7 +114,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
                 .to_string()
         }
         "parameters" => format!(
-            "{}; of {base}moving links (m, m c, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) in their frames, kg, kg m, kg m^2; of joints armature, damping, friction",
+            "{}; of {base}moving links (m, m c, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) in their frames, kg, kg m, kg m^2; of joints armature, damping, friction, stiffness, preload",
             model.parameter_count()
         ),
         "gravity" => "3; in {s}, m/s^2".to_string(),

@@ -8,7 +8,7 @@ use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::simulation::Input;
 use mozzi::{Model, fast};
 
-/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot that is as modelled,
+/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot that is as modelled,
 /// ë + K_d ė + K_p e = 0.
 pub struct ComputedTorque<'m, R> {
     model: &'m Model,

@@ -139,7 +139,8 @@ fn a_frame_follows_as_its_law_says() {
             let found = model.task_space_dynamics(&theta, &dtheta, task, &model.environment()).expect("regular");
             let a = &found.J * mozzi::nalgebra::DVector::from_column_slice(&ddtheta) + &found.dJ_dtheta;
             let tau = found.J.transpose() * found.wrench(&a);
-            let friction = model.joint_friction(&dtheta).expect("lengths");
+            let friction =
+                model.joint_friction(&dtheta).expect("lengths") + model.spring_forces(&theta).expect("lengths");
             let given = torque(&mut control, t, &theta, &dtheta);
             assert!((0..6).all(|j| (given[j] - tau[j] - friction[j]).abs() < 1e-8), "{given:?} {tau}");
         } else {

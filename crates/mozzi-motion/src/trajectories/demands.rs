@@ -3,7 +3,7 @@
 use super::path::Path;
 use crate::Error;
 use crate::error::check;
-use mozzi::{Environment, Model, Workspace, inverse_dynamics};
+use mozzi::{Environment, Model, Workspace, inverse_dynamics, spring_forces};
 
 /// The coefficients of each of the n velocities at one s.
 #[derive(Clone, Debug)]
@@ -17,9 +17,9 @@ pub(super) struct Demand {
     pub a: Vec<f64>,
     /// Mθ″ + c(θ, θ′).
     pub b: Vec<f64>,
-    /// g + μ sgn θ′.
+    /// g + k(θ − θ₀) + μ sgn θ′.
     pub c: Vec<f64>,
-    /// g: what is asked for at rest.
+    /// g + k(θ − θ₀): what is asked for at rest.
     pub g: Vec<f64>,
     /// The viscous friction of θ′.
     pub d: Vec<f64>,
@@ -48,10 +48,14 @@ pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand>
         };
         let g = tau(&model.environment(), &still, &still);
         let mut c = g.clone();
-        let a = tau(&weightless, &still, &point.slope);
+        let mut a = tau(&weightless, &still, &point.slope);
         let mut b = tau(&weightless, &point.slope, &point.curvature);
         let d: Vec<f64> = damping.iter().zip(&point.slope).map(|(d, x)| d * x).collect();
+        let mut springs = vec![0.0; n];
+        spring_forces(model, &point.theta, &mut springs);
         for j in 0..n {
+            a[j] -= springs[j];
+            b[j] -= springs[j];
             let f = mozzi::joint_friction(model, j, point.slope[j]); // at ṡ = 1
             b[j] -= f;
             c[j] += f - d[j];

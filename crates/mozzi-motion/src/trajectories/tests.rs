@@ -3,7 +3,7 @@
 use super::*;
 use crate::Error;
 use mozzi::model::description::{Joint, JointKind};
-use mozzi::testing::{Random, floating_tree, state};
+use mozzi::testing::{Random, floating_tree, state, tree};
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Twist, Vec3, difference};
 
 fn robot(name: &str) -> Model {
@@ -274,6 +274,23 @@ fn the_fastest_way_keeps_all_limits_and_leaves_none_unused() {
         let most = share.iter().fold(0.0_f64, |m, &x| m.max(x));
         assert!(most < 1.0 + 1e-9 && most > 0.999, "{share:?}");
         assert!(profile.duration() > T, "{} {T}", profile.duration());
+    }
+}
+
+#[test]
+fn demands_are_inverse_dynamics_along_the_path() {
+    // with damping, Coulomb friction, springs and a mimic joint
+    let model = tree(2, 6, 1);
+    let n = model.n();
+    let path = Line::new(&model, &vec![-0.4; n], &vec![0.9; n]).expect("fine");
+    let (s, ds, dds) = (0.3, 0.7, -1.1);
+    let (demand, point) = (super::demands::demands(&model, &path, &[s]).remove(0), path.at(s));
+    let dtheta: Vec<f64> = point.slope.iter().map(|x| x * ds).collect();
+    let ddtheta: Vec<f64> = point.slope.iter().zip(&point.curvature).map(|(x, y)| x * dds + y * ds * ds).collect();
+    let tau = model.inverse_dynamics(&point.theta, &dtheta, &ddtheta, &model.environment()).expect("lengths");
+    for j in 0..n {
+        let found = demand.a[j] * dds + demand.b[j] * ds * ds + demand.c[j] + demand.d[j] * ds;
+        assert!((found - tau[j]).abs() < 1e-12 * tau.amax(), "{j}: {found} {}", tau[j]);
     }
 }
 

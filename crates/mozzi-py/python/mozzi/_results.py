@@ -36,6 +36,7 @@ class ClosedForm(NamedTuple):
     tip_forces: Array
     friction: Array
     armature: Array
+    springs: Array
 
 
 class NewtonEuler(NamedTuple):

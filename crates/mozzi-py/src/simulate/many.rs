@@ -9,7 +9,7 @@ use crate::numpy::Fresh;
 use crate::results::named;
 use crate::signature::{INPUTS, Slot};
 use crate::threads::Threads;
-use mozzi::quantities::{ForwardDynamics, GravityForces, KineticEnergy, PotentialEnergy, Query};
+use mozzi::quantities::{ForwardDynamics, GravityForces, KineticEnergy, PotentialEnergy, Query, SpringForces};
 use mozzi::simulation::{LARGEST, Motion, Options};
 use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, BatchEnvironment};
@@ -244,8 +244,13 @@ pub fn simulate<'py>(
             let space = model.configuration_space();
             let free: Vec<_> = space.places().iter().filter(|place| place.freedom == mozzi::Freedom::Free).collect();
             let compensation = |_, theta: &[f64], _: &[f64], tau: &mut [f64]| {
-                py.detach(|| robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau]))
-                    .map_err(|error| of_batch(error, leading))?;
+                let mut springs = vec![0.0; tau.len()];
+                py.detach(|| {
+                    robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau])?;
+                    robots.batch.compute(SpringForces, &[theta], &environment, &mut [&mut springs])
+                })
+                .map_err(|error| of_batch(error, leading))?;
+                tau.iter_mut().zip(springs).for_each(|(tau, spring)| *tau += spring);
                 for tau in tau.chunks_exact_mut(n) {
                     free.iter().for_each(|place| tau[place.velocities()].fill(0.0));
                 }

@@ -69,7 +69,8 @@ impl PyModel {
     /// steps : int
     ///     At least 1.
     /// torque : callable, array_like, 'gravity_compensation' or None
-    ///     The motors' τ: `torque(t, theta, dtheta)`, asked at each stage of each step; constant, shape (..., n); τ = g(θ); or none. Of many
+    ///     The motors' τ: `torque(t, theta, dtheta)`, asked at each stage of each step; constant, shape (..., n); τ = g(θ) + k(θ − θ₀), what holds
+    ///     gravity and springs; or none. Of many
     ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers (..., n).
     /// method : {'rk4', 'semi-implicit-euler', 'euler'}
     ///     How a step is taken.

@@ -3,6 +3,8 @@
 use super::Model;
 use super::attributes::Item;
 use super::contents::Inside;
+use super::option::Options;
+use super::spring::SpringDamper;
 use super::tree::Name;
 use super::vocabulary;
 use crate::axis;
@@ -31,6 +33,9 @@ impl<'a> Model<'a> {
             ("damping", "damping"),
             ("frictionloss", "friction"),
             ("armature", "armature"),
+            ("stiffness", "stiffness"),
+            ("springref", "spring reference"),
+            ("springdamper", "springdamper"),
         ] {
             if let Some(value) = item.value(name) {
                 place.set(check, value.span);
@@ -41,9 +46,18 @@ impl<'a> Model<'a> {
         let screw = if is_ball { None } else { screw(&item, inside.T, is_slide, cx) };
         let position = |x: f64| if is_slide { x } else { self.compiler.angle(x) };
         let reference = if is_ball { 0.0 } else { position(item.number("ref", 0.0, cx)) };
+        let rest = if is_ball { 0.0 } else { position(item.number("springref", 0.0, cx)) };
         let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
         let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
+        let stiffness = match is_ball {
+            true => self.spring_of_ball(&item, cx),
+            false => self.stiffness(&item, cx),
+        };
+        let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
+        let Options { spring, damper, .. } = self.options;
+        let spring_damper =
+            (time > 0.0 && ratio > 0.0 && !is_ball).then_some(SpringDamper { time, ratio, spring, damper });
         let armature = item.number("armature", 0.0, cx);
         let center = item.vector::<3>("pos", cx).unwrap_or([0.0; 3]);
         // the file's own configuration is at `ref`
@@ -55,7 +69,8 @@ impl<'a> Model<'a> {
         };
         added.joint.limits = Limits { position: limits, velocity: None, effort };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
-        added.reference = reference;
+        (added.joint.stiffness, added.joint.spring_reference) = (stiffness, rest);
+        (added.reference, added.spring_damper) = (reference, spring_damper);
         shown
     }
 
@@ -94,22 +109,41 @@ impl<'a> Model<'a> {
         (low == -high && high > 0.0).then_some(high)
     }
 
-    /// Damping and Coulomb friction; springs are told.
+    /// Damping and Coulomb friction.
     fn friction(&mut self, item: &Item, cx: &mut Context) -> [f64; 2] {
         let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
         if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
             self.ignored.force("damping", item, "damping", "a damping that is not linear");
         }
-        if self.options.spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
-            self.ignored.force("stiffness", item, "stiffness", "a spring");
-        }
-        let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
-        if time > 0.0 && ratio > 0.0 {
-            let message = "springdamper: lets MuJoCo choose a spring and a damping, which mozzi does not";
-            cx.findings.add(item.error("unsupported_attribute", "springdamper", message).help("give `damping` itself"));
-        }
         let loss = item.number("frictionloss", 0.0, cx);
         [if self.options.damper { linear } else { 0.0 }, if self.options.friction { loss } else { 0.0 }]
+    }
+
+    /// A ball's spring is not computed, and told.
+    fn spring_of_ball(&mut self, item: &Item, cx: &mut Context) -> f64 {
+        let is_stiff = item.overlaid::<3>("stiffness", cx) != [0.0; 3];
+        for (name, is_given) in [("stiffness", is_stiff), ("springdamper", item.has("springdamper"))] {
+            if self.options.spring && is_given {
+                self.ignored.force("spring of a ball", item, name, "a spring of a ball");
+            }
+        }
+        0.0
+    }
+
+    /// The stiffness of a spring; what of it is not linear is told.
+    fn stiffness(&mut self, item: &Item, cx: &mut Context) -> f64 {
+        let [linear, quadratic, cubic] = item.overlaid::<3>("stiffness", cx);
+        let springyield = item.number("springyield", 0.0, cx);
+        if !self.options.spring {
+            return 0.0;
+        }
+        if quadratic != 0.0 || cubic != 0.0 {
+            self.ignored.force("stiffness", item, "stiffness", "a spring that is not linear");
+        }
+        if springyield > 0.0 && linear != 0.0 {
+            self.ignored.force("springyield", item, "springyield", "a spring that yields");
+        }
+        linear
     }
 }
 

@@ -5,7 +5,7 @@
 //!
 //! # What is read
 //! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls, several in a body, with `ref`,
-//! `range`, `armature`, `damping` and `frictionloss`; inertias, given or computed from geoms; default classes;
+//! `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and `springdamper`; inertias, given or computed from geoms; default classes;
 //! includes; the compiler's settings that matter; gravity; an equality of two joints that is affine, as a mimic joint.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
@@ -20,7 +20,7 @@
 //! # What is not
 //! - Refused by name: closures (`connect`, `weld`, curved couplings, tendons with forces or limits),
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes where the inertia would be needed, shells.
-//! - Loaded with a warning that names the force: springs, nonlinear damping, gravity compensation, fluids.
+//! - Loaded with a warning that names the force: springs and damping that are not linear, gravity compensation, fluids.
 //! - Listed in warnings of the codes `ignored_element` and `ignored_attribute`, once per kind, which the strict policy lets
 //!   pass: actuators, sensors, contacts, assets, keyframes, settings of MuJoCo's solver and what is for the eye only.
 //!
@@ -42,6 +42,7 @@ mod option;
 mod orientation;
 #[cfg(test)]
 mod schema;
+mod spring;
 mod tree;
 mod vocabulary;
 
@@ -138,5 +139,8 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
         return None;
     }
     let name = root.attribute("model").map_or("mujoco", |value| value.text);
-    Some(model.tree.describe(name, model.options.gravity, cx))
+    let tunings = spring::tunings(&model.tree.joints);
+    let (mut description, places) = model.tree.describe(name, model.options.gravity, cx);
+    spring::tune(&mut description, &tunings, cx);
+    Some((description, places))
 }

@@ -1,5 +1,6 @@
 //! The tree while it is read: ends of joints are numbers, for names are settled when all are known.
 
+use super::spring::SpringDamper;
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
@@ -48,6 +49,8 @@ pub(crate) struct Joint {
     pub joint: description::Joint,
     /// The position of the file's own configuration.
     pub reference: f64,
+    /// In place of stiffness and damping.
+    pub spring_damper: Option<SpringDamper>,
     pub place: Place,
 }
 
@@ -92,7 +95,7 @@ impl Tree {
     /// Adds a joint between two links, at first fixed.
     pub fn joint(&mut self, name: Name, [parent, child]: [usize; 2], origin: SE3, place: Place) -> &mut Joint {
         let joint = description::Joint::new("", "", "", origin, JointKind::Fixed);
-        self.joints.push(Joint { name, parent, child, joint, reference: 0.0, place });
+        self.joints.push(Joint { name, parent, child, joint, reference: 0.0, spring_damper: None, place });
         let last = self.joints.len() - 1;
         &mut self.joints[last]
     }

@@ -211,6 +211,8 @@ pub(crate) const JOINT: Vocabulary = Vocabulary {
         "damping",
         "frictionloss",
         "stiffness",
+        "springref",
+        "springyield",
         "springdamper",
         "actuatorfrclimited",
         "actuatorfrcrange",
@@ -225,8 +227,6 @@ pub(crate) const JOINT: Vocabulary = Vocabulary {
         "solreflimit",
         "solimp",
         "solref",
-        "springref",
-        "springyield",
         "user",
     ],
     ..NOTHING

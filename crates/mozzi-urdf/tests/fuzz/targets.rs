@@ -187,6 +187,7 @@ impl Reader<'_> {
             let mut joint = Joint::new(name, parent, child, origin, kind);
             if self.below(3) == 0 {
                 [joint.damping, joint.friction, joint.armature] = [self.size(), self.size(), self.size()];
+                [joint.stiffness, joint.spring_reference] = [self.size(), self.size()];
             }
             if self.below(3) == 0 {
                 let (a, b) = (self.number(), self.number());

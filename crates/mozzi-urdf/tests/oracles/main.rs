@@ -25,7 +25,7 @@ const CLOSURES: [&str; 6] = [
     "unsupported_attribute",
 ];
 
-/// The robot of a file of oracles, without friction, and without armature where the oracle has none. The reason, where
+/// The robot of a file of oracles, without friction and springs, and without armature where the oracle has none. The reason, where
 /// it is a model that mozzi refuses for good reason.
 fn model(oracle: &Value) -> Result<Model, String> {
     let text = |key: &str| oracle.get(key).and_then(Value::as_str);
@@ -45,7 +45,7 @@ fn model(oracle: &Value) -> Result<Model, String> {
     };
     let has_armature = oracle.get("armature").is_some();
     for joint in &mut robot.joints {
-        (joint.damping, joint.friction) = (0.0, 0.0);
+        (joint.damping, joint.friction, joint.stiffness) = (0.0, 0.0, 0.0);
         joint.armature *= f64::from(u8::from(has_armature));
     }
     assert_eq!(vector(&oracle["gravity"]), robot.gravity, "{}", path.display());

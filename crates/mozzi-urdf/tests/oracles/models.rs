@@ -18,17 +18,12 @@ Every MJCF file of PyPI's `gymnasium` 1.4.0 and `dm_control` 1.0.50, as mozzi re
 ";
 
 /// What the refusals mean; one that is not here fails the test.
-const WHY: [(&str, &str); 9] = [
+const WHY: [(&str, &str); 8] = [
     ("include", "A file that it includes is not there; MuJoCo says the same."),
     ("loop_closure", "`connect` or `weld` ties two bodies: a closed loop, not a tree."),
     (
         "mesh_inertia",
         "Inertias are to be computed from meshes, which mozzi does not read. MuJoCo's `saveinertial` writes them down.",
-    ),
-    (
-        "unsupported_attribute",
-        "`springdamper`: MuJoCo chooses stiffness and damping from the mass matrix at the reference. Damping is a term of \
-         mozzi's equation, so it is not left out.",
     ),
     ("unsupported_equality", "Tendons are tied to each other, by forces that a tree does not have."),
     ("unsupported_joint", "A ball joint has three freedoms; a second free body would be a second robot."),

@@ -62,9 +62,9 @@ fn what_has_no_place_is_refused_by_name() {
         ),
         (body!("<joint/><geom size='1' mass='§${m}'/>"), "xacro", "body `b`: geom: mass: is `${m}`, expected a number"),
         (
-            body!("<joint name='j' springdamper='§1 1'/><geom size='1'/>"),
+            body!("<joint name='j' springdamper='§1 1'/>"),
             "unsupported_attribute",
-            "joint `j`: springdamper: lets MuJoCo choose a spring and a damping, which mozzi does not",
+            "joint `j`: springdamper: the mass matrix is singular, expected an inertia",
         ),
         (
             pair!("<equality><§weld body1='a' body2='b'/></equality>"),

@@ -8,9 +8,14 @@ const MASS: &str = "<geom size='1'/>";
 fn what_is_left_out_is_said() {
     warned(&[
         (
-            body!("<joint name='j' stiffness='§8'/><joint stiffness='2'/><geom size='1'/>"),
+            body!("<joint name='j' stiffness='§8 1'/><joint stiffness='2 0 3'/><joint stiffness='2'/><geom size='1'/>"),
             "ignored_force",
-            "joint `j`: stiffness: is `8`, a spring, which mozzi does not compute (here, and 1 more)",
+            "joint `j`: stiffness: is `8 1`, a spring that is not linear, which mozzi does not compute (here, and 1 more)",
+        ),
+        (
+            body!("<joint name='j' stiffness='8' springyield='§0.1'/><geom size='1'/>"),
+            "ignored_force",
+            "joint `j`: springyield: is `0.1`, a spring that yields, which mozzi does not compute",
         ),
         (
             body!("<joint name='j' damping='§1 0 2'/><geom size='1'/>"),
@@ -74,13 +79,13 @@ fn plugins_are_told_where_they_are_declared() {
 #[test]
 fn attributes_without_effect_are_listed() {
     let text = body!(
-        "<joint name='j' margin='1' actuatorfrcrange='-5 5' springref='1'/><joint axis='1 0 0' actuatorfrcrange='-1 2'/><geom \
+        "<joint name='j' margin='1' actuatorfrcrange='-5 5' user='1'/><joint axis='1 0 0' actuatorfrcrange='-1 2'/><geom \
          size='1' rgba='1 1 1 1' friction='1'/><geom size='1' rgba='1 1 1 1'/>"
     );
     for policy in [Policy::Default, Policy::Strict] {
         let robot = parse_with("a.xml", text, policy).expect("a model");
         let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
-        let joint = "joint: `actuatorfrcrange`, `margin`, `springref` are ignored";
+        let joint = "joint: `actuatorfrcrange`, `margin`, `user` are ignored";
         assert_eq!(said, [joint, "geom: `friction`, `rgba` are ignored"]);
         let effort: Vec<Option<f64>> = robot.description.joints.iter().map(|joint| joint.limits.effort).collect();
         assert_eq!(effort, [Some(5.0), None]);

@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
-    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ̇): see [`inverse_dynamics`](crate::inverse_dynamics()).
+    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ, θ̇): see [`inverse_dynamics`](crate::inverse_dynamics()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -59,6 +59,14 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn joint_friction(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
         self.vector(q::JointFriction, &[dtheta], &self.environment())
+    }
+
+    /// f_s(θ) = k(θ − θ₀): see [`spring_forces`](crate::spring_forces()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn spring_forces(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.vector(q::SpringForces, &[theta], &self.environment())
     }
 
     /// M(θ): see [`mass_matrix`](crate::mass_matrix()).

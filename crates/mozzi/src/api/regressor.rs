@@ -18,8 +18,8 @@ impl Model<f64> {
     /// let Y = arm.regressor(&theta, &dtheta, &ddtheta, &arm.environment())?;
     /// let tau = arm.inverse_dynamics(&theta, &dtheta, &ddtheta, &arm.environment())?;
     /// assert!((Y * DVector::from_vec(arm.parameters()) - tau).amax() < 1e-12);
-    /// // of 2 · 10 + 2 · 3 parameters, eleven combinations can be told from forces and motions
-    /// assert_eq!((arm.parameter_count(), arm.base_parameters().count()), (26, 11));
+    /// // of 2 · 10 + 2 · 5 parameters, fifteen combinations can be told from forces and motions
+    /// assert_eq!((arm.parameter_count(), arm.base_parameters().count()), (30, 15));
     /// # Ok::<(), mozzi::Error>(())
     /// ```
     ///
@@ -36,7 +36,7 @@ impl Model<f64> {
         Ok(DMatrix::from_row_slice(self.n(), self.parameter_count(), &Y[0]))
     }
 
-    /// (y_𝒦, y_𝒫) with 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π, under the model's gravity and with {s} at rest: see
+    /// (y_𝒦, y_𝒫) with 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, under the model's gravity and with {s} at rest: see
     /// [`energy_regressors`](crate::energy_regressors).
     ///
     /// # Errors

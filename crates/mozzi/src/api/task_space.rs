@@ -28,7 +28,7 @@ impl TaskSpaceDynamics {
 impl Model<f64> {
     /// Λ and η of a task. Where the task has n independent rows they are the book's J⁻ᵀMJ⁻¹ and
     /// J⁻ᵀh − ΛJ̇J⁻¹𝒱; where the robot has more joints, the dynamically consistent ones. h as
-    /// [`bias_forces`](Self::bias_forces) in this environment, without friction. O(n³).
+    /// [`bias_forces`](Self::bias_forces) in this environment, without friction and springs. O(n³).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for rows that are none or not distinct;
@@ -87,6 +87,7 @@ mod tests {
             let dV = &found.dJ_dtheta + J * DVector::from_column_slice(&ddtheta);
             let tau = J.transpose() * found.wrench(&dV);
             let mut expected = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+            expected -= model.spring_forces(&theta).expect("lengths");
             for j in 0..6 {
                 expected[j] -= crate::dynamics::joint_friction(&model, j, dtheta[j]);
             }
@@ -101,9 +102,9 @@ mod tests {
         let (frame, environment) = (model.end_effector().expect("named"), model.environment());
         let task = Task { frame, coordinates: TaskFrame::Body, rows: &[3, 5, 1] };
         let found = model.task_space_dynamics(&theta, &dtheta, task, &environment).expect("regular");
-        // τ = Jᵀ(Λa + η) (+ friction, which h leaves out) moves the task's rows with 𝒱̇ = a
+        // τ = Jᵀ(Λa + η) (+ friction and springs, which h leaves out) moves the task's rows with 𝒱̇ = a
         let a = DVector::from_vec(vec![0.3, -1.0, 2.0]);
-        let mut tau = found.J.transpose() * found.wrench(&a);
+        let mut tau = found.J.transpose() * found.wrench(&a) + model.spring_forces(&theta).expect("lengths");
         for j in 0..model.n() {
             tau[j] += crate::dynamics::joint_friction(&model, j, dtheta[j]);
         }

@@ -352,7 +352,7 @@ mod tests {
             let bias = mujoco.bias_forces(&theta, &dtheta, &M, h.as_slice()).expect("n");
             let found = model.forward_dynamics(&theta, &dtheta, &tau, &environment).expect("θ̈");
             let qacc = mujoco.acceleration(&theta, &dtheta, found.as_slice()).expect("n");
-            let friction = model.joint_friction(&dtheta).expect("f");
+            let friction = model.joint_friction(&dtheta).expect("f") + model.spring_forces(&theta).expect("f");
             let friction = mujoco.force(&theta, friction.as_slice()).expect("n");
             let error = (&theirs * &qacc + &bias + &friction - &qfrc).amax();
             assert!(error < 1e-13 * M.amax() * (qacc.amax() + 10.0), "{error}");

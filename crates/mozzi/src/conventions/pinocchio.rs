@@ -313,7 +313,8 @@ mod tests {
             let environment = model.environment();
             let h = pinocchio.force(model.bias_forces(&theta, &dtheta, &environment).expect("h").as_slice());
             let needed = model.forward_dynamics(&theta, &dtheta, &tau, &environment).expect("θ̈");
-            let friction = pinocchio.force(model.joint_friction(&dtheta).expect("f").as_slice()).expect("n");
+            let friction = model.joint_friction(&dtheta).expect("f") + model.spring_forces(&theta).expect("f");
+            let friction = pinocchio.force(friction.as_slice()).expect("n");
             let found = &M * pinocchio.acceleration(needed.as_slice()).expect("n") + h.expect("n") + friction;
             let error = (found - pinocchio.force(&tau).expect("n")).amax();
             assert!(error < 1e-12 * M.amax() * (needed.amax() + dtheta.len() as f64), "{error}");

@@ -149,7 +149,17 @@ mod tests {
     fn the_planar_arm_has_the_combinations_derived_by_hand() {
         // By Lagrange, with the elbow at l: 𝒦 = ½ (Izz₁ + l² m₂) θ̇₁² + ½ Izz₂ (θ̇₁ + θ̇₂)² + l θ̇₁(θ̇₁ + θ̇₂)(mcx₂ cos θ₂ − mcy₂ sin θ₂),
         // and 𝒫 holds mcx₁ + l m₂ and mcy₁. Armature 1 acts as Izz₁, and all the rest of the joints' on its own.
-        let of_joints = ["joint1.damping", "joint1.friction", "joint2.armature", "joint2.damping", "joint2.friction"];
+        let of_joints = [
+            "joint1.damping",
+            "joint1.friction",
+            "joint1.stiffness",
+            "joint1.preload",
+            "joint2.armature",
+            "joint2.damping",
+            "joint2.friction",
+            "joint2.stiffness",
+            "joint2.preload",
+        ];
         let upright = planar([0.0, -9.81, 0.0]).base_parameters();
         let of_links = [
             "link1.mcx + 0.5 link2.m",
@@ -208,8 +218,8 @@ mod tests {
         }
         let base = robot.build().expect("sound").base_parameters();
         assert_eq!(base.columns.iter().filter(|&&k| k < 60).count(), 36);
-        // rotors 1 and 2 act as the inertia of their links about the axes, the other four on their own; 12 of friction
-        assert_eq!(base.count(), 36 + 4 + 12);
+        // rotors 1 and 2 act as the inertia of their links about the axes, the other four on their own; 12 of friction and 12 of springs
+        assert_eq!(base.count(), 36 + 4 + 12 + 12);
         let names = base.names();
         assert!(names.iter().any(|name| name.starts_with("2.Iyy") && name.ends_with("+ joint2.armature")), "{names:?}");
     }

@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
 
-/// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction. Wrenches in `environment.applied` and a
+/// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction and springs. Wrenches in `environment.applied` and a
 /// base that moves are counted in, where they are given.
 ///
 /// Cost O(n), no allocation.
@@ -114,7 +114,7 @@ impl Quantity for BiasForces {
     type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "bias_forces",
-        "h(θ, θ̇) = c + g, with JᵀF and the base's terms where they are given; without friction",
+        "h(θ, θ̇) = c + g, with JᵀF and the base's terms where they are given; without friction and springs",
         &[THETA, DTHETA],
         &[output("h", VECTOR, FORCE)],
     )

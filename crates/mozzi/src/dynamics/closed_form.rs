@@ -2,6 +2,7 @@
 //! from the screws in the centre-of-mass frames.
 
 use super::joint_friction::joint_friction;
+use super::spring_forces::spring_forces;
 use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::model::{Environment, Error, Model, Motion};
@@ -55,6 +56,8 @@ pub struct ClosedForm<S = f64> {
     pub armature: DVector<S>,
     /// f(θ̇), the friction in the joints.
     pub friction: DVector<S>,
+    /// f_s(θ) = k(θ − θ₀), the springs in the joints.
+    pub springs: DVector<S>,
 }
 
 impl<S: Entry> Model<S> {
@@ -81,7 +84,9 @@ impl<S: Entry> Model<S> {
             dtheta: DVector::from_column_slice(dtheta),
             armature: DVector::from_column_slice(&self.armature),
             friction: DVector::from_fn(n, |j, _| joint_friction(self, j, dtheta[j])),
+            springs: DVector::zeros(n),
         };
+        spring_forces(self, theta, form.springs.as_mut_slice());
         if let (Some(&V), true) = (dtheta.first_chunk(), self.is_floating()) {
             let Ad = matrix6(base_pose(self, theta).inverse().Ad().to_matrix());
             form.A.view_mut((0, 0), (6, 6)).fill_with_identity();
@@ -195,9 +200,12 @@ impl<S: Entry> ClosedForm<S> {
         self.L.transpose() * own
     }
 
-    /// τ = 𝒜ᵀ𝓕 + armature θ̈ + f(θ̇), at any motion of the base.
+    /// τ = 𝒜ᵀ𝓕 + armature θ̈ + f(θ, θ̇), at any motion of the base.
     pub fn inverse_dynamics(&self, ddtheta: &DVector<S>) -> DVector<S> {
-        self.A.transpose() * self.wrenches(ddtheta) + self.armature.component_mul(ddtheta) + &self.friction
+        self.A.transpose() * self.wrenches(ddtheta)
+            + self.armature.component_mul(ddtheta)
+            + &self.friction
+            + &self.springs
     }
 
     /// Ṁ = −(X + Xᵀ) with X = 𝒜ᵀℒᵀ𝒢ℒ[ad_𝒜θ̇]𝒲ℒ𝒜 (Modern Robotics, exercise 8.7); base at rest.

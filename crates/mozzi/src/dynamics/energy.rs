@@ -36,7 +36,8 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     twice * S::from_f64(0.5)
 }
 
-/// 𝒫 = −Σ m_i gᵀp_i in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at its origin.
+/// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at its origin and a
+/// spring at rest.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -59,7 +60,11 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
         T[i] = T[link.parent] * link.transform(theta).inverse();                 // T_{s,i}
         first_moment += T[i].R * link.G().mc + T[i].p * link.G().mass;
     }
-    -gravity.dot(first_moment)
+    let mut springs = S::from(model.spring_energy);
+    for spring in &model.springs {
+        springs += spring.energy(theta);
+    }
+    springs - gravity.dot(first_moment)
 }
 
 /// See [`kinetic_energy`].
@@ -93,7 +98,7 @@ impl Quantity for PotentialEnergy {
     type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "potential_energy",
-        "−Σ m gᵀp, p seen from the origin of {s}",
+        "−Σ m gᵀp + Σ ½k(θ − θ₀)², p seen from the origin of {s}",
         &[THETA],
         &[output("energy", NUMBER, "J")],
     )

@@ -12,7 +12,7 @@ use crate::spatial::{Twist, Wrench};
 
 /// The joint accelerations θ̈ that the joint forces and torques τ produce:
 ///
-/// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ̇)
+/// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ, θ̇)
 ///
 /// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a 6 × 6 LDLᵀ at the root; where joints follow
 /// others, by the mass matrix. No allocation. Where M is singular the result is not finite or meaningless: the methods
@@ -63,6 +63,14 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         G_hat[0] = G.into();
     }
 
+    // τ − f, in place of θ̈ until that is known
+    for j in 0..model.n() {
+        ddtheta[j] = tau[j] - joint_friction(model, j, dtheta[j]);
+    }
+    for spring in &model.springs {
+        ddtheta[spring.j] -= spring.force(theta);
+    }
+
     // base to tips: twists, and what each link's motion needs where no joint accelerates
     for (i, link) in model.outward::<S>() {
         let (A, dq) = (link.A(), link.rate(dtheta));
@@ -88,7 +96,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         let GA = G_hat[i] * A;
         let d  = A * GA + S::from(model.armature[j]);
         let one_over_d = S::one() / d;
-        u[i] = (tau[j] - joint_friction(model, j, dtheta[j]) - A * F[i]) * one_over_d;
+        u[i] = (ddtheta[j] - A * F[i]) * one_over_d;
         U[i] = GA * one_over_d;
         pivots[j] = d;
         if link.parent > 0 || model.is_floating() {

@@ -1,6 +1,6 @@
 //! Forward dynamics as the book has it (Modern Robotics, section 8.5): to read and to compare.
 
-use super::inverse_dynamics::inverse_dynamics;
+use super::inverse_dynamics::{inverse_dynamics, newton_euler};
 use crate::linalg::{Vec3, ldlt};
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
@@ -8,7 +8,7 @@ use crate::quantity::{
 };
 use crate::scalar::Scalar;
 
-/// θ̈ from τ: h by one call of inverse dynamics, M by n calls with θ̈ = e_i, and a dense LDLᵀ. `M` is memory for n × n numbers,
+/// θ̈ from τ: h + f by one call of inverse dynamics, M by n calls with θ̈ = e_i and without springs, and a dense LDLᵀ. `M` is memory for n × n numbers,
 /// `e` for n, and `zeros` holds n of them; `dense` is the pattern of a full matrix.
 ///
 /// Cost O(n³), no allocation.
@@ -32,7 +32,10 @@ pub(crate) fn forward_dynamics_by_inverse_dynamics<S: Scalar + From<C>, C: Scala
     for i in 0..n {
         e.fill(S::zero());
         e[i] = S::one();
-        inverse_dynamics(model, theta, zeros, e, &nothing, workspace, &mut M[i * n..][..n]); // row i, M being symmetric
+        let row = &mut M[i * n..][..n]; // M being symmetric
+        row.fill(S::zero());
+        row[i] = S::from(model.armature[i]);
+        newton_euler(model, theta, zeros, e, &nothing, workspace, row);
     }
     inverse_dynamics(model, theta, dtheta, zeros, environment, workspace, ddtheta); // h + f
     for (x, &tau) in ddtheta.iter_mut().zip(tau) {

@@ -3,6 +3,7 @@
 use super::bias_forces::take_zeros;
 use super::derivatives::{add_accelerations, inward_pass, joint_forces, outward_pass};
 use super::joint_friction::joint_friction;
+use super::spring_forces::{add_spring_forces, add_stiffness};
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
@@ -42,6 +43,7 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     // M θ̈ = τ − h − f
     inward_pass(model, theta, environment, workspace, true, [None, None, Some(d_tau)]);
     joint_forces(model, workspace, ddtheta);
+    add_spring_forces(model, theta, ddtheta);
     for j in 0..n {
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
     }
@@ -50,6 +52,7 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 
     add_accelerations(model, ddtheta, workspace);
     inward_pass(model, theta, environment, workspace, false, [Some(d_theta), Some(d_dtheta), None]);
+    add_stiffness(model, d_theta);
     ldlt::solve_rows(pattern, d_tau, [d_theta, d_dtheta]);
     ldlt::invert(pattern, d_tau, &mut workspace.vector);
 }

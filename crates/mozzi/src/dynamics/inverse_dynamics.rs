@@ -1,6 +1,7 @@
 //! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
 
 use super::joint_friction::joint_friction;
+use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::lie::SE3;
 use crate::model::{Environment, Lifted, Model, Workspace};
@@ -10,7 +11,7 @@ use crate::spatial::{Twist, Wrench};
 
 /// The joint forces and torques τ that produce the motion (θ, θ̇, θ̈):
 ///
-/// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇), with f = d θ̇ + μ sgn θ̇
+/// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇), with f = k(θ − θ₀) + d θ̇ + μ sgn θ̇
 ///
 /// where M holds the rotors' inertia (armature) and F is what `environment.applied` says the robot applies to its
 /// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a floating base are the
@@ -34,10 +35,11 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     for j in 0..model.n() {
         tau[j] = S::from(model.armature[j]).mul_add(ddtheta[j], joint_friction(model, j, dtheta[j]));
     }
+    add_spring_forces(model, theta, tau);
     newton_euler(model, theta, dtheta, ddtheta, environment, workspace, tau);
 }
 
-/// The links' part of τ, without armature and friction, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
+/// The links' part of τ, without armature, friction and springs, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
 /// 𝓕 of every link, the motion as seen from beside it; 𝓕_0 is the wrench that a fixed base applies to the chain, or that a free
 /// one, itself included, needs.
 ///
@@ -128,7 +130,7 @@ impl Quantity for InverseDynamics {
     type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "inverse_dynamics",
-        "τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇), the joint forces of a motion",
+        "τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇), the joint forces of a motion",
         &[THETA, DTHETA, DDTHETA],
         &[output("tau", VECTOR, FORCE)],
     )

@@ -1,6 +1,7 @@
 //! ∂τ of inverse dynamics, by every argument at once.
 
 use super::derivatives::derivatives;
+use super::spring_forces::add_stiffness;
 use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{Call, D_FORCE, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
@@ -10,7 +11,7 @@ use crate::scalar::Scalar;
 ///
 /// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ for a joint, the
 /// body twist of a floating base, in its own coordinates. The wrenches that are applied keep their coordinates in their frames, {s} its
-/// motion. Friction adds d to the diagonal of ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
+/// motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
 ///
 /// Entries are 0 unless [`couples`](Model::couples) i and j.
 ///
@@ -26,6 +27,7 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 ) {
     joint_transforms(model, theta, workspace);
     derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some([d_dtheta, M]));
+    add_stiffness(model, d_theta);
 }
 
 /// See [`inverse_dynamics_derivatives`].

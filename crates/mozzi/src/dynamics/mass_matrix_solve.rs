@@ -3,6 +3,7 @@
 use super::bias_forces::bias_forces;
 use super::joint_friction::joint_friction;
 use super::mass_matrix::mass_matrix;
+use super::spring_forces::add_spring_forces;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
@@ -10,7 +11,7 @@ use crate::quantity::{
 };
 use crate::scalar::Scalar;
 
-/// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ̇), with h by one call of inverse dynamics. `M` is
+/// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ, θ̇), with h by one call of inverse dynamics. `M` is
 /// memory for n × n numbers; afterwards it holds the factors. The way for models whose joints follow others.
 ///
 /// Cost O(n · depth²), no allocation.
@@ -32,6 +33,7 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     let (n, pattern) = (model.n(), &model.structure.pattern);
     bias_forces(model, theta, dtheta, environment, workspace, ddtheta);
+    add_spring_forces(model, theta, ddtheta);
     for j in 0..n {
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
     }

@@ -1,4 +1,4 @@
-//! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ̇).
+//! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇).
 
 mod base_parameters;
 mod bias_forces;
@@ -20,6 +20,7 @@ mod mass_matrix_inverse;
 mod mass_matrix_solve;
 mod momentum;
 mod regressor;
+mod spring_forces;
 mod task_space_dynamics;
 
 #[cfg(test)]
@@ -51,4 +52,5 @@ pub use mass_matrix_inverse::{MassMatrixInverse, mass_matrix_inverse};
 pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};
 pub use momentum::{Momentum, MomentumRate, momentum, momentum_matrix, momentum_rate, total_inertia};
 pub use regressor::{EnergyRegressors, Regressor, energy_regressors, regressor};
+pub use spring_forces::{SpringForces, spring_forces};
 pub use task_space_dynamics::{TaskSpaceDynamics, task_space_dynamics};

@@ -4,14 +4,14 @@ use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Workspace};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, Rare, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist};
 
 /// The regressor Y(θ, θ̇, θ̈), n × p with p = [`parameter_count`](Model::parameter_count), row-major into `Y`:
 ///
-/// > Y π = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ̇)
+/// > Y π = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇)
 ///
 /// with π = [`parameters`](Model::parameters). Gravity and a {s} that moves are in it; `environment.applied` is not, since no
 /// parameter is in JᵀF: τ = Y π + JᵀF.
@@ -21,7 +21,8 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// > F_k = 𝒢_k 𝒱̇ − `[ad_𝒱]`ᵀ 𝒢_k 𝒱, Y_jk = Σ ratio A_jᵀ `[Ad_T]`ᵀ F_k
 ///
-/// A joint's armature, damping and friction have the columns θ̈_j, θ̇_j and sgn θ̇_j in its own row, and of a ball in each of its three. Entries are N m or N over
+/// A joint's armature, damping, friction, stiffness and preload have the columns θ̈_j, θ̇_j, sgn θ̇_j, θ_j and −1 in its own row; of a ball the first three
+/// in each of its three rows, for it has no spring. Entries are N m or N over
 /// the parameter's unit.
 ///
 /// Cost O(N · depth), no allocation.
@@ -62,18 +63,22 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
         }
     }
     for (k, place) in model.places().iter().enumerate() {
-        let column = 10 * model.bodies().count() + 3 * k;
+        let column = 10 * model.bodies().count() + JOINT_PARAMETERS * k;
         for j in place.velocities() {
             Y[j * p + column..][..3].copy_from_slice(&[ddtheta[j], dtheta[j], dtheta[j].sgn()]);
+        }
+        if place.freedom == Freedom::One {
+            Y[place.j * p + column + 3..][..2].copy_from_slice(&[theta[place.q], -S::one()]);
         }
     }
 }
 
-/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π, as [`kinetic_energy`](super::kinetic_energy) and
+/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, as [`kinetic_energy`](super::kinetic_energy) and
 /// [`potential_energy`](super::potential_energy) have them, with π = [`parameters`](Model::parameters); `V_s` is the twist
-/// of {s}.
+/// of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy at θ = 0.
 ///
-/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments
+/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments, ½ θ² of
+/// > stiffnesses, −θ of preloads
 ///
 /// Joules over the parameter's unit. Cost O(N), no allocation.
 ///
@@ -109,8 +114,14 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
         potential[10 * body] = -gravity.dot(p);
         potential[10 * body + 1..][..3].copy_from_slice(&(-down).0);
     }
-    for (armature, place) in kinetic[10 * model.bodies().count()..].iter_mut().step_by(3).zip(model.places()) {
-        *armature = place.velocities().fold(S::zero(), |sum, j| (half * dtheta[j]).mul_add(dtheta[j], sum));
+    let first = 10 * model.bodies().count();
+    let of_joints = kinetic[first..].chunks_mut(JOINT_PARAMETERS).zip(potential[first..].chunks_mut(JOINT_PARAMETERS));
+    for ((kinetic, potential), place) in of_joints.zip(model.places()) {
+        kinetic[0] = place.velocities().fold(S::zero(), |sum, j| (half * dtheta[j]).mul_add(dtheta[j], sum));
+        if place.freedom == Freedom::One {
+            let theta = theta[place.q];
+            potential[3..].copy_from_slice(&[half * theta * theta, -theta]);
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quanti
 use crate::scalar::Scalar;
 
 /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k, and η = Λ(J M⁻¹h − J̇θ̇), k, of the k rows of a task: 𝓕 = Λ𝒱̇ + η. h as
-/// [`bias_forces`] in this environment, without friction.
+/// [`bias_forces`] in this environment, without friction and springs.
 ///
 /// Cost O(n · depth · (depth + k)), no allocation.
 ///

@@ -2,7 +2,9 @@
 
 use super::description::{Joint, JointKind};
 use super::places::names_of;
-use super::{Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Severity, Structure};
+use super::{
+    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Severity, Spring, Structure,
+};
 use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
@@ -107,11 +109,14 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         }
         total
     };
+    let (springs, spring_energy) = springs(description, &moving_joints, &links);
     Model {
         base_inertia: inertias[0],
         armature: sum(|joint, ratio| ratio * ratio * joint.armature),
         damping: sum(|joint, ratio| ratio * ratio * joint.damping),
         friction: sum(|joint, ratio| ratio.abs() * joint.friction),
+        springs,
+        spring_energy,
         frames,
         gravity: Vec3(description.gravity),
         base: description.base,
@@ -200,6 +205,24 @@ fn several<C: Real>(links: &mut Vec<Link<C>>, parent: usize, motion: Motion, M: 
         };
         links.push(Link { is_last: k + 1 == axes.len(), ..link });
     }
+}
+
+/// The springs by independent joints, and their energy at θ = 0.
+fn springs<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &[Link<C>]) -> (Vec<Spring<C>>, C) {
+    let (mut springs, mut energy) = (BTreeMap::new(), C::zero());
+    for (link, &i) in links.iter().zip(moving_joints) {
+        let Joint { stiffness, spring_reference, .. } = description.joints[i];
+        if stiffness.is_identically_zero() {
+            continue;
+        }
+        let (moment, stretch) = (link.ratio * stiffness, spring_reference - link.offset);
+        let none = Spring { q: link.q, j: link.j, stiffness: C::zero(), preload: C::zero() };
+        let spring = springs.entry(link.j).or_insert(none);
+        spring.stiffness += link.ratio * moment;
+        spring.preload += moment * stretch;
+        energy += C::from_f64(0.5) * stiffness * stretch * stretch;
+    }
+    (springs.into_values().collect(), energy)
 }
 
 /// The joint's axis in the normal form, and the normal frame seen from the link's: z along the screw, the origin on it.

@@ -83,6 +83,10 @@ pub struct Joint<C = f64> {
     pub friction: C,
     /// Rotor inertia, seen at the joint: kg m² or kg.
     pub armature: C,
+    /// Stiffness k ≥ 0 of a spring on the joint, which takes the force k(θ − θ₀): N m/rad or N/m. θ is not wrapped.
+    pub stiffness: C,
+    /// θ₀, where the spring is at rest: rad or m.
+    pub spring_reference: C,
     /// The joint that it follows, if it follows one.
     pub mimic: Option<Mimic<C>>,
 }
@@ -243,6 +247,8 @@ impl<C: Real> Description<C> {
             damping: f(joint.damping),
             friction: f(joint.friction),
             armature: f(joint.armature),
+            stiffness: f(joint.stiffness),
+            spring_reference: f(joint.spring_reference),
             mimic: joint.mimic.as_ref().map(|mimic| Mimic {
                 joint: mimic.joint.clone(),
                 ratio: f(mimic.ratio),
@@ -288,7 +294,7 @@ impl<C: Real> Description<C> {
 }
 
 impl Joint {
-    /// A joint without limits, friction or armature. `origin` is the child's frame seen from the parent's at 0.
+    /// A joint without limits, friction, armature or spring. `origin` is the child's frame seen from the parent's at 0.
     pub fn new(
         name: impl Into<String>,
         parent: impl Into<String>,
@@ -306,6 +312,8 @@ impl Joint {
             damping: 0.0,
             friction: 0.0,
             armature: 0.0,
+            stiffness: 0.0,
+            spring_reference: 0.0,
             mimic: None,
         }
     }

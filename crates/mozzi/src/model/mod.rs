@@ -16,6 +16,7 @@ mod places;
 mod provenance;
 mod reduced;
 mod screws;
+mod spring;
 mod task;
 mod traverse;
 mod variation;
@@ -36,10 +37,12 @@ pub use environment::Environment;
 pub use error::Error;
 pub use frame::{Frame, FrameId};
 pub(crate) use link::{Lifted, Link, Motion};
+pub(crate) use parameters::JOINT_PARAMETERS;
 pub use pivots::{Pivots, clearance, least_is_clear};
 pub use places::{Freedom, Place};
 pub use provenance::FoldedBody;
 pub use screws::{HomeFrames, ScrewLists, Screws};
+pub(crate) use spring::Spring;
 pub use task::{Task, TaskFrame, TaskMemory};
 pub use variation::Variation;
 pub(crate) use workspace::Rates;
@@ -62,6 +65,10 @@ pub struct Model<C = f64> {
     pub(crate) damping: Vec<C>,
     /// Coulomb friction likewise: Σ |ratio| · μ.
     pub(crate) friction: Vec<C>,
+    /// Of the joints that have a spring, themselves or by a mimic joint.
+    pub(crate) springs: Vec<Spring<C>>,
+    /// The springs' energy at θ = 0, Σ ½k(θ₀ − offset)².
+    pub(crate) spring_energy: C,
     pub(crate) frames: Vec<Frame<C>>,
     pub(crate) gravity: Vec3<C>,
     pub(crate) base: Base,
@@ -148,7 +155,7 @@ impl<C: Scalar> Model<C> {
         self.joints().map(|joint| joint.name.as_str())
     }
 
-    /// The independent joints as described, in the order of θ: limits, damping, friction, armature.
+    /// The independent joints as described, in the order of θ: limits, damping, friction, armature, springs.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
         self.structure.joints.iter().map(|&joint| &self.structure.description.joints[joint])
     }
@@ -184,6 +191,8 @@ impl<C: Scalar> Model<C> {
             armature: list(&self.armature),
             damping: list(&self.damping),
             friction: list(&self.friction),
+            springs: self.springs.iter().map(|spring| spring.map(f)).collect(),
+            spring_energy: f(self.spring_energy),
             frames: self.frames.iter().map(|frame| Frame { slot: frame.slot, T: frame.T.map(f) }).collect(),
             gravity: self.gravity.map(f),
             base: self.base,

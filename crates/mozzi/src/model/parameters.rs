@@ -1,6 +1,6 @@
 //! The vector π of a model's parameters in which its forces and energies are linear.
 
-use super::Model;
+use super::{Freedom, Model, Place, Spring};
 use crate::lie::SE3;
 use crate::scalar::Scalar;
 use crate::spatial::SpatialInertia;
@@ -10,12 +10,14 @@ use alloc::vec::Vec;
 
 /// Of a body, in the order of [`SpatialInertia::to_parameters`](crate::SpatialInertia::to_parameters).
 const OF_BODY: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz"];
-const OF_JOINT: [&str; 3] = ["armature", "damping", "friction"];
+const OF_JOINT: [&str; 5] = ["armature", "damping", "friction", "stiffness", "preload"];
+/// The number of parameters of an independent joint.
+pub(crate) const JOINT_PARAMETERS: usize = OF_JOINT.len();
 
 impl<C: Scalar> Model<C> {
-    /// The length of π: ten for each moving link and a floating base, three for each independent joint.
+    /// The length of π: ten for each moving link and a floating base, five for each independent joint.
     pub fn parameter_count(&self) -> usize {
-        10 * self.bodies().count() + OF_JOINT.len() * self.places().len()
+        10 * self.bodies().count() + JOINT_PARAMETERS * self.places().len()
     }
 
     /// π, the parameters in which τ and the energies are linear:
@@ -23,8 +25,11 @@ impl<C: Scalar> Model<C> {
     /// - of a floating base and then of each moving link, base to tips, ten numbers in the coordinates of that **link's frame in
     ///   the file**: mass, m c, and the rotational inertia about the frame's origin, (m, m c_x, m c_y, m c_z, I_xx, I_xy,
     ///   I_xz, I_yy, I_yz, I_zz) in kg, kg m, kg m². What is fixed to the link is counted in;
-    /// - of each independent joint its armature, damping and Coulomb friction (of a ball or a free joint the same for each of its velocities), those of its mimic joints counted in as M and f
-    ///   have them: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ.
+    /// - of each independent joint its armature, damping, Coulomb friction, stiffness and preload kθ₀, those of its mimic joints counted in
+    ///   as M and f have them: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ, Σ ratio² k, Σ ratio k (θ₀ − offset). Of a ball or a free joint the first three are
+    ///   the same for each of its velocities, the last two 0.
+    ///
+    /// The springs' energy at θ = 0, Σ ½k(θ₀ − offset)², is no parameter: no force depends on it.
     ///
     /// Names: [`parameter_names`](Self::parameter_names). Their matrix: [`regressor`](crate::dynamics::regressor()).
     pub fn parameters(&self) -> Vec<C> {
@@ -32,23 +37,25 @@ impl<C: Scalar> Model<C> {
             let G = if slot == 0 { self.base_inertia } else { self.links[slot - 1].G };
             G.congruence(self.link_frame(slot).Ad()).to_parameters()
         });
-        let joints = self
-            .places()
-            .iter()
-            .flat_map(|place| [&self.armature, &self.damping, &self.friction].map(|list| list[place.j]));
+        let joints = self.places().iter().flat_map(|&Place { j, .. }| {
+            let spring = self.springs.iter().find(|spring| spring.j == j);
+            let (stiffness, preload) =
+                spring.map_or((C::zero(), C::zero()), |spring| (spring.stiffness, spring.preload));
+            [self.armature[j], self.damping[j], self.friction[j], stiffness, preload]
+        });
         bodies.chain(joints).collect()
     }
 
     /// The names of [`parameters`](Self::parameters): `link.m`, `link.mcx`, …, `link.Izz`, and `joint.armature`,
-    /// `joint.damping`, `joint.friction`.
+    /// `joint.damping`, `joint.friction`, `joint.stiffness`, `joint.preload`.
     pub fn parameter_names(&self) -> Vec<String> {
         let named = |name: &str, of: &[&str]| of.iter().map(|kind| format!("{name}.{kind}")).collect::<Vec<_>>();
         let bodies = self.bodies().flat_map(|slot| named(&self.description().links[self.link_at(slot)].name, &OF_BODY));
         bodies.chain(self.joint_names().flat_map(|joint| named(joint, &OF_JOINT))).collect()
     }
 
-    /// The same robot with other parameters, of another type where it has to be: see [`parameters`](Self::parameters). Geometry, frames and
-    /// couplings stay.
+    /// The same robot with other parameters, of another type where it has to be: see [`parameters`](Self::parameters). Geometry, frames,
+    /// couplings and the springs' energy at θ = 0 stay.
     ///
     /// # Panics
     /// When there are not [`parameter_count`](Self::parameter_count) of them.
@@ -64,12 +71,29 @@ impl<C: Scalar> Model<C> {
                 Some(i) => model.links[i].G = G,
             }
         }
-        for (place, &[armature, damping, friction]) in self.places().iter().zip(of_joints.as_chunks().0) {
+        for (place, &[armature, damping, friction, stiffness, preload]) in
+            self.places().iter().zip(of_joints.as_chunks().0)
+        {
             for j in place.velocities() {
                 (model.armature[j], model.damping[j], model.friction[j]) = (armature, damping, friction);
             }
+            if let Some(spring) = model.spring_mut(place) {
+                (spring.stiffness, spring.preload) = (stiffness, preload);
+            }
         }
         model
+    }
+
+    /// The spring of a joint of one axis, a new one of stiffness 0 where it has none.
+    pub(super) fn spring_mut(&mut self, &Place { freedom, q, j }: &Place) -> Option<&mut Spring<C>> {
+        if freedom != Freedom::One {
+            return None;
+        }
+        let at = self.springs.iter().position(|spring| spring.j == j).unwrap_or_else(|| {
+            self.springs.push(Spring { q, j, stiffness: C::zero(), preload: C::zero() });
+            self.springs.len() - 1
+        });
+        self.springs.get_mut(at)
     }
 
     /// The slots of all that moves: of a floating base, and of the moving links.
@@ -119,7 +143,7 @@ mod tests {
             assert!((total.sum::<f64>() - model.mass()).abs() < 1e-12 * model.mass());
             assert_eq!(
                 names.last().map(String::as_str),
-                Some(&*format!("{}.friction", model.joint_names().last().expect("one")))
+                Some(&*format!("{}.preload", model.joint_names().last().expect("one")))
             );
         }
         let body = Description::new("body").link("it", crate::testing::inertia(1)).floating().build().expect("sound");

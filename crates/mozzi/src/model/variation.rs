@@ -13,7 +13,7 @@ use alloc::vec;
 /// A change of a robot at the rate that it says, for [`Model::with_parameter_tangent`]. With ε the size of the change:
 #[derive(Clone, Copy, Debug)]
 pub enum Variation<'a> {
-    /// π + δπ ε: of [`parameters`](Model::parameters), among them armature, damping and friction; p numbers.
+    /// π + δπ ε: of [`parameters`](Model::parameters), among them armature, damping, friction and springs; p numbers.
     Parameters(&'a [f64]),
     /// 𝒢 + δ𝒢 ε: of a link's own inertia, in its frame.
     Inertia {
@@ -138,11 +138,17 @@ impl Model<f64> {
             let rate = SpatialInertia::from_parameters(*rate).transformed(self.link_frame(slot));
             *inertia(model, slot) += rate.map(seed);
         }
-        for (place, &[armature, damping, friction]) in self.places().iter().zip(of_joints.as_chunks().0) {
+        for (place, &[armature, damping, friction, stiffness, preload]) in
+            self.places().iter().zip(of_joints.as_chunks().0)
+        {
             for j in place.velocities() {
                 model.armature[j] += seed(armature);
                 model.damping[j] += seed(damping);
                 model.friction[j] += seed(friction);
+            }
+            if let Some(spring) = model.spring_mut(place) {
+                spring.stiffness += seed(stiffness);
+                spring.preload += seed(preload);
             }
         }
         Ok(())
@@ -372,6 +378,6 @@ mod tests {
         assert!(fails(Variation::Axis { joint: "weld2", motion: twist(1) }).contains("`weld2`, which is fixed"));
         assert!(fails(Variation::Pitch { joint: "joint4" }).contains("`joint4`, which is prismatic"));
         assert!(fails(Variation::Placement { joint: "x", motion: twist(1) }).contains("there is no joint `x`"));
-        assert!(fails(Variation::Parameters(&[0.0])).contains("has 1 entries, expected 65"));
+        assert!(fails(Variation::Parameters(&[0.0])).contains("has 1 entries, expected 75"));
     }
 }

@@ -32,7 +32,7 @@ macro_rules! quantities {
     ($callback:ident) => {
         $callback! {
             InverseDynamics ForwardDynamics ForwardDynamicsByMassMatrix ForwardDynamicsByInverseDynamics
-            MassMatrix MassMatrixInverse MassMatrixRate CoriolisMatrix VelocityProduct GravityForces BiasForces TipForces JointFriction
+            MassMatrix MassMatrixInverse MassMatrixRate CoriolisMatrix VelocityProduct GravityForces BiasForces TipForces JointFriction SpringForces
             KineticEnergy PotentialEnergy
             ForwardKinematics FramePoses SpaceJacobian BodyJacobian SpaceJacobianRate BodyJacobianRate
             SpaceJacobianDerivative BodyJacobianDerivative FrameAcceleration TaskSpaceDynamics

@@ -160,6 +160,9 @@ impl<S: Real> Real for Dual<S> {
         let (y, r2) = (self, self.value * self.value + x.value * x.value);
         Dual { value: y.value.atan2(x.value), derivative: (y.derivative * x.value - y.value * x.derivative) / r2 }
     }
+    fn is_identically_zero(self) -> bool {
+        self.value.is_identically_zero() && self.derivative.is_identically_zero()
+    }
 }
 
 #[cfg(test)]

@@ -75,6 +75,11 @@ pub trait Real: Scalar + PartialOrd {
     fn abs(self) -> Self {
         if self < Self::zero() { -self } else { self }
     }
+
+    /// Is it 0 with all that it carries, such as a derivative?
+    fn is_identically_zero(self) -> bool {
+        self == Self::zero()
+    }
 }
 
 /// Implements the assigning operators by their plain ones.

@@ -181,7 +181,7 @@ impl<'m, I: Input> Equation<'m, I> {
     }
 
     /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ with the
-    /// difference of the two laws. Returns θ̇ᵀf(θ̇).
+    /// difference of the two laws. Returns the power of friction.
     fn friction(&mut self, dtheta: &[f64]) -> f64 {
         if self.is_frictionless {
             self.force.copy_from_slice(&self.tau);

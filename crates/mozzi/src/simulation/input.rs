@@ -67,7 +67,7 @@ impl<A: Input, B: Input> Input for (A, B) {
 pub struct Zero;
 impl Input for Zero {}
 
-/// τ = g(θ), and nothing against friction: a robot at rest stays, a moving one coasts. (With Coulomb friction that is not
+/// τ = g(θ) + k(θ − θ₀), what holds the robot against gravity and its springs, and nothing against friction: a robot at rest stays, a moving one coasts. (With Coulomb friction that is not
 /// smooth it trembles instead of staying, see [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it
 /// falls.
 #[derive(Clone, Debug)]
@@ -97,6 +97,9 @@ impl Input for GravityCompensation<'_> {
             return Err(Error::WrongLength { what: "theta", found: theta.len(), expected: self.model.nq() });
         }
         gravity_forces(self.model, theta, self.gravity, &mut self.workspace, &mut self.g);
+        for spring in &self.model.springs {
+            self.g[spring.j] += spring.force(theta);
+        }
         // nothing drives a floating base or a free body
         for place in self.model.places().iter().filter(|place| place.freedom != Freedom::Free) {
             place.velocities().for_each(|j| tau[j] += self.g[j]);
@@ -155,7 +158,7 @@ mod tests {
                 let motion = model.simulate(&theta, &rest, GravityCompensation::new(&model), &options).expect("holds");
                 assert!(difference(motion.last().theta, &theta) < 1e-9, "{:?}", motion.last());
                 // and the motors carry what the method of the model says, doing no work
-                let g = model.gravity_forces(&theta).expect("regular");
+                let g = model.gravity_forces(&theta).expect("lengths") + model.spring_forces(&theta).expect("lengths");
                 assert!(difference(motion.sample(0).tau, g.as_slice()) == 0.0);
                 assert!(motion.last().energy.motor_work.abs() < 1e-8);
             }

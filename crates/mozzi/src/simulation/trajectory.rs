@@ -13,7 +13,7 @@ pub struct Energy {
     pub potential: f64,
     /// Done by the motors: ∫ θ̇ᵀτ dt.
     pub motor_work: f64,
-    /// Dissipated in the joints: ∫ θ̇ᵀf(θ̇) dt ≥ 0.
+    /// Dissipated in the joints: ∫ θ̇ᵀ(dθ̇ + μ sgn θ̇) dt ≥ 0.
     pub friction_loss: f64,
     /// Given to the environment: ∫ Σ 𝒱ᵀF dt.
     pub applied_work: f64,

@@ -11,7 +11,7 @@ use mozzi::quantities::{
     BiasForces, BodyJacobian, BodyJacobianRate, CoriolisMatrix, ForwardDynamics, ForwardDynamicsDerivatives,
     ForwardKinematics, GravityForces, GravityForcesDerivative, INPUTS, InverseDynamics, InverseDynamicsDerivatives,
     JointFriction, KineticEnergy, MassMatrix, MassMatrixRate, PotentialEnergy, Query, SpaceJacobian, SpaceJacobianRate,
-    TipForces, VelocityProduct,
+    SpringForces, TipForces, VelocityProduct,
 };
 use mozzi::{Base, TaskFrame, Twist};
 use nalgebra::{DMatrix, DVector};
@@ -37,7 +37,7 @@ pub fn page(terms: &Terms) -> String {
     if let Some(tip) = terms.tip {
         page.title(&format!("where {} is and how it moves", model.frame_name(tip))).lines(&kinematics(terms));
     }
-    page.title("the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ̇)").lines(&matrices(terms));
+    page.title("the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ, θ̇)").lines(&matrices(terms));
     page.blank().lines(&sum(terms)).blank().lines(&further(terms));
     page.title("derivatives of inverse and forward dynamics").lines(&derivatives(terms));
     page.title("the Newton-Euler recursion, in frames {i} at the links' centres of mass, angular first");
@@ -136,7 +136,8 @@ pub fn sum(terms: &Terms) -> Vec<String> {
             Quantity::new("+ c", "velocity_product", force, terms.vector(VelocityProduct)),
             Quantity::new("+ g", "gravity_forces", force, terms.vector(GravityForces)),
             Quantity::new("+ JᵀF_tip", "tip_forces", force, terms.vector(TipForces)),
-            Quantity::new("+ f", "joint_friction", force, terms.vector(JointFriction)),
+            Quantity::new("+ dθ̇ + μ sgn θ̇", "joint_friction", force, terms.vector(JointFriction)),
+            Quantity::new("+ k(θ − θ₀)", "spring_forces", force, terms.vector(SpringForces)),
             Quantity::new("= τ", "inverse_dynamics", force, terms.vector(InverseDynamics)),
             Quantity::new("  h = c + g", "bias_forces", force, terms.vector(BiasForces)),
         ],
@@ -153,7 +154,7 @@ fn further(terms: &Terms) -> Vec<String> {
     let energy = |query: Query| terms.vector(query).first().map_or(String::new(), |&x| scalar(x));
     lines.push(format!("kinetic_energy   ½ θ̇ᵀMθ̇   = {} J", energy(KineticEnergy.into())));
     lines.push(format!(
-        "potential_energy −Σ m gᵀp = {} J (0 for a mass at the origin of {})",
+        "potential_energy −Σ m gᵀp + Σ ½k(θ − θ₀)² = {} J (0 for a mass at the origin of {}, a spring at rest)",
         energy(PotentialEnergy.into()),
         space_frame(terms.model)
     ));

@@ -131,7 +131,8 @@ fn central_differences_agree() {
 
 #[test]
 fn of_the_parts_equal_those_of_the_whole() {
-    for (seed, model) in models() {
+    for (seed, mut model) in models() {
+        model.springs.clear(); // which are in no part
         let [theta, dtheta, x] = state(&model, seed);
         let (zero, applied) = (alloc::vec![0.0; model.n()], applied(&model, seed));
         let nothing = Environment::with_gravity(Vec3::zero());

@@ -3,6 +3,7 @@
 mod derivatives;
 mod numbers;
 mod regressor;
+mod springs;
 
 use crate::model::{Environment, Model, Workspace};
 use crate::testing::{floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, twist, wrench};
@@ -187,8 +188,8 @@ fn energies_and_power() {
         let power = rates.dot(&tau) - friction - V.dot(F);
         let scale = rates.amax() * tau.amax() * rates.len() as f64;
         assert!((energy.derivative - power).abs() < 1e-12 * scale, "{} {power}", energy.derivative);
-        // g is the gradient of the potential energy
-        let g = model.gravity_forces(&theta).expect("lengths");
+        // g + k(θ − θ₀) is the gradient of the potential energy
+        let g = model.gravity_forces(&theta).expect("lengths") + model.spring_forces(&theta).expect("lengths");
         let along: f64 = rates.dot(&g);
         let slope =
             kernel::potential_energy(&model, &q, model.gravity().map(Dual::constant), &mut workspace).derivative;

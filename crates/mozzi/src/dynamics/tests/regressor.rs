@@ -34,7 +34,7 @@ fn energies_are_linear_in_the_parameters() {
         workspace.fill_nan();
         kernel::energy_regressors(&model, &theta, &dtheta, V_s, g, &mut workspace, &mut y_k, &mut y_p);
         let K = kernel::kinetic_energy(&model, &theta, &dtheta, V_s, &mut workspace);
-        let P = kernel::potential_energy(&model, &theta, g, &mut workspace);
+        let P = kernel::potential_energy(&model, &theta, g, &mut workspace) - model.spring_energy;
         let pi = model.parameters();
         for (what, y, energy) in [("kinetic", &y_k, K), ("potential", &y_p, P)] {
             let terms: Vec<f64> = y.iter().zip(&pi).map(|(y, x)| y * x).collect();

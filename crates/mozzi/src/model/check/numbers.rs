@@ -1,4 +1,4 @@
-//! Finite numbers, masses and frictions of the right sign.
+//! Finite numbers, masses, frictions and stiffnesses of the right sign.
 
 use super::{Element, Report};
 use crate::model::description::JointKind;
@@ -46,9 +46,20 @@ impl Report<'_> {
                     format!("is a ball at {:?}, expected finite numbers", center.0),
                 );
             }
-            for (attribute, x) in
-                [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)]
-            {
+            if matches!(joint.kind, JointKind::Ball(_) | JointKind::Free) && joint.stiffness != 0.0 {
+                let message = format!(
+                    "is {} of a {} joint, expected 0: springs of joints of one axis alone are computed",
+                    joint.stiffness,
+                    joint.kind.name()
+                );
+                self.error(element, "stiffness", "unsupported_spring", message);
+            }
+            for (attribute, x) in [
+                ("damping", joint.damping),
+                ("friction", joint.friction),
+                ("armature", joint.armature),
+                ("stiffness", joint.stiffness),
+            ] {
                 if !(x >= 0.0 && x.is_finite()) {
                     self.error(
                         element,
@@ -57,6 +68,10 @@ impl Report<'_> {
                         format!("is {x}, expected a finite number, at least 0"),
                     );
                 }
+            }
+            if !joint.spring_reference.is_finite() {
+                let message = format!("is {}, expected a finite number", joint.spring_reference);
+                self.error(element, "spring reference", "not_finite", message);
             }
             if let Some([low, high]) = joint.limits.position
                 && !(low <= high)

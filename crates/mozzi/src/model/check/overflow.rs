@@ -37,6 +37,8 @@ impl Report<'_> {
             see(&[joint.damping], element, "damping");
             see(&[joint.friction], element, "friction");
             see(&[joint.armature], element, "armature");
+            see(&[joint.stiffness], element, "stiffness");
+            see(&[joint.spring_reference], element, "spring reference");
             match joint.kind {
                 JointKind::Screw(A) => see(&A.twist().to_array(), element, "kind"),
                 JointKind::Ball(center) => see(&center.0, element, "kind"),

@@ -1,0 +1,65 @@
+//! `springdamper`: the stiffness and the damping that MuJoCo chooses for a joint.
+
+use super::tree::Joint;
+use crate::context::Context;
+use crate::finding::Finding;
+use mozzi::Description;
+use mozzi::quantities::MassMatrixInverse;
+
+/// What a joint alone is to move like, instead of a stiffness and a damping.
+#[derive(Clone, Copy)]
+pub(crate) struct SpringDamper {
+    /// T, s.
+    pub time: f64,
+    /// ζ.
+    pub ratio: f64,
+    /// Springs are not switched off.
+    pub spring: bool,
+    /// Nor are dampers.
+    pub damper: bool,
+}
+
+/// A joint's own configuration and [`SpringDamper`], and where it stands in the file.
+pub(crate) type Tuning = (f64, Option<(SpringDamper, std::ops::Range<usize>)>);
+
+/// What the description needs of the joints of a tree, in their order.
+pub(crate) fn tunings(joints: &[Joint]) -> Vec<Tuning> {
+    let tuning = |joint: &Joint| {
+        let spring_damper = joint.spring_damper.map(|tuned| (tuned, joint.place.span("springdamper")));
+        (joint.reference, spring_damper)
+    };
+    joints.iter().map(tuning).collect()
+}
+
+/// As MuJoCo's compiler: k = I / (T ζ)² and d = 2 I / T with the inertia I = 1 / (M⁻¹)_jj at the file's configuration, all joints
+/// independent. Of a robot that is refused for another reason nothing is computed.
+pub(crate) fn tune(robot: &mut Description, tunings: &[Tuning], cx: &mut Context) {
+    if tunings.iter().all(|(_, tuned)| tuned.is_none()) {
+        return;
+    }
+    let mut free = robot.clone();
+    free.joints.iter_mut().for_each(|joint| joint.mimic = None);
+    let Ok(model) = free.build() else { return };
+    let place = |name: &str| robot.joints.iter().position(|joint| joint.name == name);
+    let places: Vec<usize> = model.joint_names().filter_map(place).collect();
+    let mut theta = model.neutral_configuration::<f64>();
+    for (theta, &i) in theta[model.base().positions()..].iter_mut().zip(&places) {
+        *theta = tunings[i].0;
+    }
+    let inverse = model.compute(MassMatrixInverse, &[&theta], &model.environment());
+    for (j, i) in (model.base().velocities()..).zip(places) {
+        let Some((tuned, span)) = &tunings[i].1 else { continue };
+        let Ok(inverse) = &inverse else {
+            let message = format!(
+                "joint `{}`: springdamper: the mass matrix is singular, expected an inertia",
+                robot.joints[i].name
+            );
+            let help = "give `stiffness` and `damping` themselves";
+            cx.findings.add(Finding::error("unsupported_attribute", span.clone(), message).help(help));
+            continue;
+        };
+        let (inertia, joint) = (1.0 / inverse[0][j * (model.n() + 1)], &mut robot.joints[i]);
+        joint.stiffness = if tuned.spring { inertia / (tuned.time * tuned.ratio).powi(2) } else { 0.0 };
+        joint.damping = if tuned.damper { 2.0 * inertia / tuned.time } else { 0.0 };
+    }
+}

@@ -1,0 +1,56 @@
+//! Springs in the joints.
+
+use crate::model::Model;
+use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, Rare, THETA, VECTOR, output};
+use crate::scalar::Scalar;
+
+/// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: what holds the joints against their springs. θ is not wrapped. A mimic joint's spring
+/// acts on q = ratio θ + offset and adds ratio k(q − θ₀) to its source joint.
+///
+/// Cost O(n), no allocation.
+///
+/// # Panics
+/// When θ is not nq long, or `f` not n.
+#[cfg_attr(not(test), inline(always))]
+pub fn spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], f: &mut [S]) {
+    model.assert_lengths(theta.len(), [f.len()]);
+    f.fill(S::zero());
+    add_spring_forces(model, theta, f);
+}
+
+/// Adds f_s to a force.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
+    for spring in &model.springs {
+        tau[spring.j] += spring.force(theta);
+    }
+}
+
+/// Adds ∂f_s/∂θ = k to the diagonal of ∂τ/∂θ.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_stiffness<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, d_theta: &mut [S]) {
+    for spring in &model.springs {
+        d_theta[spring.j * (model.n() + 1)] += S::from(spring.stiffness);
+    }
+}
+
+/// See [`spring_forces`].
+#[derive(Clone, Copy, Debug)]
+pub struct SpringForces;
+impl Quantity for SpringForces {
+    type Kernel = Self;
+    type Registers = Rare;
+    const DECLARATION: Declaration = Declaration::new(
+        "spring_forces",
+        "f_s(θ) = k(θ − θ₀) of each joint, θ not wrapped",
+        &[THETA],
+        &[output("f", VECTOR, FORCE)],
+    );
+}
+impl Kernel for SpringForces {
+    #[inline(always)]
+    fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
+        let ([theta, ..], [f, ..]) = (c.inputs, c.outputs);
+        spring_forces(c.model, theta, f);
+    }
+}

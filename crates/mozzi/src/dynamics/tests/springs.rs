@@ -1,0 +1,98 @@
+//! Springs by hand, in every way to θ̈, and with mimic joints.
+
+use crate::model::description::{Joint, JointKind, Mimic};
+use crate::simulation::{GravityCompensation, Method, Options, Zero};
+use crate::spatial::{ScrewAxis, SpatialInertia};
+use crate::{Description, Model, SE3, Vec3};
+
+/// A point of 2 kg at 0.5 m that turns about z without gravity, on a spring, its joint followed by a slide of 3 kg with a spring of its own.
+fn springs() -> Model {
+    let turn = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit"));
+    let slide = JointKind::Screw(ScrewAxis::new([0.0; 3], [0.0, 0.0, 1.0]).expect("unit"));
+    let spring =
+        Joint { stiffness: 7.0, spring_reference: 0.4, ..Joint::new("turn", "base", "a", SE3::identity(), turn) };
+    let mimic = Some(Mimic { joint: "turn".into(), ratio: -2.0, offset: 0.1 });
+    let follower = Joint {
+        stiffness: 5.0,
+        spring_reference: -0.3,
+        mimic,
+        ..Joint::new("slide", "base", "b", SE3::identity(), slide)
+    };
+    Description::new("springs")
+        .with_gravity([0.0; 3])
+        .link("base", SpatialInertia::zero())
+        .link("a", SpatialInertia::point_mass(2.0, Vec3([0.5, 0.0, 0.0])))
+        .link("b", SpatialInertia::point_mass(3.0, Vec3::zero()))
+        .joint(spring)
+        .joint(follower)
+        .build()
+        .expect("sound")
+}
+
+#[test]
+fn a_mimic_joints_spring_acts_on_its_own_variable() {
+    let (model, theta) = (springs(), 9.0); // beyond a turn: an angle is not wrapped
+    let q = -2.0 * theta + 0.1;
+    let force = 7.0 * (theta - 0.4) - 2.0 * 5.0 * (q + 0.3);
+    let energy = 0.5 * 7.0 * (theta - 0.4_f64).powi(2) + 0.5 * 5.0 * (q + 0.3_f64).powi(2);
+    let found = model.spring_forces(&[theta]).expect("lengths")[0];
+    assert!((found - force).abs() < 1e-13 * force, "{found} {force}");
+    let tau = model.inverse_dynamics(&[theta], &[0.0], &[0.0], &model.environment()).expect("lengths")[0];
+    assert!((tau - force).abs() < 1e-13 * force, "{tau} {force}");
+    let found = model.potential_energy(&[theta]).expect("lengths");
+    assert!((found - energy).abs() < 1e-13 * energy, "{found} {energy}");
+    let names = model.parameter_names();
+    let of = |name: &str| model.parameters()[names.iter().position(|known| known == name).expect("a parameter")];
+    assert!((of("turn.stiffness") - (7.0 + 4.0 * 5.0)).abs() < 1e-13);
+    assert!((of("turn.preload") - (7.0 * 0.4 - 2.0 * 5.0 * -0.4)).abs() < 1e-13);
+}
+
+#[test]
+fn a_mass_on_a_spring_oscillates_at_its_frequency() {
+    let model = springs();
+    // M = m r² + ratio² m, K = k + ratio² k, rest at p / K
+    let (M, K, p) = (0.5 + 12.0, 27.0_f64, 7.0 * 0.4 + 2.0 * 5.0 * 0.4);
+    let (rest, omega) = (p / K, (K / M).sqrt());
+    let options = Options { method: Method::RungeKutta4, ..Options::new(2.0, 2000) };
+    let motion = model.simulate(&[1.0], &[0.0], Zero, &options).expect("a motion");
+    let expected = rest + (1.0 - rest) * (2.0 * omega).cos();
+    assert!((motion.last().theta[0] - expected).abs() < 1e-11, "{:?} {expected}", motion.last());
+    assert!(motion.largest_drift() < 1e-11, "{}", motion.largest_drift());
+    let held = model.simulate(&[1.0], &[0.0], GravityCompensation::new(&model), &options).expect("a motion");
+    assert!((held.last().theta[0] - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_derivative_by_the_stiffness_of_a_spring_that_is_none_is_kept() {
+    use crate::{Dual, Scalar, Workspace};
+    let mut robot = springs().description().map(Dual::constant);
+    (robot.joints[0].stiffness, robot.joints[1].stiffness) = (Dual { value: 0.0, derivative: 1.0 }, Dual::zero());
+    let (model, theta) = (robot.build().expect("sound"), [Dual::constant(0.9)]);
+    let (mut tau, still) = ([Dual::zero()], [Dual::zero()]);
+    super::kernel::inverse_dynamics(
+        &model,
+        &theta,
+        &still,
+        &still,
+        &model.environment(),
+        &mut Workspace::new(&model),
+        &mut tau,
+    );
+    assert!((tau[0].derivative - (0.9 - 0.4)).abs() < 1e-15, "{tau:?}");
+}
+
+#[test]
+fn wrong_springs_are_errors_by_name() {
+    let message = |stiffness: f64, spring_reference: f64| {
+        let mut robot = springs().description().clone();
+        (robot.joints[0].stiffness, robot.joints[0].spring_reference) = (stiffness, spring_reference);
+        robot.build().expect_err("a wrong spring").to_string()
+    };
+    assert!(
+        message(-1.0, 0.0).contains("joint `turn`: stiffness: is -1, expected a finite number, at least 0"),
+        "{}",
+        message(-1.0, 0.0)
+    );
+    assert!(message(f64::NAN, 0.0).contains("stiffness: is NaN"));
+    assert!(message(1.0, f64::INFINITY).contains("spring reference: is inf, expected a finite number"));
+}
