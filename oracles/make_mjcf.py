@@ -5,8 +5,7 @@
     python oracles/make_mjcf.py --committed     the models beside this script, 5 states each
 
 Actuators, contacts, limits, springs, damping and friction are switched off; armature stays. Joints that an equality
-couples are projected, as make.py does with mimic joints. A free body's state is written in mozzi's coordinates: the
-quaternion (w, x, y, z) and the origin, the twist (w, v) in the body's axes. With --out, `list.txt` says of every model that was found
+couples are projected, as make.py does with mimic joints. States are written in mozzi's coordinates (see Coordinates). With --out, `list.txt` says of every model that was found
 whether it is compared, and why not.
 """
 
@@ -23,6 +22,8 @@ from make import Failure, Worst, plain, regular, rng_of, write
 mujoco.set_mju_user_warning(lambda message: None)  # which would write a file
 
 HERE = Path(__file__).resolve().parent
+FREE, BALL, SLIDE, HINGE = (int(getattr(mujoco.mjtJoint, f"mjJNT_{kind}")) for kind in ("FREE", "BALL", "SLIDE", "HINGE"))
+POSITIONS, VELOCITIES = {FREE: 7, BALL: 4, SLIDE: 1, HINGE: 1}, {FREE: 6, BALL: 3, SLIDE: 1, HINGE: 1}
 FOLDERS = {"gymnasium": "envs/mujoco/assets", "dm_control": "."}
 
 
@@ -44,13 +45,12 @@ def load(path):
         model = mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
         raise Failure(f"MuJoCo does not load it: {' '.join(str(error).split())[:120]}")
-    kinds = {mujoco.mjtJoint(kind).name for kind in model.jnt_type}
-    if not kinds:
+    if not model.njnt:
         raise Failure("nothing moves")
-    if "mjJNT_BALL" in kinds:
-        raise Failure("has a ball joint")
-    if "mjJNT_FREE" in kinds:
-        one_free_tree(model)
+    for j in range(model.njnt):
+        first = model.jnt_dofadr[j]
+        if model.jnt_type[j] == FREE and np.any(model.dof_armature[first:first + 6]):
+            raise Failure("has an armature on its free joint")
     flags = mujoco.mjtDisableBit
     model.opt.disableflags |= int(flags.mjDSBL_CONSTRAINT) | int(flags.mjDSBL_ACTUATION)
     model.opt.disableflags |= int(flags.mjDSBL_SPRING) | int(flags.mjDSBL_DAMPER)
@@ -59,82 +59,94 @@ def load(path):
     return model
 
 
-def one_free_tree(model):
-    """A free body, on which everything hangs that moves."""
-    if np.count_nonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE) > 1:
-        raise Failure("has several free bodies")
-    body = base(model)
-    if any(model.body_rootid[b] != body for b in model.jnt_bodyid):
-        raise Failure("moves beside its free body")
-    if np.any(model.dof_armature[:6]):
-        raise Failure("has an armature on its free joint")
-
-
 def base(model):
-    """The free body, or none. Its joint is the first, since no other joint is in another tree."""
-    free = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
-    return model.jnt_bodyid[free[0]] if len(free) else None
+    """The body that mozzi makes a floating base: free, undamped, and all that moves hangs on it. Else none."""
+    free = np.flatnonzero(model.jnt_type == FREE)
+    if len(free) != 1 or np.any(model.dof_damping[model.jnt_dofadr[free[0]]:][:6]):
+        return None
+    body = model.jnt_bodyid[free[0]]
+    return body if all(model.body_rootid[b] == body for b in model.jnt_bodyid) else None
 
 
-def velocities(R, V, joints):
-    """MuJoCo's qvel = Y (w, v, dtheta) of a free body, whose linear velocity is in the world's axes, and Y's rate times that."""
-    n, m = joints.shape
-    Y, rate = np.zeros((6 + n, 6 + m)), np.zeros(6 + n)
-    Y[:3, 3:6], Y[3:6, :3], Y[6:, 6:] = R, np.eye(3), joints
-    rate[:3] = R @ np.cross(V[:3], V[3:6])
-    return Y, rate
+class Coordinates:
+    """mozzi's theta and dtheta: of each joint that no equality couples a number, of a ball the quaternion and w, of a free body the quaternion, the origin,
+    and the twist (w, v) in the body's axes."""
 
+    def __init__(self, model):
+        self.model, rows = model, {}
+        qpos0 = [model.qpos0[model.jnt_qposadr[j]] for j in range(model.njnt)]
+        for i in range(model.neq):
+            if model.eq_type[i] != mujoco.mjtEq.mjEQ_JOINT or not model.eq_active0[i]:
+                continue
+            y, x, data = model.eq_obj1id[i], model.eq_obj2id[i], model.eq_data[i]
+            if x < 0 or np.any(data[2:5]):
+                raise Failure("has an equality that is not a straight line")
+            rows[y] = (x, data[1], qpos0[y] + data[0] - data[1] * qpos0[x])
+        self.joints = [j for j in range(model.njnt) if j not in rows]
+        self.q, self.v, self.nq, self.n = {}, {}, 0, 0
+        for j in self.joints:
+            self.q[j], self.v[j] = self.nq, self.n
+            self.nq, self.n = self.nq + POSITIONS[model.jnt_type[j]], self.n + VELOCITIES[model.jnt_type[j]]
+        self.followers = []
+        for j in rows:
+            at, ratio, shift = j, 1.0, 0.0
+            while at in rows:
+                at, step, more = rows[at]
+                shift, ratio = shift + ratio * more, ratio * step
+            self.followers.append((j, at, ratio, shift))
 
-def coupling(model):
-    """The independent joints, and G and offset of qpos = G theta + offset; without the free one."""
-    rows, first = {}, int(base(model) is not None)
-    qpos0 = np.array([model.qpos0[model.jnt_qposadr[j]] for j in range(model.njnt)])
-    for i in range(model.neq):
-        if model.eq_type[i] != mujoco.mjtEq.mjEQ_JOINT or not model.eq_active0[i]:
-            continue
-        y, x, data = model.eq_obj1id[i], model.eq_obj2id[i], model.eq_data[i]
-        if x < 0 or np.any(data[2:5]):
-            raise Failure("has an equality that is not a straight line")
-        rows[y] = (x, data[1], qpos0[y] + data[0] - data[1] * qpos0[x])
-    free = [j for j in range(first, model.njnt) if j not in rows]
-    G, offset = np.zeros((model.njnt - first, len(free))), np.zeros(model.njnt - first)
-    for j in range(first, model.njnt):
-        at, ratio, shift = j, 1.0, 0.0
-        while at in rows:
-            at, step, more = rows[at]
-            shift, ratio = shift + ratio * more, ratio * step
-        G[j - first, free.index(at)], offset[j - first] = ratio, shift
-    return free, G, offset
+    def random(self, rng):
+        parts = []
+        for j in self.joints:
+            kind = self.model.jnt_type[j]
+            if kind in (BALL, FREE):
+                quaternion = rng.standard_normal(4)
+                parts.append(quaternion / np.linalg.norm(quaternion))
+            if kind == FREE:
+                parts.append(rng.uniform(-1.0, 1.0, 3))
+            if kind in (SLIDE, HINGE):
+                reach = 0.5 if kind == SLIDE else np.pi
+                parts.append(rng.uniform(-reach, reach, 1))
+        return np.concatenate(parts)
+
+    def to_mujoco(self, theta, dtheta):
+        """qpos, Y of qvel = Y dtheta, and Y's rate times dtheta."""
+        model = self.model
+        qpos, Y, rate = np.zeros(model.nq), np.zeros((model.nv, self.n)), np.zeros(model.nv)
+        for j in self.joints:
+            kind, at, dof, q, v = model.jnt_type[j], model.jnt_qposadr[j], model.jnt_dofadr[j], self.q[j], self.v[j]
+            if kind == FREE:
+                R = np.zeros(9)
+                mujoco.mju_quat2Mat(R, theta[q:q + 4])
+                R, V = R.reshape(3, 3), dtheta[v:v + 6]
+                qpos[at:at + 3], qpos[at + 3:at + 7] = theta[q + 4:q + 7], theta[q:q + 4]
+                Y[dof:dof + 3, v + 3:v + 6], Y[dof + 3:dof + 6, v:v + 3] = R, np.eye(3)
+                rate[dof:dof + 3] = R @ np.cross(V[:3], V[3:])
+            else:
+                width, k = POSITIONS[kind], VELOCITIES[kind]
+                qpos[at:at + width], Y[dof:dof + k, v:v + k] = theta[q:q + width], np.eye(k)
+        for j, source, ratio, shift in self.followers:
+            qpos[model.jnt_qposadr[j]] = ratio * theta[self.q[source]] + shift
+            Y[model.jnt_dofadr[j], self.v[source]] = ratio
+        return qpos, Y, rate
 
 
 def record(name, path, shown, states):
     model = load(path)
     data = mujoco.MjData(model)
-    free, G, offset = coupling(model)
+    coordinates = Coordinates(model)
     nv, body = model.nv, base(model)
     inside = [i for i in range(model.nbody) if body is None or model.body_rootid[i] == body]
     tip = inside[-1]
-    names = [model.joint(j).name or f"joint{j}" for j in free]
-    slides = model.jnt_type[free] == mujoco.mjtJoint.mjJNT_SLIDE
     bodies = {i: model.body(i).name or f"body{i}" for i in inside}
+    unnamed = lambda j: f"{bodies[model.jnt_bodyid[j]]}:free" if model.jnt_type[j] == FREE else f"joint{j}"
+    names = [model.joint(j).name or unnamed(j) for j in coordinates.joints if body is None or model.jnt_type[j] != FREE]
     rng, worst, records = rng_of(f"mjcf {name}"), Worst(), []
     for _ in range(states):
-        n = len(free)
-        theta = np.where(slides, rng.uniform(-0.5, 0.5, n), rng.uniform(-np.pi, np.pi, n))
-        if body is not None:
-            quaternion = rng.standard_normal(4)
-            theta = np.concatenate([quaternion / np.linalg.norm(quaternion), rng.uniform(-1.0, 1.0, 3), theta])
-            n += 6
-        dtheta, ddtheta, tau = rng.standard_normal((3, n)) * np.array([[1.0], [2.0], [2.0]])
+        theta = coordinates.random(rng)
+        dtheta, ddtheta, tau = rng.standard_normal((3, coordinates.n)) * np.array([[1.0], [2.0], [2.0]])
         r = {"theta": theta, "dtheta": dtheta, "ddtheta": ddtheta, "tau": tau}
-        if body is None:
-            Y, rate = G, np.zeros(nv)
-            data.qpos[:] = G @ theta + offset
-        else:
-            R = np.zeros(9)
-            mujoco.mju_quat2Mat(R, theta[:4])
-            Y, rate = velocities(R.reshape(3, 3), dtheta[:6], G)
-            data.qpos[:] = np.concatenate([theta[4:7], theta[:4], G @ theta[7:] + offset])
+        data.qpos[:], Y, rate = coordinates.to_mujoco(theta, dtheta)
         data.qvel[:] = Y @ dtheta
         mujoco.mj_forward(model, data)
         M = np.zeros((nv, nv))
@@ -164,7 +176,7 @@ def record(name, path, shown, states):
         "robot": name, "mjcf": shown, "library": f"mujoco {metadata.version('mujoco')}",
         "gravity": model.opt.gravity * (not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)),
         "tip_frame": bodies[tip], "joint_names": names, "armature": True,
-        "qpos0": np.linalg.pinv(G) @ (model.qpos0[model.nq - len(offset):] - offset), "states": records,
+        "states": records,
     }
     if body is not None:
         made["floating"] = True

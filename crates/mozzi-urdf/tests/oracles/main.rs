@@ -66,10 +66,13 @@ fn compare(model: &Model, order: &[usize], oracle: &Value, state: &Value, worst:
     let both = |M: DMatrix<f64>| DMatrix::from_fn(n, n, |i, j| M[(order[i], order[j])]);
     let columns = |J: mozzi::Jacobian| J.matrix().select_columns(order);
     let mut theta = vector(&state["theta"]);
-    let (base, joints) = (model.base().positions(), model.base().velocities());
-    let theirs_of_joints = theta.split_off(base);
-    theta.resize(model.nq(), 0.0);
-    order[joints..].iter().zip(theirs_of_joints).for_each(|(&j, x)| theta[base + j - joints] = x);
+    if !order.iter().copied().eq(0..n) {
+        // of joints of one axis
+        let (base, joints) = (model.base().positions(), model.base().velocities());
+        let theirs_of_joints = theta.split_off(base);
+        theta.resize(model.nq(), 0.0);
+        order[joints..].iter().zip(theirs_of_joints).for_each(|(&j, x)| theta[base + j - joints] = x);
+    }
     let (dtheta, ddtheta, tau) = (mine("dtheta"), mine("ddtheta"), mine("tau"));
     let (environment, tip) = (model.environment(), model.end_effector().unwrap());
     let list = |key: &str| column(&vector(&state[key]));
@@ -143,9 +146,12 @@ fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
         oracle["joint_names"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
     assert_eq!(oracle.get("floating").is_some(), model.is_floating(), "{name}: is the base floating?");
     let base = model.base().velocities();
-    assert_eq!(base + names.len(), model.n(), "{name}");
-    let of = |name: &&str| base + model.joint_names().position(|mine| mine == *name).unwrap();
-    let order: Vec<usize> = (0..base).chain(names.iter().map(of)).collect();
+    let of = |name: &&str| {
+        let place = model.joint_names().position(|mine| mine == *name).unwrap();
+        model.places()[place].velocities()
+    };
+    let order: Vec<usize> = (0..base).chain(names.iter().flat_map(of)).collect();
+    assert_eq!(order.len(), model.n(), "{name}");
     if oracle.get("mjcf").is_some() {
         assert!(order.iter().copied().eq(0..model.n()), "{name}: joints are numbered as MuJoCo does");
     }
