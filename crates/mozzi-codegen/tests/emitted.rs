@@ -9,7 +9,7 @@ use harness::{Call, Module, build, exists, rounded, run};
 use mozzi::quantities::{
     BodyJacobian, CenterOfMassJacobian, ForwardDynamics, ForwardKinematics, GravityForces, InverseDynamics,
     InverseDynamicsDerivatives, JointFriction, MassMatrix, MassMatrixProductDerivative, Momentum, PotentialEnergy,
-    Query, Regressor, SpaceJacobian, TaskSpaceDynamics,
+    Query, Regressor, SpaceJacobian, SpringForces, TaskSpaceDynamics,
 };
 use mozzi::testing::Random;
 use mozzi::{Base, Model, Scalar, Task, TaskFrame, Vec3};
@@ -100,7 +100,7 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
     let mut robots = vec![
         (panda, [&dynamics()[..], &[hand], &of_masses].concat(), fixed, 3),
         (anymal, vec![InverseDynamics.into(), ForwardDynamics.into()], fixed, 9),
-        (rubbing, vec![InverseDynamics.into(), JointFriction.into()], fixed, turning),
+        (rubbing, vec![InverseDynamics.into(), JointFriction.into(), SpringForces.into()], fixed, turning),
         (named(&ur5, "moved"), moved, carried, 3),
         (ur5, vec![InverseDynamics.into()], open, 3),
     ];
@@ -145,6 +145,7 @@ fn check(what: &str, precision: Precision, modules: &[Module], results: &[Vec<Ve
         let mut worst = 0.0_f64;
         let is_wrong = |x: &f64| x.is_nan() || x.abs() > precision.largest_angle();
         for (k, (inputs, found)) in call.states.iter().zip(found).enumerate() {
+            let given = inputs;
             let mut inputs = inputs.clone();
             if call.program.inputs()[0].name == "theta" {
                 inputs[0].iter_mut().filter(|x| is_wrong(x)).for_each(|x| *x = f64::NAN);
@@ -154,6 +155,9 @@ fn check(what: &str, precision: Precision, modules: &[Module], results: &[Vec<Ve
             for (found, expected) in found.iter().zip(&expected) {
                 let place = format!("{what}, {robot} {} at state {k}: {found:?}, expected {expected:?}", call.function);
                 let pairs: Vec<(f64, f64)> = found.iter().copied().zip(expected.iter().copied()).collect();
+                // an angle too large for a sine is an entry of the regressor all the same: a spring's
+                let is_given = |x: f64, y: f64| y.is_nan() && call.function == "regressor" && given[0].contains(&x);
+                let pairs: Vec<_> = pairs.into_iter().filter(|&(x, y)| !is_given(x, y)).collect();
                 assert!(pairs.iter().all(|(x, y)| x.is_nan() == y.is_nan()), "{place}");
                 if call.function == "basics" {
                     // each of them beside itself; a sine near 0 beside 1

@@ -131,7 +131,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
 }
 
 /// Symbols and what they are in plain letters, longer ones first.
-const LETTERS: [(&str, &str); 44] = [
+const LETTERS: [(&str, &str); 45] = [
     ("θ̈", "ddtheta"),
     ("θ̇", "dtheta"),
     ("θ_j", "theta_j"),
@@ -159,6 +159,7 @@ const LETTERS: [(&str, &str); 44] = [
     ("−", "-"),
     ("Σ", "sum"),
     ("·", " "),
+    ("₀", "0"),
     ("₁", "1"),
     ("₂", "2"),
     ("ü", "ue"),

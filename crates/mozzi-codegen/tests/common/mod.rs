@@ -13,7 +13,7 @@ fn body(random: &mut Random) -> SpatialInertia {
     Solid::Box([0.3, 0.2 + 0.1 * random.next(), 0.1]).inertia(2.0 + random.next()).transformed(turn)
 }
 
-/// A tree of revolute, prismatic and helical joints off every axis, with friction and armature; `mimic joints` of the last joints follow
+/// A tree of revolute, prismatic and helical joints off every axis, with friction, armature and springs; `mimic joints` of the last joints follow
 /// others.
 pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
     let mut random = Random(seed);
@@ -33,6 +33,7 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
         let mut joint = Joint::new(format!("joint{i}"), format!("link{parent}"), format!("link{i}"), origin, kind);
         if i % 3 == 0 {
             (joint.damping, joint.friction, joint.armature) = (0.3, 0.5, 0.1);
+            (joint.stiffness, joint.spring_reference) = (2.5, 0.4);
         }
         if i > links - mimics {
             let followed = format!("joint{}", 1 + (i * 7) % (links - mimics));
