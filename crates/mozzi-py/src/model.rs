@@ -252,13 +252,13 @@ impl PyModel {
         &self.0.model.description().name
     }
 
-    /// Velocities: independent joints, and the six of a floating base.
+    /// Velocities: one of each independent joint, three of a ball, six of a free joint and of a floating base.
     #[getter]
     fn n(&self) -> usize {
         self.0.model.n()
     }
 
-    /// Positions: n, and one more where the base floats.
+    /// Positions: n, and one more for a floating base, each ball and each free joint: a quaternion has four numbers.
     #[getter]
     fn nq(&self) -> usize {
         self.0.model.nq()
@@ -268,6 +268,20 @@ impl PyModel {
     #[getter]
     fn joint_names(&self) -> Vec<&str> {
         self.0.model.joint_names().collect()
+    }
+
+    /// The names of the nq positions: a joint's own name, of a ball `joint.qw` to `joint.qz`, of a free joint `joint.qw` to `joint.z`; of a floating
+    /// base, which comes first, `base.qw` to `base.z`.
+    #[getter]
+    fn position_names(&self) -> Vec<&str> {
+        self.0.model.position_names().collect()
+    }
+
+    /// The names of the n velocities and forces: a joint's own name, of a ball `joint.wx` to `joint.wz`, of a free joint `joint.wx` to `joint.vz`; of a
+    /// floating base, which comes first, `base.wx` to `base.vz`.
+    #[getter]
+    fn velocity_names(&self) -> Vec<&str> {
+        self.0.model.velocity_names().collect()
     }
 
     /// The links, in the order of the file.

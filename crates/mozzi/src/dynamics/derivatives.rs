@@ -81,19 +81,20 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         let (p, j, Ad) = (link.parent, link.j, T[i].Ad());
         let (V_p, dV_p) = (Ad * V[p], Ad * dV[p]);
-        let [V_c, dV_c] = match link.is_next() {                             // of the link that carries the joint
-            true  => carrier[p].map(|V| Ad * V),
-            false => [V_p, dV_p],
-        };
+        let [mut V_c, mut dV_c] = [V_p, dV_p];                               // of the link that carries the joint
+        if !link.has_one_axis() {
+            if link.is_next() {
+                [V_c, dV_c] = carrier[p].map(|V| Ad * V);
+            }
+            carrier[i] = [V_c, dV_c];
+        }
         let A    = link.unit();
         let dA   = (V_c.ad() * A).twist();
         let ddA  = V_c.ad() * dA + dV_c.ad() * A;
         let V_i  = V_p + link.A() * link.rate(dtheta);
         let dV_i = dA.mul_add(dtheta[j], dV_p) + link.A() * link.rate(ddtheta);
         (V[i], dV[i], axes[i]) = (V_i, dV_i, Rates { dA: dA.w, ddA, D: dA + dA });
-        if !link.is_last {
-            carrier[i] = [V_c, dV_c];
-        } else if link.is_next() {
+        if !link.has_one_axis() && link.is_last {
             several_axes(model, i, T, V, axes);
         }
         let G = link.G();
@@ -120,8 +121,11 @@ pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
     for (i, link) in model.outward::<S>() {
         let (Ad, p) = (T[i].Ad(), link.parent);
         let dV_p = Ad * dV[p];
-        let dV_c = if link.is_next() { Ad * carrier[p][1] } else { dV_p };
-        if !link.is_last {
+        let mut dV_c = dV_p;
+        if !link.has_one_axis() {
+            if link.is_next() {
+                dV_c = Ad * carrier[p][1];
+            }
             carrier[i][1] = dV_c;
         }
         let ddA = &mut axes[i].ddA;
@@ -176,7 +180,7 @@ pub(super) fn inward_pass<S: Scalar + From<C>, C: Scalar>(
         let mut BtA = B_i.transpose_mul(A);                                  // 𝓑ᵀA, a moment
         if let Some(d_theta) = &mut d_theta {
             d_theta[j * n + j] += A * column;
-            if link.is_next() {
+            if !link.has_one_axis() && link.is_next() {
                 carried_together(model, i, T, A.ad_transpose(F[i]), d_theta);
             }
         }

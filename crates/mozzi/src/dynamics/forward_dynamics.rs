@@ -1,6 +1,6 @@
 //! Forward dynamics: the articulated-body algorithm (Featherstone 2008, section 7.3).
 
-use super::inverse_dynamics::carried;
+use super::inverse_dynamics::carrier_twist;
 use super::joint_friction::joint_friction;
 use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
 use crate::kinematics::{base_motion, joint_sines};
@@ -75,14 +75,11 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         let (A, dq) = (link.A(), link.rate(dtheta));
         let T_i = link.transform_with(sin_cos[i], theta);
-        let (V_p, V_c) = carried(&link, T_i, V[link.parent], &mut carrier[..], i);
-        let (V_i, dV_i) = (V_p + A * dq, (V_c.ad() * (A * dq)).twist());              // velocity-product acceleration
-        (T[i], V[i], dV[i], F[i]) = (T_i, V_i, dV_i, Wrench::zero());
-        if link.is_last {
-            let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
-            (V[i], dV[i]) = (V_i.twist(), dV_i);
-            F[i] = -(V_i.ad_transpose() * (link.G() * V_i));
-        }
+        let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;
+        let V_c = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
+        let (V_i, dV_i) = V_i.classical_acceleration((V_c.ad() * (A * dq)).twist());  // velocity-product acceleration
+        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
+        F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
         G_hat[i] = link.G().into();
     }
     for &(frame, F_b) in environment.applied {

@@ -4,6 +4,7 @@ use super::joint_friction::joint_friction;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::lie::SE3;
+use crate::linalg::Vec3;
 use crate::model::{Environment, Lifted, Model, Workspace};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
@@ -35,8 +36,8 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     for j in 0..model.n() {
         tau[j] = S::from(model.armature[j]).mul_add(ddtheta[j], joint_friction(model, j, dtheta[j]));
     }
-    add_spring_forces(model, theta, tau);
     newton_euler(model, theta, dtheta, ddtheta, environment, workspace, tau);
+    add_spring_forces(model, theta, tau);
 }
 
 /// The links' part of τ, without armature, friction and springs, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
@@ -74,15 +75,12 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         let (A, p) = (link.A(), link.parent);
         let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
         let T_i  = link.transform_with(sin_cos[i], theta);                                // T_{i,i−1}(θ) (8.50)
-        let (V_p, V_c) = carried(&link, T_i, V[p], &mut carrier[..], i);
-        let V_i  = V_p + A * dq;                                                          // (8.51)
+        let V_i  = T_i.Ad() * V[p].spin() + A * dq;                                       // (8.51)
+        let V_c  = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
         let dV_i = T_i.Ad() * dV[p] + V_c.ad() * (A * dq) + A * ddq;                      // (8.52)
-        (T[i], V[i], dV[i], F[i]) = (T_i, V_i, dV_i, Wrench::zero());
-        if link.is_last {
-            let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
-            (V[i], dV[i]) = (V_i.twist(), dV_i);
-            F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);               // (8.53), its own part
-        }
+        let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
+        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
+        F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
@@ -100,26 +98,23 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The parent's twist, and that of the link that carries the joint: the same, but for a further axis of one joint. The observer
-/// of a link moves with its origin, so that what a joint's first axis takes over is a spin.
+/// The twist with which a joint's axis is carried, up to what the axis itself adds: that of its own link `V_i`; of a further axis of a ball or a free joint
+/// that of the joint's parent, for the observer who moves along with the origin of all of them.
 #[inline(always)]
-pub(super) fn carried<S: Scalar + From<C>, C: Scalar>(
+pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
     link: &Lifted<C, S>,
     T: SE3<S>,
-    V_p: Twist<S>,
+    V_i: Twist<S>,
+    V: &[Twist<S>],
     carrier: &mut [[Twist<S>; 2]],
     i: usize,
-) -> (Twist<S>, Twist<S>) {
-    if link.is_next() {
-        let V_c = T.Ad() * carrier[link.parent][0];
-        carrier[i][0] = V_c;
-        return (T.Ad() * V_p, V_c);
+) -> Twist<S> {
+    if link.has_one_axis() {
+        return V_i;
     }
-    let V_p = T.Ad() * V_p.spin();
-    if !link.is_last {
-        carrier[i][0] = V_p;
-    }
-    (V_p, V_p)
+    let parent = if link.is_next() { carrier[link.parent][0].w } else { V[link.parent].w };
+    carrier[i][0] = Twist { w: T.R * parent, v: Vec3::zero() };
+    if link.is_next() { carrier[i][0] } else { V_i }
 }
 
 /// See [`inverse_dynamics`].

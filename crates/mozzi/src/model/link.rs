@@ -131,8 +131,11 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     #[inline(always)]
     pub fn transform_with(&self, sin_cos: (S, S), theta: &[S]) -> SE3<S> {
         let M = || self.link.M.map(S::from);
+        if self.has_one_axis() {
+            return self.A().transform(sin_cos, self.own(theta), M());
+        }
         match self.motion {
-            Motion::Screw => self.A().transform(sin_cos, self.own(theta), M()),
+            Motion::Screw => SE3::identity(),
             Motion::Ball => {
                 let [w, x, y, z] = core::array::from_fn(|k| theta[self.q + k]);
                 let (R, M) = (SO3::from_quaternion(w, Vec3([x, y, z])).inverse(), M());
@@ -146,10 +149,17 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     /// The sine and cosine of the joint's angle.
     #[inline(always)]
     pub fn sin_cos(&self, theta: &[S]) -> (S, S) {
-        match self.motion {
-            Motion::Screw => self.A().sin_cos(self.own(theta)),
-            _ => (S::zero(), S::one()),
+        if self.has_one_axis() { self.A().sin_cos(self.own(theta)) } else { (S::zero(), S::one()) }
+    }
+
+    /// Is it the one axis of its joint? Most are: the compiler is told that the other way is the rare one.
+    #[inline(always)]
+    pub fn has_one_axis(&self) -> bool {
+        let is_one = self.motion == Motion::Screw;
+        if !is_one {
+            rarely();
         }
+        is_one
     }
 
     /// Is it a further axis of the joint whose first axes are its ancestors'?
@@ -164,6 +174,10 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         self.ratio() * dtheta[self.link.j]
     }
 }
+
+#[cold]
+#[inline(always)]
+fn rarely() {}
 
 /// P T: what is seen from a frame, seen from the one whose axes are its y, z and x.
 #[inline(always)]

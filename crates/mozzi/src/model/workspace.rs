@@ -30,7 +30,7 @@ pub struct Workspace<S = f64> {
     pub(crate) path: Vec<usize>,
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
-    /// 𝒱 and 𝒱̇ of the parent of a joint with several axes, seen from each but its last.
+    /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, seen from each of its axes.
     pub(crate) carrier: Vec<[Twist<S>; 2]>,
     pub(crate) F: Vec<Wrench<S>>,
     pub(crate) axes: Vec<Rates<S>>,

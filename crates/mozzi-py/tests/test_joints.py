@@ -1,0 +1,79 @@
+"""Balls and free bodies beside each other: names, shapes, MuJoCo's numbers, simulation, pickling."""
+
+import pickle
+
+import mozzi
+import numpy as np
+import pytest
+from conftest import assert_close
+
+ROBOT = """
+<mujoco><compiler angle="radian"/><option gravity="0.4 -1 -9.5"/><worldbody>
+  <body name="stone" pos="1 0 2"><freejoint name="fall"/><geom type="box" size="0.1 0.2 0.05" pos="0.1 0 0.2" mass="2"/></body>
+  <body name="arm" pos="0 0 1"><joint name="shoulder" type="ball" pos="0.1 0 0.2" armature="0.1" damping="0.2"/>
+    <geom type="capsule" fromto="0 0 0 0.3 0.1 0.2" size="0.05" mass="1"/>
+    <body name="hand" pos="0.3 0 0"><joint name="wrist" axis="0 1 0.2" armature="0.05"/><geom size="0.08" pos="0.1 0.1 0" mass="0.5"/></body>
+  </body>
+</worldbody></mujoco>"""
+
+
+@pytest.fixture
+def robot(tmp_path):
+    (tmp_path / "joints.xml").write_text(ROBOT)
+    return mozzi.Model.from_mjcf(tmp_path / "joints.xml")
+
+
+def quaternions(random, count):
+    q = random.normal(size=(count, 4))
+    return q / np.linalg.norm(q, axis=1, keepdims=True)
+
+
+def states(random, count):
+    theta = np.hstack([quaternions(random, count), random.uniform(-1, 1, (count, 3)), quaternions(random, count), random.uniform(-2, 2, (count, 1))])
+    return theta, random.uniform(-2, 2, (count, 10)), random.uniform(-5, 5, (count, 10))
+
+
+def test_names_and_shapes(robot):
+    assert (robot.nq, robot.n, robot.joint_names) == (12, 10, ["fall", "shoulder", "wrist"])
+    assert list(robot.position_names)[:8] == ["fall.qw", "fall.qx", "fall.qy", "fall.qz", "fall.x", "fall.y", "fall.z", "shoulder.qw"]
+    assert list(robot.velocity_names)[5:] == ["fall.vz", "shoulder.wx", "shoulder.wy", "shoulder.wz", "wrist"]
+    with pytest.raises(ValueError, match="`fall`, a free joint"):
+        robot.screws()
+    with pytest.raises(ValueError, match="of `shoulder`"):
+        robot.mass_matrix([1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0])
+
+
+def test_mujoco(robot, random):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(ROBOT)
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+    data = mujoco.MjData(model)
+    theirs = mozzi.conventions.MuJoCo(robot)
+    thetas, dthetas, ddthetas = states(random, 20)
+    many = robot.inverse_dynamics(thetas, dthetas, ddthetas)
+    for theta, dtheta, ddtheta, batched in zip(thetas, dthetas, ddthetas, many):
+        data.qpos[:] = theirs.configuration(theta)
+        data.qvel[:] = theirs.velocity(theta, dtheta)
+        mujoco.mj_forward(model, data)
+        M = np.zeros((10, 10))
+        mujoco.mj_fullM(model, data, M)
+        assert_close(theirs.mass_matrix(theta, robot.mass_matrix(theta)), M, np.abs(M).max())
+        data.qacc[:] = theirs.acceleration(theta, dtheta, ddtheta)
+        mujoco.mj_inverse(model, data)
+        tau = robot.inverse_dynamics(theta, dtheta, ddtheta)
+        assert_close(tau, batched, np.abs(tau).max())
+        assert_close(theirs.force(theta, tau), data.qfrc_inverse, np.abs(data.qfrc_inverse).max())
+        assert_close(robot.forward_dynamics(theta, dtheta, tau), ddtheta, 1e3 * np.abs(ddtheta).max())
+
+
+def test_a_motion_stays_on_the_sphere(robot, random):
+    theta, dtheta, _ = (table[0] for table in states(random, 1))
+    motion = robot.simulate(theta, dtheta, 0.5, 500)
+    for quaternion in (motion.theta[:, :4], motion.theta[:, 7:11]):
+        assert np.abs(np.linalg.norm(quaternion, axis=1) - 1).max() < 1e-14
+
+
+def test_pickle(robot, random):
+    again = pickle.loads(pickle.dumps(robot))
+    theta, dtheta, ddtheta = (table[0] for table in states(random, 1))
+    assert np.array_equal(again.inverse_dynamics(theta, dtheta, ddtheta), robot.inverse_dynamics(theta, dtheta, ddtheta))
