@@ -32,7 +32,7 @@ function range(curves) {
 }
 
 export class Plot {
-  // `curves`: { name, colour, values }, one value for each time.
+  // `curves`: { name, joint, colour, values }, one value for each time; `joint` is the joint's name, if it is of one.
   constructor(host, { title, unit, t, curves, seek, legend }) {
     Object.assign(this, { t, curves, legend, hidden: new Set() });
     const figure = document.createElement("figure");
@@ -65,14 +65,15 @@ export class Plot {
     this.canvas.addEventListener("pointermove", (event) => event.buttons && to(event));
   }
 
-  hide(name, isHidden) {
-    if (isHidden) this.hidden.add(name);
-    else this.hidden.delete(name);
+  // The curves of a joint.
+  hide(joint, isHidden) {
+    if (isHidden) this.hidden.add(joint);
+    else this.hidden.delete(joint);
     this.redraw();
   }
 
   get shown() {
-    return this.curves.filter(({ name }) => !this.hidden.has(name));
+    return this.curves.filter(({ joint }) => !this.hidden.has(joint));
   }
 
   // Axes and curves, drawn once for each size, theme and choice.
