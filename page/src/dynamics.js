@@ -90,7 +90,7 @@ export function wrenches(robot, T, dtheta, ddtheta, tip) {
   const upward = [0, 0, 0, ...scaled(robot.gravity, -1)];
   const [relative, dV] = [along(robot, T, dtheta), along(robot, T, ddtheta)];
   if (!robot.isFloating) dV[0] = upward;
-  // V̇ = V̇_parent + Σ S_k θ̈_k + [V_parent, Σ S_k θ̇_k]: with V in place of V_parent the same, as [X, X] = 0
+  // V̇ = V̇_parent + Σ S_k θ̈_k + [V_parent, Σ S_k θ̇_k]: the axes are fixed to the body, and [X, X] = 0
   for (const { at, parent } of robot.moving)
     dV[at] = add(dV[at], add(dV[parent] ?? upward, bracket(V[parent] ?? zero(), relative[at])));
   const F = inertias(robot, T).map((G, k) => add(momentum(G, dV[k]), carried(V[k], momentum(G, V[k]))));

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import { seriesColour } from "./colours.js";
 import { plotsOf } from "./curves.js";
 import { readMotion, readRobot, stateAt } from "./data.js";
-import { massMatrix, poses } from "./dynamics.js";
+import { centerOfMass, massMatrix, poses } from "./dynamics.js";
 import { fillHelp } from "./help.js";
 import { atZero, randomPose } from "./joints.js";
 import { KINDS } from "./kinds.js";
@@ -272,5 +272,7 @@ window.mozzi = {
     return frame.matrixWorld.clone().transpose().elements.slice(0, 12);
   },
   massMatrix: () => massMatrix(robot, state.theta),
+  centerOfMass: () => centerOfMass(robot, poses(robot, state.theta)),
+  semiAxes: () => overlays.singularValues(poses(robot, state.theta)).map(({ sigma }) => sigma),
   vectors: () => overlays.vectors(state, poses(robot, state.theta)),
 };

@@ -154,14 +154,18 @@ export class Overlays {
     if (layers.manipulability.visible || layers.torque.visible) this.ellipsoids(T);
   }
 
+  // Singular values σ of J_v, ascending, and their directions.
+  singularValues(T) {
+    return eigen(linearGram(this.robot, T, this.frame)).map(({ value, vector }) => ({ vector, sigma: Math.sqrt(Math.max(value, 0)) }));
+  }
+
   // Of linear velocity, ‖θ̇‖ = 1: semi-axes σ along the singular directions of J_v; of force, ‖τ‖ = 1: 1/σ.
   ellipsoids(T) {
     const at = moved(T[this.frame.body], this.frame.T.p);
-    const principal = eigen(linearGram(this.robot, T, this.frame)).map(({ value, vector }) => ({ vector, sigma: Math.sqrt(Math.max(value, 0)) }));
+    const principal = this.singularValues(T);
     const most = 1.5 * this.reach;
     this.manipulability.set(at, principal.map(({ vector, sigma }) => ({ vector, length: DRAWN * sigma })));
     const force = (sigma) => Math.min((DRAWN * this.reach ** 2) / 4 / Math.max(sigma, 1e-9), most);
     this.forceEllipsoid.set(at, principal.map(({ vector, sigma }) => ({ vector, length: force(sigma) })));
-    this.semiAxes = principal.map(({ sigma }) => sigma);
   }
 }

@@ -5,8 +5,8 @@ use mozzi::{Description, Model};
 
 /// An arm with two balls, and two free bodies.
 pub fn balls() -> Description {
-    let text = include_str!("../../../oracles/test_balls.xml");
-    mozzi_urdf::parse("test_balls.xml", text).expect("sound").description
+    let text = include_str!("../tests/balls.xml");
+    mozzi_urdf::parse("balls.xml", text).expect("sound").description
 }
 
 /// Different numbers everywhere, quaternions unit.

@@ -15,6 +15,9 @@ STATE = """(frames) => ({
   poses: frames.map(mozzi.framePose),
   M: mozzi.massMatrix(),
   vectors: mozzi.vectors(),
+  center: mozzi.centerOfMass(),
+  tip: mozzi.overlays.frame.name,
+  semiAxes: mozzi.semiAxes(),
   clock: document.getElementById("clock").textContent,
 })"""
 
@@ -61,11 +64,16 @@ def look(browser, job):
     if job.get("times"):
         found["scrubbed"] = scrub(page)
     else:
-        slider = page.query_selector("#panel input[type=range]")
-        slider.focus()
-        before = page.evaluate("mozzi.state().theta")
-        page.keyboard.press("ArrowRight")
-        found["slid"] = [before, page.evaluate("mozzi.state().theta")]
+        theta = "() => [...mozzi.state().theta]"
+        sliders = page.query_selector_all("#panel input[type=range]")
+        found["sliders"] = len(sliders)
+        before = page.evaluate(theta)
+        for slider in sliders:
+            slider.focus()
+            page.keyboard.press("ArrowRight")
+        found["slid"] = [before, page.evaluate(theta)]
+        page.get_by_text("a random pose").dispatch_event("click")
+        found["random"] = [found["slid"][1], page.evaluate(theta)]
     page.close()
     return found
 
