@@ -209,7 +209,7 @@ fn the_page_shows_what_mozzi_computes() {
         json!({ "url": url(&report), "width": 800, "height": 400, "times": looked.map(|k| times[k]), "frames": names(&ur5) }),
         json!({ "url": url(&still), "width": 390, "height": 844, "theta": [stand], "frames": names(&anymal) }),
         json!({ "url": url(&thrown_page), "width": 800, "height": 400, "times": looked.map(|k| times[k]), "frames": names(&balls) }),
-        json!({ "url": url(&rest_page), "width": 800, "height": 600, "theta": [posed], "frames": names(&balls) }),
+        json!({ "url": url(&rest_page), "width": 800, "height": 600, "theta": [posed], "frames": names(&balls), "tip": "load" }),
         json!({ "url": url(&signs_page), "width": 800, "height": 400, "times": [0.125], "frames": names(&balls) }),
     ];
     // with meshes: Collada of a quadruped, STL of a humanoid

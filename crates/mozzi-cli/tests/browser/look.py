@@ -1,6 +1,6 @@
 """Opens pages in a browser and does to them what a visitor does: python look.py BROWSER < jobs.json > found.json
 
-A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}.
+A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}, with "tip": an end effector's name or none.
 """
 
 import json
@@ -39,6 +39,8 @@ def look(browser, job):
     page.on("request", lambda request: request.url.startswith("data:") or found["requests"].append(request.url))
     page.goto(job["url"])
     page.evaluate("mozzi.ready.then(() => true)")
+    if "tip" in job:
+        page.select_option("#panel select", label=job["tip"])
     for time in job.get("times", []):
         page.evaluate("(time) => mozzi.seek(time)", time)
         found["states"].append(page.evaluate(STATE, job["frames"]))
