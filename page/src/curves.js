@@ -1,40 +1,52 @@
-// Which curves stand in which plot: joints by their units, a free base's parts, energies.
+// Which curves stand in which plot: joints of one axis by their units, the parts of a ball, a free joint and a floating base each on its
+// own, energies.
 
-const AXES = ["x", "y", "z"];
+import { hasQuaternion, positionsOf, slides, velocitiesOf } from "./joints.js";
 
-// { title, unit, curves } of a motion; a curve's name is the joint's, whatever it tells of it.
+const COLOURS = ["#e5484d", "#30a46c", "#3e7bfa", "#8a63d2"];
+
+// What a motion knows of its joints: its title and units, turning and sliding; and the parts of a joint of several numbers, each { title,
+// unit, from, to } among them.
+const QUANTITIES = [
+  { key: "theta", title: "θ", units: ["rad", "m"], parts: [["quaternion", "", 0, 4], ["p", "m", 4, 7]] },
+  { key: "dtheta", title: "θ̇", units: ["rad/s", "m/s"], parts: [["ω", "rad/s, in its own axes", 0, 3], ["v", "m/s, in its own axes", 3, 6]] },
+  { key: "ddtheta", title: "θ̈", units: ["rad/s²", "m/s²"], parts: [["ω̇", "rad/s², in its own axes", 0, 3], ["v̇", "m/s², in its own axes", 3, 6]] },
+  { key: "tau", title: "τ", units: ["N m", "N"], parts: [["m", "N m, in its own axes", 0, 3], ["f", "N, in its own axes", 3, 6]] },
+];
+
+const column = (rows, k) => rows.map((row) => row[k]);
+
+// Plots of all joints of one axis.
+function ofAxes(robot, motion, { key, title, units }, jointColour) {
+  const curves = robot.joints.filter((joint) => !hasQuaternion(joint)).map((joint) => ({
+    name: joint.name, joint: joint.name, colour: jointColour(joint.j), slides: slides(joint),
+    values: column(motion[key], key === "theta" ? joint.q : joint.j),
+  }));
+  return [false, true]
+    .map((isSliding, k) => ({ title, unit: units[k], curves: curves.filter((curve) => curve.slides === isSliding) }))
+    .filter((plot) => plot.curves.length > 0);
+}
+
+// Plots of one joint of several numbers; a part of τ only where something acts.
+function ofParts(robot, motion, { key, parts }, joint) {
+  const [first, width, names] = key === "theta" ? [joint.q, positionsOf(joint), robot.positions] : [joint.j, velocitiesOf(joint), robot.velocities];
+  return parts.filter(([, , from]) => from < width).map(([title, unit, from, to]) => ({
+    title: `${joint.name} ${title}`, unit, legend: true,
+    curves: names.slice(first + from, first + to).map((name, k) => ({
+      name: name.slice(joint.name.length + 1), joint: joint.name, colour: COLOURS[k], values: column(motion[key], first + from + k),
+    })),
+  })).filter(({ curves }) => key !== "tau" || curves.some(({ values }) => values.some((x) => x !== 0)));
+}
+
+// { title, unit, curves } of a motion.
 export function plotsOf(robot, motion, jointColour) {
-  const base = robot.isFloating ? { q: 7, j: 6 } : { q: 0, j: 0 };
-  const column = (rows, k) => rows.map((row) => row[k]);
-  const joints = robot.slides.map((slides, k) => ({ slides, name: robot.velocities[base.j + k], k, colour: jointColour(base.j + k) }));
-  const plots = [];
-  const ofJoints = (title, rows, offset, turning, sliding) => {
-    if (!rows) return;
-    for (const [slides, unit] of [[false, turning], [true, sliding]]) {
-      const curves = joints.filter((joint) => joint.slides === slides)
-        .map(({ name, k, colour }) => ({ name, colour, values: column(rows, offset + k) }));
-      if (curves.length > 0) plots.push({ title, unit, curves });
-    }
-  };
-  ofJoints("θ", motion.theta, base.q, "rad", "m");
-  ofJoints("θ̇", motion.dtheta, base.j, "rad/s", "m/s");
-  ofJoints("θ̈", motion.ddtheta, base.j, "rad/s²", "m/s²");
-  ofJoints("τ", motion.tau, base.j, "N m", "N");
+  const known = QUANTITIES.filter(({ key }) => motion[key]);
+  const plots = known.flatMap((quantity) => ofAxes(robot, motion, quantity, jointColour));
   const energy = [["kinetic", motion.kinetic, "#e07b39"], ["potential", motion.potential, "#3b7dd8"]].filter(([, values]) => values);
   if (energy.length === 2) energy.push(["total", motion.kinetic.map((K, k) => K + motion.potential[k]), "#2f9e6e"]);
   const named = ([name, values, colour]) => ({ name, values, colour });
   if (energy.length > 0) plots.push({ title: "energy", unit: "J", legend: true, curves: energy.map(named) });
   if (motion.drift) plots.push({ title: "drift", unit: "J, energy that the method made", curves: [{ name: "drift", values: motion.drift, colour: "#c9486a" }] });
-  if (!robot.isFloating) return plots;
-  const colours = ["#e5484d", "#30a46c", "#3e7bfa", "#8a63d2"];
-  const part = (title, unit, rows, from, names) => {
-    if (!rows) return;
-    const curves = names.map((name, k) => ({ name, colour: colours[k], values: column(rows, from + k) }));
-    plots.push({ title: `base ${title}`, unit, legend: true, curves });
-  };
-  part("p", "m", motion.theta, 4, AXES);
-  part("quaternion", "", motion.theta, 0, ["w", ...AXES]);
-  part("ω", "rad/s, in its own axes", motion.dtheta, 0, AXES);
-  part("v", "m/s, in its own axes", motion.dtheta, 3, AXES);
-  return plots;
+  const ofJoint = (joint) => known.flatMap((quantity) => ofParts(robot, motion, quantity, joint));
+  return [...plots, ...robot.allJoints.filter(hasQuaternion).flatMap(ofJoint)];
 }

@@ -1,7 +1,8 @@
 // The data that mozzi writes into the page: `robot`, `meshes` and `motion`, see crates/mozzi-report. Numbers of a motion are 32-bit
 // floats, base64, its times 64-bit ones; meshes are gzipped.
 
-import { fromRows } from "./lie.js";
+import { hasQuaternion, normalized } from "./joints.js";
+import { dot, fromRows, identity } from "./lie.js";
 
 export function bytes(base64) {
   const text = atob(base64);
@@ -20,11 +21,18 @@ function floats(base64, size = 4) {
   return Float64Array.from({ length: raw.length / size }, (_, k) => at(k));
 }
 
+// Body 0 is the base; `moving` are the bodies that a joint moves, each with its place `at` among all, `allJoints` the independent joints. A
+// floating base stands first in both.
 export function readRobot(raw) {
-  const bodies = raw.bodies.map((body) => ({ ...body, M: fromRows(body.M) }));
+  const isFloating = raw.base === "floating";
+  const base = isFloating ? [{ name: "base", kind: "free", parent: -1, at: 0, M: identity(), q: 0, j: 0 }] : [];
+  const bodies = raw.bodies.map((body, k) => ({ ...body, M: fromRows(body.M), at: k + 1 }));
   const frames = raw.frames.map((frame) => ({ ...frame, T: fromRows(frame.T) }));
   const shapes = raw.shapes.map((shape) => ({ ...shape, T: fromRows(shape.T) }));
-  return { ...raw, bodies, frames, shapes, isFloating: raw.base === "floating", n: raw.velocities.length, nq: raw.positions.length };
+  return {
+    ...raw, bodies, frames, shapes, isFloating, moving: [...base, ...bodies], allJoints: [...base, ...raw.joints],
+    n: raw.velocities.length, nq: raw.positions.length,
+  };
 }
 
 // A motion: columns[name] is a list of rows' entries; names that the file does not give are null.
@@ -38,6 +46,7 @@ export function readMotion(raw, robot) {
   const list = (base64) => (base64 ? Array.from(floats(base64)) : null);
   return {
     title: raw.title,
+    robot,
     t: Array.from(floats(raw.t, 8)),
     theta: rows(raw.theta, robot.nq),
     dtheta: rows(raw.dtheta, robot.n),
@@ -50,9 +59,18 @@ export function readMotion(raw, robot) {
   };
 }
 
-// The state at a time: linear between rows, which a quaternion survives, since whoever reads it makes it unit.
+// Two rows of θ, of each quaternion in the second the sign that is nearer to the first: both signs are one rotation.
+function nearer(robot, from, to) {
+  const signed = [...to];
+  for (const { q } of robot.allJoints.filter(hasQuaternion)) {
+    if (dot(from.slice(q, q + 4), to.slice(q, q + 4)) < 0) for (let k = q; k < q + 4; k++) signed[k] = -to[k];
+  }
+  return signed;
+}
+
+// The state at a time: linear between rows, quaternions then made unit.
 export function stateAt(motion, time) {
-  const { t } = motion;
+  const { t, robot } = motion;
   let low = 0;
   let high = t.length - 1;
   while (high - low > 1) {
@@ -61,7 +79,9 @@ export function stateAt(motion, time) {
     else high = middle;
   }
   const part = t[high] > t[low] ? Math.min(Math.max((time - t[low]) / (t[high] - t[low]), 0), 1) : 0;
-  const between = (rows) => rows && rows[low].map((x, k) => x + part * (rows[high][k] - x));
-  const [theta, dtheta, ddtheta, tau, tip] = [motion.theta, motion.dtheta, motion.ddtheta, motion.tau, motion.tip].map(between);
+  const mixed = (from, to) => from.map((x, k) => x + part * (to[k] - x));
+  const between = (rows) => rows && mixed(rows[low], rows[high]);
+  const theta = normalized(robot, mixed(motion.theta[low], nearer(robot, motion.theta[low], motion.theta[high])));
+  const [dtheta, ddtheta, tau, tip] = [motion.dtheta, motion.ddtheta, motion.tau, motion.tip].map(between);
   return { theta, dtheta, ddtheta, tau, tip, low, part };
 }

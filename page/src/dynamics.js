@@ -1,30 +1,32 @@
 // What the page has to know of a robot at a state, in the coordinates of {s}: there bodies and axes add up without being carried
 // from frame to frame. The numbers come from mozzi (joints' screws, inertias); page/test holds these formulas to mozzi's.
 
+import { displacement, screws } from "./joints.js";
 import {
-  add, adjoint, angular, bracket, carried, compose, cross, dot, exponential, fromQuaternion, identity, linear, moved, product3,
-  scaled, transposed3, turned, wrenchFrom,
+  add, adjoint, angular, bracket, carried, compose, cross, dot, identity, linear, moved, product3, scaled, transposed3, turned,
+  wrenchFrom,
 } from "./lie.js";
 
 const sum = (lists, length) => lists.reduce(add, new Array(length).fill(0));
+const zero = () => new Array(6).fill(0);
 
 // Where every body is: T_si, the base first.
 export function poses(robot, theta) {
-  const T = [robot.isFloating ? fromQuaternion(theta.slice(0, 7)) : identity()];
-  for (const body of robot.bodies) {
-    T.push(compose(T[body.parent], compose(body.M, exponential(body.A, body.ratio * theta[body.q] + body.offset))));
-  }
+  const T = [identity()];
+  for (const body of robot.moving) T[body.at] = compose(T[body.parent] ?? identity(), compose(body.M, displacement(body, theta)));
   return T;
 }
 
-// The state's motions: of each velocity that moves a body directly, { body, j, S }, with S = Ad_T A times the follower's ratio.
+// The state's motions: of each velocity that moves a body directly, { body, j, S }, with S = Ad_T A times a mimic joint's ratio.
 export function axes(robot, T) {
-  const joints = robot.bodies.map((body, k) => ({
-    body: k + 1, j: body.j, S: scaled(adjoint(T[k + 1], body.A), body.ratio),
-  }));
-  if (!robot.isFloating) return joints;
-  const unit = (k) => [0, 1, 2, 3, 4, 5].map((i) => (i === k ? 1 : 0));
-  return [...[0, 1, 2, 3, 4, 5].map((k) => ({ body: 0, j: k, S: adjoint(T[0], unit(k)) })), ...joints];
+  return robot.moving.flatMap((body) => screws(body).map((A, k) => ({ body: body.at, j: body.j + k, S: adjoint(T[body.at], A) })));
+}
+
+// Σ S_k x_k over the velocities that move each body directly.
+function along(robot, T, x) {
+  const all = T.map(zero);
+  for (const { body, j, S } of axes(robot, T)) all[body] = add(all[body], scaled(S, x[j]));
+  return all;
 }
 
 const parentOf = (robot, body) => (body === 0 ? -1 : robot.bodies[body - 1].parent);
@@ -74,10 +76,10 @@ export function massMatrix(robot, theta) {
   return M;
 }
 
-// V_i of every body, in {s}: V_i = V_parent + S_i θ̇.
+// V_i of every body, in {s}: V_i = V_parent + Σ S_k θ̇_k.
 export function twists(robot, T, dtheta) {
-  const V = T.map(() => new Array(6).fill(0));
-  for (const { body, j, S } of axes(robot, T)) V[body] = add(V[body === 0 ? 0 : parentOf(robot, body)], scaled(S, dtheta[j]));
+  const V = along(robot, T, dtheta);
+  for (const { at, parent } of robot.moving) V[at] = add(V[at], V[parent] ?? zero());
   return V;
 }
 
@@ -85,12 +87,12 @@ export function twists(robot, T, dtheta) {
 // gravity as an upward acceleration of the base. `tip` is what the end effector applies, in its own frame.
 export function wrenches(robot, T, dtheta, ddtheta, tip) {
   const V = twists(robot, T, dtheta);
-  const dV = T.map(() => [0, 0, 0, ...scaled(robot.gravity, -1)]);
-  for (const { body, j, S } of axes(robot, T)) {
-    const from = body === 0 ? 0 : parentOf(robot, body);
-    const rate = body === 0 ? scaled(S, 0) : bracket(V[from], S); // [V, V] = 0: a base's own axes move with it
-    dV[body] = add(dV[from], add(scaled(S, ddtheta[j]), scaled(rate, dtheta[j])));
-  }
+  const upward = [0, 0, 0, ...scaled(robot.gravity, -1)];
+  const [relative, dV] = [along(robot, T, dtheta), along(robot, T, ddtheta)];
+  if (!robot.isFloating) dV[0] = upward;
+  // V̇ = V̇_parent + Σ S_k θ̈_k + [V_parent, Σ S_k θ̇_k]: the axes are fixed to the body, and [X, X] = 0
+  for (const { at, parent } of robot.moving)
+    dV[at] = add(dV[at], add(dV[parent] ?? upward, bracket(V[parent] ?? zero(), relative[at])));
   const F = inertias(robot, T).map((G, k) => add(momentum(G, dV[k]), carried(V[k], momentum(G, V[k]))));
   if (tip && robot.endEffector !== null) {
     const frame = robot.frames[robot.endEffector];
@@ -106,12 +108,12 @@ export function centerOfMass(robot, T) {
   return all[0] > 0 ? all.slice(1).map((x) => x / all[0]) : null;
 }
 
-// J_v Jᵥᵀ, 3 × 3: of the velocity of a frame's origin by the joints, a free base held.
+// J_v Jᵥᵀ, 3 × 3: of the velocity of a frame's origin by the joints, free joints and a floating base held.
 export function linearGram(robot, T, frame) {
   const p = moved(T[frame.body], frame.T.p);
   const columns = new Map();
   const carries = new Set();
-  for (let k = frame.body; k > 0; k = parentOf(robot, k)) carries.add(k);
+  for (let k = frame.body; k > 0; k = parentOf(robot, k)) if (robot.bodies[k - 1].kind !== "free") carries.add(k);
   for (const { body, j, S } of axes(robot, T)) {
     if (!carries.has(body)) continue;
     const v = add(linear(S), cross(angular(S), p));

@@ -3,8 +3,8 @@
 export const KINDS = {
   shapes: { name: "shapes", key: "s", colour: "#8894a2", about: "visual geometry of the robot's file; else what collides" },
   glass: { name: "glass", key: "g", colour: "#8894a2", about: "shapes that let the inside be seen" },
-  skeleton: { name: "skeleton", key: "k", colour: "#5e7188", about: "joints as drums (turning) and boxes (sliding), bones between" },
-  axes: { name: "screw axes", key: "a", colour: "#8a63d2", about: "of each joint, in its direction" },
+  skeleton: { name: "skeleton", key: "k", colour: "#5e7188", about: "joints as drums (turning), boxes (sliding) and spheres (balls), bones between" },
+  axes: { name: "screw axes", key: "a", colour: "#8a63d2", about: "of each joint, in its direction; of a ball three, fixed to its link" },
   frames: { name: "frames", key: "f", colour: "#7a8794", about: "base, link frames and end effector: x red, y green, z blue" },
   masses: { name: "masses", key: "c", colour: "#c79a12", about: "centres of mass of the bodies, the robot's own in red" },
   twists: { name: "twists", key: "t", colour: "#2f9e6e", about: "of each body: ω (light green), v of its centre of mass (green)" },

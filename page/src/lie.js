@@ -52,6 +52,20 @@ export const fromQuaternion = ([qw, qx, qy, qz, ...p]) => {
   };
 };
 
+// The unit quaternion (w, x, y, z) of a rotation vector, and back; both signs of a quaternion are one rotation, of at most π.
+export const quaternionOf = (r) => {
+  const angle = norm(r);
+  return [Math.cos(angle / 2), ...scaled(r, angle > 1e-9 ? Math.sin(angle / 2) / angle : 0.5)];
+};
+export const rotationVector = ([w, x, y, z]) => {
+  const sine = Math.hypot(x, y, z);
+  const angle = 2 * Math.atan2(sine, Math.abs(w));
+  return scaled([x, y, z], (w < 0 ? -1 : 1) * (sine > 1e-9 ? angle / sine : 2));
+};
+
+// A vector, shortened where it is longer than this.
+export const capped = (x, most) => scaled(x, norm(x) > most ? most / norm(x) : 1);
+
 // e^{[A]θ} of a unit screw axis: Rodrigues' formula (Modern Robotics, 3.88).
 export const exponential = (A, theta) => {
   const [w, v] = [angular(A), linear(A)];

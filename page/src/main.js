@@ -4,8 +4,9 @@ import * as THREE from "three";
 import { seriesColour } from "./colours.js";
 import { plotsOf } from "./curves.js";
 import { readMotion, readRobot, stateAt } from "./data.js";
-import { massMatrix, poses } from "./dynamics.js";
+import { centerOfMass, massMatrix, poses } from "./dynamics.js";
 import { fillHelp } from "./help.js";
+import { atZero, randomPose } from "./joints.js";
 import { KINDS } from "./kinds.js";
 import { onKeys } from "./keys.js";
 import { MatrixPicture } from "./matrix.js";
@@ -25,7 +26,7 @@ const motion = readMotion(raw.motion, robot);
 const asked = new URLSearchParams(location.hash.slice(1)); // #t=1.2&show=axes,twists&theme=dark
 const jointColour = (j) => seriesColour(j, robot.n);
 
-const neutral = [...(robot.isFloating ? [1, 0, 0, 0, 0, 0, 0] : []), ...robot.slides.map(() => 0)];
+const neutral = robot.allJoints.flatMap(atZero);
 const still = () => ({ theta: [...neutral], dtheta: null, ddtheta: null, tip: null });
 let state = motion ? stateAt(motion, motion.t[0]) : still();
 
@@ -123,14 +124,13 @@ function addFrameChoice() {
 
 function addPlots() {
   const described = plotsOf(robot, motion, jointColour);
-  const joints = robot.velocities.slice(robot.isFloating ? 6 : 0);
   const chips = find("panel").appendChild(document.createElement("div"));
   chips.className = "chips";
-  joints.forEach((name, k) => {
+  robot.joints.forEach(({ name, j }) => {
     const chip = chips.appendChild(document.createElement("button"));
     chip.appendChild(document.createElement("i"));
     chip.append(name);
-    chip.style.setProperty("--colour", jointColour(k + (robot.isFloating ? 6 : 0)));
+    chip.style.setProperty("--colour", jointColour(j));
     chip.setAttribute("aria-pressed", "true");
     chip.title = `${name}: shown or not; double click: alone`;
     const set = (isOn) => {
@@ -207,9 +207,7 @@ function some(count) {
 }
 
 function randomStates(count) {
-  return Array.from({ length: count }, () => ({
-    ...still(), theta: neutral.map((x, k) => (robot.isFloating && k < 7 ? x : robot.slides[k - (robot.isFloating ? 7 : 0)] ? 0 : Math.random() * 6)),
-  }));
+  return Array.from({ length: count }, () => ({ ...still(), theta: randomPose(robot) }));
 }
 
 function savePicture() {
@@ -274,5 +272,7 @@ window.mozzi = {
     return frame.matrixWorld.clone().transpose().elements.slice(0, 12);
   },
   massMatrix: () => massMatrix(robot, state.theta),
+  centerOfMass: () => centerOfMass(robot, poses(robot, state.theta)),
+  semiAxes: () => overlays.singularValues(poses(robot, state.theta)).map(({ sigma }) => sigma),
   vectors: () => overlays.vectors(state, poses(robot, state.theta)),
 };

@@ -3,9 +3,9 @@
 import * as THREE from "three";
 import { centerOfMass, linearGram, poses, twists, wrenches } from "./dynamics.js";
 import { add, angular, cross, eigen, linear, moved, norm, scaled } from "./lie.js";
+import { linesOf, pointOf } from "./joints.js";
 import { KINDS } from "./kinds.js";
 import { Arrow, Ellipsoid, massMark, triad } from "./marks.js";
-import { lineOf } from "./skeleton.js";
 
 // A velocity of 1 m/s by ‖θ̇‖ = 1 is drawn a quarter of a metre long; forces so that both ellipsoids are of the robot's size.
 const DRAWN = 0.25;
@@ -57,10 +57,11 @@ export class Overlays {
       this.attached[kind].push(object);
     };
     robot.bodies.forEach((body, k) => {
-      const { point, direction } = lineOf(body.A);
-      const axis = new Arrow(jointColour(body.j), 0.0045 * reach);
-      axis.set(add(point, scaled(direction, -0.16 * reach)), scaled(direction, 0.38 * reach));
-      attach("axes", k + 1, new THREE.Group().add(axis));
+      linesOf(body).forEach(({ point, direction }, i) => {
+        const axis = new Arrow(jointColour(body.j + i), 0.0045 * reach);
+        axis.set(add(point, scaled(direction, -0.16 * reach)), scaled(direction, 0.38 * reach));
+        attach("axes", k + 1, new THREE.Group().add(axis));
+      });
       attach("frames", k + 1, triad(0.11 * reach));
     });
     attach("frames", 0, triad(0.16 * reach));
@@ -125,7 +126,7 @@ export class Overlays {
     const centers = this.inertias.map((inertia, k) => moved(T[k], center(inertia)));
     const V = twists(robot, T, dtheta ?? still);
     const F = wrenches(robot, T, dtheta ?? still, ddtheta ?? still, tip);
-    const joints = T.map((pose, k) => (k === 0 ? pose.p : moved(pose, lineOf(robot.bodies[k - 1].A).point)));
+    const joints = T.map((pose, k) => (k === 0 ? pose.p : moved(pose, pointOf(robot.bodies[k - 1]))));
     return {
       centers,
       joints,
@@ -153,14 +154,18 @@ export class Overlays {
     if (layers.manipulability.visible || layers.torque.visible) this.ellipsoids(T);
   }
 
+  // Singular values σ of J_v, ascending, and their directions.
+  singularValues(T) {
+    return eigen(linearGram(this.robot, T, this.frame)).map(({ value, vector }) => ({ vector, sigma: Math.sqrt(Math.max(value, 0)) }));
+  }
+
   // Of linear velocity, ‖θ̇‖ = 1: semi-axes σ along the singular directions of J_v; of force, ‖τ‖ = 1: 1/σ.
   ellipsoids(T) {
     const at = moved(T[this.frame.body], this.frame.T.p);
-    const principal = eigen(linearGram(this.robot, T, this.frame)).map(({ value, vector }) => ({ vector, sigma: Math.sqrt(Math.max(value, 0)) }));
+    const principal = this.singularValues(T);
     const most = 1.5 * this.reach;
     this.manipulability.set(at, principal.map(({ vector, sigma }) => ({ vector, length: DRAWN * sigma })));
     const force = (sigma) => Math.min((DRAWN * this.reach ** 2) / 4 / Math.max(sigma, 1e-9), most);
     this.forceEllipsoid.set(at, principal.map(({ vector, sigma }) => ({ vector, length: force(sigma) })));
-    this.semiAxes = principal.map(({ sigma }) => sigma);
   }
 }

@@ -32,10 +32,10 @@ function range(curves) {
 }
 
 export class Plot {
-  // `curves`: { name, colour, values }, one value for each time.
+  // `curves`: { name, joint, colour, values }, one value for each time; `joint` is the joint's name, if it is of one.
   constructor(host, { title, unit, t, curves, seek, legend }) {
-    Object.assign(this, { t, curves, legend, hidden: new Set() });
     const figure = document.createElement("figure");
+    Object.assign(this, { t, curves, legend, figure, hidden: new Set() });
     figure.className = "plot";
     const caption = figure.appendChild(document.createElement("figcaption"));
     caption.appendChild(document.createElement("b")).textContent = title;
@@ -65,14 +65,16 @@ export class Plot {
     this.canvas.addEventListener("pointermove", (event) => event.buttons && to(event));
   }
 
-  hide(name, isHidden) {
-    if (isHidden) this.hidden.add(name);
-    else this.hidden.delete(name);
+  // The curves of a joint; a plot without any is not shown.
+  hide(joint, isHidden) {
+    if (isHidden) this.hidden.add(joint);
+    else this.hidden.delete(joint);
+    this.figure.hidden = this.shown.length === 0;
     this.redraw();
   }
 
   get shown() {
-    return this.curves.filter(({ name }) => !this.hidden.has(name));
+    return this.curves.filter(({ joint }) => !this.hidden.has(joint));
   }
 
   // Axes and curves, drawn once for each size, theme and choice.
@@ -119,7 +121,8 @@ export class Plot {
     }
     draw.restore();
     this.y = y;
-    this.room = Math.floor(this.readout.clientWidth / (this.legend ? 90 : 50));
+    const letters = this.legend ? Math.max(...this.curves.map(({ name }) => name.length)) : 0;
+    this.room = Math.floor(this.readout.clientWidth / (50 + 6 * letters));
     this.cursor(this.time);
   }
 

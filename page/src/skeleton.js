@@ -1,16 +1,10 @@
-// A robot without geometry, or without its skin: bones between joints, a drum or a slide at each joint.
+// A robot without geometry, or without its skin: bones between joints, a drum, a slide or a sphere at each joint.
 
 import * as THREE from "three";
-import { angular, cross, dot, linear } from "./lie.js";
+import { linesOf, pointOf } from "./joints.js";
+import { moved } from "./lie.js";
 
 const Z = new THREE.Vector3(0, 0, 1);
-
-// The point of a screw axis nearest to the origin of its coordinates, and its direction.
-export function lineOf(A) {
-  const [w, v] = [angular(A), linear(A)];
-  if (dot(w, w) === 0) return { point: [0, 0, 0], direction: v };
-  return { point: cross(w, v), direction: w };
-}
 
 function bone(from, to, thick, thin, material) {
   const [a, b] = [new THREE.Vector3(...from), new THREE.Vector3(...to)];
@@ -25,7 +19,8 @@ function bone(from, to, thick, thin, material) {
 
 // Where a body's bones lead: to the joints that it carries, or, of a tip, to its farthest frame and its centre of mass.
 function ends(robot, k) {
-  const children = robot.bodies.filter((body) => body.parent === k).map((body) => body.M.p);
+  const children = robot.bodies.filter((body) => body.parent === k && body.kind !== "free")
+    .map((body) => (body.kind === "ball" ? moved(body.M, body.center) : body.M.p));
   if (children.length > 0) return children;
   const length = (p) => Math.hypot(...p);
   const frames = robot.frames.filter((frame) => frame.body === k).map((frame) => frame.T.p);
@@ -48,28 +43,33 @@ export function addSkeleton(robot, scene, reach, jointColour) {
   };
   for (let k = 0; k <= robot.bodies.length; k++) {
     if (k === 0) add(0, base(robot, r, metal));
-    for (const end of ends(robot, k)) add(k, bone([0, 0, 0], end, 1.05 * r, 0.7 * r, metal));
-    if (k > 0) add(k, joint(robot.bodies[k - 1], r, jointColour(robot.bodies[k - 1].j)));
+    const start = robot.bodies[k - 1]?.center ?? [0, 0, 0];
+    for (const end of ends(robot, k)) add(k, bone(start, end, 1.05 * r, 0.7 * r, metal));
+    if (k > 0) add(k, joint(robot.bodies[k - 1], r, metal, jointColour(robot.bodies[k - 1].j)));
   }
   return parts;
 }
 
+const sphere = (radius, material) => new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20), material);
+
 function base(robot, r, metal) {
-  if (robot.isFloating) return new THREE.Mesh(new THREE.SphereGeometry(1.8 * r, 32, 20), metal);
+  if (robot.isFloating) return sphere(1.8 * r, metal);
   const plate = new THREE.Mesh(new THREE.CylinderGeometry(3.2 * r, 3.6 * r, 0.8 * r, 48).rotateX(Math.PI / 2), metal);
   plate.position.z = -0.4 * r;
   return plate;
 }
 
-function joint(body, r, colour) {
+// Nothing joins a free body to its parent: the sphere is the body's, as a floating base's.
+function joint(body, r, metal, colour) {
+  if (body.kind === "free") return sphere(1.8 * r, metal);
   const paint = new THREE.MeshStandardMaterial({ color: new THREE.Color(colour), roughness: 0.45, metalness: 0.1 });
-  const { point, direction } = lineOf(body.A);
-  const geometry =
-    body.kind === "prismatic"
-      ? new THREE.BoxGeometry(2.2 * r, 2.2 * r, 3.6 * r)
-      : new THREE.CylinderGeometry(1.75 * r, 1.75 * r, 3.4 * r, 40).rotateX(Math.PI / 2);
-  const mesh = new THREE.Mesh(geometry, paint);
-  mesh.position.set(...point);
-  mesh.quaternion.setFromUnitVectors(Z, new THREE.Vector3(...direction).normalize());
+  const mesh = body.kind === "ball" ? sphere(2.1 * r, paint) : new THREE.Mesh(drumOrSlide(body.kind, r), paint);
+  mesh.position.set(...pointOf(body));
+  mesh.quaternion.setFromUnitVectors(Z, new THREE.Vector3(...linesOf(body)[0].direction).normalize());
   return mesh;
+}
+
+function drumOrSlide(kind, r) {
+  if (kind === "prismatic") return new THREE.BoxGeometry(2.2 * r, 2.2 * r, 3.6 * r);
+  return new THREE.CylinderGeometry(1.75 * r, 1.75 * r, 3.4 * r, 40).rotateX(Math.PI / 2);
 }

@@ -1,16 +1,15 @@
-// A slider and a number for each independent joint, where there is no motion.
+// A slider and a number for each coordinate of each independent joint, where there is no motion.
+
+import { coordinates, positionsOf, randomPose } from "./joints.js";
 
 export function addSliders(host, robot, theta, jointColour, onChange) {
-  const base = robot.isFloating ? 7 : 0;
   const home = [...theta];
   const row = host.appendChild(document.createElement("div"));
   row.className = "row";
-  const fields = robot.slides.map((slides, k) => joint(host, robot, theta, k, slides, base, jointColour, onChange));
+  const fields = robot.joints.map((joint) => slidersOf(host, joint, theta, jointColour, onChange));
   const set = (values) => {
-    values.forEach((value, k) => {
-      if (k >= base) fields[k - base](value);
-      theta[k] = value;
-    });
+    values.forEach((value, k) => (theta[k] = value));
+    fields.forEach((show) => show());
     onChange();
   };
   const button = (text, values) => {
@@ -19,44 +18,53 @@ export function addSliders(host, robot, theta, jointColour, onChange) {
     made.addEventListener("click", () => set(values()));
   };
   button("all at 0", () => home);
-  button("a random pose", () => home.map((value, k) => {
-    if (k < base) return value;
-    const [low, high] = limits(robot, k - base);
-    return low + Math.random() * (high - low);
-  }));
+  button("a random pose", () => randomPose(robot));
   return set;
 }
 
-function limits(robot, k) {
-  return robot.limits[k] ?? (robot.slides[k] ? [-1, 1] : [-Math.PI, Math.PI]);
+// The fields of one joint, which set its positions in `theta`; returned is what shows them.
+function slidersOf(host, joint, theta, jointColour, onChange) {
+  const own = () => coordinates.read(joint, theta.slice(joint.q, joint.q + positionsOf(joint)));
+  const values = own();
+  const fields = coordinates.names(joint).map((name, k) => {
+    const isLength = coordinates.isLength(joint, k);
+    return field(host, { name, isLength, range: coordinates.range(joint, k), colour: jointColour(joint.j + k) }, (value) => {
+      values[k] = value;
+      coordinates.write(joint, values).forEach((x, i) => (theta[joint.q + i] = x));
+      onChange();
+    });
+  });
+  const show = () => own().forEach((value, k) => fields[k]((values[k] = value)));
+  show();
+  return show;
 }
 
-function joint(host, robot, theta, k, slides, base, jointColour, onChange) {
-  const name = robot.positions[base + k];
-  const [low, high] = limits(robot, k);
+// A slider and a number that follow each other; returned is what sets both.
+function field(host, { name, isLength, range, colour }, take) {
+  const [low, high] = range;
   const div = host.appendChild(document.createElement("div"));
   div.className = "joint";
   const label = div.appendChild(document.createElement("label"));
   const mark = label.appendChild(document.createElement("i"));
-  mark.style.setProperty("--colour", jointColour(base ? k + 6 : k));
-  label.append(`${name}, ${slides ? "m" : "rad"}`);
+  mark.style.setProperty("--colour", colour);
+  label.append(`${name}, ${isLength ? "m" : "rad"}`);
   label.title = name;
-  label.htmlFor = `joint-${k}`;
+  label.htmlFor = `joint-${name}`;
   const number = div.appendChild(document.createElement("input"));
-  Object.assign(number, { type: "number", step: slides ? "0.01" : "0.1", value: theta[base + k] });
+  Object.assign(number, { type: "number", step: isLength ? "0.01" : "0.1" });
   number.setAttribute("aria-label", `${name}, a number`);
   const slider = div.appendChild(document.createElement("input"));
-  Object.assign(slider, { type: "range", id: label.htmlFor, min: low, max: high, step: "any", value: theta[base + k] });
-  const take = (value, from) => {
-    if (!Number.isFinite(value)) return;
-    theta[base + k] = value;
+  Object.assign(slider, { type: "range", id: label.htmlFor, min: low, max: high, step: "any" });
+  const show = (value, from) => {
     if (from !== slider) slider.value = value;
     if (from !== number) number.value = Number(value.toFixed(4));
   };
-  for (const field of [slider, number])
-    field.addEventListener("input", () => {
-      take(field.valueAsNumber, field);
-      onChange();
+  for (const input of [slider, number])
+    input.addEventListener("input", () => {
+      const value = input.valueAsNumber;
+      if (!Number.isFinite(value)) return;
+      show(value, input);
+      take(value);
     });
-  return (value) => take(value, null);
+  return (value) => show(value, null);
 }

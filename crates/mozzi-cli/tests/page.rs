@@ -5,7 +5,7 @@ mod common;
 use common::{folder, json, numbers, rows, text};
 use mozzi::model::description::JointKind;
 use mozzi::nalgebra::DMatrix;
-use mozzi::{BodyFrame, FrameId, Model, SE3, Vec3};
+use mozzi::{BodyFrame, FrameId, Freedom, Model, Place, SE3, Vec3};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
@@ -82,15 +82,37 @@ fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f6
     let (at_link, at_mass) = (of(BodyFrame::Link), of(BodyFrame::CenterOfMass));
     let link = |name: &str| model.forward_kinematics(theta, model.frame(name).expect("a link")).expect("a pose");
     for (k, joint) in model.moving_joints().enumerate() {
-        assert!(matches!(joint.kind, JointKind::Screw(_)));
+        // moments are about the axis or the ball's centre, mozzi's about the link's origin
+        let point = match joint.kind {
+            JointKind::Screw(A) => A.twist().w.cross(A.twist().v),
+            JointKind::Ball(center) => center,
+            JointKind::Free | JointKind::Fixed => Vec3::zero(),
+        };
         let R = link(&joint.child).R;
         let vectors = |kind: &str| numbers(&found["vectors"][kind][k + 1]);
         let compare = |kind: &str, expected: Vec3| assert_near(kind, &vectors(kind), &(R * expected).0, 100.0 * SINGLE);
         compare("spin", at_link.twists[k].w);
         compare("speed", at_mass.twists[k].v);
         compare("force", at_link.wrenches[k].f);
-        compare("moment", at_link.wrenches[k].m);
+        compare("moment", at_link.wrenches[k].m - point.cross(at_link.wrenches[k].f));
     }
+    let center = model.center_of_mass(theta).expect("a robot that weighs something");
+    assert_near("center of mass", &numbers(&found["center"]), &center.0, 10.0 * SINGLE);
+    let tip = all_frames(model).into_iter().find(|(_, name)| found["tip"] == name.as_str()).expect("a frame").0;
+    let J = model.body_jacobian(theta, tip).expect("J");
+    // J_v Jᵥᵀ in the frame's own axes has the same trace and determinant
+    let places = model.places().iter().filter(|place| place.freedom != Freedom::Free);
+    let J_v = DMatrix::from_fn(3, 0, |_, _| 0.0_f64);
+    let J_v = places.flat_map(Place::velocities).fold(J_v, |J_v, j| {
+        let last = J_v.ncols();
+        let mut longer = J_v.insert_column(last, 0.0);
+        longer.column_mut(last).copy_from_slice(&J.0[j].v.0);
+        longer
+    });
+    let mut squares: Vec<f64> = (&J_v * J_v.transpose()).symmetric_eigenvalues().iter().copied().collect();
+    squares.sort_by(f64::total_cmp);
+    let found: Vec<f64> = numbers(&found["semiAxes"]).iter().map(|sigma| sigma * sigma).collect();
+    assert_near("manipulability", &found, &squares, 20.0 * SINGLE);
 }
 
 fn assert_usable(found: &Value, width: u64) {
@@ -148,9 +170,47 @@ fn the_page_shows_what_mozzi_computes() {
     stand.extend((0..12).map(|k| 0.1 * f64::from(k) - 0.5));
     let anymal = mozzi_urdf::open("anymal").expect("embedded").description.floating().build().unwrap_or(anymal);
 
+    // balls and free bodies, thrown, and at rest
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-report/tests/balls.xml");
+    let balls = load(file);
+    let (thrown_page, rest_page) = (folder.join("thrown.html"), folder.join("rest.html"));
+    let rates: Vec<String> = (0..balls.n()).map(|k| format!("{}", 0.5 - 0.07 * k as f64)).collect();
+    let throw = ["simulate", file, "--dtheta", &rates.join(","), "--time", "0.5", "--step", "0.01"];
+    let thrown = json(&throw);
+    text(&[&throw[..], &["--report", thrown_page.to_str().expect("text")]].concat());
+    text(&["view", file, "--out", rest_page.to_str().expect("text")]);
+    let mut posed: Vec<f64> = balls.neutral_configuration();
+    for (k, place) in balls.places().iter().enumerate() {
+        if place.freedom == Freedom::One {
+            posed[place.q] = 0.2 + 0.1 * k as f64;
+        } else {
+            posed[place.q..place.q + 4].copy_from_slice(&[0.5, -0.1, 0.7, 0.5]);
+        }
+        posed[place.positions()].iter_mut().skip(4).for_each(|x| *x = 0.3 - 0.2 * k as f64);
+    }
+
+    // a table that changes the sign of a ball's quaternion from row to row: between them it turns on, 0.2 rad about x a row
+    let shoulder = balls.places()[1].q;
+    let turned = |half: f64, sign: f64| {
+        let mut theta: Vec<f64> = balls.neutral_configuration();
+        (theta[shoulder], theta[shoulder + 1]) = (sign * half.cos(), sign * half.sin());
+        theta
+    };
+    let mut table: String = (1..=balls.nq()).fold("t".into(), |line, k| format!("{line},theta_{k}"));
+    for k in 0..5_i32 {
+        let theta = turned(0.1 * f64::from(k), f64::from(1 - 2 * (k % 2)));
+        let line = theta.iter().fold(format!("\n{}", 0.25 * f64::from(k)), |line, x| format!("{line},{x}"));
+        table.push_str(&line);
+    }
+    let (table, signs_page) = (common::file(&folder, "signs.csv", &table), folder.join("signs.html"));
+    text(&["view", file, &table, "--out", signs_page.to_str().expect("text")]);
+
     let mut jobs = vec![
         json!({ "url": url(&report), "width": 800, "height": 400, "times": looked.map(|k| times[k]), "frames": names(&ur5) }),
         json!({ "url": url(&still), "width": 390, "height": 844, "theta": [stand], "frames": names(&anymal) }),
+        json!({ "url": url(&thrown_page), "width": 800, "height": 400, "times": looked.map(|k| times[k]), "frames": names(&balls) }),
+        json!({ "url": url(&rest_page), "width": 800, "height": 600, "theta": [posed], "frames": names(&balls), "tip": "load" }),
+        json!({ "url": url(&signs_page), "width": 800, "height": 400, "times": [0.125], "frames": names(&balls) }),
     ];
     // with meshes: Collada of a quadruped, STL of a humanoid
     let quadruped = robot("hyq_description/robots/hyq_no_sensors.urdf").map(|file| (load(&file), file, "visual"));
@@ -164,11 +224,13 @@ fn the_page_shows_what_mozzi_computes() {
     }
     let found = look(&program, &Value::Array(jobs.clone()));
 
-    for (k, state) in looked.iter().zip(found[0]["states"].as_array().expect("states")) {
-        let row = |name: &str| numbers(&motion[name][*k]);
-        let (dtheta, ddtheta) = (row("dtheta"), row("ddtheta"));
-        assert_state(&ur5, state, &row("theta"), Some([&dtheta, &ddtheta]));
-        assert_eq!(state["clock"], format!("{:.3} s", times[*k]));
+    for (model, motion, found) in [(&ur5, &motion, &found[0]), (&balls, &thrown, &found[2])] {
+        for (k, state) in looked.iter().zip(found["states"].as_array().expect("states")) {
+            let row = |name: &str| numbers(&motion[name][*k]);
+            let (dtheta, ddtheta) = (row("dtheta"), row("ddtheta"));
+            assert_state(model, state, &row("theta"), Some([&dtheta, &ddtheta]));
+            assert_eq!(state["clock"], format!("{:.3} s", times[*k]));
+        }
     }
     let scrubbed = numbers(&found[0]["scrubbed"]);
     assert!(scrubbed[0] == 0.0 && (scrubbed[1] - 0.25).abs() < 0.01, "{scrubbed:?}");
@@ -176,12 +238,20 @@ fn the_page_shows_what_mozzi_computes() {
     assert!(row_on > 0.0 && row_on <= 0.0101 && scrubbed[3] > scrubbed[2] + 0.001, "{scrubbed:?}");
     assert!((scrubbed[4] - 0.5).abs() < 0.01, "{scrubbed:?}");
     assert_state(&anymal, &found[1]["states"][0], &stand, None);
-    for (((model, _, name), found), job) in meshed.iter().zip(&found[2..]).zip(&jobs[2..]) {
+    assert_state(&balls, &found[3]["states"][0], &posed, None);
+    assert_state(&balls, &found[4]["states"][0], &turned(0.05, 1.0), None);
+    for (((model, _, name), found), job) in meshed.iter().zip(&found[5..]).zip(&jobs[5..]) {
         assert_state(model, &found["states"][0], &numbers(&job["theta"][0]), None);
         assert!(found["toggles"].get("shapes").is_some(), "{name} meshes are shapes");
     }
-    for found in &found[1..] {
+    let of_meshes = meshed.iter().zip(&found[5..]).map(|((model, ..), found)| (model, found));
+    for (model, found) in [(&anymal, &found[1]), (&balls, &found[3])].into_iter().chain(of_meshes) {
         assert_ne!(found["slid"][0], found["slid"][1], "a slider moves its joint");
+        let free = model.places().iter().map(|place| place.freedom.velocities()).sum::<usize>();
+        assert_eq!(found["sliders"], free, "a slider for each velocity of a joint");
+        for theta in ["slid", "random"].map(|key| numbers(&found[key][1])) {
+            assert!(model.frame_poses(&theta).is_ok(), "quaternions are unit: {theta:?}");
+        }
     }
     for (found, job) in found.iter().zip(&jobs) {
         assert_usable(found, job["width"].as_u64().expect("a width"));

@@ -26,6 +26,8 @@ mod motion;
 mod page;
 pub mod pictures;
 mod robot;
+#[cfg(test)]
+mod testing;
 
 pub use drawing::{Drawing, Meshes};
 pub use error::Error;

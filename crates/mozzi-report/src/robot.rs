@@ -28,29 +28,36 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         })
         .collect();
 
-    let (parameters, names) = (model.parameters(), model.parameter_names());
+    // ten numbers for each body; those of the joints follow
+    let parameters = model.parameters();
     let is_floating = model.is_floating();
     let mut inertias = parameters.chunks(10);
     let base_inertia = match is_floating {
         true => inertias.next().map(<[f64]>::to_vec).unwrap_or_default(),
         false => model.base_inertia().to_parameters().to_vec(),
     };
-    let of_joints = names.iter().zip(&parameters).filter(|(name, _)| name.ends_with(".armature")).map(|(_, &x)| x);
-    let armature: Vec<f64> = std::iter::repeat_n(0.0, model.base().velocities()).chain(of_joints).collect();
-    let joints = model.moving_joints().zip(model.sources());
-    let bodies: Value = (joints.zip(inertias).enumerate())
-        .map(|(k, ((joint, Source { joint: j, ratio, offset }), inertia))| {
+    let moving = model.moving_joints().zip(model.sources());
+    let bodies: Value = (moving.zip(inertias).enumerate())
+        .map(|(k, ((joint, Source { joint: source, ratio, offset }), inertia))| {
             let parent = body_of(&joint.parent).unwrap_or(0);
-            let A = match joint.kind {
-                JointKind::Screw(A) => A.twist(),
-                _ => Twist::from_array([0.0; 6]), // of a ball and a free joint its kind and its quaternion tell
+            let (A, center) = match joint.kind {
+                JointKind::Screw(A) => (Some(A.twist()), None),
+                JointKind::Ball(center) => (None, Some(center.0)),
+                JointKind::Free | JointKind::Fixed => (None, None),
             };
-            let M = home(parent).inverse() * home(k + 1) * SE3::exp(A * -offset);
+            let at_zero = A.map_or(SE3::identity(), |A| SE3::exp(A * -offset));
+            let M = home(parent).inverse() * home(k + 1) * at_zero;
+            let place = model.places()[source];
             json!({
                 "name": folded[k + 1].links.first().map(|(name, _)| name), "joint": joint.name, "kind": joint.kind.name(),
-                "parent": parent, "M": rows(M), "A": A.to_array(), "ratio": ratio, "offset": offset,
-                "q": j + model.base().positions(), "j": j + model.base().velocities(), "inertia": inertia,
+                "parent": parent, "M": rows(M), "A": A.map(Twist::to_array), "center": center, "ratio": ratio, "offset": offset,
+                "q": place.q, "j": place.j, "inertia": inertia,
             })
+        })
+        .collect();
+    let joints: Value = (model.joints().zip(model.places()))
+        .map(|(joint, place)| {
+            json!({ "name": joint.name, "kind": joint.kind.name(), "q": place.q, "j": place.j, "limits": joint.limits.position })
         })
         .collect();
 
@@ -61,11 +68,10 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         "gravity": model.gravity().0,
         "positions": model.position_names().collect::<Vec<_>>(),
         "velocities": model.velocity_names().collect::<Vec<_>>(),
-        "slides": model.joints().map(|joint| joint.kind.name() == "prismatic").collect::<Vec<_>>(),
-        "limits": model.joints().map(|joint| joint.limits.position).collect::<Vec<_>>(),
+        "joints": joints,
         "bodies": bodies,
         "baseInertia": base_inertia,
-        "armature": armature,
+        "armature": model.armature(),
         "frames": named,
         "endEffector": model.end_effector().ok().and_then(|frame| frame_of(model.frame_name(frame))),
         "shapes": drawing.shapes_to_json(&|link| frame_of(link)),
@@ -80,7 +86,7 @@ pub fn rows(T: SE3) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mozzi::Model;
+    use mozzi::{Model, Vec3};
 
     fn numbers(value: &Value) -> Vec<f64> {
         value.as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect()
@@ -92,14 +98,31 @@ mod tests {
         SE3::from_matrix([row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]).expect("a configuration")
     }
 
-    /// Poses from what the page is told alone, by the product of exponentials.
-    fn poses(robot: &Value, theta: &[f64], base: SE3) -> Vec<SE3> {
-        let mut T = vec![base];
+    /// A unit quaternion and an origin.
+    fn posed(theta: &[f64], p: Vec3) -> SE3 {
+        SE3::from_pose([theta[0], theta[1], theta[2], theta[3], p.0[0], p.0[1], p.0[2]])
+    }
+
+    /// Poses from the page's data alone, by the product of exponentials.
+    fn poses(robot: &Value, theta: &[f64]) -> Vec<SE3> {
+        let is_floating = robot["base"] == "floating";
+        let mut T =
+            vec![if is_floating { posed(theta, Vec3([theta[4], theta[5], theta[6]])) } else { SE3::identity() }];
         for body in robot["bodies"].as_array().expect("bodies") {
             let [parent, q] = [&body["parent"], &body["q"]].map(|x| x.as_u64().expect("a place") as usize);
             let [ratio, offset] = [&body["ratio"], &body["offset"]].map(|x| x.as_f64().expect("a number"));
-            let A = Twist::from_array(numbers(&body["A"]).try_into().expect("six"));
-            T.push(T[parent] * pose(&body["M"]) * SE3::exp(A * (ratio * theta[q] + offset)));
+            let moved = match body["kind"].as_str() {
+                Some("free") => posed(&theta[q..], Vec3([theta[q + 4], theta[q + 5], theta[q + 6]])),
+                Some("ball") => {
+                    let center = numbers(&body["center"]).try_into().expect("three");
+                    SE3::translation(center) * posed(&theta[q..], Vec3::zero()) * SE3::translation(center).inverse()
+                }
+                _ => {
+                    let A = Twist::from_array(numbers(&body["A"]).try_into().expect("six"));
+                    SE3::exp(A * (ratio * theta[q] + offset))
+                }
+            };
+            T.push(T[parent] * pose(&body["M"]) * moved);
         }
         let frames = robot["frames"].as_array().expect("frames");
         frames.iter().map(|f| T[f["body"].as_u64().expect("a place") as usize] * pose(&f["T"])).collect()
@@ -110,20 +133,13 @@ mod tests {
         let mimic_joint = include_str!("../../../oracles/test_tree.urdf");
         let tree = mozzi_urdf::parse("test_tree.urdf", mimic_joint).expect("sound").description;
         let open = |name| mozzi_urdf::open(name).expect("embedded").description;
-        for description in [open("ur5"), open("panda"), tree, open("anymal").floating()] {
+        let balls = crate::testing::balls();
+        let models = [open("ur5"), open("panda"), tree, open("anymal").floating(), balls.clone(), balls.floating()];
+        for description in models {
             let model: Model = description.build().expect("sound");
             let robot = to_json(&model, &Drawing::default()).expect("a robot");
-            let theta: Vec<f64> = (0..model.nq()).map(|k| 0.3 + 0.17 * k as f64).collect();
-            let base = match model.is_floating() {
-                true => SE3::from_pose([0.3, 0.47, 0.64, 0.81, theta[4], theta[5], theta[6]]),
-                false => SE3::identity(),
-            };
-            let mut theta = theta;
-            if model.is_floating() {
-                let size = theta[..4].iter().map(|x| x * x).sum::<f64>().sqrt();
-                theta[..4].iter_mut().for_each(|x| *x /= size);
-            }
-            let (found, expected) = (poses(&robot, &theta, base), model.frame_poses(&theta).expect("poses"));
+            let theta = crate::testing::configuration(&model);
+            let (found, expected) = (poses(&robot, &theta), model.frame_poses(&theta).expect("poses"));
             for (found, expected) in found.iter().zip(&expected) {
                 let apart = (found.inverse() * *expected).log().to_array();
                 assert!(apart.iter().all(|x| x.abs() < 1e-12), "{} {apart:?}", model.description().name);
@@ -132,7 +148,19 @@ mod tests {
             let mass: f64 = bodies.iter().map(|body| numbers(&body["inertia"])[0]).sum();
             let of_base = if model.is_floating() { numbers(&robot["baseInertia"])[0] } else { 0.0 };
             assert!((mass + of_base - model.mass()).abs() < 1e-12 * model.mass());
-            assert_eq!(numbers(&robot["armature"]).len(), model.n());
+            // M without its links is the armature
+            let massless: Vec<f64> = (model.parameters().iter().zip(model.parameter_names()))
+                .map(|(&x, name)| if name.ends_with(".armature") { x } else { 0.0 })
+                .collect();
+            let M = model.with_parameters(&massless).mass_matrix(&theta).expect("M");
+            assert_eq!(numbers(&robot["armature"]), M.diagonal().as_slice());
+            for (joint, place) in robot["joints"].as_array().expect("joints").iter().zip(model.places()) {
+                let name = joint["name"].as_str().expect("a name");
+                let [q, j] = ["q", "j"].map(|key| joint[key].as_u64().expect("a place") as usize);
+                assert_eq!((q, j), (place.q, place.j));
+                assert!(model.position_names().nth(q).is_some_and(|known| known.starts_with(name)));
+                assert!(model.velocity_names().nth(j).is_some_and(|known| known.starts_with(name)));
+            }
         }
     }
 }

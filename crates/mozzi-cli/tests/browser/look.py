@@ -1,6 +1,6 @@
 """Opens pages in a browser and does to them what a visitor does: python look.py BROWSER < jobs.json > found.json
 
-A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}.
+A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}, with "tip": an end effector's name or none.
 """
 
 import json
@@ -15,6 +15,9 @@ STATE = """(frames) => ({
   poses: frames.map(mozzi.framePose),
   M: mozzi.massMatrix(),
   vectors: mozzi.vectors(),
+  center: mozzi.centerOfMass(),
+  tip: mozzi.overlays.frame.name,
+  semiAxes: mozzi.semiAxes(),
   clock: document.getElementById("clock").textContent,
 })"""
 
@@ -36,6 +39,8 @@ def look(browser, job):
     page.on("request", lambda request: request.url.startswith("data:") or found["requests"].append(request.url))
     page.goto(job["url"])
     page.evaluate("mozzi.ready.then(() => true)")
+    if "tip" in job:
+        page.select_option("#panel select", label=job["tip"])
     for time in job.get("times", []):
         page.evaluate("(time) => mozzi.seek(time)", time)
         found["states"].append(page.evaluate(STATE, job["frames"]))
@@ -61,11 +66,16 @@ def look(browser, job):
     if job.get("times"):
         found["scrubbed"] = scrub(page)
     else:
-        slider = page.query_selector("#panel input[type=range]")
-        slider.focus()
-        before = page.evaluate("mozzi.state().theta")
-        page.keyboard.press("ArrowRight")
-        found["slid"] = [before, page.evaluate("mozzi.state().theta")]
+        theta = "() => [...mozzi.state().theta]"
+        sliders = page.query_selector_all("#panel input[type=range]")
+        found["sliders"] = len(sliders)
+        before = page.evaluate(theta)
+        for slider in sliders:
+            slider.focus()
+            page.keyboard.press("ArrowRight")
+        found["slid"] = [before, page.evaluate(theta)]
+        page.get_by_text("a random pose").dispatch_event("click")
+        found["random"] = [found["slid"][1], page.evaluate(theta)]
     page.close()
     return found
 

@@ -1,6 +1,7 @@
 //! Manipulability and force ellipses in a plane, at some configurations.
 
 use crate::figure::{Curve, Figure, Panel, Stroke};
+use mozzi::model::{Freedom, Place};
 use mozzi::nalgebra::{DMatrix, Matrix2, SymmetricEigen, U2, Vector2};
 use mozzi::{Error, FrameId, Model, Vec3};
 
@@ -34,18 +35,19 @@ impl Plane {
 }
 
 /// At each configuration the robot's links up to a frame, and in its origin two ellipses of this plane of {s}: of velocities,
-/// { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a floating base is held. The force ellipse is
+/// { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a floating base and free joints are held. The force ellipse is
 /// scaled to the size of the other, as the legend tells, and left out where J_v is singular.
 ///
 /// # Errors
 /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
 pub fn ellipsoids(model: &Model, configurations: &[Vec<f64>], frame: FrameId, plane: Plane) -> Result<Figure, Error> {
     let (mut links, mut ellipses) = (Vec::new(), Vec::new());
+    let driven = || model.places().iter().filter(|place| place.freedom != Freedom::Free).flat_map(Place::velocities);
     for theta in configurations {
         let tip = model.forward_kinematics(theta, frame)?;
         links.push(chain(model, theta, frame)?.iter().map(|&p| plane.of(p)).collect::<Vec<_>>());
         let J = model.body_jacobian(theta, frame)?;
-        let columns = J.0.iter().skip(model.base().velocities()).map(|column| plane.of(tip.R * column.v));
+        let columns = driven().map(|j| plane.of(tip.R * J.0[j].v));
         let flat: Vec<f64> = columns.flatten().collect();
         let J_v = DMatrix::from_column_slice(2, flat.len() / 2, &flat);
         let gram = &J_v * J_v.transpose();
@@ -143,6 +145,18 @@ mod tests {
             assert!((torque / scale - 1.0).abs() < 1e-12);
         }
         assert_eq!(panel.curves[0].points.last(), Some(&[pose.p.0[0], pose.p.0[2]]));
+    }
+
+    #[test]
+    fn free_joints_are_held() {
+        let model: Model = crate::testing::balls().build().expect("sound");
+        let theta = vec![model.neutral_configuration()];
+        let curves = |link: &str| {
+            let frame = model.frame(link).expect("a link");
+            ellipsoids(&model, &theta, frame, Plane::Xy).expect("a figure").panels[0].curves.len()
+        };
+        // links and both ellipses; links and a point
+        assert_eq!((curves("hand"), curves("drone")), (3, 2));
     }
 
     #[test]

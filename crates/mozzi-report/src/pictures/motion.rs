@@ -4,18 +4,75 @@ use crate::error::Error;
 use crate::figure::{Curve, Figure, Panel};
 use crate::motion::Motion;
 use mozzi::Model;
+use mozzi::model::{Freedom, Place, description};
+use std::ops::Range;
 
-/// An independent joint: its name, its place among them, whether it slides.
+/// An independent joint: its name, its place among them, where its numbers stand, whether it slides.
 struct Joint<'m> {
     name: &'m str,
     k: usize,
+    place: Place,
     slides: bool,
 }
 
+impl Joint<'_> {
+    fn has_one_axis(&self) -> bool {
+        self.place.freedom == Freedom::One
+    }
+}
+
 fn joints(model: &Model) -> Vec<Joint<'_>> {
-    let joint = |(k, joint): (usize, &'_ mozzi::model::description::Joint)| (k, joint.kind.name() == "prismatic");
-    let kinds: Vec<_> = model.joints().enumerate().map(joint).collect();
-    model.joint_names().zip(kinds).map(|(name, (k, slides))| Joint { name, k, slides }).collect()
+    let joint =
+        |(k, (joint, place)): (usize, (&'_ description::Joint, &Place))| (k, *place, joint.kind.name() == "prismatic");
+    let kinds: Vec<_> = model.joints().zip(model.places()).enumerate().map(joint).collect();
+    model.joint_names().zip(kinds).map(|(name, (k, place, slides))| Joint { name, k, place, slides }).collect()
+}
+
+/// Which numbers of a joint a row has.
+#[derive(Clone, Copy, PartialEq)]
+enum Entries {
+    Positions,
+    Velocities,
+}
+
+impl Entries {
+    fn of(self, place: &Place) -> Range<usize> {
+        match self {
+            Entries::Positions => place.positions(),
+            Entries::Velocities => place.velocities(),
+        }
+    }
+
+    fn names(self, model: &Model) -> Vec<&str> {
+        match self {
+            Entries::Positions => model.position_names().collect(),
+            Entries::Velocities => model.velocity_names().collect(),
+        }
+    }
+}
+
+/// A quantity of a motion: its symbol, its units of turning and sliding joints, and the two parts that it has of balls and free joints, each
+/// with its length.
+struct Quantity<'m> {
+    symbol: &'static str,
+    units: [&'static str; 2],
+    parts: [(&'static str, usize); 2],
+    entries: Entries,
+    rows: Option<&'m Vec<f64>>,
+}
+
+fn quantities(motion: &Motion) -> [Quantity<'_>; 4] {
+    let of = |symbol, units, parts, rows| Quantity { symbol, units, parts, entries: Entries::Velocities, rows };
+    let (dtheta, ddtheta, tau) = (motion.dtheta.as_ref(), motion.ddtheta.as_ref(), motion.tau.as_ref());
+    [
+        Quantity {
+            entries: Entries::Positions,
+            ..of("θ", ["rad", "m"], [("quaternion", 4), ("p [m]", 3)], Some(&motion.theta))
+        },
+        of("θ̇", ["rad/s", "m/s"], [("ω [rad/s]", 3), ("v [m/s]", 3)], dtheta),
+        of("θ̈", ["rad/s²", "m/s²"], [("ω̇ [rad/s²]", 3), ("v̇ [m/s²]", 3)], ddtheta),
+        of("τ", ["N m", "N"], [("m [N m]", 3), ("f [N]", 3)], tau),
+    ]
 }
 
 /// Entry k of each row.
@@ -23,36 +80,37 @@ fn column(rows: &[f64], width: usize, k: usize) -> impl Iterator<Item = f64> {
     rows.chunks(width.max(1)).map(move |row| row[k])
 }
 
-/// θ, θ̇, θ̈ and τ of the joints over time, as far as they are known; turning and sliding joints apart.
+/// θ, θ̇, θ̈ and τ of the joints over time, as far as they are known; turning and sliding joints apart. A ball and a free joint have panels of their
+/// own: quaternion and origin, angular and linear velocity, moment and force. A floating base is not shown.
 ///
 /// # Errors
 /// [`Error::Motion`] where the rows are not as long as this robot's.
 pub fn trajectories(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     motion.check(model)?;
-    let (joints, base) = (joints(model), model.base());
-    let groups = [
-        ("θ", ["rad", "m"], Some(&motion.theta), model.nq(), base.positions()),
-        ("θ̇", ["rad/s", "m/s"], motion.dtheta.as_ref(), model.n(), base.velocities()),
-        ("θ̈", ["rad/s²", "m/s²"], motion.ddtheta.as_ref(), model.n(), base.velocities()),
-        ("τ", ["N m", "N"], motion.tau.as_ref(), model.n(), base.velocities()),
-    ];
+    let joints = joints(model);
     let mut panels = Vec::new();
-    for (symbol, units, rows, width, first) in groups {
+    for Quantity { symbol, units, parts, entries, rows } in quantities(motion) {
         let Some(rows) = rows else { continue };
-        for (slides, unit) in [false, true].into_iter().zip(units) {
-            let of_kind = joints.iter().filter(|joint| joint.slides == slides);
-            let curve = |joint: &Joint| {
-                let values = column(rows, width, first + joint.k);
-                Curve::line(joint.name, joint.k, motion.t.iter().copied().zip(values).map(|(t, x)| [t, x]).collect())
-            };
-            let curves: Vec<Curve> = of_kind.map(curve).collect();
+        let names = entries.names(model);
+        let curve = |k: usize, color: usize| {
+            let values = column(rows, names.len(), k);
+            Curve::line(names[k], color, motion.t.iter().copied().zip(values).map(|(t, x)| [t, x]).collect())
+        };
+        let mut add = |y_label: String, curves: Vec<Curve>| {
             if !curves.is_empty() {
-                panels.push(Panel {
-                    x_label: "t [s]".into(),
-                    y_label: format!("{symbol} [{unit}]"),
-                    curves,
-                    ..Panel::default()
-                });
+                panels.push(Panel { x_label: "t [s]".into(), y_label, curves, ..Panel::default() });
+            }
+        };
+        for (slides, unit) in [false, true].into_iter().zip(units) {
+            let of_kind = joints.iter().filter(|joint| joint.has_one_axis() && joint.slides == slides);
+            let curves = of_kind.map(|joint| curve(entries.of(&joint.place).start, joint.k));
+            add(format!("{symbol} [{unit}]"), curves.collect());
+        }
+        for joint in joints.iter().filter(|joint| !joint.has_one_axis()) {
+            let mut entries = entries.of(&joint.place);
+            for (part, length) in parts {
+                let curves = entries.by_ref().take(length).enumerate().map(|(color, k)| curve(k, color));
+                add(format!("{} {part}", joint.name), curves.collect());
             }
         }
     }
@@ -91,7 +149,7 @@ pub fn energy(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     Ok(Figure { title: motion.title.clone(), panels, columns: 1 })
 }
 
-/// θ̇ over θ, a panel for each joint.
+/// θ̇ over θ, a panel for each joint of one axis: the velocities of balls and free joints are no rates of their positions.
 ///
 /// # Errors
 /// [`Error::Motion`] as [`trajectories`], and where velocities are not known.
@@ -102,8 +160,8 @@ pub fn phase(model: &Model, motion: &Motion) -> Result<Figure, Error> {
         return Err(Error::Motion { what: "dtheta", found: 0, expected: rows * width, rows, width });
     };
     let panel = |joint: Joint| {
-        let theta = column(&motion.theta, model.nq(), model.base().positions() + joint.k);
-        let rate = column(dtheta, width, model.base().velocities() + joint.k);
+        let theta = column(&motion.theta, model.nq(), joint.place.q);
+        let rate = column(dtheta, width, joint.place.j);
         let unit = if joint.slides { "m" } else { "rad" };
         Panel {
             x_label: format!("{} [{unit}]", joint.name),
@@ -112,7 +170,7 @@ pub fn phase(model: &Model, motion: &Motion) -> Result<Figure, Error> {
             ..Panel::default()
         }
     };
-    let panels: Vec<Panel> = joints(model).into_iter().map(panel).collect();
+    let panels: Vec<Panel> = joints(model).into_iter().filter(Joint::has_one_axis).map(panel).collect();
     let columns = panels.len().clamp(1, 3);
     Ok(Figure { title: motion.title.clone(), panels, columns })
 }
@@ -142,6 +200,46 @@ mod tests {
         let phases = phase(&model, &motion).expect("a figure");
         assert_eq!((phases.panels.len(), phases.columns), (8, 3));
         assert_eq!(phases.panels[3].curves[0].points[5], [motion.theta[5 * 8 + 3], expected]);
+    }
+
+    #[test]
+    fn a_ball_and_a_free_joint_have_panels_of_their_own() {
+        let model: Model = crate::testing::balls().build().expect("sound");
+        let (n, nq) = (model.n(), model.nq());
+        let row = |width: usize| (0..2 * width).map(|k| k as f64).collect::<Vec<_>>();
+        let motion = Motion { t: vec![0.0, 1.0], theta: row(nq), dtheta: Some(row(n)), ..Motion::default() };
+        let figure = trajectories(&model, &motion).expect("a figure");
+        let panel = |label: &str| {
+            let found = figure.panels.iter().find(|panel| panel.y_label == label);
+            found.unwrap_or_else(|| panic!("no {label}"))
+        };
+        let place = |name: &str| {
+            let k = model.joint_names().position(|known| known == name).expect("a joint");
+            model.places()[k]
+        };
+        let check = |label: &str, names: &[&str], width: usize, first: usize| {
+            let curves = &panel(label).curves;
+            assert_eq!(curves.iter().map(|curve| curve.name.as_str()).collect::<Vec<_>>(), names);
+            for (k, curve) in curves.iter().enumerate() {
+                assert_eq!(curve.points[1], [1.0, (width + first + k) as f64], "{label}");
+            }
+        };
+        let (ball, free) = (place("shoulder"), place("flight"));
+        let quaternion = ["shoulder.qw", "shoulder.qx", "shoulder.qy", "shoulder.qz"];
+        check("shoulder quaternion", &quaternion, nq, ball.q);
+        check("shoulder ω [rad/s]", &["shoulder.wx", "shoulder.wy", "shoulder.wz"], n, ball.j);
+        check("flight p [m]", &["flight.x", "flight.y", "flight.z"], nq, free.q + 4);
+        check("flight v [m/s]", &["flight.vx", "flight.vy", "flight.vz"], n, free.j + 3);
+        check("θ [m]", &["reach"], nq, place("reach").q);
+        let hinges: Vec<&str> = panel("θ̇ [rad/s]").curves.iter().map(|curve| curve.name.as_str()).collect();
+        assert_eq!(hinges, ["yaw", "elbow", "swivel"]);
+        assert_eq!(panel("θ̇ [rad/s]").curves[1].points[1][1], (n + place("elbow").j) as f64);
+        let phases = phase(&model, &motion).expect("a figure");
+        assert_eq!((phases.panels.len(), phases.panels[1].x_label.as_str()), (4, "elbow [rad]"));
+        assert_eq!(
+            phases.panels[1].curves[0].points[1],
+            [nq + place("elbow").q, n + place("elbow").j].map(|k| k as f64)
+        );
     }
 
     #[test]

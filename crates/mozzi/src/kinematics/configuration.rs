@@ -105,7 +105,7 @@ pub fn integrate<S: Real, C: Scalar>(model: &Model<C>, theta: &mut [S], dtheta: 
 pub fn difference<S: Real, C: Scalar>(model: &Model<C>, theta0: &[S], theta1: &[S], difference: &mut [S]) {
     model.assert_lengths(theta0.len(), [difference.len()]);
     model.assert_lengths(theta1.len(), []);
-    for place in &*model.configuration_space().places() {
+    for place in model.configuration_space().places() {
         let (from, to, way) =
             (&theta0[place.positions()], &theta1[place.positions()], &mut difference[place.velocities()]);
         let turn = |q: &[S]| SO3::from_quaternion(q[0], Vec3([q[1], q[2], q[3]]));

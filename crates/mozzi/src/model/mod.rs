@@ -155,6 +155,12 @@ impl<C: Scalar> Model<C> {
         self.joints().map(|joint| joint.name.as_str())
     }
 
+    /// The rotor inertia of each of the n velocities, seen at the joint, 0 for a floating base's: Σ ratio² · armature over a joint and its mimic
+    /// joints. What [`mass_matrix`](Self::mass_matrix) has on its diagonal in addition to the links. kg m² or kg.
+    pub fn armature(&self) -> &[C] {
+        &self.armature
+    }
+
     /// The independent joints as described, in the order of θ: limits, damping, friction, armature, springs.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = &description::Joint> {
         self.structure.joints.iter().map(|&joint| &self.structure.description.joints[joint])
