@@ -36,7 +36,12 @@ fn folding_leaves_less_work() {
         for query in quantities(&model) {
             let program = record_quantity(&model, query, Arguments::default()).expect("its own frame");
             let (before, after) = (program.count_before_folding().expect("recorded"), program.count());
-            assert!(after.flops() < before.flops(), "{name}, {}: {before}; {after}", query.name());
+            // of a robot without springs there is nothing to fold
+            assert!(
+                after.flops() < before.flops() || before.flops() == 0,
+                "{name}, {}: {before}; {after}",
+                query.name()
+            );
         }
     }
     let ur5 = mozzi_urdf::open("ur5").and_then(|robot| robot.build()).expect("an embedded robot");

@@ -48,7 +48,8 @@ def test_mujoco(robot, random):
     model = mujoco.MjModel.from_xml_string(ROBOT)
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     data = mujoco.MjData(model)
-    theirs = mozzi.conventions.MuJoCo(robot)
+    theirs = mozzi.conventions.MuJoCo(robot, model)
+    assert np.array_equal(theirs.joints, mozzi.conventions.MuJoCo(robot).joints)
     thetas, dthetas, ddthetas = states(random, 20)
     many = robot.inverse_dynamics(thetas, dthetas, ddthetas)
     for theta, dtheta, ddtheta, batched in zip(thetas, dthetas, ddthetas, many):
@@ -77,3 +78,32 @@ def test_pickle(robot, random):
     again = pickle.loads(pickle.dumps(robot))
     theta, dtheta, ddtheta = (table[0] for table in states(random, 1))
     assert np.array_equal(again.inverse_dynamics(theta, dtheta, ddtheta), robot.inverse_dynamics(theta, dtheta, ddtheta))
+
+
+def test_pinocchio(robot, random):
+    pin = pytest.importorskip("pinocchio")
+    model, turn = pin.Model(), np.array([0, 1, 0.2]) / np.linalg.norm([0, 1, 0.2])
+    at = lambda *p: pin.SE3(np.eye(3), np.array(p, float))
+    fall = model.addJoint(0, pin.JointModelFreeFlyer(), at(0, 0, 0), "fall")
+    shoulder = model.addJoint(0, pin.JointModelSpherical(), at(0.1, 0, 1.2), "shoulder")
+    wrist = model.addJoint(shoulder, pin.JointModelRevoluteUnaligned(*turn), at(0.2, 0, -0.2), "wrist")
+    places = [(fall, at(0, 0, 0)), (shoulder, at(-0.1, 0, -0.2)), (wrist, at(0, 0, 0))]
+    for (joint, place), body in zip(places, np.reshape(robot.parameters[:30], (3, 10))):
+        body[[6, 7]] = body[[7, 6]]  # Pinocchio has I_yy before I_xz
+        model.appendBodyToJoint(joint, pin.Inertia.FromDynamicParameters(body), place)
+    model.gravity.linear = robot.gravity
+    model.armature = np.array([0.0] * 6 + [0.1] * 3 + [0.05])
+    data, bridge = model.createData(), mozzi.conventions.Pinocchio(robot, model)
+    for theta, dtheta, ddtheta in zip(*states(random, 20)):
+        q, v, a = bridge.configuration(theta), bridge.velocity(dtheta), bridge.acceleration(ddtheta)
+        assert_close(bridge.from_configuration(q), theta)
+        M = pin.crba(model, data, q)
+        M = np.triu(M) + np.triu(M, 1).T
+        assert_close(bridge.mass_matrix(robot.mass_matrix(theta)), M, np.abs(M).max())
+        tau = bridge.force(robot.inverse_dynamics(theta, dtheta, ddtheta) - robot.joint_friction(dtheta))
+        assert_close(tau, pin.rnea(model, data, q, v, a), np.abs(tau).max())
+        pin.computeRNEADerivatives(model, data, q, v, a)
+        d_theta, d_dtheta, _ = robot.inverse_dynamics_derivatives(theta, dtheta, ddtheta)
+        damping = np.diag([0.0] * 6 + [0.2] * 3 + [0.0])
+        for found, theirs in ((d_theta, data.dtau_dq), (d_dtheta - damping, data.dtau_dv)):
+            assert_close(bridge.mass_matrix(found), theirs, 10 * np.abs(theirs).max())

@@ -63,12 +63,9 @@ def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
     """
     if model is None:
         return _Pinocchio(robot, None)
-    # the universe is number 0, then a free flyer; mimics have no positions
-    moving = [
-        (str(name), int(nq))
-        for name, nq, nv in zip(model.names, model.nqs, model.nvs)
-        if nv == 1 or (nv > 1 and nq != 7)
-    ]
+    # the universe is number 0, then the free flyer of a floating base; mimics have no positions
+    moving = [(str(name), int(nq)) for name, nq, nv in zip(model.names, model.nqs, model.nvs) if nv > 0]
+    moving = moving[1:] if robot.is_floating else moving
     return _Pinocchio(robot, ([name for name, _ in moving], [nq for _, nq in moving]))
 
 
@@ -90,6 +87,12 @@ def MuJoCo(robot: Model, model: Optional[Any] = None) -> _MuJoCo:
     """
     if model is None:
         return _MuJoCo(robot, None)
-    free = 0  # mjJNT_FREE
-    names = [cast(str, model.joint(j).name) for j in range(model.njnt) if model.jnt_type[j] != free]
-    return _MuJoCo(robot, names)
+    free = 0  # mjJNT_FREE; of a floating base it is no joint
+
+    def name(j: int) -> str:
+        given = cast(str, model.joint(j).name)
+        unnamed = given == "" and model.jnt_type[j] == free
+        return f"{model.body(model.jnt_bodyid[j]).name}:free" if unnamed else given
+
+    joints = [j for j in range(model.njnt) if model.jnt_type[j] != free or not robot.is_floating]
+    return _MuJoCo(robot, [name(j) for j in joints])

@@ -21,7 +21,7 @@ pub(super) struct JointOrder {
 impl JointOrder {
     /// By number.
     pub fn new(model: &Model, joints: Vec<usize>) -> Self {
-        let base = model.is_floating().then_some(model.configuration_space().places()[0]);
+        let base = model.is_floating().then(|| model.configuration_space().places()[0]);
         let places: Vec<Place> = base.into_iter().chain(joints.iter().map(|&k| model.places()[k])).collect();
         let of_place = |place: &Place| {
             let (j, n) = (place.j, place.freedom.velocities());
@@ -144,6 +144,12 @@ mod tests {
         assert!(refused(&["joint1", "joint2", "knee"]).starts_with("there is no joint `knee`; this robot has `joint"));
         assert!(refused(&["joint1", "joint2", "joint1"]).contains("`joint1`, a second time"));
         assert!(refused(&["joint1", "joint2", "joint4"]).contains("`joint4`, which follows `joint"));
+    }
+
+    #[test]
+    fn a_robot_without_joints_has_an_order() {
+        let body = crate::Description::new("body").link("it", crate::testing::inertia(1)).build().expect("sound");
+        assert_eq!(JointOrder::new(&body, Vec::new()).n(), 0);
     }
 
     #[test]

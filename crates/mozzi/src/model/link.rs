@@ -131,18 +131,22 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     #[inline(always)]
     pub fn transform_with(&self, sin_cos: (S, S), theta: &[S]) -> SE3<S> {
         let M = || self.link.M.map(S::from);
-        if self.has_one_axis() {
-            return self.A().transform(sin_cos, self.own(theta), M());
-        }
         match self.motion {
-            Motion::Screw => SE3::identity(),
+            Motion::Screw => self.A().transform(sin_cos, self.own(theta), M()),
             Motion::Ball => {
+                rarely();
                 let [w, x, y, z] = core::array::from_fn(|k| theta[self.q + k]);
                 let (R, M) = (SO3::from_quaternion(w, Vec3([x, y, z])).inverse(), M());
                 in_turn(SE3 { R: R * M.R, p: R * M.p })
             }
-            Motion::Free => in_turn(SE3::from_pose(core::array::from_fn(|k| theta[self.q + k])).inverse() * M()),
-            Motion::Next => in_turn(SE3::identity()),
+            Motion::Free => {
+                rarely();
+                in_turn(SE3::from_pose(core::array::from_fn(|k| theta[self.q + k])).inverse() * M())
+            }
+            Motion::Next => {
+                rarely();
+                in_turn(SE3::identity())
+            }
         }
     }
 
@@ -152,7 +156,7 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         if self.has_one_axis() { self.A().sin_cos(self.own(theta)) } else { (S::zero(), S::one()) }
     }
 
-    /// Is it the one axis of its joint? Most are: the compiler is told that the other way is the rare one.
+    /// Is it the one axis of its joint?
     #[inline(always)]
     pub fn has_one_axis(&self) -> bool {
         let is_one = self.motion == Motion::Screw;
@@ -175,6 +179,7 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     }
 }
 
+/// Tells the compiler that this way is the rare one.
 #[cold]
 #[inline(always)]
 fn rarely() {}
