@@ -47,10 +47,6 @@ def load(path):
         raise Failure(f"MuJoCo does not load it: {' '.join(str(error).split())[:120]}")
     if not model.njnt:
         raise Failure("nothing moves")
-    for j in range(model.njnt):
-        first = model.jnt_dofadr[j]
-        if model.jnt_type[j] == FREE and np.any(model.dof_armature[first:first + 6]):
-            raise Failure("has an armature on its free joint")
     flags = mujoco.mjtDisableBit
     model.opt.disableflags |= int(flags.mjDSBL_CONSTRAINT) | int(flags.mjDSBL_ACTUATION)
     model.opt.disableflags |= int(flags.mjDSBL_SPRING) | int(flags.mjDSBL_DAMPER)
@@ -60,9 +56,10 @@ def load(path):
 
 
 def base(model):
-    """The body that mozzi makes a floating base: free, undamped, and all that moves hangs on it. Else none."""
+    """The body that mozzi makes a floating base: free, without damping and armature, and all that moves hangs on it. Else none."""
     free = np.flatnonzero(model.jnt_type == FREE)
-    if len(free) != 1 or np.any(model.dof_damping[model.jnt_dofadr[free[0]]:][:6]):
+    held = model.dof_damping + model.dof_armature
+    if len(free) != 1 or np.any(held[model.jnt_dofadr[free[0]]:][:6]):
         return None
     body = model.jnt_bodyid[free[0]]
     return body if all(model.body_rootid[b] == body for b in model.jnt_bodyid) else None
@@ -131,6 +128,26 @@ class Coordinates:
         return qpos, Y, rate
 
 
+def starts(path, model, data, coordinates, bodies):
+    """Poses and body twists (w, v) where MuJoCo starts, and at each key of the file (<size nkey> may add more); joints that an equality
+    couples are projected."""
+    made = []
+    for key in range(-1, len(mujoco.MjSpec.from_file(str(path)).keys)):
+        mujoco.mj_resetData(model, data) if key < 0 else mujoco.mj_resetDataKeyframe(model, data, key)
+        for j, source, ratio, shift in coordinates.followers:
+            data.qpos[model.jnt_qposadr[j]] = ratio * data.qpos[model.jnt_qposadr[source]] + shift
+            data.qvel[model.jnt_dofadr[j]] = ratio * data.qvel[model.jnt_dofadr[source]]
+        mujoco.mj_forward(model, data)
+        poses, twists = {}, {}
+        for i, name in bodies.items():
+            poses[name] = np.block([[data.xmat[i].reshape(3, 3), data.xpos[i][:, None]], [np.zeros((1, 3)), np.ones((1, 1))]])
+            twist = np.zeros(6)
+            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, i, twist, 1)
+            twists[name] = twist
+        made.append({"state": None if key < 0 else model.key(key).name or f"key{key}", "time": data.time, "poses": poses, "twists": twists})
+    return made
+
+
 def record(name, path, shown, states):
     model = load(path)
     data = mujoco.MjData(model)
@@ -142,6 +159,7 @@ def record(name, path, shown, states):
     unnamed = lambda j: f"{bodies[model.jnt_bodyid[j]]}:free" if model.jnt_type[j] == FREE else f"joint{j}"
     names = [model.joint(j).name or unnamed(j) for j in coordinates.joints if body is None or model.jnt_type[j] != FREE]
     rng, worst, records = rng_of(f"mjcf {name}"), Worst(), []
+    first = starts(path, model, data, coordinates, bodies)
     for _ in range(states):
         theta = coordinates.random(rng)
         dtheta, ddtheta, tau = rng.standard_normal((3, coordinates.n)) * np.array([[1.0], [2.0], [2.0]])
@@ -176,6 +194,7 @@ def record(name, path, shown, states):
         "robot": name, "mjcf": shown, "library": f"mujoco {metadata.version('mujoco')}",
         "gravity": model.opt.gravity * (not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)),
         "tip_frame": bodies[tip], "joint_names": names, "armature": True,
+        "starts": first,
         "states": records,
     }
     if body is not None:

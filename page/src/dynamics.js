@@ -61,7 +61,7 @@ export function massMatrix(robot, theta) {
   const all = axes(robot, T);
   const of = Array.from(T, () => []);
   all.forEach((axis) => of[axis.body].push(axis));
-  const M = robot.armature.map((armature, i) => robot.armature.map((_, j) => (i === j ? armature : 0)));
+  const M = robot.armature.map((row) => [...row]);
   for (const axis of all) {
     const F = momentum(composite[axis.body], axis.S);
     for (const other of of[axis.body]) M[axis.j][other.j] += dot(other.S, F);

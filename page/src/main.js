@@ -27,7 +27,7 @@ const asked = new URLSearchParams(location.hash.slice(1)); // #t=1.2&show=axes,t
 const jointColour = (j) => seriesColour(j, robot.n);
 
 const neutral = robot.allJoints.flatMap(atZero);
-const still = () => ({ theta: [...neutral], dtheta: null, ddtheta: null, tip: null });
+const still = () => ({ theta: [...robot.start], dtheta: null, ddtheta: null, tip: null });
 let state = motion ? stateAt(motion, motion.t[0]) : still();
 
 find("name").textContent = robot.name;
@@ -233,7 +233,7 @@ async function start() {
     addPlots();
     addTransport();
   } else {
-    setJoints = addSliders(find("panel"), robot, state.theta, jointColour, place);
+    setJoints = addSliders(find("panel"), robot, state.theta, neutral, jointColour, place);
   }
   overlays.measure(motion ? some(60) : randomStates(30));
   const read = await addShapes(robot, raw.meshes, scene);

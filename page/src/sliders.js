@@ -2,8 +2,7 @@
 
 import { coordinates, positionsOf, randomPose } from "./joints.js";
 
-export function addSliders(host, robot, theta, jointColour, onChange) {
-  const home = [...theta];
+export function addSliders(host, robot, theta, neutral, jointColour, onChange) {
   const row = host.appendChild(document.createElement("div"));
   row.className = "row";
   const fields = robot.joints.map((joint) => slidersOf(host, joint, theta, jointColour, onChange));
@@ -17,9 +16,19 @@ export function addSliders(host, robot, theta, jointColour, onChange) {
     made.textContent = text;
     made.addEventListener("click", () => set(values()));
   };
-  button("all at 0", () => home);
+  button("all at 0", () => neutral);
   button("a random pose", () => randomPose(robot));
+  if (robot.states.length > 0) addStates(row, robot.states, set);
   return set;
+}
+
+// The states that the robot's file names.
+function addStates(row, states, set) {
+  const select = row.appendChild(document.createElement("select"));
+  select.setAttribute("aria-label", "a named state");
+  select.append(new Option("a state…", ""));
+  states.forEach(({ name }, k) => select.append(new Option(name, k)));
+  select.addEventListener("change", () => select.value !== "" && set(states[select.value].theta));
 }
 
 // The fields of one joint, which set its positions in `theta`; returned is what shows them.

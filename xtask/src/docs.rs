@@ -1,4 +1,4 @@
-//! The pages of `docs/`, and the stubs of the Python package, written by the tests that otherwise hold them current.
+//! The generated pages of `docs/` and the stubs of the Python package, written by the tests that otherwise check them.
 
 use crate::command;
 use crate::oracles;

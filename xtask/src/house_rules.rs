@@ -15,7 +15,7 @@ const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi-py/src/methods/attach",
 ];
 
-/// A file longer than this is asking to be two.
+/// Files longer than this should be split.
 const LONG: usize = 400;
 
 pub fn check(workspace: &Workspace) -> Outcome {

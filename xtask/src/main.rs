@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | page | bench | accuracy | wheel`: what CI runs, anyone can run.
+//! `cargo xtask test | check | docs | page | bench | accuracy | wheel`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -8,6 +8,7 @@ mod advisories;
 mod bench;
 mod command;
 mod docs;
+mod documents;
 mod examples;
 mod fuzz;
 mod house_rules;
@@ -35,26 +36,26 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
-          the Python package, its wheel, a while of fuzzing, the no_std check, every example, the main job
-  check   formatting, clippy, documentation, licences, advisories, house rules
-  docs    write the pages of docs/ anew; `test` holds them current
-  page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` sees whether that was done
+          the Python package, its wheel, some fuzzing, the no_std check, every example, the main job
+  check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
+  docs    rewrite the generated pages of docs/; `test` checks that they are current
+  page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` checks that it is current
           --check                                     build it elsewhere and compare
-  bench   beside Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
-          --robots ur5,panda,anymal,talos,tree,chain  these alone, into target/bench/RESULTS.md
-          --peers pinocchio,mujoco,kdl,dynibo,casadi  these alone, likewise
+  bench   compare with Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
+          --robots ur5,panda,anymal,talos,tree,chain  only these robots, into target/bench/RESULTS.md
+          --peers pinocchio,mujoco,kdl,dynibo,casadi  only these libraries, likewise
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first
           --criterion                                 each kernel alone, without peers
-          --python                                    Python's calls beside Pinocchio's and the Modern Robotics package's
-  accuracy  every quantity in every way, Pinocchio and MuJoCo against numbers of 31 and 71 digits, into docs/accuracy.md
+          --python                                    compare Python's calls with Pinocchio's and the Modern Robotics package's
+  accuracy  measure every quantity in every way, Pinocchio and MuJoCo against numbers of 31 and 71 digits, into docs/accuracy.md
           --states 1000                               of each robot, up to a million
           --references 2                              states at which 71 digits check the reference
-          --robots ur5,anymal:floating,FILE.urdf      these alone, to standard output
+          --robots ur5,anymal:floating,FILE.urdf      only these robots, to standard output
           --quantities mass-matrix,forward-dynamics   likewise
-          --no-hard                                   without what is hard by design
-  wheel   the Python package for Linux, into target/wheels; installed into an empty environment, where its README runs
-          --of-tests                                  of what `test` built, as `test` does it";
+          --no-hard                                   without the cases that are hard by design
+  wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
+          --of-tests                                  package the build of `test`, as `test` does it";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -148,6 +149,7 @@ fn check(workspace: &Workspace) -> ExitCode {
     report.step("licences", || licences::check(workspace));
     report.step("advisories", || advisories::check(workspace));
     report.step("house rules", || house_rules::check(workspace));
+    report.step("lengths of documents", || documents::check(workspace));
     report.finish()
 }
 

@@ -1,4 +1,4 @@
-//! The wheel for Linux: built for old systems, too, as small as it must be, and the README's examples with nothing but it installed. The
+//! The wheel for Linux: built for old systems, too, with a limit on its size, and the README's examples with only the wheel installed. The
 //! tests do the last with a wheel of what they built.
 
 use crate::command;

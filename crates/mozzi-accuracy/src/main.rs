@@ -5,11 +5,11 @@ use mozzi::quantities::LIST;
 use mozzi_accuracy::page::{LIMIT, Measured};
 use mozzi_accuracy::robot::Robot;
 use mozzi_accuracy::states::States;
-use mozzi_accuracy::{digits, hard, measure, page, peers};
+use mozzi_accuracy::{digits, hard, measure, mixed, page, peers};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// How many digits are right: every quantity in every way, and other libraries, against wide numbers.
+/// Measures the errors of every quantity in every way, and of other libraries, against wide numbers.
 #[derive(Parser)]
 struct Options {
     /// States of each robot, up to a million.
@@ -18,7 +18,8 @@ struct Options {
     /// States at which 71 digits and the second way check the reference; 0 for none.
     #[arg(long, default_value_t = 2)]
     references: usize,
-    /// Names of embedded robots and paths of URDF files, `:floating` behind a free base; by default the embedded ones.
+    /// Names of embedded robots and paths of URDF files, `:floating` behind a free base; `mixed` is a tree with a ball
+    /// and a free joint. By default the embedded ones and `mixed`.
     #[arg(long, value_delimiter = ',')]
     robots: Vec<String>,
     /// Also measures every URDF file below this folder; the page lists the files that are refused.
@@ -33,17 +34,17 @@ struct Options {
     /// Of the states.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// A Python with `pin` and `mujoco`; without it other libraries are not asked.
+    /// Python interpreter with `pin` and `mujoco`; without it other libraries are not measured.
     #[arg(long)]
     python: Option<PathBuf>,
-    /// Writes the page there; without it to standard output.
+    /// File for the page; standard output by default.
     #[arg(long)]
     page: Option<PathBuf>,
 }
 
-/// States of which other libraries are asked, at most.
+/// Largest number of states for other libraries.
 const ASKED: usize = 1000;
-/// Velocities above which other libraries are not asked: their answers would be long texts.
+/// Robots with more velocities are not sent to other libraries: their answers would be too long.
 const LARGEST_ASKED: usize = 200;
 /// Moving links above which the second way on 71 digits takes too long.
 const LARGEST_SECOND: usize = 13;
@@ -59,7 +60,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Measures, writes the page, and tells what is above the limit.
+/// Measures, writes the page, and prints errors above the limit.
 fn run(options: &Options) -> Result<(), String> {
     let quantities: Vec<usize> = if options.quantities.is_empty() {
         (0..LIST.len()).collect()
@@ -68,7 +69,10 @@ fn run(options: &Options) -> Result<(), String> {
         options.quantities.iter().map(place).collect::<Result<_, _>>().map_err(|error| error.to_string())?
     };
     let given: Vec<String> = match options.robots.is_empty() {
-        true => mozzi_urdf::embedded::names().map(String::from).chain(["anymal:floating".into()]).collect(),
+        true => {
+            let more = ["anymal:floating", mixed::NAME, "mixed:floating"];
+            mozzi_urdf::embedded::names().chain(more).map(String::from).collect()
+        }
         false => options.robots.clone(),
     };
     let mut all = Vec::new();

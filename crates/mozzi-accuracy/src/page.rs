@@ -84,26 +84,26 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
         text.push_str(part);
         text.push_str("\n\n");
     };
-    push(&mut text, "# How many digits are right");
+    push(&mut text, "# Accuracy");
     push(&mut text, &format!("Written by `{command}`. {versions}. Seed {seed}; up to {states} states of each robot."));
     push(
         &mut text,
         &format!(
-            "The reference is the same kernel on double-double numbers (31 digits), on a model that was built from the file's decimals. It is itself \
-             checked against numbers of 71 digits and against the second way of each quantity: see the last table.\n\n\
-             **Unit.** One unit is the largest change of a result when each of the robot's constants and of the rates changes by ε = 2⁻⁵² of itself, and each \
-             angle by ε radians, up or down at random (the largest of {DRAWS} draws); at least ε times the result. So it is ε times the size of the \
-             terms, found without knowing the formula: what rounding the robot's own numbers and its sines does. For `f32`, ε is \
-             2⁻²³. Errors are of whole outputs: the largest error over the largest unit of a vector's or matrix's entries.\n\n\
-             Each cell is **largest / 99.9 % of the states / median**. – means that there is no such way (machine code that would be too long, \
-             no machine code on the machine)."
+            "The reference is the same kernel on double-double numbers (31 digits), on a model built from the \
+             file's exact decimals. The reference itself is checked against 71-digit numbers and against a \
+             second, independent computation of each quantity: see the last table.\n\n\
+             **Unit.** One unit is the largest change of a result when each of the robot's constants and rates changes \
+             by ε = 2⁻⁵² of itself, and each angle by ε radians, up or down at random (the largest of {DRAWS} draws); at least ε times the result. So a unit is the error caused by rounding the robot's own \
+             numbers, measured without a formula for the terms. For `f32`, ε is 2⁻²³. Errors are those of \
+             whole outputs: the largest error over the largest unit of a vector's or matrix's entries.\n\n\
+             Each cell is **largest / 99.9 % of the states / median**. – means not available (machine code would be too long, or is not supported on the machine)."
         ),
     );
     let published = || all.iter().filter(|robot| !robot.is_hard);
     let hard = || all.iter().filter(|robot| robot.is_hard);
 
     push(&mut text, "## Robots");
-    push(&mut text, "The worst quantity of each robot.");
+    push(&mut text, "The quantity with the largest error, for each robot.");
     let of_robot = |robot: &Measured| {
         let row = |way: &'static str| worst(robot.rows.iter().filter(|row| row.way == way), |row| row.errors.whole());
         [format!("{} ({} velocities, {} states)", robot.name, robot.n, robot.states)]
@@ -124,7 +124,7 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
     above(&mut text, all);
 
     push(&mut text, "## Quantities");
-    push(&mut text, "The worst of all robots above that are not hard by design.");
+    push(&mut text, "The largest error over all robots above that are not hard by design.");
     let of_quantity = |quantity: usize| {
         let rows = |way: &'static str| {
             let rows =
@@ -138,8 +138,8 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
     push(&mut text, "## Entry by entry");
     push(
         &mut text,
-        "The error of each entry over that entry's own unit, the worst entry counting: digits of a small entry beside large ones, such as a \
-         finger's in the mass matrix of an arm.",
+        "The largest error of an entry over that entry's own unit. It shows the lost digits of small \
+             entries in a matrix with large ones, such as a finger's entry in the mass matrix of an arm.",
     );
     let matrices = ["mass_matrix", "coriolis_matrix", "mass_matrix_rate"];
     let entries = all.iter().flat_map(|robot| {
@@ -162,14 +162,16 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
 fn above(text: &mut String, all: &[Measured]) {
     writeln!(text, "## Above {LIMIT} units\n").expect("a text grows");
     text.push_str(
-        "What is above rounding on a published robot divides by the mass matrix M, but for Ṁ. **M is rounded entry by entry**: M⁻¹, Λ, η, ∂θ̈ and the forward dynamics \
-         that solve with M see M's entries rounded one by one; the robot's constants cannot change M like that. Where a light link hangs \
-         behind heavy ones, or three axes meet in a point, the inverse shows it. `forward_dynamics`, the articulated-body algorithm, never \
-         forms M, and keeps the digits: prefer it.\n\n\
-         Ṁ = C + Cᵀ loses what the first joints' motion adds to C and cancels in the sum; where the outer joints hardly move, it is all.\n\n\
-         In brackets the same error in ε times the largest term of the formula, which counts both: |M⁻¹| |M| |X| of X = M⁻¹B, likewise of Λ and η; \
-         |C| + |C|ᵀ of Ṁ.\n\n\
-         The worst way of each quantity, in units:\n\n",
+        "On published robots, all quantities above this limit divide by the mass matrix M, except Ṁ. **M \
+             is rounded entry by entry**: M⁻¹, Λ, η, ∂θ̈ and forward dynamics by M use these rounded entries, \
+             and no change of the robot's constants changes M in this way. The inverse amplifies it if a \
+             light link follows heavy ones, or if three axes meet in a point. `forward_dynamics`, the \
+             articulated-body algorithm, never forms M and keeps the digits: prefer it.\n\n\
+         In Ṁ = C + Cᵀ the contribution of the first joints' motion to C cancels; if the outer joints \
+             hardly move, that is nearly all of C.\n\n\
+         In brackets: the same error in ε times the largest term of the formula, which accounts for both \
+             effects: |M⁻¹| |M| |X| for X = M⁻¹B, likewise for Λ and η; |C| + |C|ᵀ for Ṁ.\n\n\
+         The largest error of each quantity over all ways, in units:\n\n",
     );
     let mut lines: Vec<String> = Vec::new();
     for robot in all {
@@ -200,7 +202,7 @@ fn told(name: &str, units: f64, terms: Option<f64>) -> String {
 fn peers(text: &mut String, all: &[Measured]) {
     let asked: Vec<&Measured> = all.iter().filter(|robot| !robot.peers.is_empty()).collect();
     if asked.is_empty() {
-        text.push_str("Other libraries were not asked: no Python with them was found.\n\n");
+        text.push_str("Other libraries were not measured: no Python with them was found.\n\n");
         return;
     }
     text.push_str("## Other libraries\n\n");
@@ -210,8 +212,9 @@ fn peers(text: &mut String, all: &[Measured]) {
     let versions: Vec<String> = versions.into_iter().collect();
     writeln!(
         text,
-        "{} at the same states of the same files, without friction and springs, against the same reference in the same units. **Bold** is where a \
-         library's median and largest error are both smaller than mozzi's by more than a tenth.\n",
+        "{} at the same states of the same files, without friction and springs, compared with the same \
+             reference in the same units. **Bold**: both the library's median and its largest error are \
+             smaller than mozzi's by more than a tenth.\n",
         versions.join(" and ")
     )
     .expect("a text grows");
@@ -253,8 +256,10 @@ fn peers(text: &mut String, all: &[Measured]) {
 fn references(text: &mut String, all: &[Measured]) {
     text.push_str("## The references\n\n");
     text.push_str(
-        "Digits, of the size of the terms, to which the references agree, the fewest over all quantities: the kernel against its second way (stacked \
-         closed form, links one by one, dual numbers), both on 71 digits; and the kernel on 31 digits against 71.\n\n",
+        "The number of digits, relative to the size of the terms, to which the references agree; the \
+             smallest over all quantities. First column: the kernel and its second way (stacked closed form, \
+             sum over links, dual numbers), both with 71 digits. Second column: the kernel with 31 and with \
+             71 digits.\n\n",
     );
     let rows = all.iter().filter(|robot| !robot.references.1.is_empty()).map(|robot| {
         let (states, digits) = &robot.references;

@@ -5,6 +5,7 @@ use crate::measure::Row;
 use crate::reference::Neighbours;
 use crate::robot::Robot;
 use crate::states::States;
+use mozzi::Freedom;
 use mozzi::quantities::LIST;
 use mozzi_oracle::{Double, read_urdf};
 use serde_json::{Value, json};
@@ -43,6 +44,9 @@ fn rows(
     let (model, count) = (&robot.model, count.min(states.len()));
     if model.has_mimic_joints() {
         return Err("it moves the joints that follow others on their own".into());
+    }
+    if model.places().iter().any(|place| place.freedom != Freedom::One) {
+        return Err("it is asked about joints of one axis alone".into());
     }
     let list = |x: &[f64]| Value::from(x.to_vec());
     let state = |k: usize| json!([list(states.theta(k)), states.rates(k).map(list)]);

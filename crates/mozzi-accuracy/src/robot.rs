@@ -1,5 +1,6 @@
 //! A robot in three widths.
 
+use crate::mixed;
 use crate::states::Kind;
 use mozzi::quantities::{LIST, Of, Query, Uses};
 use mozzi::{Description, FrameId, Model, Task, TaskFrame, Vec3};
@@ -28,12 +29,16 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot by the name of an embedded one or the path of a URDF file; `:floating` behind it frees its base.
+    /// A robot by the name of an embedded one, by that of the [mixed tree](crate::mixed), or by the path of a URDF
+    /// file; `:floating` behind it frees its base.
     ///
     /// # Errors
-    /// What cannot be read, told in a sentence.
+    /// The message for a robot that cannot be read.
     pub fn open(given: &str) -> Result<Self, String> {
         let (source, floats) = given.strip_suffix(":floating").map_or((given, false), |source| (source, true));
+        if source == mixed::NAME {
+            return mixed::robot(floats);
+        }
         let text = match mozzi_urdf::embedded::text(source) {
             Some(text) => text.to_string(),
             None => std::fs::read_to_string(source).map_err(|error| format!("{source}: {error}"))?,
@@ -48,9 +53,24 @@ impl Robot {
     /// # Errors
     /// As [`open`](Self::open).
     pub fn parse(name: &str, text: &str, floats: bool, kind: Kind) -> Result<Self, String> {
+        Robot::parse_with(name, text, floats, kind, |_| {})
+    }
+
+    /// Likewise, after an edit that URDF cannot express: balls and rotor inertias.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn parse_with(
+        name: &str,
+        text: &str,
+        floats: bool,
+        kind: Kind,
+        edit: impl FnOnce(&mut Description),
+    ) -> Result<Self, String> {
         let said = |error: &dyn std::fmt::Display| format!("{name}: {error}");
         let read = mozzi_urdf::parse(&format!("{name}.urdf"), text).map_err(|error| said(&error))?;
-        let description = if floats { read.description.floating() } else { read.description };
+        let mut description = if floats { read.description.floating() } else { read.description };
+        edit(&mut description);
         Robot::of(name, text, description, kind)
     }
 

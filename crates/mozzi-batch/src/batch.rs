@@ -23,8 +23,8 @@ type Size = (&'static str, usize, usize);
 
 /// A model with what it takes to ask it of many states: constants as `T`, registers, threads, the tables' layout.
 ///
-/// Every method takes tables of N states, N being given by θ's length, and writes tables of the caller's. Numbers of one state stand side
-/// by side (see [`Layout`]); matrices by rows.
+/// Every method reads tables of N states, where N follows from the length of θ, and fills the caller's tables. The
+/// numbers of a state are contiguous (see [`Layout`]); matrices by rows.
 #[derive(Clone, Debug)]
 pub struct Batch<T: Number = f64> {
     model: Arc<Model>,
@@ -41,14 +41,14 @@ pub struct Batch<T: Number = f64> {
 }
 
 impl Batch {
-    /// In `f64`, on the machine's widest registers and all its cores, with row-major tables.
+    /// A batch in `f64`, on the machine's widest registers and all its cores, with row-major tables.
     pub fn new(model: &Model) -> Self {
         Self::of(model)
     }
 }
 
 impl<T: Number> Batch<T> {
-    /// As [`new`](Batch::new), in numbers of this type: `Batch::<f32>::of(&model)`.
+    /// As [`new`](Batch::new), with this number type: `Batch::<f32>::of(&model)`.
     pub fn of(model: &Model) -> Self {
         Batch {
             model: Arc::new(model.clone()),
@@ -78,12 +78,12 @@ impl<T: Number> Batch<T> {
     /// On this many threads; on one, on the caller's. Results are the same to the bit for any number.
     ///
     /// # Errors
-    /// [`Error::Threads`] for none, or where the system gives no more.
+    /// [`Error::Threads`] for 0 threads, or if the system cannot start them.
     pub fn with_threads(self, threads: usize) -> Result<Self, Error> {
         Ok(Batch { threads: Threads::new(threads)?, ..self })
     }
 
-    /// With tables in this layout.
+    /// Sets the layout of the tables.
     pub fn with_layout(self, layout: Layout) -> Self {
         Batch { layout, ..self }
     }
@@ -98,17 +98,17 @@ impl<T: Number> Batch<T> {
         &self.model
     }
 
-    /// The registers in use.
+    /// The instruction set in use.
     pub fn instruction_set(&self) -> InstructionSet {
         self.set
     }
 
-    /// How many states a register holds, and a block of [`Layout::Blocks`].
+    /// The number of states in a register, and in a block of [`Layout::Blocks`].
     pub fn lanes(&self) -> usize {
         self.set.lanes::<T>()
     }
 
-    /// How many threads work at once, at most.
+    /// The largest number of threads.
     pub fn threads(&self) -> usize {
         self.threads.count()
     }
@@ -122,7 +122,7 @@ impl<T: Number> Batch<T> {
         Batch { threads, ..self.clone() }
     }
 
-    /// The table of rows in the layout of this batch's [`Layout::Blocks`], the last block filled up with its last state.
+    /// Converts a row-major table to [`Layout::Blocks`]; the last block is filled with its last state.
     pub fn to_blocks(&self, rows: &[T], width: usize) -> Vec<T> {
         let (lanes, states) = (self.lanes(), rows.len() / width.max(1));
         let mut blocks = Vec::with_capacity(states.next_multiple_of(lanes) * width);
@@ -134,7 +134,7 @@ impl<T: Number> Batch<T> {
         blocks
     }
 
-    /// The inverse of [`to_blocks`](Self::to_blocks), of the first states.
+    /// The inverse of [`to_blocks`](Self::to_blocks), for the first states.
     pub fn to_rows(&self, blocks: &[T], width: usize, states: usize) -> Vec<T> {
         let lanes = self.lanes();
         (0..states).flat_map(|state| (0..width).map(move |column| blocks[place(state, column, width, lanes)])).collect()
@@ -193,13 +193,13 @@ impl<T: Number> Batch<T> {
         Ok(states)
     }
 
-    /// A quantity at many states: the outputs, from tables of its inputs in their order. The length of the first tells the number N of states (of a robot
-    /// without joints, the first table that has numbers for each state).
-    /// What the quantity does not use of the environment has no effect. See [`LIST`](mozzi::quantities::LIST).
+    /// A quantity at many states: the outputs, from tables of its inputs in their order. The length of the first tells
+    /// the number N of states (of a robot without joints, the first table that has numbers for each state). What the
+    /// quantity does not use of the environment has no effect. See [`LIST`](mozzi::quantities::LIST).
     ///
     /// # Errors
-    /// Tables of a wrong length, named; a frame that is missing or another model's; a state's error with its number: of a singular mass
-    /// matrix or a singular task the first, after all states are computed.
+    /// Tables of a wrong length, named; a frame that is missing or another model's; a state's error with its number: of
+    /// a singular mass matrix or a singular task the first, after all states are computed.
     ///
     /// # Panics
     /// On another number of inputs or outputs than the quantity has.
@@ -246,8 +246,8 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// The program that computes this: of a compiled quantity in the robot's own environment, of inertial parameters that differ from state to
-    /// state, of a quantity without a kernel on registers. None for the kernel.
+    /// The program that computes this: of a compiled quantity in the robot's own environment, of inertial parameters
+    /// that differ from state to state, of a quantity without a kernel on registers. None for the kernel.
     fn programmed(&self, request: &Request<T>, arguments: &Arguments) -> Result<Option<Arc<Programmed>>, Error> {
         let query = &request.query;
         let compiled = if self.compiled.is_empty() { None } else { find(&self.compiled, query, arguments) };
@@ -264,11 +264,11 @@ impl<T: Number> Batch<T> {
         Ok(self.programs.get_or_make(query, arguments, make)?)
     }
 
-    /// The same, these quantities of it as machine code in the robot's own environment, where there is code for this machine: see
-    /// [`engine`](Self::engine). Clones share the code.
+    /// The same, these quantities of it as machine code in the robot's own environment, where there is code for this
+    /// machine: see [`engine`](Self::engine). Clones share the code.
     ///
     /// # Errors
-    /// [`Error::Model`] for a frame that is missing or another model's.
+    /// [`Error::Model`] if the frame is missing or belongs to another model.
     pub fn compile(self, queries: &[Query]) -> Result<Self, Error> {
         let mut compiled = Vec::clone(&self.compiled);
         for query in queries {
@@ -279,7 +279,7 @@ impl<T: Number> Batch<T> {
         Ok(Batch { compiled: Arc::new(compiled), ..self })
     }
 
-    /// What computes this quantity in the robot's own environment.
+    /// The engine that computes this quantity in the robot's own environment.
     pub fn engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
         let query = &query.into();
         let arguments = &alone(query);

@@ -2,15 +2,14 @@
 
 use crate::{Batch, Engine, Layout};
 use mozzi::quantities::{ForwardDynamics, Of, Query};
-use mozzi::simulation::{self, Equation, Input, Options};
+use mozzi::simulation::{self, Input, Options, Simulation};
 use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
 use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
-use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest, touching nothing. Results
-/// are the model's to rounding, errors the same. What was not asked for, or has no machine code here (see [`engine`](Self::engine)),
-/// the kernels compute.
+/// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest,
+/// touching nothing. Results are the model's to rounding, errors the same. What was not asked for, or has no machine
+/// code here (see [`engine`](Self::engine)), the kernels compute.
 ///
 /// It is constant and belongs to no thread: share it. Clones share the code.
 #[derive(Clone, Debug)]
@@ -76,7 +75,7 @@ impl Machine {
 /// ```
 ///
 /// # Errors
-/// [`Error::BadArgument`] for a frame that is missing or another model's.
+/// [`Error::BadArgument`] if the frame is missing or belongs to another model.
 pub fn compile(model: &Model, queries: &[Query]) -> Result<Compiled, Error> {
     Compiled::of(Batch::new(model), queries)
 }
@@ -103,7 +102,7 @@ impl Compiled {
         self.batch.model()
     }
 
-    /// Many states: a batch that goes by the machine code of these quantities in the robot's own environment.
+    /// A batch that uses the machine code of these quantities in the robot's own environment.
     pub fn batch(&self) -> &Batch {
         &self.batch
     }
@@ -116,17 +115,17 @@ impl Compiled {
         Ok(Compiled { batch: self.batch.with_threads(threads)?, ..self })
     }
 
-    /// With the tables of many states in this layout; by default in rows.
+    /// Sets the layout of tables of many states; row-major by default.
     pub fn with_layout(self, layout: Layout) -> Self {
         Compiled { batch: self.batch.with_layout(layout), ..self }
     }
 
-    /// What computes this quantity at one state.
+    /// The engine that computes this quantity at one state.
     pub fn engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
         self.machine(&query.into()).map_or(Engine::Kernels(Refusal::NotAsked), |machine| Engine::of(&machine.code))
     }
 
-    /// What computes this quantity at many states.
+    /// The engine that computes this quantity at many states.
     pub fn batch_engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
         self.batch.engine(query)
     }
@@ -136,8 +135,9 @@ impl Compiled {
         self.machines.iter().find(|machine| machine.is_of(query))
     }
 
-    /// The outputs of a quantity at one state, for control loops: where there is machine code nothing is allocated. Arguments are not
-    /// checked beyond their lengths: singular matrices and quaternions of any length go through. Are the pivots clear of rounding?
+    /// The outputs of a quantity at one state, for control loops: where there is machine code nothing is allocated.
+    /// Arguments are not checked beyond their lengths: singular matrices and quaternions of any length go through. Are
+    /// the pivots clear of rounding?
     ///
     /// # Panics
     /// On another number of arrays, or one of a wrong length.
@@ -229,14 +229,15 @@ impl simulation::ForwardDynamics for Compiled {
 }
 
 impl Compiled {
-    /// Machine code for θ̈, where there is some.
+    /// Machine code for θ̈, where there is some: the [`forward_dynamics`](Simulation::forward_dynamics) of a simulation
+    /// with events, recorders or progress.
     pub fn simulator(&self) -> Option<&dyn simulation::ForwardDynamics> {
         let is_code = matches!(self.engine(ForwardDynamics), Engine::MachineCode(..));
         is_code.then_some(self as &dyn simulation::ForwardDynamics)
     }
 
-    /// The motion from (θ(0), θ̇(0)): see [`Model::simulate`], with forward dynamics by machine code where it was asked for, nothing is
-    /// touched and gravity is the robot's own.
+    /// The motion from (θ(0), θ̇(0)): see [`Model::simulate`], with forward dynamics by machine code where it was asked
+    /// for, nothing is touched and gravity is the robot's own.
     ///
     /// ```
     /// use mozzi::quantities::ForwardDynamics;
@@ -258,23 +259,7 @@ impl Compiled {
         input: impl Input,
         options: &Options,
     ) -> Result<Trajectory, Error> {
-        self.simulate_with_progress(theta, dtheta, input, options, |_, _| ControlFlow::Continue(()))
-    }
-
-    /// As [`simulate`](Self::simulate), telling `progress` as [`Model::simulate_with_progress`] does.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn simulate_with_progress(
-        &self,
-        theta: &[f64],
-        dtheta: &[f64],
-        input: impl Input,
-        options: &Options,
-        progress: impl FnMut(usize, usize) -> ControlFlow<()>,
-    ) -> Result<Trajectory, Error> {
-        Equation::new(self.model(), input, options)
-            .with_forward_dynamics(self.simulator())?
-            .simulate(theta, dtheta, progress)
+        let simulation = Simulation { forward_dynamics: self.simulator(), ..Simulation::new(*options) };
+        simulation.run(self.model(), theta, dtheta, input).map(|run| run.motion)
     }
 }

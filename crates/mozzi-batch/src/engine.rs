@@ -1,9 +1,9 @@
-//! What computes a quantity.
+//! The engines that compute quantities.
 
 use mozzi_codegen::{Kernel, Refusal, Shape};
 use std::fmt;
 
-/// What computes a quantity, at one state or in arrays.
+/// The engine that computes a quantity, at one state or in arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Engine {
     /// Machine code of this shape, and its length in bytes.

@@ -1,13 +1,14 @@
-//! What surrounds the robots of a batch.
+//! The environment of a batch.
 
 use mozzi::{Environment, FrameId};
 
-/// What is the same for all states, and what differs from state to state: wrenches, gravity, the robot's inertial parameters.
+/// The environment common to all states, and wrenches, gravity and inertial parameters that differ between states.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchEnvironment<'a, T = f64> {
-    /// Gravity, the motion of {s}, and wrenches on the environment, for all states alike.
+    /// Gravity, the motion of {s}, and applied wrenches, equal for all states.
     pub environment: Environment<'a>,
-    /// For each frame a table (N, 6): the wrench (m, f), in the frame's coordinates, that it applies to the environment in each state.
+    /// For each frame a table (N, 6): the wrench (m, f), in the frame's coordinates, that it applies to the environment
+    /// in each state.
     pub wrenches: &'a [(FrameId, &'a [T])],
     /// A table (N, 3): gravity in {s} in each state, in place of the environment's.
     pub gravity: Option<&'a [T]>,

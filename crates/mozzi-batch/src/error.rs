@@ -1,8 +1,8 @@
-//! What can be wrong with a batch.
+//! Errors of batches.
 
 use crate::InstructionSet;
 
-/// Why a batch could not be computed. Nothing is left out in silence: an error names the state.
+/// Errors of batches. An error names the first state that failed; no state is skipped silently.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -48,7 +48,7 @@ pub enum Error {
     /// The machine has not these registers.
     #[error("this machine has no {}; it has {}", set.name(), names())]
     UnsupportedInstructionSet {
-        /// What was asked for.
+        /// The requested name.
         set: InstructionSet,
     },
     /// Threads could not be started.

@@ -1,12 +1,13 @@
-//! Which registers the machine has, found once when it runs.
+//! The machine's instruction sets, detected once at run time.
 
 use crate::lanes::Lane;
 use crate::number::Number;
 
-/// The registers that states are computed in.
+/// The instruction set of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// Plain arithmetic, one state at a time, on any processor: bit for bit the results of `mozzi`'s kernels at one state.
+    /// Plain arithmetic, one state at a time, on any processor: bit for bit the results of `mozzi`'s kernels at one
+    /// state.
     Portable,
     /// 256 bits, with fused multiply-add: 4 `f64` or 8 `f32`.
     Avx2,
@@ -15,18 +16,18 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// Those that this machine has, the fastest last.
+    /// The instruction sets of this machine, the fastest last.
     pub fn available() -> Vec<InstructionSet> {
         use InstructionSet::*;
         [Portable, Avx2, Avx512].into_iter().filter(|set| set.is_available()).collect()
     }
 
-    /// The fastest that this machine has.
+    /// The fastest instruction set of this machine.
     pub fn best() -> InstructionSet {
         Self::available().last().copied().unwrap_or(InstructionSet::Portable)
     }
 
-    /// Has this machine it?
+    /// Whether this machine supports it.
     pub fn is_available(self) -> bool {
         match self {
             InstructionSet::Portable => true,
@@ -43,7 +44,7 @@ impl InstructionSet {
         }
     }
 
-    /// How many states a register of these numbers holds.
+    /// The number of states in a register of this number type.
     pub fn lanes<T: Number>(self) -> usize {
         match self {
             #[cfg(target_arch = "x86_64")]

@@ -11,13 +11,14 @@ use mozzi::simulation::{Method, Motion};
 const TOGETHER: usize = 512;
 
 impl<T: Number> Batch<T> {
-    /// (θ, θ̇) (N, nq) and (N, n) of every robot after `steps` steps of a method over `duration` seconds, in place, under torques τ (N, n)
-    /// and an environment that stay as they are: a controller's interval. Robots move by pieces that fit the cache. See
-    /// [`mozzi::simulation`].
+    /// (θ, θ̇) (N, nq) and (N, n) of every robot after `steps` steps of a method over `duration` seconds, in place,
+    /// under torques τ (N, n) and an environment that stay as they are: a controller's interval. Robots move by pieces
+    /// that fit the cache. See [`mozzi::simulation`].
     ///
     /// # Errors
-    /// Tables of a wrong length; a state's error with its number: of a singular mass matrix, or of one that became infinite or NaN, after
-    /// its neighbours were computed.
+    /// A table has the wrong length, the method is not [explicit](Method::explicit), or a state fails (the error carries its
+    /// index): its mass matrix is singular, or it became infinite or NaN. Neighbouring states are computed before the error
+    /// is returned.
     #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
     pub fn simulate(
         &self,
@@ -35,6 +36,7 @@ impl<T: Number> Batch<T> {
         inputs.extend(Request::new(ForwardDynamics.into(), self.model(), environment).further());
         let frames = environment.wrenches.iter().map(|&(frame, _)| frame);
         let states = self.check(&inputs, [].into_iter(), &environment.environment, frames)?;
+        let explicit = method.explicit()?;
         let h = duration / steps as f64;
         if !(h.is_finite() && h >= 0.0) {
             let found = format!("{steps} steps in {duration} s");
@@ -87,7 +89,7 @@ impl<T: Number> Batch<T> {
                 let space = alone.model().configuration_space();
                 let mut motion: Motion<T> = Motion::start_many(space, robots, 0.0, theta, dtheta, accelerations)?;
                 for k in 1..=steps {
-                    motion.step(method, h, k as f64 * h, accelerations)?;
+                    motion.step(explicit, h, k as f64 * h, accelerations)?;
                 }
                 let diverged = lost(dtheta, &motion.dtheta).map(|k| {
                     let (joint, value) =

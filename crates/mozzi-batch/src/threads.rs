@@ -4,7 +4,7 @@ use crate::Error;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The threads of a batch.
+/// Threads of a batch.
 #[derive(Clone, Debug)]
 pub(crate) enum Threads {
     /// rayon's own, one a core.

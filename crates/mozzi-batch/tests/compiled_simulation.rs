@@ -6,7 +6,7 @@ mod common;
 
 use common::{error, robots, state};
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Equation, GravityCompensation, Input, Method, Options, Zero, applied, torque};
+use mozzi::simulation::{Equation, GravityCompensation, Input, Method, Options, Simulation, Zero, applied, torque};
 use mozzi::{Error, Model, Trajectory, Vec3, Wrench};
 use mozzi_batch::{Compiled, compile};
 use std::ops::ControlFlow;
@@ -88,9 +88,10 @@ fn what_cannot_be_is_refused_as_by_the_model() {
 fn progress_can_stop_it() {
     let model = common::tree(4, 6, 0).build().expect("sound");
     let [theta, dtheta, _] = state(&model, 2);
-    let half = |done: usize, of: usize| if 2 * done >= of { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let motion = compiled(&model).simulate_with_progress(&theta, &dtheta, Zero, &Options::new(0.1, 100), half);
-    let motion = motion.expect("a part");
+    let half = |t: f64| if t >= 0.0499 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let robot = compiled(&model);
+    let simulation = Simulation { forward_dynamics: robot.simulator(), ..Simulation::new(Options::new(0.1, 100)) };
+    let motion = simulation.run_with_progress(&model, &theta, &dtheta, Zero, half).expect("a part").motion;
     assert!(!motion.complete && motion.steps == 50);
 }
 

@@ -12,10 +12,10 @@ const HEAD: &str = "\
 # Quantities
 
 Every quantity is declared once, at the foot of its kernel's file in `crates/mozzi/src/`, and listed once, in
-`crates/mozzi/src/quantities/mod.rs`. This page is written from that list by `cargo xtask docs`; a test holds it current.
+`crates/mozzi/src/quantities/mod.rs`. `cargo xtask docs` writes this page from that list; a test checks that it is current.
 
 n is the number of velocities, nq of positions (one more on a floating base), p of inertial parameters, k of a task's rows. Units are
-those of turning joints, then of sliding ones; six-vectors are angular first; matrices are by rows everywhere. \"Environment\" lists what
+those of revolute joints, then of prismatic ones; six-vectors are angular first; matrices are by rows. \"Environment\" lists what
 else a quantity depends on: gravity g, wrenches F that frames apply, the twist 𝒱_s and the acceleration 𝒱̇_s of {s}. What is not listed has
 no effect on it.
 
@@ -29,7 +29,7 @@ Each quantity works in each of these ways:
 | one state, no allocation, fused multiply-add | `mozzi::fast::evaluate`, `mozzi::fast::compute` |
 | any number type: `f32`, dual numbers, your own | `query.evaluate(…)`, or the kernel itself |
 | many states, `f64` and `f32`, all cores; wrenches, gravity and inertial parameters of each state | `mozzi_batch::Batch::compute` |
-| a recorded program, printed, read and counted | `mozzi_codegen::record_quantity` |
+| a recorded program, printed, parsed and counted | `mozzi_codegen::record_quantity` |
 | machine code at one state and at many (x86-64 with AVX2 and FMA, or AVX-512) | `mozzi_batch::compile` |
 | Rust, C and CUDA source text | `mozzi_codegen::emit`, `mozzi codegen` |
 | the command line | `mozzi compute MODEL QUANTITY` |
@@ -39,7 +39,7 @@ Arrays go through one of two engines. *Registers*: the kernel is compiled for re
 the robot, and the program runs as machine code, or in an interpreter over 32 states where there is none: on other processors, and where
 the code would be longer than 64 kB, as of large robots' derivatives and regressors. Inertial parameters of each state always go through a
 program. A compiled quantity whose code would be longer than 64 kB is computed by the kernels, and `engine` reports that.
-Source text does not judge pivots: its functions have them as further outputs.
+Source text does not check pivots: its functions return them as further outputs.
 
 ## The list
 

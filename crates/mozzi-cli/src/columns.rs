@@ -1,4 +1,4 @@
-//! CSV out: every digit, so that what is read back is the same number.
+//! CSV output with all digits, so that round trips are exact.
 
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
@@ -6,8 +6,8 @@ use crate::progress::Progress;
 use mozzi::Model;
 use std::fmt::Write;
 
-/// The columns of a group: by number, `tau_1` … `tau_n`; where the base floats, by name, for then the joints' numbers in θ are
-/// others than in θ̇.
+/// The columns of a group: by number, `tau_1` … `tau_n`; where the base floats, by name, for then the joints' numbers
+/// in θ are others than in θ̇.
 pub fn names(model: &Model, group: &str) -> Vec<String> {
     let all: Vec<&str> =
         if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() };
@@ -39,11 +39,6 @@ impl Columns {
 
     pub fn rows(&self) -> usize {
         self.values.first().map_or(0, Vec::len)
-    }
-
-    /// Each with its name.
-    pub fn into_pairs(self) -> Vec<(String, Vec<f64>)> {
-        self.names.into_iter().zip(self.values).collect()
     }
 
     pub fn text(&self) -> String {

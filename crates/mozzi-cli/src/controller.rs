@@ -1,4 +1,4 @@
-//! `--controller FILE.json`: which controller, its gains, and what it believes the robot to be.
+//! `--controller FILE.json`: the controller, its gains, and its own model of the robot.
 
 use crate::failure::{Failure, Result};
 use crate::json_file;
@@ -14,11 +14,11 @@ pub struct Controller {
     file: String,
     kind: String,
     entries: Map<String, Value>,
-    /// What the controller believes the robot to be, where that is another.
+    /// The controller's own model, if it differs from the simulated robot.
     believed: Option<Model>,
 }
 
-/// Kinds and the entries that each needs; `model` may stand in all of them.
+/// Kinds of controllers and their entries; all of them accept `model`.
 const KINDS: [(&str, &[&str]); 4] = [
     ("pd-gravity", &["p", "d"]),
     ("computed-torque", &["p", "d"]),
@@ -29,7 +29,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 impl Controller {
     pub fn read(file: &str, robot: &RobotArguments) -> Result<Self> {
         let wrong = |sentence: String| Failure::wrong(format!("{file}: {sentence}"));
-        let Value::Object(entries) = json_file::read(file)? else { return Err(wrong("is no JSON object".into())) };
+        let Value::Object(entries) = json_file::read(file)? else { return Err(wrong("is not a JSON object".into())) };
         let kinds = KINDS.map(|(kind, _)| format!("`{kind}`")).join(", ");
         let kind = match entries.get("controller") {
             Some(Value::String(kind)) => kind.as_str(),
@@ -41,10 +41,13 @@ impl Controller {
         };
         let known = |key: &str| key == "controller" || key == "model" || needed.contains(&key);
         if let Some(unknown) = entries.keys().find(|key| !known(key)) {
-            return Err(wrong(format!("`{unknown}` is no entry of `{kind}`, expected {}, model", needed.join(", "))));
+            return Err(wrong(format!(
+                "`{unknown}` is not an entry of `{kind}`, expected {}, model",
+                needed.join(", ")
+            )));
         }
         if let Some(missing) = needed.iter().find(|key| !entries.contains_key(**key)) {
-            return Err(wrong(format!("`{missing}` is missing, which `{kind}` needs")));
+            return Err(wrong(format!("`{missing}` is missing; `{kind}` needs it")));
         }
         let believed = match entries.get("model") {
             None => None,
@@ -69,7 +72,7 @@ impl Controller {
         if model.n() != robot.n() || model.nq() != robot.nq() {
             let (found, expected) = (model.n(), robot.n());
             return Err(Failure::wrong(format!(
-                "{}: model: the robot has {found} velocities, expected {expected}, as the one that is simulated",
+                "{}: model: the robot has {found} velocities, expected {expected}, the number of the simulated robot",
                 self.file
             )));
         }

@@ -1,9 +1,9 @@
 //! Tables of numbers in CSV files: one row for each time, columns by name.
 //!
-//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry (from 1) or its
-//! name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z f_x f_y f_z` of the tip's
-//! wrench. Of each group all columns are there or none, in any order; the six of a floating base's wrench may be left out alone, and are
-//! then 0: no motor drives it.
+//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry, from 1,
+//! or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z
+//! f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a floating
+//! base's wrench may be left out alone, and are then 0: no motor drives it.
 
 use crate::columns;
 use crate::failure::{Failure, Result};
@@ -16,7 +16,7 @@ use mozzi::quantities::INPUTS;
 use std::cell::Cell;
 use std::io::Read;
 
-/// What `mozzi simulate` writes beside the groups; read and not used.
+/// Columns that `mozzi simulate` writes in addition to the groups; read and not used.
 pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_work", "friction_loss", "applied_work"];
 
 /// The groups of columns: the inputs of quantities.
@@ -30,12 +30,13 @@ pub const GROUPS: [&str; INPUTS.len()] = {
     names
 };
 
-/// Reads a file, or standard input where it is called `-`.
+/// Reads a file, or standard input for `-`.
 pub fn read(file: &str, model: &Model) -> Result<Samples> {
     read_by(file, |_| model)
 }
 
-/// As of a robot or, where the header has as many positions as joints, as of the same robot on a fixed base. Was it that?
+/// As of a robot or, where the header has as many positions as joints, as of the same robot on a fixed base. Was it
+/// that?
 pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Samples, bool)> {
     let is_of_joints = Cell::new(false);
     let choose = |header: &[String]| {
@@ -127,7 +128,9 @@ impl Places {
             }
         }
         let missing = |name: &str, of: usize, found: usize| {
-            Failure::wrong(format!("{place}: column {name} is missing; of its group there are {found} of {of}"))
+            Failure::wrong(format!(
+                "{place}: column {name} is missing; the file has {found} of the {of} columns of its group"
+            ))
         };
         let mut found = [const { None }; GROUPS.len()];
         for ((found, group), places) in found.iter_mut().zip(GROUPS).zip(groups) {
@@ -209,7 +212,7 @@ pub fn csv_failure(file: &str, error: &csv::Error) -> Failure {
         }
         csv::ErrorKind::Utf8 { pos, err } => {
             let line = pos.as_ref().map_or(0, csv::Position::line);
-            Failure::wrong(format!("{file}:{line}: column {} is no text (UTF-8)", err.field() + 1))
+            Failure::wrong(format!("{file}:{line}: column {} is not UTF-8 text", err.field() + 1))
         }
         _ => Failure::wrong(format!("{file}: {error}")),
     }

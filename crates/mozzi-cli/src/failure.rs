@@ -5,13 +5,13 @@ use std::io::{IsTerminal, Write};
 
 #[derive(Debug)]
 pub enum Failure {
-    /// A sentence: what, its value, its place, what was expected.
+    /// A message: the name, its value, its place, and what was expected.
     Wrong(String),
     /// The robot's file is wrong.
     Load(Box<LoadError>),
     /// The answer, on standard output, is that something is wrong.
     Answered(String),
-    /// Ctrl-C ended the computation; what there was until then, for standard output.
+    /// Stopped by Ctrl-C; the results so far, for standard output.
     Stopped(String),
 }
 
@@ -22,7 +22,7 @@ impl Failure {
         Failure::Wrong(sentence.into())
     }
 
-    /// Says on standard error what is wrong.
+    /// Prints the error on standard error.
     pub fn say(&self) {
         match self {
             Failure::Wrong(sentence) => write(&format!("error: {sentence}\n")),
@@ -33,7 +33,7 @@ impl Failure {
     }
 }
 
-/// To standard error; where that is closed, nobody wants to know.
+/// Writes to standard error, ignoring errors if it is closed.
 pub fn write(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
@@ -43,13 +43,13 @@ pub fn say(diagnostic: &Diagnostic) {
     write(&diagnostic.pretty(style()));
 }
 
-/// Colours where standard error is a terminal that is not asked to do without (see no-color.org).
+/// Uses colours if standard error is a terminal and NO_COLOR is not set (see no-color.org).
 fn style() -> Style {
     let plain = !std::io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some();
     if plain { Style::Unicode } else { Style::Color }
 }
 
-/// Something to know, on standard error.
+/// Prints a note on standard error.
 pub fn note(text: &str) {
     write(&format!("note: {text}\n"));
 }

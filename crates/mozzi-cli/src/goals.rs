@@ -1,4 +1,5 @@
-//! Where the end effector is to be: by flags, or tables of poses in CSV files with columns x y z of the origin and qw qx qy qz of the orientation, in {s}.
+//! Where the end effector is to be: by flags, or tables of poses in CSV files with columns x y z of the origin and qw
+//! qx qy qz of the orientation, in {s}.
 
 use crate::csv::csv_failure;
 use crate::failure::{Failure, Result};
@@ -11,13 +12,13 @@ const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "x", "y", "z"];
 
 #[derive(Args, Debug, Default)]
 pub struct GoalArguments {
-    /// Where the frame's origin is to be, in {s}, m
+    /// Desired position of the frame's origin in {s}, m
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub position: Option<String>,
-    /// How it is to be turned: roll, pitch, yaw about the axes of {s}, as in URDF, rad
+    /// Desired orientation: roll, pitch, yaw about the axes of {s}, as in URDF, rad
     #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true)]
     pub rpy: Option<String>,
-    /// How it is to be turned: the unit quaternion
+    /// Desired orientation as a unit quaternion
     #[arg(long, value_name = "W,X,Y,Z", allow_hyphen_values = true, conflicts_with = "rpy")]
     pub quaternion: Option<String>,
 }
@@ -85,7 +86,7 @@ pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
     Ok(poses)
 }
 
-/// Of a quaternion that is one: its length may be off 1 by 10⁻³, as a floating base's.
+/// The pose of a quaternion whose length differs from 1 by at most 10⁻³, as for a floating base.
 fn from_pose(place: &str, pose: [f64; 7]) -> Result<SE3> {
     let length = pose[..4].iter().map(|x| x * x).sum::<f64>().sqrt();
     if (length - 1.0).abs() > 1e-3 {

@@ -1,11 +1,14 @@
 //! The inputs of a quantity at one state, by flags: --theta, --dtheta, …
 
 use crate::failure::Result;
-use crate::state::{positions, velocities};
+use crate::state::{start, velocities};
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
 use mozzi::Model;
 use mozzi::quantities::{Declaration, Dim, INPUTS, Input};
 use std::collections::BTreeMap;
+
+/// The flag of a named state.
+pub const STATE: &str = "state";
 
 /// What was given, by the input's name. There is a flag for each input that quantities have.
 #[derive(Debug)]
@@ -13,7 +16,7 @@ pub struct InputArguments(BTreeMap<&'static str, String>);
 
 impl Args for InputArguments {
     fn augment_args(command: Command) -> Command {
-        INPUTS.into_iter().fold(command, |command, input| command.arg(flag(input)))
+        INPUTS.into_iter().fold(command, |command, input| command.arg(flag(input))).arg(state())
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -21,13 +24,22 @@ impl Args for InputArguments {
     }
 }
 
+/// θ and θ̇ by a name.
+fn state() -> Arg {
+    let help = "Take θ and θ̇ from a named state of the robot's file, such as a keyframe; `mozzi info` lists them";
+    Arg::new(STATE).long(STATE).value_name("NAME").help(help).conflicts_with_all(["theta", "dtheta", "input"])
+}
+
 fn flag(Input { name, symbol, unit, about, dim }: Input) -> Arg {
     let of_base = match name {
-        "theta" => "; of a floating base its pose first",
-        "dtheta" => "; of a floating base its twist first, in its own coordinates",
+        "theta" => "; a floating base's pose first; or the name of a state",
+        "dtheta" => "; a floating base's twist first, in its own coordinates",
         _ => "",
     };
-    let default = if dim == Dim::Nq { "joints at 0, a floating base at {s}" } else { "all 0" };
+    let default = match dim {
+        Dim::Nq => "the robot's start, else joints at 0 and a floating base at {s}",
+        _ => "all 0",
+    };
     let unit = if unit == "any" { "of any unit" } else { unit };
     let help = format!("{symbol}, {about}, {unit}{of_base} [default: {default}]");
     let entries = format!("{symbol}1,{symbol}2,…");
@@ -37,7 +49,7 @@ fn flag(Input { name, symbol, unit, about, dim }: Input) -> Arg {
 impl FromArgMatches for InputArguments {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let given = |name| Some((name, matches.get_one::<String>(name)?.clone()));
-        Ok(InputArguments(INPUTS.into_iter().filter_map(|input| given(input.name)).collect()))
+        Ok(InputArguments(INPUTS.into_iter().map(|input| input.name).chain([STATE]).filter_map(given).collect()))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
@@ -54,9 +66,12 @@ impl InputArguments {
 
     /// A quantity's inputs, in their order.
     pub fn read(&self, declaration: &Declaration, model: &Model) -> Result<Vec<Vec<f64>>> {
-        let read = |&Input { name, dim, .. }: &Input| {
-            let (flag, text) = (format!("--{name}"), self.0.get(name).map(String::as_str));
-            if dim == Dim::Nq { positions(&flag, text, model) } else { velocities(&flag, text, model) }
+        let text = |name: &str| self.0.get(name).map(String::as_str);
+        let (theta, dtheta) = start(model, text(STATE), text("theta"), text("dtheta"))?;
+        let read = |&Input { name, .. }: &Input| match name {
+            "theta" => Ok(theta.clone()),
+            "dtheta" => Ok(dtheta.clone()),
+            _ => velocities(&format!("--{name}"), text(name), model),
         };
         declaration.inputs.iter().map(read).collect()
     }

@@ -1,4 +1,4 @@
-//! Ctrl-C: once, and what is being computed ends with what there is; twice, and the program ends.
+//! Ctrl-C: the first stops the computation and keeps the results so far; the second ends the program.
 
 use crate::failure;
 use std::path::{Path, PathBuf};
@@ -13,21 +13,21 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// The file that is being written.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// From here on Ctrl-C asks instead of ending the program: for commands that look whether it [`asked`].
+/// Makes Ctrl-C set a flag instead of ending the program, for commands that check whether it [`asked`].
 pub fn listen() {
     LISTENING.call_once(|| {
         if let Err(error) = ctrlc::set_handler(answer) {
-            failure::note(&format!("Ctrl-C will end the program without a result: {error}"));
+            failure::note(&format!("Ctrl-C will end the program without writing results: {error}"));
         }
     });
 }
 
-/// Has it been asked to end?
+/// Whether Ctrl-C was pressed.
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// While this lives a file is being written: Ctrl-C lets it be finished, a second one gives it up, and nothing is left that ends within a row.
+/// Marks a file as being written: Ctrl-C lets it finish, a second one removes it, so that no truncated file remains.
 pub struct Writing;
 
 impl Writing {
@@ -55,7 +55,7 @@ fn answer() {
         (None, false) => {}
         (None, true) => std::process::exit(i32::from(EXIT_CODE)),
         (Some(file), false) => {
-            failure::note(&format!("{} is being finished; Ctrl-C once more gives it up", file.display()));
+            failure::note(&format!("finishing {}; press Ctrl-C again to abandon it", file.display()));
         }
         (Some(file), true) => {
             give_up(file);
@@ -69,8 +69,8 @@ fn give_up(file: &Path) {
     let name = file.display();
     let is_file = std::fs::metadata(file).is_ok_and(|found| found.is_file());
     failure::note(&match is_file.then(|| std::fs::remove_file(file)) {
-        Some(Ok(())) => format!("{name} was not finished, and is removed"),
-        Some(Err(error)) => format!("{name} was not finished, and cannot be removed: {error}"),
-        None => format!("{name} did not get all"),
+        Some(Ok(())) => format!("{name} was not finished and has been removed"),
+        Some(Err(error)) => format!("{name} was not finished and cannot be removed: {error}"),
+        None => format!("{name} is incomplete"),
     });
 }

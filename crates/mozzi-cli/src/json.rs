@@ -1,4 +1,4 @@
-//! Values as JSON. Matrices are lists of rows; a number that is none (NaN, infinity) is null, as JSON has no name for it.
+//! Values as JSON. Matrices are lists of rows; NaN and infinity are null, since JSON cannot express them.
 
 use mozzi::model::ScrewLists;
 use mozzi::{Base, Model, SE3};

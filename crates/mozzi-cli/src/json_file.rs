@@ -10,7 +10,7 @@ pub fn read(file: &str) -> Result<Value> {
     let text = std::fs::read_to_string(file).map_err(|error| wrong(format!("cannot be read: {error}")))?;
     let Once(value) = serde_json::from_str(&text).map_err(|error| match error.is_data() {
         true => wrong(error.to_string()),
-        false => wrong(format!("is no JSON: {error}")),
+        false => wrong(format!("is not valid JSON: {error}")),
     })?;
     Ok(value)
 }

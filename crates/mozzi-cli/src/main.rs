@@ -1,5 +1,5 @@
-//! `mozzi`: the dynamics of open-chain robots on the command line. Converts, checks, calls, names the error; every
-//! formula is the library's.
+//! `mozzi`: the dynamics of open-chain robots on the command line. It converts arguments, calls the library and reports
+//! errors; every formula is the library's.
 
 mod columns;
 mod commands;
@@ -35,7 +35,7 @@ use std::process::ExitCode;
 
 /// Dynamics of open-chain robots, in the notation of Lynch & Park, Modern Robotics, chapter 8.
 ///
-/// Without a subcommand: a tour on the UR5 arm. MODEL is a file (URDF, MuJoCo's MJCF, or JSON of
+/// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, MuJoCo's MJCF, or JSON of
 /// `mozzi convert`) or the name of an embedded robot.
 #[derive(Parser, Debug)]
 #[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES, max_term_width = 104)]
@@ -46,92 +46,92 @@ struct Arguments {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// What the robot consists of: joints, limits, links, masses, frames
+    /// Show the robot: joints, limits, links, masses, frames
     Info(info::InfoArguments),
-    /// The robot as the book's lists: M_i, M_i-1,i, S_i, B_i, A_i, G_i
+    /// Print the book's lists: M_i, M_i-1,i, S_i, B_i, A_i, G_i
     Screws(screws::ScrewsArguments),
-    /// Every quantity at one state: T, J, M, C, c, g, h, JᵀF, τ, θ̈, energies, Λ, η, …
+    /// Compute every quantity at one state: T, J, M, C, c, g, h, JᵀF, τ, θ̈, energies, Λ, η, …
     Terms(terms::TermsArguments),
-    /// Any quantity, at one state or at every state of a table: τ, θ̈, M, Jacobians, derivatives, …
+    /// Compute one quantity, at one state or at every state of a table: τ, θ̈, M, Jacobians, derivatives, …
     #[command(after_help = format!("{COMPUTE}\n\n{TABLES}"), mut_arg("model", compute::model))]
     Compute(compute::ComputeArguments),
-    /// How long each quantity takes on this machine, at one state and at many
+    /// Measure how long each quantity takes on this machine, for one state and for many
     Bench(commands::bench::BenchArguments),
-    /// Positions at which the end effector is where it is to be: one pose, or a table of poses
+    /// Inverse kinematics: joint positions that place the end effector at a desired pose, or at a table of poses
     Ik(commands::ik::IkArguments),
-    /// A motion to be followed: through joints or along lines and screws, within limits of velocity, acceleration and torque
+    /// Plan a trajectory in joint space or along lines and screws, within limits of velocity, acceleration and torque
     #[command(after_help = TRAJECTORIES)]
     Trajectory(commands::trajectory::TrajectoryArguments),
-    /// The motion from a state, under torques and a tip wrench
+    /// Simulate the motion from a state, under joint torques and a tip wrench
     #[command(after_help = SIMULATIONS)]
     Simulate(simulate::SimulateArguments),
-    /// The robot in a browser: a motion with its plots, or a slider for each joint
+    /// Show the robot in a browser: a motion with plots, or a slider for each joint
     #[command(after_help = TABLES)]
     View(commands::view::ViewArguments),
-    /// A figure for a paper, SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
+    /// Draw a figure as SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
     #[command(after_help = TABLES)]
     Plot(commands::plot::PlotArguments),
-    /// Is the file a robot? All that is wrong or odd, with its place
+    /// Check a robot's file: all errors and warnings, each with its place
     Check(check::CheckArguments),
-    /// The same robot in another file: URDF, JSON, or Python for NumPy
+    /// Convert a robot to URDF, JSON, or Python for NumPy
     Convert(convert::ConvertArguments),
-    /// Source text of a robot's quantities in Rust, C or CUDA; the work that folding left
+    /// Generate source text of a robot's quantities in Rust, C or CUDA; count operations
     Codegen(commands::codegen::CodegenArguments),
-    /// What Pinocchio and MuJoCo compute of the same file, and why it differs (asks Python)
+    /// Compare with Pinocchio and MuJoCo on the same file, and explain differences (needs Python)
     Compare(commands::compare::CompareArguments),
-    /// What the code of a diagnostic means, such as mozzi::urdf::zero_axis
+    /// Explain a diagnostic's code, such as mozzi::urdf::zero_axis
     Explain(explain::ExplainArguments),
 }
 
 const EXAMPLES: &str = "\
 Examples:
   mozzi                                                 the tour
-  mozzi info panda                                      what a robot consists of
+  mozzi info panda                                      joints, limits, links, masses, frames
   mozzi check my_robot.urdf                             what is wrong with a file
-  mozzi check my_robot.urdf --format json               the same, a JSON object a line
+  mozzi check my_robot.urdf --format json               the same, one JSON object per line
   mozzi explain zero_axis                               what a diagnostic's code means
-  mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; reads back
-  mozzi compare my_robot.urdf                           Pinocchio and MuJoCo beside mozzi: what differs, why
-  mozzi terms my_robot.urdf --lenient                   with inertias repaired; --strict: warnings are errors
+  mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; mozzi reads this file
+  mozzi compare my_robot.urdf                           compared with Pinocchio and MuJoCo: what differs, and why
+  mozzi terms my_robot.urdf --lenient                   repairs inertias; --strict: warnings are errors
   mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
   mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
   mozzi terms two_link_planar --theta 0.3,0.8 --task vx,vz
-  mozzi compute --list                                  every quantity: its formula, what it takes, what it gives
+  mozzi compute --list                                  every quantity: its formula, inputs and outputs
   mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
   mozzi compute ur5 forward-dynamics --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
   mozzi compute ur5 inverse-dynamics --in motion.csv --out torques.csv
   mozzi compute ur5 mass-matrix --in states.npy --out M.npy
-  mozzi bench panda                                     nanoseconds a state on your machine
+  mozzi bench panda                                     nanoseconds per state on your machine
   mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
-  mozzi codegen panda --explain                         the work before and after folding
-  mozzi terms quadruped.urdf --floating                 the same robot, its base floating: quaternion and origin first
-  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions that put the tool there
+  mozzi codegen panda --explain                         operations before and after folding constants
+  mozzi terms quadruped.urdf --floating                 with a floating base: its quaternion and origin first
+  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions for a pose of the tool
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
-  mozzi simulate ur5 --report fall.html                 the motion as a page: 3-D, plots, one file
+  mozzi simulate ur5 --report fall.html                 the motion as one HTML file: 3-D view, plots
+  mozzi simulate my_robot.xml --state home              from a keyframe; `mozzi info my_robot.xml` lists them
   mozzi plot energy double_pendulum swing.csv --out energy.svg
   mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
   mozzi view double_pendulum swing.csv --out swing.html a motion from a table
 
-Units: rad, m, s, kg, N. Six numbers of a twist or wrench: the angular ones first.
-F_tip is what the robot applies to the environment, in the end effector's frame.
-Results go to standard output, all else to standard error.
-Exit codes: 0 done, 1 wrong input or no answer, 2 wrong usage, 130 ended by Ctrl-C.";
+Units: rad, m, s, kg, N. Twists and wrenches: angular part first.
+F_tip is the wrench that the robot applies to the environment, in the end effector's frame.
+Results go to standard output, messages to standard error.
+Exit codes: 0 success, 1 invalid input or no result, 2 wrong usage, 130 stopped by Ctrl-C.";
 
 const TABLES: &str = "\
 CSV files have a header and one row for each state; columns in any order:
   t                                     time, s
   theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_, x_;
                                         a joint by its number, or by its name: theta_elbow_joint;
-                                        of a floating base theta_base.qw qx qy qz x y z, and
+                                        floating base: theta_base.qw qx qy qz x y z, and
                                         dtheta_base.wx wy wz vx vy vz, likewise ddtheta_, tau_
-  m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in its frame
-Groups that are not needed may be left out; dtheta, ddtheta and the wrench are then 0,
-and so are the six of a floating base in tau.
-What one subcommand writes, the others read.";
+  m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in the tip's frame
+Missing groups dtheta, ddtheta and wrench are 0, and so are the six entries of a floating
+base in tau. Every subcommand reads the files that another writes.";
 
 const TRAJECTORIES: &str = "\
 Examples:
-  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0                         joints, as fast as a quintic may
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0                         joint space, the shortest quintic
   mozzi trajectory ur5 --to 1,-1,1,0,0.5,0 --profile fastest --max-acceleration 15 --out way.csv
   mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --path line --position 0.4,0.2,0.5 --time 2
   mozzi trajectory ur5 --via points.csv --profile trapezoidal      a spline through points
@@ -143,10 +143,10 @@ Examples:
   mozzi simulate double_pendulum --theta 2,1 --method dopri --report-event 'joint1 = 0' --until 'tip.z > 0.4'
   mozzi simulate panda --method dopri --until joint-limit
   mozzi simulate ur5 --follow way.csv --controller computed.json
-A condition counts where it becomes true, at the zero of the polynomial between two steps: as exact as the method. One that is
-true for less than a quarter of a step may be overlooked.
+An event is the moment a condition becomes true: the zero of the polynomial between two steps, as exact as the method.
+Conditions that are true for less than a quarter of a step may be missed.
 
-CSV files are as of `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; what `mozzi trajectory` writes can be followed.
+CSV files are described in `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; --follow reads what `mozzi trajectory` writes.
 
 A controller is a JSON object; gains are one number for all, or lists:
   {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + k(θ − θ₀) + p e + d ė; N m/rad, N m s/rad
@@ -154,11 +154,11 @@ A controller is a JSON object; gains are one number for all, or lists:
   {\"controller\": \"task-space\", \"frame\": \"tool0\", \"p\": 100, \"d\": 20, \"posture_p\": 25, \"posture_d\": 10}
   {\"controller\": \"impedance\", \"frame\": \"tool0\", \"stiffness\": [20, 20, 20, 500, 500, 500], \"damping\": [1, 1, 1, 50, 50, 50],
    \"posture_p\": 25, \"posture_d\": 10}
-\"model\": \"FILE or embedded robot\" beside them is what the controller believes the robot to be.";
+An additional \"model\": \"FILE or embedded robot\" is the controller's own model of the robot.";
 
 const COMPUTE: &str = "\
 Examples:
-  mozzi compute --list                                          every quantity: its formula, what it takes, what it gives
+  mozzi compute --list                                          every quantity: its formula, inputs and outputs
   mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02
   mozzi compute ur5 body-jacobian --frame forearm_link
   mozzi compute two_link_planar task-space-dynamics --theta 0.3,0.8 --task vx,vz
@@ -168,7 +168,7 @@ Examples:
 A flag that has no effect on the quantity is an error.
 
 Files with N states:
-  .npy             one array (N, columns): the quantity's inputs side by side, such as theta | dtheta | ddtheta,
+  .npy             one array (N, columns): the quantity's inputs in order, such as theta | dtheta | ddtheta,
                    then the tip's wrench m_x m_y m_z f_x f_y f_z if there are six more columns
   .npz             arrays theta (N, nq), dtheta, ddtheta, tau, x (N, n), wrench (N, 6) of the tip; also
                    gravity (N, 3), parameters (N, p) and wrench_FRAME (N, 6), different in each state
@@ -176,8 +176,8 @@ Files with N states:
   .csv             columns theta_1 …, see below
 Numbers are float64 or float32. Wrenches given by flags are the same in all states.
 Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
-  .npy             one array; .npz: each by its name
-  .arrow .csv      a column for each entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
+  .npy             one array; .npz: one array per output, by name
+  .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
 NaN in a state gives NaN in the results of that state only.";
 
 fn main() -> ExitCode {
@@ -196,7 +196,7 @@ fn main() -> ExitCode {
     let mut output = std::io::stdout().lock();
     match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
         Ok(()) => code,
-        // who reads has seen enough
+        // the reader has closed the pipe
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => code,
         Err(error) => {
             Failure::wrong(format!("standard output cannot be written: {error}")).say();

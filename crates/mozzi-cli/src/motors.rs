@@ -14,35 +14,37 @@ use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
-    /// The motors: zero, gravity-compensation, or a CSV file with columns t, tau_1, … (linear in between); beside a controller's
+    /// Motor torques: zero, gravity-compensation, or a CSV file with columns t, tau_1, … (interpolated linearly); added
+    /// to a controller's
     #[arg(long, value_name = "FILE|zero|gravity-compensation", default_value = "zero")]
     pub torque: String,
-    /// What the controller is to follow: a CSV file with columns t, theta_1, … and, where known, dtheta_, ddtheta_; of a floating base's robot
-    /// the joints alone are followed, and may stand alone
+    /// Reference for the controller: a CSV file with columns t, theta_1, … and optionally dtheta_, ddtheta_; with a
+    /// floating base only the joints are followed, and the base's columns may be missing
     #[arg(long, value_name = "FILE.csv", requires = "controller")]
     pub follow: Option<String>,
-    /// A controller in a JSON file; without --follow it holds the start
+    /// A controller in a JSON file; without --follow it holds the initial positions
     #[arg(long, value_name = "FILE.json")]
     pub controller: Option<String>,
-    /// What is made of the motors' effort limits
+    /// How to treat the motors' effort limits
     #[arg(long, value_name = "WHAT", default_value = "report")]
     pub effort_limits: Limit,
-    /// What the tip applies to the environment, in its frame, moment first: a CSV file with columns t, m_x, … f_z, or six numbers
+    /// Wrench that the tip applies to the environment, in its frame, moment first: a CSV file with columns t, m_x, …
+    /// f_z, or six numbers
     #[arg(long, value_name = "FILE|mx,my,mz,fx,fy,fz", allow_hyphen_values = true)]
     pub tip_wrench: Option<String>,
-    /// What a table says before its first and after its last time
+    /// How to extrapolate a table outside its time range
     #[arg(long, value_name = "WHAT", default_value = "error")]
     extrapolate: Beyond,
 }
 
-/// What is made of limits.
+/// How limits are treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Limit {
-    /// Nothing
+    /// Ignore limits
     Ignore,
-    /// The robot goes beyond, which is told
+    /// Let the robot exceed limits and report it
     Report,
-    /// The robot is kept from it, which is told
+    /// Enforce limits and report it
     Respect,
 }
 
@@ -58,16 +60,16 @@ impl From<Limit> for Policy {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Beyond {
-    /// An error
+    /// Refuse with an error
     Error,
-    /// The nearest row
+    /// Use the nearest row
     Hold,
-    /// Zero
+    /// Use zeros
     Zero,
 }
 
 impl MotorArguments {
-    /// What is followed, where something is.
+    /// The reference table, if there is one.
     pub fn followed(&self, model: &Model) -> Result<Option<Followed>> {
         let Some(file) = &self.follow else { return Ok(None) };
         let fixed = model.with_base(Base::Fixed)?;
@@ -89,7 +91,7 @@ impl MotorArguments {
             let start = recorded.at(0.0);
             return Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(recorded) }));
         }
-        let home = model.neutral_configuration().first_chunk().copied();
+        let home = model.start().theta.first_chunk().copied();
         let pose = if is_of_joints { home } else { pose }.unwrap_or_default();
         let reference = OfJoints { joints: recorded, pose };
         let mut start = reference.at(0.0);
@@ -98,7 +100,7 @@ impl MotorArguments {
         }
         failure::note(&format!(
             "{file}: the joints are followed; nothing drives the base, which begins {}",
-            if is_of_joints { "at {s}" } else { "as the first row says" }
+            if is_of_joints { "where the robot starts" } else { "as the first row says" }
         ));
         Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(reference) }))
     }
@@ -153,7 +155,7 @@ impl MotorArguments {
         let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
         if matches!(self.extrapolate, Beyond::Error) && (first > 0.0 || last < end * (1.0 - 1e-12)) {
             return Err(Failure::wrong(format!(
-                "{} covers t = {first} s to {last} s, expected 0 s to {end} s; shorten --time, or say --extrapolate hold or zero",
+                "{} covers t = {first} s to {last} s, expected 0 s to {end} s; shorten --time, or use --extrapolate hold or zero",
                 samples.file
             )));
         }
@@ -161,25 +163,25 @@ impl MotorArguments {
     }
 }
 
-/// Of a table whose rows are to follow each other.
+/// Checks that the times of a table increase.
 pub fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
     match (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
         None => Ok(()),
         Some(row) => {
             let (place, t, before) = (samples.place(row), times[row], times[row - 1]);
-            Err(Failure::wrong(format!("{place}: t is {t} after {before}, expected times that increase")))
+            Err(Failure::wrong(format!("{place}: t is {t} after {before}, expected increasing times")))
         }
     }
 }
 
-/// A table that is followed.
+/// A reference table.
 pub struct Followed {
     pub reference: Box<dyn Reference>,
     /// θ and θ̇ where it begins.
     pub start: [Vec<f64>; 2],
 }
 
-/// Where nothing is followed, the start is held.
+/// Without a reference, the initial positions are held.
 pub fn or_hold<'a>(followed: Option<&'a Followed>, hold: &'a Hold) -> &'a dyn Reference {
     match followed {
         Some(followed) => &*followed.reference,

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use std::fmt::Display;
 
-/// A finite number; `place` says whose: "--step", "table.csv:3: column 2 (`tau_1`)".
+/// A finite number; `place` is its source in messages: "--step", "table.csv:3: column 2 (`tau_1`)".
 pub fn number(place: impl Display, text: &str) -> Result<f64> {
     let text = text.trim();
     let wrong = |expected| Err(Failure::wrong(format!("{place} is `{text}`, expected {expected}")));

@@ -1,4 +1,4 @@
-//! How far a long computation is, on standard error: from the first second on, where that is a terminal.
+//! Progress of a long computation on standard error, after the first second and if it is a terminal.
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::cell::Cell;

@@ -7,15 +7,42 @@ use clap::{Args, ValueEnum};
 use mozzi::simulation::Input;
 use mozzi::{Model, Trajectory, Wrench};
 use mozzi_report::{Drawing, Meshes, Motion};
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
 
 /// More are counted: the page lists them.
 const NOTES: usize = 3;
 
 #[derive(Args, Debug)]
-pub struct MeshArguments {
+pub struct PageArguments {
     /// Which meshes of the robot's file go into the page, where they are at hand
     #[arg(long, value_name = "WHICH", default_value = "visual")]
     meshes: Which,
+    /// At most so many rows of the motion go into the page, at equal times; or "all"
+    #[arg(long, value_name = "N", default_value_t = Rows(mozzi_report::ROWS))]
+    page_rows: Rows,
+}
+
+/// A number of rows, at least two.
+#[derive(Clone, Copy, Debug)]
+struct Rows(usize);
+
+impl FromStr for Rows {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        match text.parse() {
+            _ if text == "all" => Ok(Rows(usize::MAX)),
+            Ok(rows) if rows >= 2 => Ok(Rows(rows)),
+            _ => Err("expected a whole number of at least 2, or all".into()),
+        }
+    }
+}
+
+impl Display for Rows {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        if self.0 == usize::MAX { f.write_str("all") } else { self.0.fmt(f) }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -28,9 +55,17 @@ enum Which {
     None,
 }
 
-impl MeshArguments {
-    /// The page of a robot, by its name or its file.
-    pub fn page(&self, name_or_path: &str, model: &Model, motion: Option<&Motion>) -> Result<String> {
+impl PageArguments {
+    /// Rows of a motion that have to be at hand, if there is to be a page.
+    pub fn rows(&self, is_wanted: bool) -> usize {
+        if is_wanted { self.page_rows.0 } else { 0 }
+    }
+
+    /// The page of a robot, by its name or its file, with a motion and the number of rows that it had.
+    pub fn page(&self, name_or_path: &str, model: &Model, motion: Option<(Motion, usize)>) -> Result<(String, String)> {
+        let motion = motion.map(|(motion, all)| (motion.thinned(self.page_rows.0), all));
+        let rows = motion.as_ref().map(|(motion, all)| format!("{} of {all} rows, ", motion.t.len()));
+        let motion = motion.as_ref().map(|(motion, _)| motion);
         let meshes = match self.meshes {
             Which::Visual => Meshes::Visual,
             Which::Collision => Meshes::Collision,
@@ -40,18 +75,26 @@ impl MeshArguments {
         drawing.notes.iter().take(NOTES).for_each(|note| failure::note(note));
         if drawing.notes.len() > NOTES {
             failure::note(&format!(
-                "{} shapes are left out in all; the page lists them under `?`",
+                "{} shapes are omitted in total; the page lists them under `?`",
                 drawing.notes.len()
             ));
         }
-        mozzi_report::html(model, &drawing, motion).map_err(|error| Failure::wrong(error.to_string()))
+        let page = mozzi_report::html(model, &drawing, motion).map_err(|error| Failure::wrong(error.to_string()))?;
+        let size = format!("page: {}{:.1} MB", rows.unwrap_or_default(), page.len() as f64 / 1e6);
+        Ok((page, size))
     }
 
-    /// The same into a file.
-    pub fn write(&self, file: &str, name_or_path: &str, model: &Model, motion: Option<&Motion>) -> Result<String> {
-        let page = self.page(name_or_path, model, motion)?;
+    /// The same into a file; answers with its size.
+    pub fn write(
+        &self,
+        file: &str,
+        name_or_path: &str,
+        model: &Model,
+        motion: Option<(Motion, usize)>,
+    ) -> Result<String> {
+        let (page, size) = self.page(name_or_path, model, motion)?;
         save(file, &page)?;
-        Ok(format!("a page of {} kB written to {file}", page.len().div_ceil(1000)))
+        Ok(format!("{size}, written to {file}"))
     }
 }
 

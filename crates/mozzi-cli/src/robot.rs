@@ -9,25 +9,26 @@ use mozzi::quantities::INPUTS;
 use mozzi::{Description, FrameId, Model};
 use mozzi_urdf::{LoadError, Loaded, Policy, Severity};
 
-/// More are counted: `mozzi check` shows them, each with its place.
+/// Further warnings are counted only; `mozzi check` shows them.
 const WARNINGS: usize = 3;
 
 /// How the robot's file is read.
 #[derive(Args, Debug)]
 pub struct PolicyArguments {
-    /// Call warnings errors
+    /// Treat warnings as errors
     #[arg(long)]
     strict: bool,
-    /// Repair what can be repaired, such as an inertia that no body can have; each repair is told
+    /// Repair errors where possible, such as an unphysical inertia, and report each repair
     #[arg(long, conflicts_with = "strict")]
     lenient: bool,
-    /// Free the base: θ begins with its quaternion (w, x, y, z) and origin, θ̇ with its twist (ω, v), τ with the wrench on it
+    /// Free the base: θ begins with its quaternion (w, x, y, z) and origin, θ̇ with its twist (ω, v), τ with the wrench
+    /// on it
     #[arg(long)]
     floating: bool,
 }
 
 impl PolicyArguments {
-    /// Was a base freed that the file may bolt down?
+    /// Whether `--floating` freed the base.
     pub fn frees(&self) -> bool {
         self.floating
     }
@@ -47,7 +48,7 @@ impl PolicyArguments {
         if self.floating { robot.floating() } else { robot }
     }
 
-    /// As [`open`](Self::open), saying what is odd: each repair, and some of the warnings.
+    /// As [`open`](Self::open), and prints each repair and some of the warnings.
     fn load(&self, name_or_path: &str) -> Result<Loaded> {
         let loaded = self.open(name_or_path)?;
         let (repairs, warnings): (Vec<_>, Vec<_>) =
@@ -56,7 +57,7 @@ impl PolicyArguments {
         said.for_each(|warning| failure::write(&format!("{warning}\n")));
         if warnings.len() > WARNINGS {
             let count = loaded.warnings.len();
-            failure::note(&format!("{count} warnings in all; `mozzi check {name_or_path}` shows them"));
+            failure::note(&format!("{count} warnings in total; `mozzi check {name_or_path}` shows them"));
         }
         Ok(loaded)
     }
@@ -75,13 +76,13 @@ impl PolicyArguments {
             failure::write(&format!("{name_or_path}: warning: {problem}\n"));
         }
         if warnings.len() > WARNINGS {
-            failure::note(&format!("{} warnings in all; `mozzi check {name_or_path}` shows them", warnings.len()));
+            failure::note(&format!("{} warnings in total; `mozzi check {name_or_path}` shows them", warnings.len()));
         }
         Ok(robot.build()?)
     }
 
-    /// What the library finds wrong or odd with a robot that has no text to point at. Nothing is repaired in it: the
-    /// numbers were repaired, if at all, when the file was written.
+    /// Errors and warnings for a robot without source text. Nothing is repaired: repairs were made, if at all, when the
+    /// file was written.
     pub fn problems(&self, robot: &Description) -> (Vec<Problem>, Vec<Problem>) {
         let is_error = |problem: &Problem| self.strict || problem.severity == Severity::Error;
         robot.check().into_iter().partition(is_error)
@@ -90,15 +91,16 @@ impl PolicyArguments {
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: anymal, double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
+    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: anymal, double_pendulum, furuta_pendulum,
+    /// panda, two_link_planar, ur5
     pub model: String,
-    /// The frame whose pose, Jacobians and wrench are meant; where the chain branches it has to be named
+    /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
     #[arg(long, value_name = "FRAME", visible_alias = "frame")]
     pub end_effector: Option<String>,
-    /// Gravity in {s}, which is the frame of a fixed base, m/s² [default: the robot's own, 0,0,-9.81]
+    /// Gravity in {s} (the frame of a fixed base), m/s² [default: the robot's own, else 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
-    /// Print one JSON object, every digit of every number, instead of text
+    /// Print one JSON object with all digits instead of text
     #[arg(long)]
     pub json: bool,
     #[command(flatten)]
@@ -118,7 +120,7 @@ impl RobotArguments {
         }
     }
 
-    /// Loads the robot, saying what is odd about it.
+    /// Loads the robot and prints its warnings.
     pub fn load(&self) -> Result<Model> {
         let mut model = self.load_other(&self.model)?;
         if let Some(name) = &self.end_effector {
@@ -128,12 +130,12 @@ impl RobotArguments {
     }
 }
 
-/// The end effector, or `None` with a note on what is left out.
+/// The end effector, or `None` with a note that quantities are omitted.
 pub fn end_effector(model: &Model) -> Option<FrameId> {
     match model.end_effector() {
         Ok(frame) => Some(frame),
         Err(error) => {
-            failure::note(&format!("{error}; without --end-effector, what needs it is left out"));
+            failure::note(&format!("{error}; without --end-effector, quantities that need it are omitted"));
             None
         }
     }

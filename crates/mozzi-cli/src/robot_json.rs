@@ -1,8 +1,10 @@
 //! A robot as JSON: its links and joints, which are read back, and the book's lists, which follow from them.
 
+mod states;
+
 use crate::failure::{Failure, Result};
 use crate::{json, json_file};
-use mozzi::model::description::{FreeJoint, Joint, JointKind, Limits, Mimic, NamedFrame};
+use mozzi::model::description::{FreeJoint, Gear, Joint, JointKind, Limits, Mimic, NamedFrame, Rotor};
 use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia, Vec3};
 use serde_json::{Value, json};
 
@@ -38,9 +40,15 @@ pub fn write(model: &Model) -> String {
             "name": link.name, "G": json::rows(link.inertia.to_matrix()),
         })).collect::<Value>(),
         "joints": robot.joints.iter().map(joint).collect::<Value>(),
+        "rotors": robot.rotors.iter().map(|rotor| json!({
+            "name": rotor.name, "armature": rotor.armature,
+            "gears": rotor.gears.iter().map(|gear| json!({ "joint": gear.joint, "ratio": gear.ratio })).collect::<Value>(),
+        })).collect::<Value>(),
         "frames": robot.frames.iter().map(|frame| json!({
             "name": frame.name, "link": frame.link, "T": json::pose(frame.T),
         })).collect::<Value>(),
+        "states": robot.states.iter().map(states::write).collect::<Value>(),
+        "start": robot.start,
         "lists": model.screws().ok().map(|lists| json::screws(&lists)), // of joints of one axis
     }))
 }
@@ -57,7 +65,7 @@ pub fn read(file: &str) -> Result<Description> {
 
 type Read<T> = std::result::Result<T, String>;
 
-/// A value and where it stands.
+/// A value and its place.
 struct At<'v> {
     value: &'v Value,
     place: String,
@@ -89,9 +97,12 @@ impl<'v> At<'v> {
             .map_or_else(|| self.wrong("a list"), |all| Ok(all.iter().enumerate().map(entry).collect()))
     }
 
+    fn numbers(&self) -> Read<Vec<f64>> {
+        self.list()?.iter().map(At::number).collect()
+    }
+
     fn vector<const N: usize>(&self) -> Read<[f64; N]> {
-        let all: Vec<f64> = self.list()?.iter().map(At::number).collect::<Read<_>>()?;
-        all.try_into().or_else(|_| self.wrong(format_args!("{N} numbers")))
+        self.numbers()?.try_into().or_else(|_| self.wrong(format_args!("{N} numbers")))
     }
 
     fn matrix<const N: usize>(&self) -> Read<[[f64; N]; N]> {
@@ -123,10 +134,18 @@ fn description(at: &At) -> Read<Description> {
     for entry in at.get("joints").list()? {
         robot = robot.joint(joint(&entry)?);
     }
+    for rotor in at.get("rotors").some(At::list)?.unwrap_or_default() {
+        let gear = |at: &At| Ok(Gear { joint: at.get("joint").text()?, ratio: at.get("ratio").number()? });
+        let gears = rotor.get("gears").list()?.iter().map(gear).collect::<Read<_>>()?;
+        robot.rotors.push(Rotor { name: rotor.get("name").text()?, armature: rotor.get("armature").number()?, gears });
+    }
     for frame in at.get("frames").some(At::list)?.unwrap_or_default() {
         let (name, link) = (frame.get("name").text()?, frame.get("link").text()?);
         robot.frames.push(NamedFrame { name, link, T: frame.get("T").pose()? });
     }
+    let all = at.get("states").some(At::list)?.unwrap_or_default(); // files of before had none
+    robot.states = all.iter().map(states::read).collect::<Read<_>>()?;
+    robot.start = at.get("start").some(At::text)?;
     lists_agree(&at.get("lists"), &robot)?;
     Ok(robot)
 }
@@ -190,10 +209,7 @@ fn lists_agree(at: &At, robot: &Description) -> Read<()> {
     for key in ["joints", "links", "parents", "M", "M_relative", "S", "A", "B", "G", "end_effector"] {
         let found = at.get(key);
         if !found.value.is_null() && !alike(found.value, &expected[key]) {
-            return Err(format!(
-                "{} is not what links and joints say; change those, or leave `lists` out",
-                found.place
-            ));
+            return Err(format!("{} disagrees with links and joints; change those, or remove `lists`", found.place));
         }
     }
     Ok(())

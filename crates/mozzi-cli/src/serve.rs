@@ -51,8 +51,8 @@ fn answer(mut stream: TcpStream, port: u16, page: &str) -> Result<()> {
     let (status, body) = match (is_us, words.next(), words.next()) {
         (false, ..) => ("403 Forbidden", "this page is for 127.0.0.1"),
         (_, Some("GET" | "HEAD"), Some("/")) => ("200 OK", page),
-        (_, Some("GET" | "HEAD"), _) => ("404 Not Found", "there is one page, /"),
-        _ => ("405 Method Not Allowed", "this page is read"),
+        (_, Some("GET" | "HEAD"), _) => ("404 Not Found", "the only page is /"),
+        _ => ("405 Method Not Allowed", "only GET and HEAD are allowed"),
     };
     let kind = if status == "200 OK" { "text/html" } else { "text/plain" };
     write!(

@@ -3,21 +3,26 @@
 use crate::failure::{Failure, Result};
 use crate::numbers::{WRENCH, array, numbers, numbers_for, wrong_count};
 use clap::Args;
+use mozzi::model::State;
 use mozzi::{Environment, FrameId, Model, Wrench};
 
 #[derive(Args, Debug, Default)]
 pub struct StartArguments {
-    /// Positions θ, rad or m; of a floating base its pose first [default: joints at 0, a floating base at {s}]
+    /// Positions θ, rad or m, a floating base's pose first; or the name of a state [default: the robot's start,
+    /// else joints at 0 and a floating base at {s}]
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     pub theta: Option<String>,
-    /// Velocities θ̇, rad/s or m/s; of a floating base its twist first, in its own coordinates [default: all 0]
+    /// Velocities θ̇, rad/s or m/s; a floating base's twist first, in its own coordinates [default: all 0]
     #[arg(long, value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
     pub dtheta: Option<String>,
+    /// Take θ and θ̇ from a named state of the robot's file, such as a keyframe; `mozzi info` lists them
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["theta", "dtheta"])]
+    pub state: Option<String>,
 }
 
 #[derive(Args, Debug, Default)]
 pub struct TipArguments {
-    /// What the end effector applies to the environment, in its own frame, moment first: N m, N [default: 0]
+    /// Wrench that the end effector applies to the environment, in its own frame, moment first: N m, N [default: 0]
     #[arg(long, value_name = "mx,my,mz,fx,fy,fz", allow_hyphen_values = true)]
     pub tip_wrench: Option<String>,
 }
@@ -27,12 +32,12 @@ pub struct TipArguments {
 pub struct WrenchArguments {
     #[command(flatten)]
     pub tip: TipArguments,
-    /// What a frame applies to the environment, in its own coordinates, moment first: N m, N; may be repeated
+    /// Wrench that a frame applies to the environment, in its own coordinates, moment first: N m, N; may be repeated
     #[arg(long, value_name = "FRAME=mx,my,mz,fx,fy,fz")]
     pub wrench: Vec<String>,
 }
 
-/// A state of motion and what the tip applies: θ, θ̇, and θ̈ or the τ that makes it.
+/// A state of motion and the tip's wrench: θ, θ̇, and θ̈ or τ.
 #[derive(Args, Debug)]
 pub struct MotionArguments {
     #[command(flatten)]
@@ -40,7 +45,7 @@ pub struct MotionArguments {
     /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
     #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
     ddtheta: Option<String>,
-    /// Forces τ of the motors, N m or N, in place of θ̈, which is then computed
+    /// Joint forces τ, N m or N, instead of θ̈, which is then computed
     #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
     tau: Option<String>,
     #[command(flatten)]
@@ -71,11 +76,27 @@ impl MotionArguments {
 impl StartArguments {
     /// (θ, θ̇).
     pub fn read(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {
-        Ok((
-            positions("--theta", self.theta.as_deref(), model)?,
-            velocities("--dtheta", self.dtheta.as_deref(), model)?,
-        ))
+        let [state, theta, dtheta] = [&self.state, &self.theta, &self.dtheta].map(Option::as_deref);
+        start(model, state, theta, dtheta)
     }
+}
+
+/// (θ, θ̇) of a named state, or by numbers. What is not given is the robot's start; θ̇ is 0 if only θ is given.
+pub fn start(
+    model: &Model,
+    state: Option<&str>,
+    theta: Option<&str>,
+    dtheta: Option<&str>,
+) -> Result<(Vec<f64>, Vec<f64>)> {
+    let State { theta: begin, dtheta: rates, .. } = match state {
+        Some(name) => model.state(name)?,
+        None => model.start(),
+    };
+    let dtheta = match (theta, dtheta) {
+        (None, None) => rates,
+        _ => velocities("--dtheta", dtheta, model)?,
+    };
+    Ok((if theta.is_some() { positions("--theta", theta, model)? } else { begin }, dtheta))
 }
 
 impl TipArguments {
@@ -117,10 +138,12 @@ pub fn check_frames(model: &Model, frames: impl Iterator<Item = FrameId>) -> Res
     Ok(())
 }
 
-/// nq numbers; the neutral configuration where the flag is not given.
+/// nq numbers, or those of a state by its name; the robot's start if the flag is not given.
 pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
+    let is_name = |text: &str| model.state_names().len() > 0 && numbers(flag, text).is_err() && !text.contains(',');
     match text {
-        None => Ok(model.neutral_configuration()),
+        None => Ok(model.start().theta),
+        Some(name) if is_name(name) => Ok(model.state(name)?.theta),
         Some(text) => {
             entries(flag, text, model, model.position_names().collect(), "base quaternion (w, x, y, z), base origin")
         }

@@ -1,4 +1,4 @@
-//! The rows of a task, and whose coordinates they are in.
+//! The rows of a task and their coordinates.
 
 use crate::failure::{Failure, Result};
 use crate::numbers::TWIST;
@@ -7,10 +7,10 @@ use mozzi::TaskFrame;
 
 #[derive(Args, Debug, Default)]
 pub struct TaskArguments {
-    /// Rows of the task: of wx, wy, wz, vx, vy, vz those that matter, such as vx,vz for a planar arm [default: all six]
+    /// Rows of the task among wx, wy, wz, vx, vy, vz, such as vx,vz for a planar arm [default: all six]
     #[arg(long, value_name = "ROWS")]
     pub task: Option<String>,
-    /// In whose coordinates the task's twist and wrench are [default: body]
+    /// Coordinates of the task's twist and wrench [default: body]
     #[arg(long, value_name = "FRAME")]
     pub task_frame: Option<Coordinates>,
 }

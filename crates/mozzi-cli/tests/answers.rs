@@ -170,7 +170,7 @@ fn what_needs_an_end_effector_is_null_with_a_note() {
     let output = mozzi(&["terms", "panda", "--json"]);
     assert!(output.status.success());
     let note = String::from_utf8_lossy(&output.stderr).to_string();
-    assert!(note.contains("`panda_hand_tcp`") && note.contains("left out"), "{note}");
+    assert!(note.contains("`panda_hand_tcp`") && note.contains("omitted"), "{note}");
     let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(found["body_jacobian"].is_null() && found["task_space_dynamics"].is_null());
     assert_eq!(rows(&found["mass_matrix"]).len(), 8);

@@ -45,7 +45,7 @@ fn xacro_is_refused_with_the_command_that_expands_it() {
     let text = "<robot name='arm' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:arm mass='1'/></robot>";
     let robot = file(&folder, "arm.xacro", text);
     for command in ["info", "check", "terms"] {
-        wrong(&[command, &robot], &["<xacro:arm> is a word of xacro", "2:2", "pip install xacro; xacro"]);
+        wrong(&[command, &robot], &["<xacro:arm> is a xacro element", "2:2", "pip install xacro; xacro"]);
     }
     let output = mozzi(&["check", &robot, "--json"]);
     let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
@@ -82,7 +82,7 @@ fn codes_are_explained() {
     let all = common::text(&["explain"]);
     assert!(all.contains("\n  zero_axis\n") && all.contains("\n  missing_limit\n"), "{all}");
     let page = common::text(&["explain", "zero_axis"]);
-    assert!(page.starts_with("mozzi::urdf::zero_axis\n\n") && page.contains("no direction"), "{page}");
+    assert!(page.starts_with("mozzi::urdf::zero_axis\n\n") && page.contains("length 0"), "{page}");
     assert_eq!(common::text(&["explain", "mozzi::urdf::zero_axis"]), page);
     let page = common::text(&["explain", "xacro"]).replace('\n', " ");
     assert!(page.contains("`xacro robot.xacro name:=value > robot.urdf`"), "{page}");
@@ -127,7 +127,7 @@ fn wrong_numbers() {
 
 #[test]
 fn wrong_frames_and_tasks() {
-    wrong(&["terms", "panda", "--tip-wrench", "0,0,0,0,0,1"], &["has to be named", "panda_hand_tcp"]);
+    wrong(&["terms", "panda", "--tip-wrench", "0,0,0,0,0,1"], &["must be named", "panda_hand_tcp"]);
     wrong(&["terms", "ur5", "--end-effector", "hand"], &["no frame `hand`", "`tool0`"]);
     wrong(&["screws", "panda", "--python"], &["serial chains"]);
     wrong(&["screws", "panda", "--python", "--end-effector", "panda_hand_tcp"], &["serial chains"]);

@@ -58,9 +58,9 @@ fn python_and_what_cannot_be_converted() {
         "joints[1].damping is \"x\", expected a number",
     );
     says(&["info", &broken(&|v| v["links"][1]["G"][3][3] = 99.into())], "links[1].G is ");
-    says(&["info", &broken(&|v| v["lists"]["S"][1][4] = 7.into())], "lists.S is not what links and joints say");
+    says(&["info", &broken(&|v| v["lists"]["S"][1][4] = 7.into())], "lists.S disagrees with links and joints");
     says(&["info", &broken(&|v| v["gravity"] = serde_json::json!([0, 1]))], "gravity is [0,1], expected 3 numbers");
-    says(&["info", &file(&folder, "no.json", "{")], "is no JSON");
+    says(&["info", &file(&folder, "no.json", "{")], "is not valid JSON");
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn mjcf_is_read_by_every_command() {
     );
     text(&["convert", robot, &path("springs.py")]);
     let (code, message) = complaint(&["convert", robot, &path("springs.urdf")]);
-    assert!(code == 1 && message.contains("armature 0.01; .json has words for all"), "{message}");
+    assert!(code == 1 && message.contains("armature 0.01; .json can express all of it"), "{message}");
     let at = ["--theta", "0.3,0.1", "--dtheta", "1,2"];
     for (command, quantity) in
         [("terms", None), ("compute", Some("inverse-dynamics")), ("compute", Some("forward-dynamics"))]

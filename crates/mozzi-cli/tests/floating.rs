@@ -53,7 +53,7 @@ fn inverse_and_forward_dynamics_at_a_pose() {
     assert_close(&rows(&terms["closed_form"]["mass_matrix"]).concat(), &M.concat(), 1e-11);
     let page = text(&[&["terms"][..], &state, &["--stacked"]].concat());
     for words in [
-        "its base floating, 5 joints: 12 positions θ and 11 velocities θ̇",
+        "with a floating base, 5 joints: 12 positions θ and 11 velocities θ̇",
         "base.qw",
         "base.vz",
         "link 1 being the floating base",
@@ -96,7 +96,7 @@ fn tables_name_their_columns() {
     let some = file(&folder, "some.csv", &format!("t,tau_base.wx,tau_{joints}\n0,0,1,2,3,4,5\n"));
     let (code, message) = complaint(&["simulate", TREE, "--floating", "--torque", &some]);
     assert!(
-        code == 1 && message.contains("column tau_base.wy is missing; of its group there are 6 of 11"),
+        code == 1 && message.contains("column tau_base.wy is missing; the file has 6 of the 11 columns of its group"),
         "{message}"
     );
     let odd = file(&folder, "odd.csv", "theta_base.qq\n0\n");

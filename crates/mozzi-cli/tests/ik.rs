@@ -18,7 +18,7 @@ fn what_is_found_is_where_it_should_be() {
     let posture = "0,-0.5,0,-1.5,0,1.5,0,0.02";
     let found = json(&["ik", "panda", "--frame", "panda_hand", "--position", "0.4,0.2,0.5", "--near", posture]);
     assert!(found["angle"].is_null() && found["distance"].as_f64().expect("asked for") < 1e-8);
-    assert!(text(&["ik", "ur5", "--position", "0.4,0.2,0.5"]).contains("`tool0` is at its goal but for"));
+    assert!(text(&["ik", "ur5", "--position", "0.4,0.2,0.5"]).contains("`tool0` reaches its goal within"));
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn wrong_goals() {
         let (code, message) = complaint(&[&["ik", "ur5"], arguments].concat());
         assert!(code == 1 && words.iter().all(|word| message.contains(word)), "{message}");
     };
-    wrong(&[], &["there is no goal", "--position"]);
+    wrong(&[], &["the goal is missing", "--position"]);
     wrong(&["--position", "3,0,0", "--starts", "2"], &["`tool0` did not reach its goal", "2 starts"]);
     wrong(&["--quaternion", "1,1,0,0"], &["--quaternion", "length is 1.41"]);
     wrong(&["--position", "1,2"], &["2 entries, expected 3"]);

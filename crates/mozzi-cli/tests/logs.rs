@@ -103,3 +103,92 @@ fn formats_that_are_not_known_or_not_built_in_are_named_before_the_motion_runs()
         }
     }
 }
+
+/// The most memory that the program held, kB, as Linux counts it while it runs.
+#[cfg(target_os = "linux")]
+fn peak(arguments: &[&str]) -> u64 {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
+        .args(arguments)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("the program runs");
+    let status = format!("/proc/{}/status", program.id());
+    let mut most = 0;
+    loop {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let found = line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse().ok());
+        most = most.max(found.unwrap_or(0));
+        if let Some(ended) = program.try_wait().expect("it can be waited for") {
+            assert!(ended.success(), "{ended}");
+            return most;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_the_rows() {
+    let folder = folder("logs_memory");
+    for format in ["csv", "npy", "npz", "arrow"] {
+        let file = folder.join(format!("long.{format}")).to_string_lossy().into_owned();
+        let of = |time: &str| {
+            peak(&[
+                "simulate",
+                "double_pendulum",
+                "--theta",
+                "1,0.5",
+                "--method",
+                "euler",
+                "--step",
+                "1e-5",
+                "--time",
+                time,
+                "--out",
+                &file,
+            ])
+        };
+        // 50,000 and 300,000 rows of 14 numbers: 6 and 34 MB
+        let (few, many) = (of("0.5"), of("3"));
+        println!("{format}: {few} kB, {many} kB");
+        assert!(many < few + 8_000, "{format}: {few} kB of 50,000 rows, {many} kB of 300,000");
+        assert!(std::fs::metadata(&file).expect("written").len() > 30_000_000);
+    }
+}
+
+#[test]
+fn rows_are_those_of_the_motion_whoever_ends_it() {
+    let folder = folder("logs_until");
+    let motion = ["simulate", "double_pendulum", "--theta", "1,0.5", "--step", "0.01", "--until", "joint1 < 0.2"];
+    let csv = text(&[&motion[..], &["--out", "-"]].concat());
+    let table: Vec<Vec<f64>> =
+        csv.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    assert!(table.len() < 100, "{} rows", table.len());
+    let file = folder.join("ended.npy").to_string_lossy().into_owned();
+    text(&[&motion[..], &["--out", &file]].concat());
+    let bytes = std::fs::read(&file).expect("written");
+    let header = String::from_utf8_lossy(&bytes[10..bytes.len() - 8 * table.len() * table[0].len()]).into_owned();
+    assert!(header.contains(&format!("'shape': ({}, {})", table.len(), table[0].len())), "{header}");
+    let numbers = bytes[10 + header.len()..].chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().expect("eight")));
+    assert!(numbers.eq(table.concat()));
+    // what fails leaves no file
+    let file = folder.join("failed.csv").to_string_lossy().into_owned();
+    let failing = ["simulate", "double_pendulum", "--method", "dopri", "--tolerance", "0", "--out", &file];
+    assert_eq!(complaint(&failing).0, 1);
+    let failing = ["simulate", "double_pendulum", "--dtheta", "1e149,1e149", "--out", &file];
+    assert!(complaint(&failing).1.contains("diverged") && !std::path::Path::new(&file).exists());
+}
+
+#[test]
+fn a_page_holds_as_many_rows_as_it_is_told() {
+    let folder = folder("logs_page");
+    let page = folder.join("fall.html").to_string_lossy().into_owned();
+    let fall = ["simulate", "double_pendulum", "--time", "1", "--report", &page];
+    let said = |flags: &[&str]| text(&[&fall[..], flags].concat());
+    assert!(said(&[]).contains("page: 1001 of 1001 rows, "));
+    assert!(said(&["--page-rows", "150"]).contains("page: 101 of 1001 rows, "));
+    assert!(said(&["--page-rows", "all", "--step", "4e-5"]).contains("page: 25001 of 25001 rows, "));
+    assert!(said(&["--step", "4e-5"]).contains("page: 12501 of 25001 rows, "));
+    assert!(complaint(&[&fall[..], &["--page-rows", "1"]].concat()).1.contains("at least 2, or all"));
+}

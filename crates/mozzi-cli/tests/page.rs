@@ -159,7 +159,7 @@ fn the_page_shows_what_mozzi_computes() {
         ["--theta", "0,-1.2,1.5,0.3,1.1,0", "--time", "0.5", "--step", "0.01", "--torque", "gravity-compensation"];
     let simulate = [&["simulate", "ur5", "--dtheta", "1,0.2,-0.5,0.4,0.3,1"], &start[..]].concat();
     let motion = json(&simulate);
-    assert!(text(&[&simulate[..], &["--report", report_name]].concat()).contains("a page of "));
+    assert!(text(&[&simulate[..], &["--report", report_name]].concat()).contains("page: 51 of 51 rows, "));
     let names = |model: &Model| all_frames(model).into_iter().map(|(_, name)| name).collect::<Vec<_>>();
     let times = numbers(&motion["t"]);
     let looked = [0, 17, 50];
@@ -284,7 +284,7 @@ fn a_table_becomes_a_page_and_a_wrong_one_is_refused() {
     let (table, page) = (path("swing.csv"), path("swing.html"));
     text(&["simulate", "double_pendulum", "--theta", "1.5,0", "--time", "0.1", "--out", &table]);
     let said = text(&["view", "double_pendulum", &table, "--out", &page]);
-    assert!(said.ends_with(&format!("written to {page}\n")), "{said}");
+    assert!(said.starts_with("page: 101 of 101 rows, ") && said.ends_with(&format!("written to {page}\n")), "{said}");
     let html = std::fs::read_to_string(&page).expect("a page");
     assert!(html.starts_with("<!doctype html>") && html.contains("\"potential_energy\":\""));
     let backwards = common::file(&folder, "back.csv", "t,theta_1,theta_2\n1,0,0\n0,0,0\n");

@@ -12,7 +12,7 @@ fn every_kind_of_figure_is_written() {
     text(&["simulate", "double_pendulum", "--theta", "1.5,0", "--time", "0.2", "--out", &table]);
     let drawn = |arguments: &[&str]| {
         let said = text(&[&["plot"], arguments, &["--out", &figure]].concat());
-        assert!(said.starts_with(&format!("a figure written to {figure}\n")), "{said}");
+        assert!(said.starts_with(&format!("wrote a figure to {figure}\n")), "{said}");
         (said, std::fs::read_to_string(&figure).expect("a figure"))
     };
     for (kind, word) in [("trajectory", "θ̈ [rad/s²]"), ("energy", "potential"), ("phase", "joint2 [rad]")] {

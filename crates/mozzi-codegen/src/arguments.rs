@@ -6,9 +6,9 @@ use crate::traced::Traced;
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsByMassMatrix, Memory, Of, Query};
 use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};
 
-/// What stays an argument of the program instead of a constant in it: further inputs after the state, in this order. By default nothing
-/// does: all numbers of the robot are in the program, its base is at rest and it touches nothing, and what is multiplied by a zero falls
-/// away.
+/// Quantities kept as arguments of the program instead of constants: further inputs after the state, in this order. By
+/// default there are none: all numbers of the robot are constants, its base is at rest, no wrenches are applied, and
+/// products with zeros are dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Arguments<'a> {
     /// `parameters`: [`Model::parameters`], the masses, inertias, frictions and springs. Geometry stays constant.
@@ -19,10 +19,10 @@ pub struct Arguments<'a> {
     pub base_twist: bool,
     /// `base_acceleration`: six numbers, (ω̇, v̇) of {s}.
     pub base_acceleration: bool,
-    /// `about`: three numbers, the point of {s} that a momentum is about.
+    /// `about`: three numbers, the reference point of a momentum in {s}.
     pub about: bool,
-    /// `wrench`, or of several frames `wrench_FRAME`: six numbers (m, f), what this frame applies to the environment, in its own
-    /// coordinates: a tool's load, a push.
+    /// `wrench`, or `wrench_FRAME` for several frames: six numbers (m, f), the wrench that this frame applies to the
+    /// environment in its own coordinates.
     pub wrenches: &'a [FrameId],
 }
 
@@ -50,18 +50,19 @@ impl Arguments<'_> {
     }
 }
 
-/// The program of a quantity of this robot: `mozzi`'s kernel, recorded. Its inputs are the quantity's, then the [`Arguments`]; its outputs
-/// the quantity's by their names, matrices by rows, then `pivots` where it divides by the mass matrix and `task_pivots` of a task.
-/// Forward dynamics is recorded by articulated bodies and by the mass matrix, and the shorter program kept.
+/// The program of a quantity of this robot: `mozzi`'s kernel, recorded. Its inputs are the quantity's, then the
+/// [`Arguments`]; its outputs the quantity's by their names, matrices by rows, then `pivots` where it divides by the
+/// mass matrix and `task_pivots` of a task. Forward dynamics is recorded by articulated bodies and by the mass matrix,
+/// and the shorter program kept.
 ///
 /// # Errors
-/// [`Error::BadArgument`] for a frame that is missing or another model's; [`Error::NoMass`].
+/// [`Error::BadArgument`] if the frame is missing or belongs to another model; [`Error::NoMass`].
 pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments: Arguments) -> Result<Program, Error> {
     let query = query.into();
     query.check_subject(model)?;
     arguments.wrenches.iter().try_for_each(|&frame| model.check_frame(frame))?;
     let by = |kernel: Query| recorded(model, query, kernel, arguments);
-    if query == ForwardDynamics.into() && !model.has_mimic_joints() {
+    if query == ForwardDynamics.into() && !model.has_coupled_joints() {
         let (bodies, matrix) = (by(query), by(ForwardDynamicsByMassMatrix.into()));
         return Ok(if work(&matrix) < work(&bodies) { matrix } else { bodies });
     }

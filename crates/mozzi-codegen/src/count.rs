@@ -1,4 +1,4 @@
-//! How much work a program is.
+//! Operation counts of programs.
 
 use std::fmt;
 
@@ -9,25 +9,25 @@ pub struct Count {
     pub add: usize,
     /// Products.
     pub mul: usize,
-    /// Products with a sum, as one.
+    /// Fused multiply-adds.
     pub fma: usize,
     /// Quotients.
     pub div: usize,
     /// Roots.
     pub sqrt: usize,
-    /// Sines with their cosines.
+    /// Sine and cosine pairs.
     pub sin_cos: usize,
     /// Changes of sign, sgn, tanh.
     pub other: usize,
 }
 
 impl Count {
-    /// Operations in floating point without sines and cosines; a product with a sum is two.
+    /// Floating-point operations without sines and cosines; a fused multiply-add counts as two.
     pub fn flops(&self) -> usize {
         self.instructions() + self.fma
     }
 
-    /// The same, a product with a sum being one.
+    /// The same, with a fused multiply-add counted as one.
     pub fn instructions(&self) -> usize {
         self.add + self.mul + self.fma + self.div + self.sqrt + self.other
     }

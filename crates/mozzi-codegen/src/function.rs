@@ -43,7 +43,7 @@ impl Function {
     pub const ALL: [Function; 14] =
         [Add, Sub, Mul, Div, Neg, MulAdd, MulSub, NegMulAdd, NegMulSub, Sqrt, Sin, Cos, Tanh, Sgn];
 
-    /// How many numbers it takes.
+    /// The number of operands.
     pub fn arity(self) -> usize {
         match self {
             Neg | Sqrt | Sin | Cos | Tanh | Sgn => 1,
@@ -52,7 +52,7 @@ impl Function {
         }
     }
 
-    /// How it is written: a word.
+    /// Its name in text.
     pub fn name(self) -> &'static str {
         match self {
             Add => "add",

@@ -4,7 +4,7 @@ use crate::count::Count;
 use crate::function::Function;
 use mozzi::Scalar;
 
-/// A number of a program: the place of the step that computes it.
+/// A number of a program: the index of the step that computes it.
 pub type Value = u32;
 
 /// One step of a program.
@@ -12,9 +12,9 @@ pub type Value = u32;
 pub enum Step {
     /// A number of the robot.
     Constant(f64),
-    /// A number of the caller: which array, which entry.
+    /// An input: the array and the entry.
     Input(u32, u32),
-    /// An operation on what steps before this one computed; operands beyond its arity are 0.
+    /// An operation on results of earlier steps; operands beyond its arity are 0.
     Apply(Function, [Value; 3]),
 }
 
@@ -28,21 +28,21 @@ impl Step {
     }
 }
 
-/// An array of the caller's numbers.
+/// An input array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Array {
-    /// What it holds: `theta`.
+    /// Its name, such as `theta`.
     pub name: String,
-    /// How many numbers.
+    /// Its length.
     pub length: usize,
 }
 
-/// An array that the program fills.
+/// An output array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// What it holds: `tau`.
+    /// Its name, such as `tau`.
     pub name: String,
-    /// Where each entry comes from.
+    /// The step that computes each entry.
     pub values: Vec<Value>,
 }
 
@@ -117,13 +117,13 @@ impl Program {
         count
     }
 
-    /// The operations that the kernel asked for while it was recorded, before anything was folded; none where the program was
-    /// read from a text.
+    /// The kernel's operations before folding; `None` if the program was parsed from text.
     pub fn count_before_folding(&self) -> Option<Count> {
         self.asked
     }
 
-    /// The outputs at these inputs, by interpretation, in any scalar: what every other way to run the program is compared with.
+    /// The outputs at these inputs, by interpretation, in any scalar: what every other way to run the program is
+    /// compared with.
     ///
     /// # Panics
     /// When there are not as many inputs as [`inputs`](Self::inputs) says, or one is shorter than it says.

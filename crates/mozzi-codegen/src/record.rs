@@ -5,8 +5,8 @@ use crate::program::{Array, Output, Program, Step, Value};
 use crate::tape::{self, Node, Tape};
 use crate::traced::Traced;
 
-/// The program of what `body` computes on these arrays (name and length), as arrays with their names. The kernels of `mozzi` run in it
-/// unchanged: see [`Program`](crate::Program).
+/// Records the program that `body` executes on these input arrays (name and length); it returns named output arrays.
+/// The kernels of `mozzi` run in it unchanged: see [`Program`](crate::Program).
 pub fn record<'n>(
     name: &str,
     inputs: &[(&str, usize)],
@@ -25,8 +25,8 @@ pub fn record<'n>(
     Program { name: name.to_string(), inputs, steps, outputs, asked }
 }
 
-/// What the outputs need, in the order of the tape, products fused with sums, and signs computed where an output is the negative
-/// of a node.
+/// What the outputs need, in the order of the tape, products fused with sums, and signs computed where an output is the
+/// negative of a node.
 fn finish(tape: Tape, outputs: &[(&str, Vec<Traced>)]) -> (Vec<Step>, Vec<Output>) {
     let mut steps: Vec<Step> = tape
         .nodes
@@ -78,8 +78,8 @@ fn uses(steps: &[Step], roots: impl Iterator<Item = Value>) -> Vec<u32> {
     uses
 }
 
-/// A sum takes in a product that nothing else needs, of two the one that was recorded last; then products that only sums need, each
-/// of which can take it in.
+/// A sum takes in a product that nothing else needs, of two the one that was recorded last; then products that only
+/// sums need, each of which can take it in.
 fn fuse(steps: &mut [Step], uses: &[u32]) {
     for place in 0..steps.len() {
         let single = |x: Value| uses[x as usize] == 1;

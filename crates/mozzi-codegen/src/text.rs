@@ -1,4 +1,4 @@
-//! Programs as text, a line a step.
+//! Programs as text, one line per step.
 
 use crate::function::Function;
 use crate::program::{Array, Output, Program, Step, Value};
@@ -30,12 +30,12 @@ impl fmt::Display for Program {
     }
 }
 
-/// A text that is no program.
+/// Error: the text is not a valid program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotAProgram {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong with it, and what was expected.
+    /// What was found, and what was expected.
     pub problem: String,
 }
 

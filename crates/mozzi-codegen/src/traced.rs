@@ -65,6 +65,7 @@ impl SubAssign for Traced {
 }
 
 impl Scalar for Traced {
+    const IS_ONE: bool = false;
     fn from_f64(x: f64) -> Self {
         x.into()
     }

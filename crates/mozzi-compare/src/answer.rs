@@ -1,6 +1,7 @@
 //! What a library answered.
 
 use crate::constants::{Constants, JointConstants, body};
+use crate::convention::velocity_names;
 use crate::numbers::{Numbers, Side};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -125,19 +126,10 @@ fn robot(value: &Value) -> Option<Robot> {
     if joints.iter().enumerate().any(|(k, joint)| joint.parent.is_some_and(|up| up >= k)) {
         return None;
     }
-    // one name for each velocity
-    let name = |joint: &JointConstants| match joint.nv {
-        1 => vec![joint.name.clone()],
-        many => (1..=many).map(|k| format!("{} ({k} of {many})", joint.name)).collect(),
-    };
-    let names = joints.iter().flat_map(name);
-    let names: Vec<String> = if has_base {
-        // both libraries have the linear three first
-        let base = ["vx", "vy", "vz", "wx", "wy", "wz"].map(|axis| format!("base.{axis}"));
-        base.into_iter().chain(names.skip(6)).collect()
-    } else {
-        names.collect()
-    };
+    if has_base {
+        joints[0].name = "base".into();
+    }
+    let names: Vec<String> = joints.iter().flat_map(|joint| velocity_names(&joint.name, joint.nv)).collect();
     if has_base {
         joints.remove(0);
         joints.iter_mut().for_each(|joint| joint.parent = joint.parent.and_then(|up| up.checked_sub(1)));

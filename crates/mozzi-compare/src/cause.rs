@@ -1,4 +1,4 @@
-//! What may make two libraries differ, and the same difference made in mozzi.
+//! Causes of a difference between two libraries, and the same change made in mozzi.
 
 use crate::Result;
 use crate::answer::{Answer, Robot};
@@ -48,7 +48,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Is the cause known, or only the place?
+    /// Whether the cause is known, rather than only the place.
     pub fn is_explanation(&self) -> bool {
         !matches!(self, Cause::Axes(_) | Cause::Bodies(Reason::Unknown, _))
     }
@@ -69,6 +69,8 @@ impl Cause {
                 list.iter().for_each(|freed| joints(robot, &freed.joint).for_each(|joint| joint.mimic = None));
             }
             Cause::Held(list) => {
+                // which hold joints that are fixed from here on, and are not compared
+                (robot.states, robot.start) = (Vec::new(), None);
                 for joint in &mut robot.joints {
                     if list.contains(&joint.name) {
                         joint.kind = JointKind::Fixed;
@@ -125,12 +127,15 @@ fn joints<'r>(robot: &'r mut Description, name: &str) -> impl Iterator<Item = &'
     robot.joints.iter_mut().filter(move |joint| joint.name == name)
 }
 
-/// Every cause that the two sides' constants suggest; whether it explains anything is tried then. `coupled`: the
-/// library was asked to couple mimic joints.
+/// Every cause that the two sides' constants suggest; each is then tested. `coupled`: the library was called with mimic
+/// joints coupled.
 pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: bool) -> Result<Vec<Cause>> {
     let (theirs, mut causes) = (&from.constants, Vec::new());
     let mine = Constants::of(robot)?;
-    let there = |name: &str| theirs.joint(name).is_some_and(|joint| joint.nv == 1);
+    let there = |name: &str| {
+        let nv = mine.joint(name).map(|joint| joint.nv);
+        nv.is_some() && theirs.joint(name).map(|joint| joint.nv) == nv
+    };
     let mimic = |name: &str| robot.joints.iter().find(|joint| joint.name == name)?.mimic.as_ref();
 
     let held: Vec<String> = (mine.joints.iter())
@@ -170,7 +175,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
         mine.joints.iter().filter_map(change).collect()
     };
     // Pinocchio keeps damping and friction and leaves them out of its inverse dynamics, and has no springs; MuJoCo makes a constraint of dry
-    // friction, and of its springs the force is told
+    // friction; springs are reported by their forces
     let pinocchio = answer.library == "Pinocchio";
     type Make = fn(Vec<Change>) -> Cause;
     let stiffness = if pinocchio { changes(|joint| joint.stiffness, true) } else { Vec::new() };
@@ -187,7 +192,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     causes.extend(from.forces.keys().map(|name| Cause::Force(name.clone())));
 
     let turned = |(a, b): &(&JointConstants, &JointConstants)| {
-        let (a, [b]) = (a.axes[0], &b.axes[..]) else { return None };
+        let ([a], [b]) = (&a.axes[..], &b.axes[..]) else { return None };
         let far = a.iter().zip(b).any(|(x, y)| (x - y).abs() > 1e-9 * (1.0 + x.abs()));
         far.then_some(*b)
     };

@@ -6,7 +6,7 @@ use crate::question::Question;
 use crate::report_text::Finding;
 use crate::verdict::{Verdict, judge};
 use crate::{BOUND, Error, Result, Source, report_json, report_text, vocabulary};
-use mozzi::{Freedom, Model};
+use mozzi::Model;
 use mozzi_text::Page;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -14,11 +14,11 @@ use std::path::{Path, PathBuf};
 /// How a robot is compared.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The Python that has pin or mujoco; that of the active virtual environment, else `python3`.
+    /// The Python interpreter with pin or mujoco; by default that of the active virtual environment, else `python3`.
     pub python: PathBuf,
-    /// How many random states, within the joints' limits; 10.
+    /// Number of random states within the joints' limits; 10 by default.
     pub states: usize,
-    /// Of the random numbers; 1.
+    /// Seed of the random states; 1 by default.
     pub seed: u64,
 }
 
@@ -28,7 +28,7 @@ impl Default for Options {
     }
 }
 
-/// What the libraries made of a robot.
+/// The result of comparing a robot with the libraries.
 #[derive(Debug)]
 pub struct Comparison {
     question: Question,
@@ -38,18 +38,11 @@ pub struct Comparison {
     findings: Vec<Finding>,
 }
 
-/// Compares a robot with what Pinocchio and MuJoCo make of its source.
+/// Compares a robot with Pinocchio and MuJoCo on the same source.
 ///
 /// # Errors
 /// See [`Error`].
 pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Comparison> {
-    let several = model.joints().zip(model.places()).find(|(_, place)| place.freedom != Freedom::One);
-    if let Some((joint, _)) = several {
-        let found = format!("`{}`, a {} joint", joint.name, joint.kind.name());
-        return Err(
-            mozzi::Error::BadArgument { what: "a joint to compare", found, expected: "joints of one axis" }.into()
-        );
-    }
     let robot = model.description();
     let question = Question::new(source, robot, options.states, options.seed)?;
     let mut peers = vec![Peer::Pinocchio, Peer::MuJoCo];
@@ -76,12 +69,12 @@ pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Compa
     Ok(Comparison { seed: options.seed, joints, findings, question })
 }
 
-/// What the libraries make of a file that mozzi refuses: whether they load it.
+/// Reports whether the libraries load a file that mozzi refuses.
 ///
 /// # Errors
 /// See [`Error`].
 pub fn ask(source: Source, options: &Options) -> Result<Comparison> {
-    let question = Question { source, names: Vec::new(), axes: Vec::new(), states: Vec::new(), floating: false };
+    let question = Question::of_file(source);
     let answers = python::ask(&options.python, &question, &[Peer::Pinocchio, Peer::MuJoCo])?;
     somebody(&options.python, &answers)?;
     let findings = answers.into_iter().map(|answer| Finding { answer, verdict: None, coupled: None }).collect();
@@ -107,17 +100,17 @@ impl Comparison {
         verdicts.peek().is_some() && verdicts.all(fine)
     }
 
-    /// Did somebody compute, and everybody who did the same?
+    /// Whether at least one library computed results, and all of them agree.
     pub fn agrees(&self) -> bool {
         self.verdicts_are(Verdict::agrees)
     }
 
-    /// Did somebody compute, and is every difference explained?
+    /// Whether at least one library computed results, and every difference is explained.
     pub fn is_explained(&self) -> bool {
         self.verdicts_are(Verdict::is_explained)
     }
 
-    /// For people: for each library what it says, and why.
+    /// The report as text: for each library whether it agrees, and the causes.
     pub fn text(&self) -> String {
         let mut page = Page::default();
         match &self.joints {
@@ -131,7 +124,7 @@ impl Comparison {
         page.end()
     }
 
-    /// For machines: the same.
+    /// The report as JSON.
     pub fn json(&self) -> Value {
         json!({
             "model": self.question.source.name,

@@ -3,7 +3,7 @@
 
 use crate::Result;
 use mozzi::model::description::{Joint, JointKind};
-use mozzi::{Description, SE3, SpatialInertia, Sym3, Vec3};
+use mozzi::{Description, Place, SE3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;
 
 /// A joint, and the body that it moves with all that is fixed to it.
@@ -18,7 +18,7 @@ pub struct JointConstants {
     /// Positions that it takes, and velocities.
     pub nq: usize,
     pub nv: usize,
-    /// Its screw axis, one for each velocity: (ω, v).
+    /// Its screw axis, one for each velocity: (ω, v). Zeros of a joint of several, here and in MuJoCo.
     pub axes: Vec<[f64; 6]>,
     pub body: SpatialInertia,
     pub armature: f64,
@@ -65,20 +65,21 @@ impl Constants {
             }
         };
         let bodies = model.folded_links();
-        let joint = |(joint, body): (&&Joint, &mozzi::model::FoldedBody)| {
+        let joint = |((joint, body), place): ((&&Joint, &mozzi::model::FoldedBody), &Place)| {
+            let freedom = place.freedom;
             let sum = (body.links.iter())
                 .fold(SpatialInertia::zero(), |sum, (link, _)| sum + inertia[link].transformed(home[*link]));
             let axis = match joint.kind {
                 JointKind::Screw(A) => A.transformed(home[&joint.child]).twist().to_array(),
-                _ => [0.0; 6], // fixed; others are not compared
+                _ => [0.0; 6],
             };
             JointConstants {
                 name: joint.name.clone(),
                 called: joint.name.clone(),
                 parent: carrier(joint),
-                nq: 1,
-                nv: 1,
-                axes: vec![axis],
+                nq: freedom.positions(),
+                nv: freedom.velocities(),
+                axes: vec![axis; freedom.velocities()],
                 body: sum,
                 armature: joint.armature,
                 damping: joint.damping,
@@ -86,7 +87,7 @@ impl Constants {
                 stiffness: joint.stiffness,
             }
         };
-        let joints = moving.iter().zip(&bodies[1..]).map(joint).collect();
+        let joints = moving.iter().zip(&bodies[1..]).zip(model.places()).map(joint).collect();
         Ok(Constants { joints, gravity: robot.gravity })
     }
 

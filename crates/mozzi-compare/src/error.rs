@@ -1,43 +1,43 @@
-//! Why nothing is compared.
+//! Errors of a comparison.
 
 use std::path::PathBuf;
 
-/// Why nothing is compared.
+/// Errors of a comparison.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// mozzi does not build the robot, or compute of it.
+    /// mozzi cannot build the robot, or cannot compute its dynamics.
     #[error(transparent)]
     Robot(#[from] mozzi::Error),
-    /// The file is not there for the libraries.
+    /// The file cannot be read.
     #[error("{file} cannot be read: {error}")]
     Read {
         /// The file, as it was named.
         file: String,
-        /// What the system says.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// No file that the libraries read says what this robot is.
+    /// The robot cannot be written in a format that the libraries read.
     #[error("{robot} cannot be given to other libraries: {error}")]
     Write {
         /// The robot.
         robot: String,
-        /// What URDF has no words for.
+        /// What URDF cannot express.
         error: mozzi_urdf::NotUrdf,
     },
-    /// This Python does not start.
+    /// Python cannot be started.
     #[error("Python `{}` did not start: {error}; name one that has pin or mujoco", python.display())]
     Python {
         /// The program.
         python: PathBuf,
-        /// What the system says.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// No library answered.
+    /// No library returned results.
     #[error("`{}` has no library to compare with: {reasons}; `pip install pin mujoco` gives it both", python.display())]
     NoLibrary {
         /// The program.
         python: PathBuf,
-        /// Why, of each.
+        /// The reason for each library.
         reasons: String,
     },
 }

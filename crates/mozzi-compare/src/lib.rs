@@ -1,8 +1,8 @@
-//! What Pinocchio and MuJoCo compute of a robot's file, and why it differs from what mozzi computes.
+//! Compares mozzi with Pinocchio and MuJoCo on a robot's file, and explains differences.
 //!
-//! [`compare`] asks each library, in a Python that has it, for M, g, h and τ at random states, in processes of their own. Where they differ
-//! it looks for the causes: numbers that one side reads and the other does not, and conventions. A cause counts only if the difference goes
-//! where it is accounted for, and comes back where it is not.
+//! [`compare`] runs each library in a Python process of its own and gets M, g, h and τ at random states. If they differ
+//! from mozzi's, it searches for the causes: numbers that only one side reads, and conventions. A cause counts only if
+//! the difference vanishes with it and returns without it.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -19,6 +19,7 @@ mod bodies;
 mod cause;
 mod comparison;
 mod constants;
+mod convention;
 mod error;
 mod numbers;
 mod python;
@@ -26,6 +27,7 @@ mod question;
 mod report_json;
 mod report_text;
 mod source;
+mod state;
 #[cfg(test)]
 mod tests;
 mod verdict;

@@ -1,9 +1,11 @@
 //! M, g, h and τ at the states, and how far two sides are apart.
 
 use crate::Result;
-use crate::question::{Question, State};
-use mozzi::Description;
+use crate::convention::{Convention, velocity_names};
+use crate::question::Question;
+use crate::state::State;
 use mozzi::accuracy::{TermSizes, normalized_error};
+use mozzi::{Description, Place};
 use nalgebra::{DMatrix, DVector};
 
 /// More than this many ε of the size of the terms is a difference. Rounding, of files' digits through quaternions and
@@ -54,27 +56,31 @@ pub struct Entry {
 }
 
 impl Side {
-    /// mozzi's.
-    pub fn of(robot: &Description, question: &Question) -> Result<Self> {
+    /// mozzi's, in the coordinates of a library.
+    pub fn of(robot: &Description, question: &Question, library: &str) -> Result<Self> {
         let model = robot.clone().build()?;
-        let names: Vec<String> = model.velocity_names().map(str::to_string).collect();
-        let environment = model.environment();
-        let at = |values: &[f64]| -> Vec<f64> {
-            let value =
-                |name: &String| question.names.iter().position(|known| known == name).map_or(0.0, |k| values[k]);
-            names.iter().map(value).collect() // a floating base is at rest
-        };
-        let base = model.base();
+        let (convention, environment) = (Convention::new(library, &model)?, model.environment());
+        let base = model.is_floating().then(|| velocity_names("base", 6));
+        let joints: Vec<(&str, &Place)> = model.joint_names().zip(model.places()).collect();
+        let own = joints.iter().map(|(name, place)| velocity_names(name, place.freedom.velocities()));
+        let names = base.into_iter().chain(own).flatten().collect();
+        let asked: Vec<(&Place, &Place)> =
+            joints.iter().filter_map(|&(name, place)| Some((place, question.place(name)?))).collect();
         let numbers = |state: &State| {
-            let (dtheta, ddtheta) = (at(&state.dtheta), at(&state.ddtheta));
-            let mut theta = model.neutral_configuration::<f64>();
-            theta[base.positions()..].copy_from_slice(&at(&state.theta)[base.velocities()..]);
-            Ok(Numbers {
+            let mut here = State::home(&model); // a floating base is at rest
+            for (place, there) in asked.iter().filter(|(place, there)| place.freedom == there.freedom) {
+                here.theta[place.positions()].copy_from_slice(&state.theta[there.positions()]);
+                here.dtheta[place.velocities()].copy_from_slice(&state.dtheta[there.velocities()]);
+                here.ddtheta[place.velocities()].copy_from_slice(&state.ddtheta[there.velocities()]);
+            }
+            let State { theta, dtheta, ddtheta } = here;
+            let own = Numbers {
                 M: model.mass_matrix(&theta)?,
                 g: model.gravity_forces(&theta)?,
                 h: model.bias_forces(&theta, &dtheta, &environment)?,
                 tau: model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment)?,
-            })
+            };
+            convention.numbers(&theta, &dtheta, &own)
         };
         let states = question.states.iter().map(numbers).collect::<Result<_>>()?;
         Ok(Side { names, states })

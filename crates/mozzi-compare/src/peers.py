@@ -40,19 +40,24 @@ def rows(matrix):
 
 
 def rename(joints, known):
-    """The asker's names: by name, else by the same axis, else their own."""
+    """The asker's names: by name, else by the same axis, else, of balls and free joints, by a like name or as the only one; else their own."""
     names = {joint["name"] for joint in joints}
     missing = [joint for joint in known if joint["name"] not in names]
     wanted = {joint["name"] for joint in known}
     for joint in joints:
         joint["called"] = joint["name"]
-        if joint["name"] in wanted or len(joint["axes"]) != 1:
+        if joint["name"] in wanted:
             continue
-        for candidate in missing:
-            if max(abs(a - b) for a, b in zip(candidate["axis"], joint["axes"][0])) < 1e-9:
-                joint["name"] = candidate["name"]
-                missing.remove(candidate)
-                break
+        candidates = [candidate for candidate in missing if candidate["nv"] == joint["nv"]]
+        if joint["nv"] == 1:
+            far = lambda candidate: max(abs(a - b) for a, b in zip(candidate["axis"], joint["axes"][0]))
+            candidates = [candidate for candidate in candidates if far(candidate) < 1e-9]
+        else:
+            like = [candidate for candidate in candidates if candidate["name"].replace(":", "_") == joint["name"]]
+            candidates = like or candidates * (len(candidates) == 1)
+        if candidates:
+            joint["name"] = candidates[0]["name"]
+            missing.remove(candidates[0])
 
 
 # Pinocchio -----------------------------------------------------------------------------------------------------------
@@ -98,11 +103,11 @@ class Pinocchio:
         for i, parts in self.parts:
             at = self.model.idx_qs[i]
             for name, nq, nv in parts:
-                angle = angles.get(name, 0.0)
+                own = angles.get(name, [0.0])
                 if nv == 1 and nq == 2:
-                    q[at], q[at + 1] = self.np.cos(angle), self.np.sin(angle)
-                elif nv == 1 and nq == 1:
-                    q[at] = angle
+                    q[at], q[at + 1] = self.np.cos(own[0]), self.np.sin(own[0])
+                elif len(own) == nq:
+                    q[at:at + nq] = own
                 at += nq
         return q
 
@@ -111,15 +116,16 @@ class Pinocchio:
         for i, parts in self.parts:
             at = self.model.idx_vs[i]
             for name, _, nv in parts:
-                if nv == 1:
-                    v[at] = rates.get(name, 0.0)
+                own = rates.get(name, [])
+                if len(own) == nv:
+                    v[at:at + nv] = own
                 at += nv
         return v
 
     def joints(self):
         model, data, pin = self.model, self.data, self.pin
         neutral = self.configuration({})
-        J = pin.computeJointJacobians(model, data, neutral)
+        J = pin.computeJointJacobians(model, data, neutral).reshape(6, model.nv)  # of one velocity it is a list
         friction = getattr(model, "upperDryFrictionLimit", getattr(model, "friction", self.np.zeros(model.nv)))
         last, result = {0: None}, []
         for i, parts in self.parts:
@@ -223,14 +229,19 @@ class MuJoCo:
             mujoco.set_mju_user_warning(lambda message: None)  # which would write a file
         self.spec, self.model = mujoco_model(mujoco, question, attempts)
         self.data = mujoco.MjData(self.model)
-        self.names = [self.model.joint(j).name or f"joint{j}" for j in range(self.model.njnt)]
+        free = lambda j: self.model.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE
+        unnamed = lambda j: f"{self.model.body(self.model.jnt_bodyid[j]).name}:free" if free(j) else f"joint{j}"
+        self.names = [self.model.joint(j).name or unnamed(j) for j in range(self.model.njnt)]
+        self.home = dict(zip(question["names"], question["home"] or []))
         sizes = {mujoco.mjtJoint.mjJNT_FREE: (7, 6), mujoco.mjtJoint.mjJNT_BALL: (4, 3)}
         self.sizes = [sizes.get(mujoco.mjtJoint(kind), (1, 1)) for kind in self.model.jnt_type]
 
-    def set(self, values, addresses, target):
-        for name, at, (_, nv) in zip(self.names, addresses, self.sizes):
-            if nv == 1:
-                target[at] = values.get(name, 0.0)
+    def set(self, values, addresses, target, width):
+        for name, at, size in zip(self.names, addresses, self.sizes):
+            if len(values.get(name, [])) == size[width]:
+                target[at:at + size[width]] = values[name]
+            elif size[width] == 1:
+                target[at] = 0.0
 
     def place(self, theta, dtheta):
         self.data.qpos[:] = self.model.qpos0
@@ -238,8 +249,8 @@ class MuJoCo:
             if nq == 7:
                 self.data.qpos[at:at + 7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
         self.data.qvel[:] = 0.0
-        self.set(theta, self.model.jnt_qposadr, self.data.qpos)
-        self.set(dtheta, self.model.jnt_dofadr, self.data.qvel)
+        self.set(theta, self.model.jnt_qposadr, self.data.qpos, 0)
+        self.set(dtheta, self.model.jnt_dofadr, self.data.qvel, 1)
         self.mujoco.mj_forward(self.model, self.data)
 
     def axes(self, j):
@@ -262,12 +273,25 @@ class MuJoCo:
             result[int(model.body_weldid[b])] = [mass + m, first + m * c, second + about]
         return result
 
+    def armature(self):
+        """Of each velocity: the joint's own, and that of the actuators that move the joint."""
+        np, model = self.np, self.model
+        result = np.array(model.dof_armature, float).reshape(model.nv, -1)[:, 0]
+        kinds = [int(self.mujoco.mjtTrn.mjTRN_JOINT), int(self.mujoco.mjtTrn.mjTRN_JOINTINPARENT)]
+        for k, more in enumerate(np.ravel(getattr(model, "actuator_armature", []))):
+            if int(model.actuator_trntype[k]) in kinds and more:
+                j = int(model.actuator_trnid[k][0])
+                first = int(model.jnt_dofadr[j])
+                result[first : first + self.sizes[j][1]] += more * model.actuator_gear[k][0] ** 2
+        return result
+
     def joints(self):
         np, model = self.np, self.model
-        self.place({}, {})
+        self.place(self.home, {})
         bodies, result = self.bodies(), []
         last = {}  # of each body, its last joint
         flat = lambda values, span: numbers(np.asarray(values).reshape(model.nv, -1)[span, 0])
+        armature = self.armature()
         for j in range(model.njnt):
             body, (nq, nv) = int(model.jnt_bodyid[j]), self.sizes[j]
             up, parent = int(model.body_parentid[body]), last.get(body)
@@ -281,7 +305,7 @@ class MuJoCo:
                 "name": self.names[j], "nq": nq, "nv": nv, "parent": parent, "axes": self.axes(j),
                 "mass": float(mass), "center": numbers(c),
                 "inertia": rows(second - mass * (c @ c * np.eye(3) - np.outer(c, c))),
-                "armature": flat(model.dof_armature, span), "damping": flat(model.dof_damping, span),
+                "armature": flat(armature, span), "damping": flat(model.dof_damping, span),
                 "friction": flat(model.dof_frictionloss, span),
             })
             last[body] = len(result) - 1
@@ -302,7 +326,7 @@ class MuJoCo:
         self.place(theta, dtheta)
         result["M"], result["h"] = rows(self.mass_matrix()), numbers(data.qfrc_bias)
         data.qacc[:] = 0.0
-        self.set(ddtheta, self.model.jnt_dofadr, data.qacc)
+        self.set(ddtheta, self.model.jnt_dofadr, data.qacc, 1)
         self.mujoco.mj_inverse(self.model, data)
         result["tau"] = numbers(data.qfrc_inverse)
         result["parts"] = {name: numbers(getattr(data, f"qfrc_{name}")) for name in ("spring", "gravcomp", "fluid")}
@@ -358,9 +382,10 @@ def answer(question):
     except Refused as error:
         return {**result, "error": {"stage": "load", "message": str(error)}}
     joints = [joint for joint in robot.joints() if joint["nv"] > 0]
-    rename(joints, question["joints"])
-    if question["floating"] and joints and joints[0]["nv"] == 6:
-        joints[0]["base"] = True
+    base = joints[:1] if question["floating"] and joints and joints[0]["nv"] == 6 else []
+    for joint in base:
+        joint.update(base=True, called=joint["name"])
+    rename(joints[len(base):], question["joints"])
     theirs = {joint["name"]: joint["called"] for joint in joints}
     result.update(robot.about(), joints=joints, states=[])
     for state in question["states"]:

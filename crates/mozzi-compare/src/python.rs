@@ -76,7 +76,7 @@ fn not_written(text: &str) -> String {
 
 /// What the script prints, or why there is none.
 fn value(mut child: Child, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
-    let text = question.json(peer.key(), peer == Peer::PinocchioMimic).to_string();
+    let text = question.json(peer.key(), peer == Peer::PinocchioMimic).map_err(|error| error.to_string())?.to_string();
     if let Some(mut stdin) = child.stdin.take() {
         // a script that ends before it has read says why by its exit
         let _ = stdin.write_all(text.as_bytes());

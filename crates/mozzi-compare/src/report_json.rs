@@ -1,4 +1,4 @@
-//! The doctor's report for machines.
+//! The comparison's report as JSON.
 
 use crate::answer::Unavailable;
 use crate::bodies::BodyChange;

@@ -1,4 +1,4 @@
-//! The doctor's report for people.
+//! The comparison's report as text.
 
 use crate::answer::{Answer, Robot};
 use crate::numbers::{Entry, Errors, QUANTITIES};
@@ -85,9 +85,9 @@ fn numbers(page: &mut Page, verdict: &Verdict, question: &Question) {
 fn extra(page: &mut Page, verdict: &Verdict, answer: &Answer) {
     for (name, nv) in &verdict.extra {
         let what = match nv {
-            6 => "a base that floats there",
-            1 => "a joint that moves there",
-            _ => "a joint of several velocities there",
+            6 => "a floating base there",
+            1 => "a moving joint there",
+            _ => "a joint with several velocities there",
         };
         page.line(format!("  - `{name}` of {} is {what} and fixed here; compared at rest", answer.library));
     }
@@ -97,7 +97,7 @@ fn first(page: &mut Page, entry: &Entry, library: &str) {
     let place = entry.joints.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let Entry { quantity, state, mozzi, theirs, .. } = entry;
     page.line(format!(
-        "  first entry that differs still: {quantity}[{place}] is {mozzi} here, {theirs} in {library} (state {})",
+        "  first entry that still differs: {quantity}[{place}] is {mozzi} here, {theirs} in {library} (state {})",
         state + 1
     ));
 }
@@ -108,7 +108,7 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
         let (k, &j) = order.iter().enumerate().find(|(k, j)| k != *j).unwrap_or((0, &0));
         let why = if library == "Pinocchio" { ", which sorts siblings by name" } else { "" };
         page.line(format!(
-            "  order of joints: another in {library}{why}: its joint {} is `{}`, here `{}`",
+            "  order of joints: different in {library}{why}: its joint {} is `{}`, here `{}`",
             k + 1,
             question.names[j],
             question.names[k]
@@ -119,6 +119,9 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
     if !circles.is_empty() {
         let names = vocabulary::some(&circles, |name| format!("`{name}`"));
         page.line(format!("  positions: {library} takes (cos θ, sin θ) of joints without limits: {names}"));
+    }
+    if joints.iter().any(|joint| joint.nv > 1) {
+        page.line(format!("  coordinates: {}", vocabulary::coordinates(library)));
     }
     let renamed: Vec<_> = joints.iter().filter(|joint| joint.name != joint.called).collect();
     if !renamed.is_empty() {
@@ -137,7 +140,7 @@ fn notes(page: &mut Page, question: &Question, robot: &Robot, finding: &Finding,
             ));
         }
         Some((_, Some(verdict))) => {
-            page.line(format!("  tried: with mimic=True it differs still: {}", errors(verdict.before)));
+            page.line(format!("  tried: with mimic=True it still differs: {}", errors(verdict.before)));
         }
         Some((answer, None)) => {
             if let Err(unavailable) = &answer.robot {

@@ -5,21 +5,22 @@ use mozzi::Description;
 use mozzi_urdf::embedded;
 use std::path::Path;
 
-/// How the robot is handed over.
+/// The robot's source for the libraries.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// What it is called in reports.
+    /// Its name in reports.
     pub(crate) name: String,
     /// "urdf" or "mjcf".
     pub(crate) language: &'static str,
-    /// The file, where the library can read it itself.
+    /// The file, if the library can read it.
     pub(crate) path: Option<String>,
-    /// Its text, where it cannot.
+    /// The text otherwise.
     pub(crate) text: Option<String>,
 }
 
 impl Source {
-    /// The file where the libraries can read it (URDF, MJCF); of an embedded robot its text; of JSON, what `robot` is, as URDF.
+    /// The file where the libraries can read it (URDF, MJCF); of an embedded robot its text; of JSON, what `robot` is,
+    /// as URDF.
     ///
     /// # Errors
     /// [`Error::Read`], [`Error::Write`].

@@ -52,7 +52,7 @@ pub fn judge(
     let with = |causes: &[&Cause]| -> Result<(Side, Side)> {
         let (mut robot, mut theirs) = (robot.clone(), from.side.clone());
         causes.iter().try_for_each(|cause| cause.apply(&mut robot, &mut theirs, from))?;
-        Ok((Side::of(&robot, question)?, theirs))
+        Ok((Side::of(&robot, question, answer.library)?, theirs))
     };
     let errors = |causes: &[&Cause]| -> Errors {
         match with(causes) {
@@ -61,14 +61,22 @@ pub fn judge(
         }
     };
     let all = suspects(robot, answer, from, coupled)?;
-    let mut kept: Vec<&Cause> = all.iter().collect();
     let (mine, theirs) = with(&[])?;
     let before = Pair::new(&mine, &theirs, question).errors();
     let is_structure = |cause: &Cause| matches!(cause, Cause::Mimics(_) | Cause::Held(_));
+    let mut kept: Vec<&Cause> = all.iter().collect();
+    let mut after = errors(&kept);
+    if !after.agree() {
+        // a free body may be elsewhere at home and move alike: its place is no cause then
+        let known: Vec<&Cause> = kept.iter().copied().filter(|cause| cause.is_explanation()).collect();
+        let errors = errors(&known);
+        if errors.agree() {
+            (kept, after) = (known, errors);
+        }
+    }
     // what is known comes first: a body whose place alone is known is no explanation where a reason will do
     let mut droppable: Vec<&Cause> = kept.iter().copied().filter(|cause| !is_structure(cause)).collect();
     droppable.sort_by_key(|cause| cause.is_explanation());
-    let mut after = errors(&kept);
     if after.agree() {
         for cause in droppable {
             let fewer: Vec<&Cause> = kept.iter().copied().filter(|other| !std::ptr::eq(*other, cause)).collect();
@@ -96,7 +104,7 @@ pub fn judge(
 
 /// Places in mozzi's order of the joints in the library's.
 fn order(question: &Question, from: &Robot) -> Option<Vec<usize>> {
-    let names = from.side.names.iter();
+    let names = from.constants.joints.iter().map(|joint| &joint.name);
     let order: Vec<usize> = names.filter_map(|name| question.names.iter().position(|known| known == name)).collect();
     (!order.is_sorted()).then_some(order)
 }

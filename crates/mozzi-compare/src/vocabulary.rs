@@ -24,41 +24,41 @@ pub fn cause(cause: &Cause, answer: &Answer) -> String {
         Cause::Mimics(list) => {
             let names = some(list, |freed| format!("`{}` follows `{}`", freed.joint, freed.source));
             let there = if list.iter().all(|freed| freed.constrained) {
-                "is a joint of its own, which the force of a constraint (equality) pulls after its source joint"
+                "is a joint of its own, which a constraint force (equality) pulls towards its source joint"
             } else if library == "Pinocchio" {
-                "is a joint of its own: its reader drops <mimic> unless it is told mimic=True"
+                "is a joint of its own: its reader drops <mimic> unless called with mimic=True"
             } else {
                 "is a joint of its own"
             };
             format!("mimic joints: {names} here; in {library} each {there}")
         }
         Cause::Held(list) => {
-            format!("joints: {} move here and not in {library}; held at 0", some(list, |name| format!("`{name}`")))
+            format!("joints: {} move here but not in {library}; held at 0", some(list, |name| format!("`{name}`")))
         }
         Cause::Gravity { mozzi, theirs } => {
             format!("gravity: {} here, {} in {library}, m/s²", tuple(mozzi), tuple(theirs))
         }
         Cause::Armature(list) => format!("armature (rotor inertia), here and in {library}: {}", changes(list)),
         Cause::Damping(list) if library == "Pinocchio" => {
-            format!("damping: τ contains it here, Pinocchio's rnea leaves it out: {}", changes(list))
+            format!("damping: τ contains it here, Pinocchio's rnea omits it: {}", changes(list))
         }
         Cause::Damping(list) => format!("damping, here and in {library}: {}", changes(list)),
         Cause::Friction(list) if library == "Pinocchio" => {
-            format!("friction: τ contains it here, Pinocchio's rnea leaves it out: {}", changes(list))
+            format!("friction: τ contains it here, Pinocchio's rnea omits it: {}", changes(list))
         }
         Cause::Friction(list) => {
-            format!("friction: μ sgn θ̇ here, the force of a constraint (frictionloss) in {library}: {}", changes(list))
+            format!("friction: μ sgn θ̇ here, a constraint force (frictionloss) in {library}: {}", changes(list))
         }
         Cause::Stiffness(list) => format!("springs: τ contains k(θ − θ₀) here, {library} has none: {}", changes(list)),
         Cause::Constraints(kinds) => format!(
-            "constraints: τ of {library} contains their forces (qfrc_constraint), of {}; mozzi computes none",
+            "constraints: τ of {library} contains the forces (qfrc_constraint) of {}; mozzi computes none",
             kinds.join(", ")
         ),
         Cause::Force(name) => force(name, library),
         Cause::Bodies(reason, list) => bodies(*reason, list, library),
         Cause::Axes(list) => {
             format!(
-                "screw axes: {library} reads others: {}",
+                "screw axes: {library} has different ones: {}",
                 some(list, |(name, axis)| format!("`{name}` {}", tuple(axis)))
             )
         }
@@ -71,7 +71,7 @@ fn changes(list: &[Change]) -> String {
 
 fn force(name: &str, library: &str) -> String {
     let what = match name {
-        "spring" => "springs that are not linear (qfrc_spring)",
+        "spring" => "nonlinear springs (qfrc_spring)",
         "gravcomp" => "gravity compensation of bodies (qfrc_gravcomp)",
         "fluid" => "the drag of a fluid (qfrc_fluid)",
         other => other,
@@ -84,11 +84,11 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
         Reason::Balanced => {
             "inertias that break the triangle inequality are those of spheres in MuJoCo (balanceinertia); as given here"
         }
-        Reason::Dropped => "MuJoCo drops the moments of links without mass that are fixed to others; counted here",
+        Reason::Dropped => "MuJoCo drops the moments of massless links that are fixed to others; included here",
         Reason::Bounded => "bodies without mass or inertia get some in MuJoCo (boundmass, boundinertia); as given here",
         Reason::Shapes => "MuJoCo computes inertias from the shapes (inertiafromgeom); no <inertial>, no mass here",
         Reason::Scaled => "MuJoCo scales all masses to a sum (settotalmass); as given here",
-        Reason::Unknown => "bodies that weigh differently, for a reason that is not known",
+        Reason::Unknown => "bodies differ for an unknown reason",
     };
     let here = |change: &BodyChange| {
         let (a, b) = (&change.mozzi, &change.theirs);
@@ -117,6 +117,18 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
     format!("inertia, here and in {library}: {why}: {}", some(list, here))
 }
 
+/// Of balls and free joints.
+pub fn coordinates(library: &str) -> &'static str {
+    match library {
+        "Pinocchio" => {
+            "Pinocchio takes the quaternion of a ball or free joint as (x, y, z, w), a free joint's origin before it, and its velocity as (v, ω)"
+        }
+        _ => {
+            "MuJoCo takes a free joint's origin before its quaternion, and its velocity as (ṗ, ω), ṗ in the world's axes"
+        }
+    }
+}
+
 /// What was done that the library takes the file.
 pub fn workaround(workaround: Workaround) -> &'static str {
     match workaround {
@@ -132,6 +144,6 @@ pub fn unavailable(unavailable: &Unavailable, library: &str) -> String {
     match unavailable {
         Unavailable::NotInstalled(message) => format!("not installed: {message}; pip install {package}"),
         Unavailable::Refuses(message) => format!("refuses the file: {message}"),
-        Unavailable::Died(message) => format!("gave no answer: {message}"),
+        Unavailable::Died(message) => format!("returned no result: {message}"),
     }
 }

@@ -64,30 +64,6 @@ pub enum Error {
         /// Its limit.
         limit: f64,
     },
-    /// The steps that a tolerance asks for are too small for numbers.
-    #[error(
-        "the motion is too stiff, or jumps, at t = {time} s: a tolerance of {tolerance:e} asks for steps below {step:e} s"
-    )]
-    TooStiff {
-        /// Seconds.
-        time: f64,
-        /// Seconds.
-        step: f64,
-        /// What was asked for.
-        tolerance: f64,
-    },
-    /// An implicit step has no solution that iteration finds.
-    #[error(
-        "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations; a smaller step may help"
-    )]
-    NoConvergence {
-        /// Seconds.
-        time: f64,
-        /// Seconds.
-        step: f64,
-        /// Iterations.
-        iterations: usize,
-    },
     /// Nothing keeps the robot from being infinitely fast.
     #[error("nothing limits the speed at s = {s} of the path: expected a limit of velocity, acceleration or torque")]
     Unlimited {

@@ -1,6 +1,6 @@
 //! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]), and what they are to do when
 //! ([`trajectories`]), motors that do it
-//! ([`controllers`]), and what becomes of it ([`integrators`]).
+//! ([`controllers`]). How it then moves is [`mozzi::simulation`]; how exact its methods are, [`convergence`].
 //!
 //! ```
 //! use mozzi_motion::{Goal, InverseKinematics};
@@ -15,17 +15,17 @@
 //! ```
 
 pub mod controllers;
+pub mod convergence;
 mod error;
-pub mod integrators;
 pub mod inverse_kinematics;
-mod policy;
 pub mod trajectories;
 
 pub use error::Error;
 pub use inverse_kinematics::{Goal, InverseKinematics};
-pub use policy::Policy;
+pub use mozzi::simulation::Policy;
 
-/// The README's examples, run with the documentation's tests: here, where all of their crates are known.
+/// The examples of the README and of docs/rust.md, run with the documentation's tests: here, where all of their crates are known.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../../../docs/rust.md")]
 struct Readme;

@@ -1,4 +1,5 @@
-//! Where each link is and how it moves, straight from the description: exponentials along the joints' own screws, link by link.
+//! Where each link is and how it moves, straight from the description: exponentials along the joints' own screws, link
+//! by link.
 
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Base, Description, Model, Place, Real, SE3, SO3, Scalar, SpatialInertia, Twist, Vec3, Wrench};
@@ -16,7 +17,7 @@ pub struct Body<S> {
     pub G: Option<SpatialInertia<S>>,
 }
 
-/// The joint that a joint follows in the end, itself where it follows none: θ of the joint = ratio · θ of that one + offset.
+/// The source joint of a joint, itself if independent: θ of the joint = ratio · θ of the source + offset.
 pub fn source<'r, C: Scalar>(robot: &'r Description<C>, joint: &'r Joint<C>) -> (&'r Joint<C>, C, C) {
     let (mut source, mut ratio, mut offset) = (joint, C::one(), C::zero());
     while let Some(mimic) = &source.mimic {
@@ -26,7 +27,8 @@ pub fn source<'r, C: Scalar>(robot: &'r Description<C>, joint: &'r Joint<C>) -> 
     (source, ratio, offset)
 }
 
-/// The links of a robot, parents before children. Of `model` the order of its joints is taken, all numbers from `robot`.
+/// The links of a robot, parents before children. Of `model` the order of its joints is taken, all numbers from
+/// `robot`.
 pub fn bodies<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> Vec<Body<S>> {
     let n = model.n();
     let index: HashMap<&str, Place> = model.joint_names().zip(model.places().iter().copied()).collect();

@@ -3,11 +3,11 @@
 
 use crate::bodies::{bodies, frame, moments, momentum_columns, source, twist};
 use crate::linear::{inverse, solve};
-use mozzi::model::description::Joint;
+use mozzi::model::description::{Gear, Joint, Rotor};
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
 use mozzi::{
-    ClosedForm, Description, Dual, Entry, Environment, Model, SE3, Scalar, TaskFrame, Twist, Vec3, Wrench,
+    ClosedForm, Description, Dual, Entry, Environment, Model, Place, SE3, SO3, Scalar, TaskFrame, Twist, Vec3, Wrench,
     seed_direction,
 };
 
@@ -166,22 +166,49 @@ impl<S: Entry> Given<'_, S> {
         let constant = of(&zeros(p)); // the springs' energy at θ = 0
         DMatrix::from_columns(&(0..p).map(|k| of(&unit(p, k)) - &constant).collect::<Vec<DVector<S>>>())
     }
+    /// Of each joint: the place of its source joint, and the joint's ratio and offset.
+    fn joints(&self) -> impl Iterator<Item = (&Joint<S>, Place, S, S)> {
+        let places: Vec<_> = self.model.joint_names().zip(self.model.places()).collect();
+        self.robot.joints.iter().filter_map(move |joint| {
+            let (source, ratio, offset) = source(self.robot, joint);
+            let &(_, &place) = places.iter().find(|(name, _)| *name == source.name)?;
+            Some((joint, place, ratio, offset))
+        })
+    }
     /// Of each velocity of each joint: the place of its source joint's, the joint's ratio, and what `of` says.
     fn at_joints(&self, of: impl Fn(&Joint<S>) -> [S; 2]) -> Vec<(usize, S, [S; 2])> {
-        let places: Vec<_> = self.model.joint_names().zip(self.model.places()).collect();
-        let at = |joint: &Joint<S>| {
-            let ((source, ratio, _), of) = (source(self.robot, joint), of(joint));
-            let place = places.iter().find(|(name, _)| *name == source.name).map(|(_, place)| place.velocities());
-            place.into_iter().flatten().map(move |j| (j, ratio, of)).collect::<Vec<_>>()
+        let at = |(joint, place, ratio, _): (&Joint<S>, Place, S, S)| {
+            let of = of(joint);
+            place.velocities().map(move |j| (j, ratio, of))
         };
-        self.robot.joints.iter().flat_map(at).collect()
+        self.joints().flat_map(at).collect()
     }
-    /// Of each joint's spring: the place of its source joint among the velocities, k, its stretch q − θ₀ and the joint's ratio.
+    /// Of each joint's spring: the place of its source joint among the velocities, k, its stretch q − θ₀ and the joint's ratio. Of a ball each part of
+    /// the logarithm of its rotation.
     fn springs(&self) -> Vec<(usize, [S; 3])> {
-        let more = self.model.base().positions() - self.model.base().velocities();
-        let at = |(j, ratio, [k, rest]): (usize, S, [S; 2])| (j, [k, ratio * self.theta()[j + more] - rest, ratio]);
-        let rest = |joint: &Joint<S>| joint.spring_reference - source(self.robot, joint).2;
-        self.at_joints(|joint| [joint.stiffness, rest(joint)]).into_iter().map(at).collect()
+        let at = |(joint, place, ratio, offset): (&Joint<S>, Place, S, S)| {
+            let stretches = match self.theta()[place.positions()] {
+                [w, x, y, z] => SO3::from_quaternion(w, Vec3([x, y, z])).log().0.to_vec(),
+                [theta] => vec![ratio * theta + offset - joint.spring_reference],
+                _ => Vec::new(), // a free joint has no spring
+            };
+            let k = joint.stiffness;
+            place.velocities().zip(stretches).map(move |(j, stretch)| (j, [k, stretch, ratio]))
+        };
+        self.joints().flat_map(at).collect()
+    }
+    /// Of each rotor its armature, and J θ̇ by its gears.
+    fn rotors(&self, dtheta: &[S]) -> Vec<[S; 2]> {
+        let rate = |gear: &Gear<S>| {
+            let joint = self.robot.joints.iter().find(|joint| joint.name == gear.joint).expect("checked");
+            let (source, ratio, _) = source(self.robot, joint);
+            let place = self.model.joint_names().position(|name| *name == source.name).expect("independent");
+            gear.ratio * ratio * dtheta[self.model.places()[place].j]
+        };
+        let of = |rotor: &Rotor<S>| {
+            [rotor.armature, rotor.gears.iter().map(rate).fold(<S as Scalar>::zero(), |sum, rate| sum + rate)]
+        };
+        self.robot.rotors.iter().map(of).collect()
     }
     fn spring_energy(&self) -> S {
         let half = S::from_f64(0.5);
@@ -196,6 +223,9 @@ impl<S: Entry> Given<'_, S> {
         }
         for (j, ratio, [armature, _]) in self.at_joints(|joint| [joint.armature, joint.damping]) {
             let rate = ratio * self.inputs[1][j];
+            twice += armature * rate * rate;
+        }
+        for [armature, rate] in self.rotors(self.inputs[1]) {
             twice += armature * rate * rate;
         }
         half * twice

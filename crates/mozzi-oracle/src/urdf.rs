@@ -58,7 +58,11 @@ fn inertia<W: Wide>(link: Node) -> Read<SpatialInertia<W>> {
     Ok(SpatialInertia::new(number(child(inertial, "mass"), "value", "")?, T.p, I.congruence(T.R.matrix())))
 }
 
-fn kind<W: Wide>(joint: Node) -> Read<JointKind<W>> {
+/// A ball, which URDF cannot say, is the description's.
+fn kind<W: Wide>(joint: Node, described: JointKind<W>) -> Read<JointKind<W>> {
+    if let JointKind::Ball(_) = described {
+        return Ok(described);
+    }
     let direction = || Ok(Vec3(numbers(child(joint, "axis"), "xyz", "1 0 0")?));
     let twist = match joint.attribute("type") {
         Some("fixed") => return Ok(JointKind::Fixed),
@@ -72,7 +76,7 @@ fn kind<W: Wide>(joint: Node) -> Read<JointKind<W>> {
 }
 
 /// The description that the first reader made of a file, with the file's decimals in wide numbers. Gravity, which no file gives, is the
-/// description's shortest decimals.
+/// description's shortest decimals; balls and rotor inertias, which URDF cannot say, are the description's numbers.
 ///
 /// # Errors
 /// [`NotRead`] for what the second reader does not know, and where the two readers disagree.
@@ -92,7 +96,7 @@ pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description
     }
     for joint in &mut wide.joints {
         let node = named("joint", &joint.name)?;
-        (joint.origin, joint.kind) = (origin(node)?, kind(node)?);
+        (joint.origin, joint.kind) = (origin(node)?, kind(node, joint.kind)?);
         let dynamics = child(node, "dynamics").filter(|_| joint.kind != JointKind::Free); // of which it says nothing
         (joint.damping, joint.friction) = (number(dynamics, "damping", "0")?, number(dynamics, "friction", "0")?);
         joint.stiffness = number(dynamics, "spring_stiffness", "0")?;
@@ -121,7 +125,7 @@ fn agree(second: &Description, first: &Description) -> Read<()> {
     for (a, b) in second.joints.iter().zip(&first.joints) {
         let screw = |kind: JointKind| match kind {
             JointKind::Screw(A) => A.twist().to_array(),
-            other => [f64::from(u8::from(other == JointKind::Free)); 6], // URDF has no balls
+            other => [f64::from(u8::from(other == JointKind::Free)); 6],
         };
         near(&b.name, a.origin.to_matrix().as_flattened(), b.origin.to_matrix().as_flattened())?;
         near(&b.name, &screw(a.kind), &screw(b.kind))?;

@@ -161,6 +161,19 @@ pub fn by_rows(M: &DMatrix<f64>, out: &mut [f64]) {
     out.iter_mut().enumerate().for_each(|(k, x)| *x = M[(k / columns, k % columns)]);
 }
 
+/// The numbers of an argument of this shape.
+///
+/// # Errors
+/// `TypeError`, `ValueError` for what are no numbers, or of another shape.
+pub fn list(name: &'static str, given: &Bound<'_, PyAny>, shape: &[usize]) -> PyResult<Vec<f64>> {
+    let mut numbers = Numbers::new(name, given)?;
+    if numbers.shape != shape {
+        return Err(wrong_shape(name, &numbers.shape, shown(shape)));
+    }
+    numbers.spread::<f64>(&[], shape.len())?;
+    Ok(numbers.slice::<f64>()?.to_vec())
+}
+
 /// `theta has shape (6,), expected (..., 7): …`
 pub fn wrong_shape(name: &str, found: &[usize], expected: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(format!("{name} has shape {}, expected {expected}", shown(found)))

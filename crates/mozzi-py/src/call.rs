@@ -101,11 +101,16 @@ impl Robot {
 
     /// Is the last axis as long as it must be?
     pub fn check_shape(&self, numbers: &Numbers) -> PyResult<()> {
-        let length = if numbers.name == "theta" { self.model.nq() } else { self.model.n() };
+        self.check_shape_as(numbers, numbers.name)
+    }
+
+    /// As [`check_shape`](Self::check_shape), of an argument that is another's kind by another name: a guess is a `theta`.
+    pub fn check_shape_as(&self, numbers: &Numbers, kind: &str) -> PyResult<()> {
+        let length = if kind == "theta" { self.model.nq() } else { self.model.n() };
         if numbers.shape.last() == Some(&length) {
             return Ok(());
         }
-        let expected = format!("(..., {length}): {}", self.entries(numbers.name));
+        let expected = format!("(..., {length}): {}", self.entries(kind));
         Err(wrong_shape(numbers.name, &numbers.shape, expected))
     }
 

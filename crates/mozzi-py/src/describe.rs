@@ -1,7 +1,9 @@
 //! A robot's description as plain tuples, which Python can pickle, and back.
 
 use mozzi::model::Base;
-use mozzi::model::description::{Description, FreeJoint, Joint, JointKind, Limits, Link, Mimic, NamedFrame};
+use mozzi::model::description::{
+    self, BaseState, Description, FreeJoint, Gear, Joint, JointKind, Limits, Link, Mimic, NamedFrame, NamedState, Rotor,
+};
 use mozzi::{SE3, ScrewAxis, SpatialInertia, Vec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,10 +16,24 @@ type MimicState = Option<(String, f64, f64)>;
 type KindState = (String, Vec<f64>);
 type JointState = (String, String, String, Pose, KindState, LimitState, [f64; 5], MimicState);
 type FrameState = (String, String, Pose);
+type RotorState = (String, f64, Vec<(String, f64)>);
+
+type Numbers = (Vec<f64>, Vec<f64>);
+/// Name and time, the base's pose and twist, each joint's positions and velocities.
+type StateState = ((String, f64), Option<([f64; 7], [f64; 6])>, Vec<(String, Numbers)>);
 
 /// Everything of a [`Description`].
-pub type State =
-    (String, Vec<LinkState>, Vec<JointState>, Vec<FrameState>, Option<String>, [f64; 3], Option<(String, String)>);
+pub type State = (
+    String,
+    Vec<LinkState>,
+    Vec<JointState>,
+    Vec<FrameState>,
+    Option<String>,
+    [f64; 3],
+    Option<(String, String)>,
+    Vec<RotorState>,
+    (Vec<StateState>, Option<String>),
+);
 
 const FIXED: &str = "fixed";
 const SCREW: &str = "screw";
@@ -47,6 +63,16 @@ pub fn to_state(robot: &Description) -> State {
         )
     };
     let frame = |frame: &NamedFrame| (frame.name.clone(), frame.link.clone(), frame.T.to_matrix());
+    let rotor = |rotor: &Rotor| {
+        let gears = rotor.gears.iter().map(|gear| (gear.joint.clone(), gear.ratio));
+        (rotor.name.clone(), rotor.armature, gears.collect())
+    };
+    let state = |state: &NamedState| {
+        let joint =
+            |joint: &description::JointState| (joint.name.clone(), (joint.positions.clone(), joint.velocities.clone()));
+        let base = state.base.map(|base| (base.pose, base.twist));
+        ((state.name.clone(), state.time), base, state.joints.iter().map(joint).collect())
+    };
     let free = (robot.base == Base::Floating).then(|| (robot.free_joint.name.clone(), robot.free_joint.parent.clone()));
     (
         robot.name.clone(),
@@ -56,12 +82,16 @@ pub fn to_state(robot: &Description) -> State {
         robot.end_effector.clone(),
         robot.gravity,
         free,
+        robot.rotors.iter().map(rotor).collect(),
+        (robot.states.iter().map(state).collect(), robot.start.clone()),
     )
 }
 
 /// # Errors
 /// `ValueError` for matrices that are no configurations, and axes that are no screws.
-pub fn from_state((name, links, joints, frames, end_effector, gravity, free): State) -> PyResult<Description> {
+pub fn from_state(
+    (name, links, joints, frames, end_effector, gravity, free, rotors, (states, start)): State,
+) -> PyResult<Description> {
     let mut robot = Description::new(name).with_gravity(gravity);
     for (name, parameters) in links {
         robot = robot.link(name, SpatialInertia::from_parameters(parameters));
@@ -84,6 +114,10 @@ pub fn from_state((name, links, joints, frames, end_effector, gravity, free): St
         joint.mimic = mimic.map(|(joint, ratio, offset)| Mimic { joint, ratio, offset });
         robot = robot.joint(joint);
     }
+    for (name, armature, gears) in rotors {
+        let gears = gears.into_iter().map(|(joint, ratio)| Gear { joint, ratio }).collect();
+        robot.rotors.push(Rotor { name, armature, gears });
+    }
     for (name, link, T) in frames {
         robot = robot.frame(name, link, pose(T)?);
     }
@@ -92,6 +126,15 @@ pub fn from_state((name, links, joints, frames, end_effector, gravity, free): St
         robot = robot.floating();
         robot.free_joint = FreeJoint { name, parent };
     }
+    let joint = |(name, (positions, velocities))| description::JointState { name, positions, velocities };
+    let state = |((name, time), base, joints): StateState| NamedState {
+        name,
+        time,
+        base: base.map(|(pose, twist)| BaseState { pose, twist }),
+        joints: joints.into_iter().map(joint).collect(),
+    };
+    robot.states = states.into_iter().map(state).collect();
+    robot.start = start;
     Ok(robot)
 }
 

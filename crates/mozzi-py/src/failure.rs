@@ -18,6 +18,13 @@ create_exception!(
     "The mass matrix, or a task, is singular at a state: no acceleration or wrench answers."
 );
 create_exception!(mozzi, DivergedError, PyArithmeticError, "A simulated state left the numbers.");
+create_exception!(
+    mozzi,
+    MotionError,
+    PyArithmeticError,
+    "A motion cannot be found: the goal is out of reach, the path breaks or leaves the robot's reach, a motor is too weak, or nothing limits the \
+     speed."
+);
 
 /// An error of the library.
 pub fn of_model(error: mozzi::Error) -> PyErr {
@@ -29,6 +36,23 @@ fn raised(error: &mozzi::Error, text: String) -> PyErr {
         mozzi::Error::SingularMassMatrix { .. } | mozzi::Error::SingularTask { .. } => SingularError::new_err(text),
         mozzi::Error::Diverged { .. } => DivergedError::new_err(text),
         _ => PyValueError::new_err(text),
+    }
+}
+
+/// An error of a motion.
+pub fn of_motion(error: mozzi_motion::Error) -> PyErr {
+    match error {
+        mozzi_motion::Error::Model(error) => of_model(error),
+        other => MotionError::new_err(other.to_string()),
+    }
+}
+
+/// The error of one of many motions.
+pub fn of_one_motion(error: mozzi_motion::Error, index: usize, leading: &[usize]) -> PyErr {
+    match error {
+        mozzi_motion::Error::Model(error) => of_state(error, index, leading),
+        other if leading.is_empty() => of_motion(other),
+        other => MotionError::new_err(format!("state [{}]: {other}", place(index, leading))),
     }
 }
 
@@ -47,19 +71,23 @@ pub fn of_state(error: mozzi::Error, index: usize, leading: &[usize]) -> PyErr {
     if leading.is_empty() {
         return of_model(error);
     }
+    raised(&error, format!("state [{}]: {error}", place(index, leading)))
+}
+
+/// Where a state is among the leading axes: `2, 0`.
+pub fn place(index: usize, leading: &[usize]) -> String {
     let mut rest = index;
-    let mut place: Vec<usize> = leading
+    let mut place: Vec<String> = leading
         .iter()
         .rev()
         .map(|&length| {
             let at = rest % length.max(1);
             rest /= length.max(1);
-            at
+            at.to_string()
         })
         .collect();
     place.reverse();
-    let place = place.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-    raised(&error, format!("state [{place}]: {error}"))
+    place.join(", ")
 }
 
 /// An error of the loader, with its lines as `diagnostics`.

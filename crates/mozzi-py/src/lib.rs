@@ -13,6 +13,7 @@ mod load;
 mod methods;
 mod model;
 mod modern_robotics;
+mod motion;
 mod numpy;
 mod results;
 mod robot;
@@ -33,11 +34,13 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;
+    motion::add_to(module)?;
     modern_robotics::add_to(module)?;
     module.add("LoadError", py.get_type::<failure::LoadError>())?;
     module.add("LoadWarning", py.get_type::<failure::LoadWarning>())?;
     module.add("SingularError", py.get_type::<failure::SingularError>())?;
     module.add("DivergedError", py.get_type::<failure::DivergedError>())?;
+    module.add("MotionError", py.get_type::<failure::MotionError>())?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     let embedded: Vec<&str> = mozzi_urdf::embedded::names().collect();
     module.add("_embedded_names", embedded)

@@ -2,13 +2,15 @@
 
 use crate::array::{Numbers, wrong_shape};
 use crate::describe::refused;
-use crate::failure::of_model;
+use crate::failure::{of_model, of_motion};
 use crate::model::{PyModel, array};
+use crate::motion::Instants;
 use crate::numpy::{self, Fresh};
 use mozzi::quantities::{ForwardDynamics, InverseDynamics, MassMatrix};
 use mozzi::{
     Environment, HomeFrames, Mat3, Model, SE3, SO3, ScrewAxis, Screws, SpatialInertia, Twist, Vec3, Wrench, fast,
 };
+use mozzi_motion::trajectories::Profile;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
@@ -315,6 +317,13 @@ fn wrench(model: &Model, Ftip: Option<Given>) -> PyResult<Vec<(mozzi::FrameId, W
     Ok(vec![(model.end_effector().map_err(of_model)?, wrench)])
 }
 
+/// s of t/T: cubic for 3, else quintic; its polynomial goes on outside of 0 to 1.
+#[pyfunction]
+fn time_scaling<'py>(py: Python<'py>, x: Given<'_, 'py>, method: i64) -> Found<'py> {
+    let profile = if method == 3 { Profile::cubic(1.0) } else { Profile::quintic(1.0) }.map_err(of_motion)?;
+    Ok(Instants::any("t/T", x)?.numbers(py, |x| [profile.continued(x).s])?.swap_remove(0))
+}
+
 /// The functions, as a module of the compiled part.
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let functions = PyModule::new(module.py(), "_modern_robotics")?;
@@ -330,5 +339,6 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     functions.add_function(wrap_pyfunction!(inverse_dynamics, &functions)?)?;
     functions.add_function(wrap_pyfunction!(mass_matrix, &functions)?)?;
     functions.add_function(wrap_pyfunction!(forward_dynamics, &functions)?)?;
+    functions.add_function(wrap_pyfunction!(time_scaling, &functions)?)?;
     module.add("_modern_robotics", functions)
 }

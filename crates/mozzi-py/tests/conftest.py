@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 MODELS = Path(__file__).parents[3] / "models"
+ORACLES = Path(__file__).parents[3] / "oracles"
 
 
 def robots():
@@ -33,6 +34,13 @@ def random():
     return np.random.default_rng(1763)
 
 
+def load_mjcf(folder, text):
+    """The robot of this MJCF text, by way of a file in the folder."""
+    path = folder / "robot.xml"
+    path.write_text(text)
+    return mozzi.Model.from_mjcf(path)
+
+
 def tip(robot):
     """The end effector; of a tree one of its tips."""
     return robot.end_effector or {"panda": "panda_leftfinger", "anymal": "LF_FOOT"}[robot.name]
@@ -52,9 +60,10 @@ def state(robot, random, *leading):
 
 
 def assert_close(found, expected, size=None, tolerance=1e-12):
-    """Within `tolerance` times the size of the terms, by default of the largest number expected."""
+    """Within `tolerance` times the size of the terms, of all or of each entry; by default of the largest number expected."""
     found, expected = np.asarray(found), np.asarray(expected)
     assert found.shape == expected.shape
     size = np.abs(expected).max(initial=1e-3) if size is None else size
-    error = np.abs(found - expected).max(initial=0.0) / size
+    off = np.abs(found - expected)
+    error = np.divide(off, size, out=np.zeros(np.broadcast_shapes(off.shape, np.shape(size))), where=off != 0.0).max(initial=0.0)
     assert error <= tolerance, f"error {error:.3g} of the size of the terms"

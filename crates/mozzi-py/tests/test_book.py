@@ -204,7 +204,7 @@ def test_closed_form_and_recursion(robot, random):
     assert_close(form.g, robot.gravity_forces(theta), size)
     assert_close(form.tip_forces, robot.tip_forces(theta, applied_wrenches={frame: wrench}))
     assert_close(form.L, np.linalg.inv(np.eye(len(form.L)) - form.W))
-    assert_close(form.A.T @ form.L.T @ form.G @ form.L @ form.A + np.diag(form.armature), form.M)
+    assert_close(form.A.T @ form.L.T @ form.G @ form.L @ form.A + form.armature, form.M)
     found = robot.newton_euler(theta, dtheta, ddtheta, applied_wrenches={frame: wrench})
     assert_close(found.tau, robot.inverse_dynamics(theta, dtheta, ddtheta, applied_wrenches={frame: wrench}), size)
     if not robot.is_floating:

@@ -6,7 +6,7 @@ import sys
 import mozzi
 import numpy as np
 import pytest
-from conftest import MODELS
+from conftest import MODELS, ORACLES
 
 HAS_BOTH = all(importlib.util.find_spec(name) for name in ("pinocchio", "mujoco"))
 both = pytest.mark.skipif(not HAS_BOTH, reason="pin or mujoco is not installed")
@@ -33,6 +33,26 @@ def test_what_differs_is_explained():
     causes = found.libraries["Pinocchio"]["comparison"]["causes"]
     assert [cause["kind"] for cause in causes] == ["mimic"], causes
     assert "panda_finger_joint2" in str(found)
+
+
+@both
+def test_balls_and_free_joints():
+    found = mozzi.compare(ORACLES / "test_joints.xml", states=3)
+    assert found.explained, str(found)
+    of_mujoco = found.libraries["MuJoCo"]["comparison"]
+    assert [cause["kind"] for cause in of_mujoco["causes"]] == ["mimic"], str(found)
+    assert max(of_mujoco["errors_explained"].values()) < 100
+    assert "a free joint's origin before" in str(found)
+
+
+@both
+def test_a_robot_of_one_velocity(tmp_path):
+    path = tmp_path / "pendulum.urdf"
+    path.write_text("""<robot name="pendulum"><link name="base"/><link name="rod"><inertial><origin xyz="0 0 -0.2"/><mass value="2"/>
+        <inertia ixx="0.03" iyy="0.03" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="swing" type="continuous">
+        <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/></joint></robot>""")
+    found = mozzi.compare(path, states=2)
+    assert found.agrees, str(found)
 
 
 @both

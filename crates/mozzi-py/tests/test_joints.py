@@ -5,7 +5,7 @@ import pickle
 import mozzi
 import numpy as np
 import pytest
-from conftest import assert_close
+from conftest import assert_close, load_mjcf
 
 ROBOT = """
 <mujoco><compiler angle="radian"/><option gravity="0.4 -1 -9.5"/><worldbody>
@@ -19,8 +19,7 @@ ROBOT = """
 
 @pytest.fixture
 def robot(tmp_path):
-    (tmp_path / "joints.xml").write_text(ROBOT)
-    return mozzi.Model.from_mjcf(tmp_path / "joints.xml")
+    return load_mjcf(tmp_path, ROBOT)
 
 
 def quaternions(random, count):

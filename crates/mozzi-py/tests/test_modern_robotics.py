@@ -188,6 +188,11 @@ def test_ways_at_random(random):
     for name in ("CubicTimeScaling", "QuinticTimeScaling"):
         same(name, 2.0, 0.6)
         same(name, 2, 1)
+        same(name, 2.0, 2.6)  # after the end
+        same(name, 2.0, -0.3)
+        assert np.isnan(getattr(mr, name)(2.0, np.nan))
+        with pytest.raises(ZeroDivisionError):
+            getattr(mr, name)(0.0, 1.0)
 
 
 def test_input_that_the_package_takes_as_it_is(lists):

@@ -109,9 +109,9 @@ def test_other_processes(start, ur5, random):
             assert_close(one, ur5.gravity_forces(given[0][0]))
 
 
-def documented():
-    yield "Model", mozzi.Model
-    for name, member in vars(mozzi.Model).items():
+def documented(class_=mozzi.Model):
+    yield class_.__name__, class_
+    for name, member in vars(class_).items():
         if not name.startswith("_"):
             yield name, member
 
@@ -123,6 +123,22 @@ def test_examples_in_the_documentation_of_the_model():
         assert text, f"{name} has no documentation"
         runner.run(finder.get_doctest(text, {}, name, None, 0))
     assert runner.tries >= 29 and runner.failures == 0
+
+
+def test_examples_in_the_documentation_of_motions():
+    finder, runner = doctest.DocTestParser(), doctest.DocTestRunner()
+    members = list(documented(mozzi.InverseKinematics))
+    for module in (mozzi.trajectories, mozzi.controllers):
+        members.append((module.__name__, module))
+        for name in module.__all__:
+            member = getattr(module, name)
+            members += documented(member) if inspect.isclass(member) else [(name, member)]
+    for name, member in members:
+        if name not in ("count", "index"):  # a tuple's own
+            text = inspect.getdoc(member)
+            assert text, f"{name} has no documentation"
+            runner.run(finder.get_doctest(text, {}, name, None, 0))
+    assert runner.tries >= 130 and runner.failures == 0
 
 
 def test_help_shows_signature_and_documentation():

@@ -14,8 +14,12 @@ def fall(robot, steps=50):
 def test_a_motion_becomes_a_page(ur5, tmp_path):
     motion = fall(ur5)
     assert motion.model == ur5 and pickle.loads(pickle.dumps(motion)).model == ur5
-    motion.report(tmp_path / "fall.html", shapes="ur5", title="let <go>")
+    size = motion.report(tmp_path / "fall.html", shapes="ur5", title="let <go>")
     page = (tmp_path / "fall.html").read_text(encoding="utf-8")
+    assert size == (51, 51, len(page.encode()))
+    thinned = motion.report(tmp_path / "thinned.html", shapes="ur5", rows=10)
+    assert thinned.rows == 6 and thinned.all_rows == 51 and thinned.bytes < size.bytes
+    assert motion.report(tmp_path / "thinned.html", rows=None).rows == 51
     assert page.startswith("<!doctype html>") and "ur5, let &lt;go>" in page and "wrist_3_joint" in page
     ur5.report(str(tmp_path / "skeleton.html"))
     alone = (tmp_path / "skeleton.html").read_text(encoding="utf-8")

@@ -136,7 +136,7 @@ def test_a_blow_up_is_named(ur5):
     for size in (1e160, 1e300):
         torque = many.copy()
         torque[1, 2, 4] = size
-        with pytest.raises(mozzi.DivergedError, match=r"^state \[1, 2\]: the simulation blew up: .* in step \d+, at t = 0"):
+        with pytest.raises(mozzi.DivergedError, match=r"^state \[1, 2\]: the simulation diverged: .* in step \d+, at t = 0"):
             ur5.simulate(many, one, 1, 20, torque=torque)
     stiff = many.copy()
     stiff[0, 1] = 1.0
@@ -157,3 +157,73 @@ def test_interrupted(ur5, torque):
         timer.start()
         ur5.simulate(starts, np.zeros(6), 1e3, 10**7, torque=torque, record_every=10**7)
     timer.join()
+
+
+def test_methods_agree():
+    robot = mozzi.models.double_pendulum()
+    expected = robot.simulate([2.0, 1.0], [0, 0], 1.0, 2000, record_every=200)
+    for method, tolerance, error in (("dopri", 1e-10, 1e-7), ("dopri", 1e-6, 1e-3), ("midpoint", 1e-9, 1e-4)):
+        found = robot.simulate([2.0, 1.0], [0, 0], 1.0, 2000, record_every=200, method=method, tolerance=tolerance)
+        assert np.array_equal(found.t, expected.t) or method == "midpoint"
+        assert_close(found.t, expected.t)
+        assert np.abs(found.theta - expected.theta).max() < error, method
+    fast = robot.compile("forward_dynamics").simulate([2.0, 1.0], [0, 0], 1.0, 2000, record_every=200, method="dopri")
+    assert np.abs(fast.theta - expected.theta).max() < 1e-6
+
+
+def test_events():
+    robot = mozzi.models.double_pendulum()
+
+    def elbow_high(t, theta, dtheta):
+        return theta[1] - 1.2
+
+    start = ([2.0, 1.0], [0.0, 0.0])
+    words = robot.simulate(*start, 2.0, 200, method="dopri", events=["joint1 = 0", elbow_high], until="joint2 > 2.5")
+    assert {event.name for event in words.events} <= {"joint1 = 0", "elbow_high", "joint2 > 2.5"}
+    *before, last = words.events
+    assert last.end and last.name == "joint2 > 2.5" and words.t[-1] == last.t < 2
+    assert abs(last.theta[1] - 2.5) < 1e-10 and np.array_equal(words.theta[-1], last.theta)
+    assert before and not any(event.end for event in before)
+    assert all(abs(event.theta[1] - 1.2) < 1e-10 for event in before if event.name == "elbow_high")
+    by_function = robot.simulate(*start, 2.0, 200, method="dopri", until=lambda t, theta, dtheta: theta[1] - 2.5)
+    assert by_function.events[-1].name == "<lambda>" and abs(by_function.t[-1] - last.t) < 1e-6
+    assert robot.simulate(*start, 0.1, 10).events == []
+
+    def broken(t, theta, dtheta):
+        raise LookupError("no such thing")
+
+    with pytest.raises(LookupError, match="no such thing"):
+        robot.simulate(*start, 1.0, 10, events=broken)
+    with refused(ValueError, "`joint9 > 1`: there is no `joint9`, expected one of `joint1`, `joint2`"):
+        robot.simulate(*start, 1.0, 10, until="joint9 > 1")
+    with refused(TypeError, "events has an entry of type int, expected a function"):
+        robot.simulate(*start, 1.0, 10, events=[3])
+
+
+def test_joint_limits():
+    panda = mozzi.models.panda()
+    theta = np.array([0, -0.5, 0, -2, 0, 1.6, 0.8, 0.02])
+    options = dict(method="dopri", tolerance=1e-8)
+    reported, ignored = (
+        panda.simulate(theta, np.zeros(8), 1.0, 100, joint_limits=how, **options) for how in ("report", "ignore")
+    )
+    assert ignored.joint_limits == [] and np.array_equal(reported.theta, ignored.theta)
+    first = reported.joint_limits[0]
+    assert first.joint in panda.joint_names and first.beyond > 0 and 0 < first.first < 1
+    respected = panda.simulate(theta, np.zeros(8), 0.5, 100, joint_limits="respect", **options)
+    assert respected.joint_limits and all(limit.beyond == 0 for limit in respected.joint_limits)
+
+
+def test_what_takes_one_start(ur5):
+    many, one = np.zeros((2, 6)), np.zeros(6)
+    with refused(ValueError, "joint_limits is 'respect', expected 'report' or 'ignore' of many starts"):
+        ur5.simulate(many, one, 1, 10, joint_limits="respect")
+    with refused(ValueError, "until or events is given, expected None of many starts"):
+        ur5.simulate(many, one, 1, 10, until="elbow_joint > 1")
+    for torque in (None, lambda t, theta, dtheta: -dtheta):
+        with refused(ValueError, "the method is implicit midpoint, expected Euler, semi-implicit Euler or Runge-Kutta 4"):
+            ur5.simulate(many, one, 1, 10, method="midpoint", torque=torque)
+    with refused(ValueError, "joint_limits is 'obey', expected 'ignore', 'report' or 'respect'"):
+        ur5.simulate(one, one, 1, 10, joint_limits="obey")
+    with refused(ValueError, "tolerance is 0, expected a positive, finite number"):
+        ur5.simulate(one, one, 1, 10, method="dopri", tolerance=0)

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import json
 import os
 import subprocess
 import sys
@@ -15,17 +16,27 @@ PACKAGE = Path(mozzi.__file__).parent
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.py"))
 
 
+def is_documented(member):
+    return inspect.isclass(member) and not issubclass(member, Exception)
+
+
 def stubs():
     tree = ast.parse((PACKAGE / "_mozzi.pyi").read_text())
     return {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
 
 
-@pytest.mark.parametrize("name", ["Model", "Pinocchio", "MuJoCo"])
+@pytest.mark.parametrize("name", [name for name, member in vars(_mozzi).items() if is_documented(member)])
 def test_stubs_say_what_is_compiled(name):
     class_, stub = getattr(_mozzi, name), stubs()[name]
     said = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
     assert {member for member in vars(class_) if not member.startswith("_")} == {m for m in said if not m.startswith("_")}
     for member, node in said.items():
+        if member == "__init__":
+            given = [a.arg for a in [*node.args.args[1:], *node.args.kwonlyargs]]
+            real = inspect.signature(class_).parameters
+            assert given == list(real), name
+            defaults = [ast.literal_eval(d) for d in [*node.args.defaults, *node.args.kw_defaults] if d is not None]
+            assert defaults == [p.default for p in real.values() if p.default is not p.empty], name
         if member.startswith("_") or any(getattr(d, "id", "") == "property" for d in node.decorator_list):
             continue
         given = [a.arg for a in [*node.args.args, *filter(None, [node.args.vararg]), *node.args.kwonlyargs]]
@@ -56,6 +67,7 @@ def test_pyright(tmp_path):
     started = run(tmp_path, "pyright", "--version")
     if started.returncode != 0:
         pytest.skip("pyright does not start: it fetches its own program once")
-    (tmp_path / "pyrightconfig.json").write_text('{"extraPaths": ["%s"]}' % PACKAGE.parent)
+    paths = [str(PACKAGE.parent), str(EXAMPLES[0].parent)]  # examples import what they share
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps({"extraPaths": paths}))
     found = run(tmp_path, "pyright", "--pythonpath", sys.executable, str(PACKAGE), *map(str, EXAMPLES))
     assert found.returncode == 0, found.stdout + found.stderr

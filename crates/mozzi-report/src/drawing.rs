@@ -45,7 +45,7 @@ struct Mesh {
 }
 
 impl Drawing {
-    /// Of an embedded robot by its name, or of a file. Meshes that are not at hand are left out, and noted.
+    /// The drawing of an embedded robot or of a file. Meshes that are not found are omitted, with a note.
     ///
     /// # Errors
     /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
@@ -124,7 +124,7 @@ fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
     shapes.into_iter().filter(is_chosen).collect()
 }
 
-/// The format of a mesh, and its file gzipped; or why there is none.
+/// The format of a mesh and its gzipped file, or the reason why it is omitted.
 fn read(robot_file: &Path, address: &str) -> Result<(&'static str, Vec<u8>), String> {
     let ending = Path::new(address).extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let Some(&format) = FORMATS.iter().find(|format| ending.as_deref() == Some(**format)) else {
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(drawing.meshes.len(), 1);
         assert!(drawing.meshes[0].gzip.starts_with(&[0x1f, 0x8b]));
         assert_eq!(drawing.notes[0], "mesh b.ply: is no .stl, .obj or .dae");
-        assert!(drawing.notes[1].starts_with("mesh c.obj is not at hand: neither "), "{:?}", drawing.notes);
+        assert!(drawing.notes[1].starts_with("mesh c.obj was not found: neither "), "{:?}", drawing.notes);
         assert_eq!((of(Meshes::Collision).shapes.len(), of(Meshes::None).shapes.len()), (2, 1));
         std::fs::remove_dir_all(&folder).expect("removed");
     }

@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A column of the motion is not as long as its times and the robot's joints ask.
+    /// A column of the motion has the wrong length.
     #[error("the motion's {what} has {found} numbers, expected {expected}: {rows} rows of {width}")]
     Motion {
         /// The column: `theta`, `tau`, …
@@ -26,7 +26,7 @@ pub enum Error {
         /// Its time, s.
         t: f64,
     },
-    /// What mozzi says of a state.
+    /// An error of mozzi at a state.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
 }

@@ -1,5 +1,5 @@
-//! A robot and its motion as one HTML file, which needs no network and no program but a browser; and as figures for papers, SVG
-//! ([`pictures`]).
+//! A robot and its motion as one HTML file, which needs no network and no program but a browser; and as figures for
+//! papers, SVG ([`pictures`]).
 //!
 //! ```
 //! use mozzi::simulation::{Options, Zero};
@@ -13,9 +13,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What stands in the file: the page (`page/` in the repository, bundled by `cargo xtask page`), and the data, a JSON object:
+//! The file contains the page (`page/` in the repository, bundled by `cargo xtask page`) and the data, a JSON object:
 //!
-//! - `robot`: bodies with their joints' screws and inertias, named frames, shapes, as [`Model`] has them, in the frames of the robot's file;
+//! - `robot`: bodies with their joints' screws and inertias, named frames, shapes, as [`Model`] has them, in the frames
+//!   of the robot's file; its start, in which it is shown at first, and its named states;
 //! - `meshes`: the files of meshes, gzipped;
 //! - `motion`: rows of a trajectory, as 32-bit floats (times: 64).
 mod base64;
@@ -34,6 +35,9 @@ pub use error::Error;
 pub use motion::Motion;
 
 use mozzi::Model;
+
+/// Rows of a motion that a page shows without delay: a few megabytes of an arm's.
+pub const ROWS: usize = 20_000;
 
 /// The file. Without a motion it has a slider for each joint.
 ///

@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 pub struct Motion {
     /// What it is, in a few words.
     pub title: String,
-    /// Seconds, none before the one above it; two of one time are a jump.
+    /// Times in seconds, not decreasing; two rows with the same time are a jump.
     pub t: Vec<f64>,
     /// θ, rows of nq.
     pub theta: Vec<f64>,
-    /// θ̇, rows of n; likewise what follows.
+    /// θ̇, rows of n; likewise the following fields.
     pub dtheta: Option<Vec<f64>>,
     /// θ̈.
     pub ddtheta: Option<Vec<f64>>,
@@ -45,6 +45,22 @@ impl Motion {
             potential_energy: Some(motion.energy.iter().map(|energy| energy.potential).collect()),
             drift: Some((0..motion.len()).map(|k| motion.drift(k)).collect()),
         }
+    }
+
+    /// Every s-th row, and the last: at most so many, at least two. See [`mozzi::simulation::stride`].
+    pub fn thinned(mut self, at_most: usize) -> Self {
+        let rows = self.t.len();
+        let stride = mozzi::simulation::stride(rows, at_most);
+        if stride > 1 {
+            let is_kept = |row: usize| row.is_multiple_of(stride) || row + 1 == rows;
+            thin(&mut self.t, rows, is_kept);
+            thin(&mut self.theta, rows, is_kept);
+            let lists = [&mut self.dtheta, &mut self.ddtheta, &mut self.tau];
+            let energies = [&mut self.kinetic_energy, &mut self.potential_energy, &mut self.drift];
+            lists.into_iter().chain(energies).flatten().for_each(|list| thin(list, rows, is_kept));
+            self.tip_wrench.iter_mut().for_each(|list| thin(list, rows, is_kept));
+        }
+        self
     }
 
     /// The same with the energies that its positions and velocities have: 𝒫, and 𝒦 where velocities are known.
@@ -111,6 +127,15 @@ impl Motion {
     }
 }
 
+/// Some rows of a table, alone.
+fn thin<T>(table: &mut Vec<T>, rows: usize, is_kept: impl Fn(usize) -> bool) {
+    let (width, mut entry) = (table.len() / rows.max(1), 0);
+    table.retain(|_| {
+        entry += 1;
+        is_kept((entry - 1) / width)
+    });
+}
+
 /// 32-bit floats, little-endian, as text.
 fn singles(values: &[f64]) -> String {
     base64::encode(&values.iter().flat_map(|&x| (x as f32).to_le_bytes()).collect::<Vec<_>>())
@@ -134,6 +159,21 @@ mod tests {
         };
         assert!(apart(&again.kinetic_energy, &whole.kinetic_energy) < 1e-12);
         assert!(apart(&again.potential_energy, &whole.potential_energy) < 1e-12);
+    }
+
+    #[test]
+    fn a_thinned_motion_is_that_of_fewer_rows() {
+        let model = mozzi_urdf::open("double_pendulum").and_then(mozzi_urdf::Loaded::build).expect("embedded");
+        let fall = |record_every| {
+            let options = Options { record_every, ..Options::new(0.1, 20) };
+            Motion::simulated("fall", &model.simulate(&[1.0, 0.3], &[0.0; 2], Zero, &options).expect("a motion"))
+        };
+        let wrenches = |rows: usize| (0..rows).map(|k| Wrench::from_array([k as f64; 6])).collect();
+        let whole = Motion { tip_wrench: Some(wrenches(21)), ..fall(1) };
+        assert_eq!(whole.clone().thinned(21), whole);
+        let fewer = whole.thinned(5);
+        let pushed = [0, 10, 20].map(|k| Wrench::from_array([f64::from(k); 6]));
+        assert_eq!(fewer, Motion { tip_wrench: Some(pushed.to_vec()), ..fall(10) });
     }
 
     #[test]

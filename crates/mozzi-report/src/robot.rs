@@ -61,8 +61,12 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         })
         .collect();
 
+    let armature = model.armature_matrix();
+    let states = model.state_names().map(|name| Ok(json!({ "name": name, "theta": model.state(name)?.theta })));
     Ok(json!({
         "name": model.description().name,
+        "states": states.collect::<Result<Value, Error>>()?,
+        "start": model.start().theta,
         "base": if is_floating { "floating" } else { "fixed" },
         "baseName": folded[0].links.first().map(|(name, _)| name),
         "gravity": model.gravity().0,
@@ -71,7 +75,7 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         "joints": joints,
         "bodies": bodies,
         "baseInertia": base_inertia,
-        "armature": model.armature(),
+        "armature": armature.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
         "frames": named,
         "endEffector": model.end_effector().ok().and_then(|frame| frame_of(model.frame_name(frame))),
         "shapes": drawing.shapes_to_json(&|link| frame_of(link)),
@@ -86,6 +90,7 @@ pub fn rows(T: SE3) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mozzi::model::State;
     use mozzi::{Model, Vec3};
 
     fn numbers(value: &Value) -> Vec<f64> {
@@ -137,8 +142,13 @@ mod tests {
         let models = [open("ur5"), open("panda"), tree, open("anymal").floating(), balls.clone(), balls.floating()];
         for description in models {
             let model: Model = description.build().expect("sound");
-            let robot = to_json(&model, &Drawing::default()).expect("a robot");
             let theta = crate::testing::configuration(&model);
+            let state = State { time: 0.0, theta: theta.clone(), dtheta: vec![0.0; model.n()] };
+            let model = model.with_state("home", &state).expect("sound");
+            let robot = to_json(&model, &Drawing::default()).expect("a robot");
+            assert_eq!(numbers(&robot["start"]), model.start().theta);
+            let home = robot["states"].as_array().and_then(|states| states.last()).expect("a state");
+            assert_eq!((&home["name"], numbers(&home["theta"])), (&json!("home"), theta.clone()));
             let (found, expected) = (poses(&robot, &theta), model.frame_poses(&theta).expect("poses"));
             for (found, expected) in found.iter().zip(&expected) {
                 let apart = (found.inverse() * *expected).log().to_array();
@@ -153,7 +163,8 @@ mod tests {
                 .map(|(&x, name)| if name.ends_with(".armature") { x } else { 0.0 })
                 .collect();
             let M = model.with_parameters(&massless).mass_matrix(&theta).expect("M");
-            assert_eq!(numbers(&robot["armature"]), M.diagonal().as_slice());
+            let rows = robot["armature"].as_array().expect("rows");
+            assert_eq!(rows.iter().flat_map(numbers).collect::<Vec<f64>>(), M.transpose().as_slice());
             for (joint, place) in robot["joints"].as_array().expect("joints").iter().zip(model.places()) {
                 let name = joint["name"].as_str().expect("a name");
                 let [q, j] = ["q", "j"].map(|key| joint[key].as_u64().expect("a place") as usize);

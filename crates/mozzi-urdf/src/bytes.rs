@@ -24,7 +24,7 @@ pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
         // counted as an editor for bytes does: a byte order mark is three of them
         let offset = at + file.len() - bytes.len();
         let message = format!("byte {offset} of the file is {:#04x}, which is not UTF-8", bytes[at]);
-        let help = "save the file as UTF-8; a file that declares another encoding has to be converted";
+        let help = "save the file as UTF-8; convert a file that declares another encoding";
         (good, Finding::error("not_utf8", at..at, message).help(help))
     })
 }

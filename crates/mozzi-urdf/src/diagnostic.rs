@@ -1,4 +1,4 @@
-//! One thing wrong with a file: what, where, how bad, how to mend it.
+//! A diagnostic: message, place, severity, remedy.
 
 use crate::dialect::Dialect;
 use crate::explain::remedy;
@@ -8,8 +8,8 @@ use mozzi::model::Severity;
 use std::fmt;
 use std::ops::Range;
 
-/// Something wrong with a file. Displays as `file:line:column: error: message`; [`pretty`](Self::pretty) shows the line
-/// with a mark under the value.
+/// An error or a warning in a file. Displays as `file:line:column: error: message`; [`pretty`](Self::pretty) shows the
+/// line with a mark under the value.
 #[derive(Clone)]
 pub struct Diagnostic {
     severity: Severity,
@@ -34,7 +34,7 @@ impl Diagnostic {
         self.severity
     }
 
-    /// For programs, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::explain).
+    /// The code, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::explain).
     pub fn code(&self) -> &str {
         &self.code
     }
@@ -59,12 +59,12 @@ impl Diagnostic {
         self.position.column
     }
 
-    /// The bytes of the text (without its byte order mark) that are meant.
+    /// The byte range in the text (without its byte order mark).
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
-    /// How to mend it.
+    /// The remedy.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }

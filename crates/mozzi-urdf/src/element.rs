@@ -1,4 +1,5 @@
-//! An element of the text: its attributes as words and numbers, its children by name, each misuse reported at its place.
+//! An element of the text: its attributes as words and numbers, its children by name, each misuse reported at its
+//! place.
 
 use crate::context::{Context, Unknown};
 use crate::finding::Finding;
@@ -97,7 +98,7 @@ impl<'a> Element<'a> {
             let message = format!("{}: has no attribute `{name}`", self.subject);
             let help = (!self.node.text().unwrap_or_default().trim().is_empty()).then(|| {
                 format!(
-                    "values stand in attributes: <{} {name}=\"{}\"/>",
+                    "values are attributes: <{} {name}=\"{}\"/>",
                     self.name(),
                     shown(self.node.text().unwrap_or_default().trim())
                 )
@@ -138,7 +139,7 @@ impl<'a> Element<'a> {
                 let is_comma = value.text.contains(',');
                 let message =
                     format!("{subject}: {name}: `{}` has {found} numbers, expected {expected}", shown(value.text));
-                let help = is_comma.then(|| "numbers are separated by spaces".to_string());
+                let help = is_comma.then(|| "separate numbers by spaces".to_string());
                 Finding::error("wrong_count", value.span.clone(), message).maybe_help(help)
             }
             NotNumbers::Word { span, word, why } => {
@@ -177,7 +178,7 @@ impl<'a> Element<'a> {
                 continue;
             }
             let language = cx.dialect.name();
-            let message = format!("{subject}: has an attribute `{}`, which {language} does not know", shown(name));
+            let message = format!("{subject}: has an attribute `{}`, which {language} does not define", shown(name));
             match cx.unknown(self.name(), name, "attribute", words.attributes.iter().copied()) {
                 Unknown::Misspelled(help) => {
                     cx.findings.add(Finding::error("misspelled_attribute", span, message).help(help));
@@ -185,7 +186,7 @@ impl<'a> Element<'a> {
                 Unknown::First => {
                     let known = crate::vocabulary::list(words.attributes);
                     let name = self.name();
-                    let help = format!("it is ignored here and wherever it stands on <{name}>; known are {known}");
+                    let help = format!("it is ignored here and elsewhere on <{name}>; known attributes are {known}");
                     cx.findings.add(Finding::warning("unknown_attribute", span, message).help(help));
                 }
                 Unknown::Again => {}
@@ -229,14 +230,14 @@ impl<'a> Element<'a> {
             return;
         }
         let (language, subject) = (cx.dialect.name(), &parent.subject);
-        let message = format!("{subject}: has an element <{}>, which {language} does not know here", shown(name));
+        let message = format!("{subject}: has an element <{}>, which {language} does not define here", shown(name));
         let known = words.once.iter().chain(words.many).copied();
         match cx.unknown(parent.name(), name, "element", known) {
             Unknown::Misspelled(help) => {
                 cx.findings.add(Finding::error("misspelled_element", self.span(), message).help(help));
             }
             Unknown::First => {
-                let help = format!("it is ignored here and wherever it stands in <{}>", parent.name());
+                let help = format!("it is ignored here and elsewhere in <{}>", parent.name());
                 cx.findings.add(Finding::warning("unknown_element", self.span(), message).help(help));
             }
             Unknown::Again => {}
@@ -251,7 +252,7 @@ impl<'a> Element<'a> {
             let raw = self.raw(&place);
             let start = place.start + raw.len() - raw.trim_start().len();
             let message = format!("{}: has the text `{}`, expected only elements", parent.subject, shown(text.trim()));
-            let help = format!("it is ignored here and wherever text stands in <{}>", parent.name());
+            let help = format!("it is ignored here and elsewhere in <{}>", parent.name());
             let span = start..start + raw.trim().len();
             cx.findings.add(Finding::warning("stray_text", span, message).help(help));
         }

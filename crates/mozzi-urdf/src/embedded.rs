@@ -1,4 +1,4 @@
-//! Robots that mozzi brings along, each with the source of its numbers in its file.
+//! Embedded robots, each with the source of its numbers in its file.
 
 /// Name and text.
 const ROBOTS: [(&str, &str); 6] = [

@@ -1,4 +1,4 @@
-//! Why a robot was not loaded.
+//! Errors of loading a robot.
 
 use crate::diagnostic::Diagnostic;
 use crate::embedded;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// More diagnostics are counted, not printed.
 pub(crate) const PRINTED: usize = 20;
 
-/// Why a robot was not loaded. Displays as one line per error; [`pretty`](Self::pretty) shows the places.
+/// Errors of loading a robot. Displays as one line per error; [`pretty`](Self::pretty) shows the places.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum LoadError {
@@ -20,21 +20,21 @@ pub enum LoadError {
         /// Why.
         source: std::io::Error,
     },
-    /// Neither a robot that mozzi brings along nor a file.
+    /// Neither an embedded robot nor a file.
     NoSuchRobot {
-        /// What was asked for.
+        /// The requested name.
         name: String,
     },
-    /// The file is wrong: all that was found.
+    /// The file has errors.
     Refused {
         /// Its name.
         file: String,
-        /// Errors, and warnings beside them, in the order of the file; at most a thousand of each.
+        /// Errors and warnings in the order of the file; at most a thousand of each.
         diagnostics: Vec<Diagnostic>,
-        /// There were more: reading stopped after a thousand errors.
+        /// Whether reading stopped after a thousand errors.
         is_cut: bool,
     },
-    /// The model could not be built from a description that was accepted.
+    /// The model could not be built from an accepted description.
     Build(mozzi::Error),
 }
 
@@ -62,7 +62,7 @@ impl LoadError {
             LoadError::File { path, source } => format!("{} cannot be read: {source}", path.display()),
             LoadError::NoSuchRobot { name } => {
                 let known: Vec<&str> = embedded::names().collect();
-                format!("`{name}` is neither a file nor one of the robots {}", crate::vocabulary::list(&known))
+                format!("`{name}` is neither a file nor one of the embedded robots {}", crate::vocabulary::list(&known))
             }
             LoadError::Refused { file, is_cut, .. } => match self.errors().count() {
                 1 => format!("{file} is refused: 1 error"),

@@ -1,186 +1,224 @@
-//! What each code means, and how to mend what it says.
+//! The meaning and remedy of each diagnostic code.
 
 use crate::mjcf;
 use crate::spelling::nearest;
 
-/// A code, without `mozzi::urdf::` or `mozzi::mjcf::`; what it means; how to mend it.
+/// A code, without `mozzi::urdf::` or `mozzi::mjcf::`; its meaning; its remedy.
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
-#[rustfmt::skip] // a code in three lines
+#[rustfmt::skip] // code, meaning, remedy
 const CODES: [Entry; 58] = [
     ("circular_mimic",
-        "A joint that follows another (mimic) follows, over one or more steps, itself. Its position is then defined by nothing.",
-        "let one of the joints follow none"),
+        "A mimic joint follows itself, directly or over other mimic joints. Its position is then undefined.",
+        "remove one of the <mimic> elements"),
     ("continuous_limits",
-        "A continuous joint turns without end; its lower and upper bounds mean nothing and are ignored.",
+        "A continuous joint turns without bounds; its lower and upper limits are ignored.",
         "a joint with bounds is of type `revolute`"),
     ("contradictory_limits",
-        "A joint follows another, and no position of the other keeps both within their limits. mozzi computes the coupling as given; limits do not enter the dynamics.",
+        "A mimic joint and its source joint have limits that no position satisfies together. mozzi computes the \
+         coupling as given; limits do not enter the dynamics.",
         "check multiplier and offset of the mimic, and the limits of both joints"),
     ("decimal_comma",
         "A number contains a comma. Numbers have a decimal point, and the numbers of a vector are separated by spaces.",
-        "numbers have a decimal point, and spaces between them: `0.5`, not `0,5`"),
+        "write a decimal point, and spaces between numbers: `0.5`, not `0,5`"),
     ("degrees",
-        "An angle is a whole number beyond two turns, as angles in degrees are. Angles are in radians; it is computed as given.",
+        "An angle is a whole number beyond two turns, which suggests degrees. Angles are in radians; the number \
+         is used as given.",
         "angles are in radians: 90 degrees are 1.5708"),
     ("document_type",
-        "The file declares a document type. Its entities could expand without bound or read other files, so such files are refused. URDF needs no document type.",
+        "The file declares a document type. Its entities could expand without bound or read other files, so the \
+         file is refused. URDF needs no document type.",
         "remove the declaration"),
     ("duplicate_element",
-        "An element stands twice where it may stand once. Other readers take the first or the last, so they read different robots.",
-        "keep the one that is meant"),
+        "An element occurs twice but is allowed once. Other readers take the first or the last, and so read \
+         different robots.",
+        "keep one of them"),
     ("duplicate_name",
         "Two links, or two joints, have the same name, so that a reference to it is ambiguous.",
         "rename one of them"),
     ("empty",
         "The file has no content.",
-        "is it the right file, and was it written to its end?"),
+        "check that this is the right file and that it was written completely"),
     ("empty_name",
         "A link or joint has the empty name.",
-        "give it a name that no other has"),
+        "give it a unique name"),
     ("fixed_mimic",
-        "A fixed joint follows another joint (mimic). It does not move, so this has no effect.",
-        "was the joint meant to move? Otherwise remove the <mimic>"),
+        "A fixed joint is declared as a mimic joint. It does not move, so the <mimic> has no effect.",
+        "remove the <mimic>, or change the joint's type if it should move"),
     ("fixed_source",
-        "A joint follows a fixed joint, which never moves.",
-        "follow a joint that moves, or make this one fixed too"),
+        "A mimic joint follows a fixed joint, which never moves.",
+        "follow a joint that moves, or make this joint fixed, too"),
     ("ignored_property",
-        "A planar or floating joint has limits, damping or friction. URDF has one number for them, but such a joint both slides and turns; what the number would mean is not said. It is ignored.",
-        "remove it, or build the joint from joints of one freedom, each with its own"),
+        "A planar or floating joint has limits, damping or friction. URDF has one number for them, but such a \
+         joint both slides and turns, and URDF does not define which of the two is meant. The property is \
+         ignored.",
+        "remove it, or build the joint from joints of one axis, each with its own property"),
     ("implausible_inertia",
-        "The moments of inertia are far too large for the mass: the radius of gyration is more than 10 m, and more than ten times the longest distance in the robot. It is computed as given.",
+        "The moments of inertia are far too large for the mass: the radius of gyration is more than 10 m, and \
+         more than ten times the longest distance in the robot. The numbers are used as given.",
         "moments are in kg m²: those in kg mm² are a million times larger"),
     ("implausible_length",
-        "A joint, or a centre of mass, is more than 50 m from the frame that it is given in. It is computed as given. Said once, of the farthest.",
+        "A joint or a centre of mass is more than 50 m from the origin of the frame in which it is given. The \
+         numbers are used as given. Only the farthest one is reported.",
         "lengths are in metres: 300 mm are 0.3"),
     ("implausible_mass",
-        "A mass of more than 5 kg is so close to its centre of mass that no matter is so dense, judged by the moments of inertia; or there are moments without a mass. It is computed as given.",
-        "masses are in kilograms, moments in kg m²; a body that has one has the other"),
+        "A mass of more than 5 kg has moments of inertia so small that its density would be higher than that of \
+         any material; or there are moments without a mass. The numbers are used as given.",
+        "masses are in kilograms, moments in kg m²; a body needs both or neither"),
     ("indefinite_inertia",
-        "The inertia of a rigid body has a negative principal moment about its centre of mass: turning about that axis would have a negative kinetic energy, and forward dynamics would mean nothing. It is judged by the whole body of links that are fixed to each other. Usual reasons: a wrong sign of ixy, ixz or iyz, or moments given about the link's origin and not about the centre of mass.",
-        "such a body would gain speed by being braked: check the signs of ixy, ixz, iyz and that the moments are about the centre of mass; the lenient policy takes the nearest physical inertia instead"),
+        "The inertia of a rigid body has a negative principal moment about its centre of mass. Rotation about \
+         that axis would have a negative kinetic energy, and forward dynamics would be meaningless. All links \
+         that are fixed to each other are judged as one body. Usual reasons: a wrong sign of ixy, ixz or iyz, or \
+         moments about the link's origin instead of the centre of mass.",
+        "check the signs of ixy, ixz, iyz and that the moments are about the centre of mass; the lenient policy \
+         uses the nearest physical inertia instead"),
     ("long_name",
         "A name is longer than 256 bytes.",
-        "choose a shorter one; names are repeated in every message"),
+        "choose a shorter name; names are repeated in every message"),
     ("loop_closure",
-        "A link is the child of two joints, or a joint is said to close a loop. mozzi computes trees.",
-        "cut the loop by removing one of its joints, if that is what you want to compute"),
+        "A link is the child of two joints, or a joint closes a loop. mozzi supports trees only.",
+        "cut the loop by removing one of its joints, if you want to compute the tree"),
     ("massless_leaf",
-        "The last link of a branch moves by a joint but has no inertia about its axis. Inverse dynamics is fine; forward dynamics would divide by zero, and answers with an error that names the joint.",
+        "The last link of a branch moves but has no inertia about its joint's axis. Inverse dynamics works; \
+         forward dynamics would divide by zero and returns an error that names the joint.",
         "give the link its mass and inertia, or make the joint fixed"),
     ("mimic_of_several_axes",
-        "A joint follows a ball or a free joint, or one of these follows another. They have several positions, and what would be followed is not said.",
-        "let joints of one axis follow each other"),
+        "A mimic joint, or the joint that it follows, is a ball or a free joint. These have several positions, \
+         and the coupling is not defined.",
+        "couple joints of one axis only"),
     ("missing_attribute",
-        "An attribute that has to be there is not. Nothing is assumed in its place.",
-        "write it, with its value"),
+        "A required attribute is missing. mozzi assumes no value.",
+        "add the attribute with its value"),
     ("missing_element",
-        "An element that has to be there is not: the parent and the child of a joint, the mass and the inertia of an inertial.",
-        "write it, with its value"),
+        "A required element is missing: parent and child of a joint, mass and inertia of an inertial.",
+        "add the element with its value"),
     ("missing_limit",
-        "URDF demands a limit with lower, upper, effort and velocity of revolute and prismatic joints. Without lower and upper the joint is taken as unlimited; of the two, one that is missing is 0, URDF's default; without effort or velocity these are unlimited. Limits do not enter the dynamics.",
-        "write the limit; a joint that turns freely is of type `continuous`"),
+        "URDF requires a limit with lower, upper, effort and velocity for revolute and prismatic joints. Without \
+         lower and upper the joint is unlimited; if one of them is missing it is 0, URDF's default; missing \
+         effort or velocity limits are unlimited. Limits do not enter the dynamics.",
+        "add the limit; a joint that turns freely is of type `continuous`"),
     ("misspelled_attribute",
-        "An attribute that URDF does not know is one slip away from one that it knows. Ignored, the value meant would be lost in silence.",
+        "An unknown attribute differs from a URDF attribute by a typing error. Ignoring it would silently lose \
+         its value, so the file is refused.",
         "correct the name"),
     ("misspelled_element",
-        "An element that URDF does not know is one slip away from one that it knows. Ignored, what it says would be lost in silence.",
+        "An unknown element differs from a URDF element by a typing error. Ignoring it would silently lose its \
+         content, so the file is refused.",
         "correct the name"),
     ("negative_friction",
-        "Damping, friction, armature and stiffness are at least 0; negative, they would drive the joint.",
-        "write the size of it, without a sign: friction always brakes"),
+        "Damping, friction, armature and stiffness must be at least 0; negative values would drive the joint.",
+        "write the magnitude, without a sign: friction always opposes motion"),
     ("negative_limit",
-        "The limits of velocity and effort are magnitudes, at least 0.",
-        "write the size of it, without a sign: it holds in both directions"),
+        "Velocity and effort limits are magnitudes and must be at least 0.",
+        "write the magnitude, without a sign: it holds in both directions"),
     ("negative_mass",
         "A mass is negative.",
-        "masses are in kilograms, at least 0"),
+        "write a mass in kilograms, at least 0"),
     ("no_base",
-        "Every link is the child of a joint, so the robot hangs on nothing.",
-        "one of the joints has the wrong child, or is one too many"),
+        "Every link is the child of a joint, so the robot has no base.",
+        "correct the child of one joint, or remove a joint"),
     ("no_links",
         "The robot has no links.",
-        "is it the right file? A robot has at least one <link name=\"…\"/>"),
+        "check that this is the right file; a robot has at least one <link name=\"…\"/>"),
     ("non_unit_axis",
-        "The axis of a joint is not of length 1. Only its direction is used: the joint's position stays in radians or metres. If the speed was meant to be scaled: that is a mimic joint's multiplier.",
+        "The axis of a joint does not have length 1. Only its direction is used: the joint's position stays in \
+         radians or metres. To scale a joint's motion, use the multiplier of a mimic joint.",
         "only its direction is used: the joint's position stays in radians or metres"),
     ("not_a_number",
-        "A text that should be a number is none. The whole text has to be one: sign, digits, decimal point, exponent.",
-        "write digits alone, such as `0.5` or `5e-1`"),
+        "A value is not a number. The whole text must be a number: sign, digits, decimal point, exponent.",
+        "write digits only, such as `0.5` or `5e-1`"),
     ("not_finite",
-        "A number is not finite, or becomes so when the inertia is computed from it.",
-        "write a finite number; for no limit, leave the limit out"),
+        "A number is infinite or NaN, or the inertia computed from it is.",
+        "write a finite number; for no limit, omit the limit"),
     ("not_utf8",
         "The file is not encoded as UTF-8.",
         "save the file as UTF-8"),
     ("repaired_inertia",
-        "Under the lenient policy, an inertia that no body can have was replaced by the nearest that a body can have.",
-        "the lenient policy repairs this; mend the file to be sure of what is computed"),
+        "Under the lenient policy, an unphysical inertia was replaced by the nearest physical one.",
+        "the lenient policy repairs this; correct the file to be sure of the numbers"),
     ("reversed_limits",
         "The lower limit of a joint is above the upper one.",
         "exchange `lower` and `upper`"),
     ("self_parent",
         "A joint's parent and child are the same link.",
-        "name the link that carries the joint as parent, the one that it moves as child"),
+        "the parent is the link that carries the joint, the child the link that it moves"),
     ("several_bases",
-        "Several links are no joint's child. One of them is the base; to the others no joint leads.",
+        "Several links are not the child of any joint. One of them is the base; no joint leads to the others.",
         "add a joint whose child is this link (of type `fixed` if it does not move), or remove the link"),
     ("stray_text",
-        "Text stands between elements. URDF keeps its values in attributes; the text is ignored.",
+        "There is text between elements. URDF keeps its values in attributes; the text is ignored.",
         "remove it, or put it into a comment <!-- -->"),
     ("syntax",
         "The file is not well-formed XML. Only the first such error is reported.",
-        "the place is where the text stops making sense; the slip may stand just before it"),
+        "the error is at this place or just before it"),
     ("too_deep",
-        "Elements are nested deeper than 256. No robot needs this; such files are refused to bound time and memory.",
-        "links and joints all stand directly in <robot>: is a closing tag missing again and again?"),
+        "Elements are nested deeper than 256 levels. No robot needs this; the file is refused to bound time and \
+         memory.",
+        "links and joints are direct children of <robot>: check for missing closing tags"),
     ("too_large",
-        "The file is larger than 64 MiB or has more than two million elements and texts. Such files are refused to bound time and memory.",
-        "is it the right file? Meshes are kept in files of their own"),
+        "The file is larger than 64 MiB or has more than two million elements and texts. It is refused to bound \
+         time and memory.",
+        "check that this is the right file; meshes are separate files"),
     ("too_large_number",
         "A number is beyond the range of double precision.",
         "check its exponent"),
     ("too_many_attributes",
-        "An element has more than 256 attributes. No robot needs this; such files are refused to bound time and memory.",
-        "is it the right file?"),
+        "An element has more than 256 attributes. No robot needs this; the file is refused to bound time and memory.",
+        "check that this is the right file"),
     ("too_many_namespaces",
-        "More than 64 namespaces hold at one place, or more than 4096 are declared. No robot needs this; such files are refused to bound time and memory.",
+        "More than 64 namespaces are in scope at one place, or more than 4096 are declared. No robot needs this; \
+         the file is refused to bound time and memory.",
         "declare each namespace once, on the <robot>"),
     ("unknown_attribute",
-        "An attribute is not of URDF, and near no word of it. It is ignored; said once per kind.",
-        "remove it, or give it the prefix of a namespace of its own"),
+        "URDF does not define this attribute, nor one with a similar name. It is ignored; reported once per kind.",
+        "remove it, or give it a namespace prefix of its own"),
     ("unknown_element",
-        "An element is not of URDF, nor a known extension, and near no word of it. It is ignored; said once per kind.",
-        "remove it, or give it the prefix of a namespace of its own"),
+        "Neither URDF nor a known extension defines this element, nor one with a similar name. It is ignored; \
+         reported once per kind.",
+        "remove it, or give it a namespace prefix of its own"),
     ("unknown_joint",
-        "A joint follows a joint that does not exist. The coupling would be lost in silence, so the file is refused.",
-        "write the joint's name as it stands in its own `name`"),
+        "A mimic joint follows a joint that does not exist. Ignoring the coupling would give wrong results, so \
+         the file is refused.",
+        "use the source joint's `name`, with the same spelling"),
     ("unknown_joint_type",
         "The type of a joint is not one of revolute, continuous, prismatic, fixed, planar and floating.",
-        "`revolute` turns between bounds, `continuous` without, `prismatic` slides, `fixed` does not move, `planar` slides and turns in a plane, `floating` frees the base"),
+        "`revolute` turns between bounds, `continuous` without, `prismatic` slides, `fixed` does not move, \
+         `planar` slides and turns in a plane, `floating` frees the base"),
     ("unknown_link",
         "A joint names a link that does not exist.",
-        "write the link's name as it stands in its own `name`, or add the link"),
+        "use the link's `name`, with the same spelling, or add the link"),
     ("unphysical_inertia",
-        "The inertia is not that of a rigid body: of the principal moments about the centre of mass, the largest exceeds the sum of the others; or one is negative, while the body of links that are fixed to each other is sound. It is computed as given: the equations hold, of a body that cannot be built. Usual reasons: rounded digits, moments about another point, guessed numbers.",
-        "it is computed as given; of a rigid body each principal moment is at most the sum of the other two: check the units, the signs, and that the moments are about the centre of mass"),
+        "No rigid body has this inertia: the largest principal moment about the centre of mass exceeds the sum of \
+         the other two; or one is negative, while the body of all links fixed to each other is positive definite. \
+         The numbers are used as given: the equations of motion are sound, but no such body can be built. Usual \
+         reasons: rounded digits, moments about another point, guessed numbers.",
+        "the numbers are used as given; in a rigid body each principal moment is at most the sum of the other \
+         two: check the units, the signs, and that the moments are about the centre of mass"),
     ("unreachable_link",
-        "A link hangs in a ring of joints that is not connected to the base.",
-        "one of the joints of the ring has the wrong parent"),
+        "A link is part of a ring of joints that is not connected to the base.",
+        "correct the parent of one joint of the ring"),
     ("unsupported_joint",
-        "A joint is a ball, of which URDF has no word and other readers know nothing, or a planar or floating joint is to follow another (mimic).",
-        "MJCF and mozzi's JSON have balls; in URDF, three hinges with massless links between move as a ball does, away from the position where two of them line up"),
+        "A joint is a ball, which URDF does not define and other readers do not support; or a planar or floating \
+         joint is a mimic joint.",
+        "MJCF and mozzi's JSON support balls; in URDF, three hinges with massless links between them move like a \
+         ball, except where two of their axes align"),
     ("wrong_count",
-        "A vector has not as many numbers as it needs.",
-        "numbers are separated by spaces: `0 0 0.5`"),
+        "A vector has too few or too many numbers.",
+        "separate numbers by spaces: `0 0 0.5`"),
     ("wrong_root",
-        "The root element of a URDF is <robot>.",
-        "is it the right file? A URDF begins with <robot name=\"…\">"),
+        "The root element of a URDF must be <robot>.",
+        "check that this is the right file; a URDF begins with <robot name=\"…\">"),
     ("xacro",
-        "The file is a program for xacro, which writes a URDF when it is run: it has elements such as `<xacro:macro>`, or values such as `${mass}`. mozzi reads what xacro writes and does not run xacro itself: of the programs in Rust that do, each computes another number for some expressions, without a word. PyPI's xacro needs no ROS: `pip install xacro`, then `xacro robot.xacro name:=value > robot.urdf`. A file that says `$(find package)`, or includes one that does, needs ROS for that, or xacrodoc: `pip install xacrodoc`, then `xacrodoc robot.xacro name:=value --pkg-dir DIR -o robot.urdf`, DIR holding the folders of the packages.",
+        "The file is a xacro program, which generates a URDF when it is run: it has elements such as \
+         `<xacro:macro>`, or values such as `${mass}`. mozzi reads the generated URDF and does not run xacro \
+         itself, because the Rust implementations of xacro silently compute wrong numbers for some expressions. \
+         PyPI's xacro needs no ROS: `pip install xacro`, then `xacro robot.xacro name:=value > robot.urdf`. A \
+         file that contains `$(find package)`, or includes one that does, needs ROS, or xacrodoc: `pip install \
+         xacrodoc`, then `xacrodoc robot.xacro name:=value --pkg-dir DIR -o robot.urdf`, with the packages' \
+         folders in DIR.",
         "expand it first: `pip install xacro; xacro robot.xacro > robot.urdf`"),
     ("zero_axis",
-        "The axis of a joint that moves has no direction.",
+        "The axis of a moving joint has length 0.",
         "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`"),
 ];
 
@@ -194,17 +232,17 @@ fn entry(code: &str) -> Option<&'static Entry> {
     }
 }
 
-/// What a code such as `mozzi::urdf::zero_axis`, or `zero_axis`, means.
+/// The meaning of a code such as `mozzi::urdf::zero_axis` or `zero_axis`.
 pub fn explain(code: &str) -> Option<&'static str> {
     entry(code).map(|&(_, meaning, _)| meaning)
 }
 
-/// How to mend what a code says; what a diagnostic's help says where its place says nothing more precise.
+/// The remedy of a code; the help of a diagnostic that has no more specific one.
 pub fn remedy(code: &str) -> Option<&'static str> {
     entry(code).map(|&(.., remedy)| remedy)
 }
 
-/// The code of either language that one which does not exist was probably meant to be.
+/// The code of either language that is most similar to an unknown one.
 ///
 /// ```
 /// assert_eq!(mozzi_urdf::nearest_code("mozzi::urdf::zero-axes"), Some("zero_axis"));

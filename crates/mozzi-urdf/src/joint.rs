@@ -101,8 +101,8 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     Read { joint, place, freedoms }
 }
 
-/// URDF has one number for the limits and the friction of a joint: of several freedoms it says nothing. What the joint follows
-/// would be lost as well, and changes the robot.
+/// URDF has one number for the limits and the friction of a joint: of several freedoms it says nothing. What the joint
+/// follows would be lost as well, and changes the robot.
 fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &Element, cx: &mut Context) {
     let subject = &element.subject;
     let limit = children.get("limit").filter(|limit| {
@@ -114,12 +114,12 @@ fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &E
     });
     for given in limit.into_iter().chain(children.get("dynamics").filter(|_| is_rough)) {
         let message =
-            format!("{}: is ignored, for a {kind} joint slides and turns, in metres and in radians", given.subject);
+            format!("{}: is ignored: a {kind} joint slides and turns, in metres and in radians", given.subject);
         cx.findings.add(Finding::warning("ignored_property", given.span(), message));
     }
     if let Some(mimic) = children.get("mimic") {
-        let message = format!("{subject}: mimic: a {kind} joint has several positions, and can follow none");
-        let help = "build it from joints of one freedom, and let those follow";
+        let message = format!("{subject}: mimic: a {kind} joint has several positions and cannot be a mimic joint");
+        let help = "build it from joints of one axis, and make those mimic joints";
         cx.findings.add(Finding::error("unsupported_joint", mimic.span(), message).help(help));
     }
 }
@@ -134,7 +134,7 @@ fn read_type(element: &Element, cx: &mut Context) -> Option<&'static str> {
     let subject = &element.subject;
     cx.findings.add(match value.text {
         "ball" | "spherical" => {
-            let message = format!("{subject}: type: is `{}`, which turns about every axis", value.text);
+            let message = format!("{subject}: type: is `{}`, a ball joint, which URDF does not define", value.text);
             let help = "URDF has no balls, MJCF has; or three hinges in its place, with massless links between, which move as it does, away from \
                         the position where two of them line up";
             Finding::error("unsupported_joint", value.span, message).help(help)

@@ -1,29 +1,32 @@
 //! Reads robot descriptions in URDF, and in MuJoCo's MJCF (see [`mjcf`]): text in, [`Description`] out, and diagnostics
 //! that point at the place.
 //!
-//! Nothing is guessed in silence. What is wrong is an error, all errors of one run are reported together; what is odd is
-//! a warning; what is right is never mentioned.
+//! No silent guesses: whatever is wrong is an error, and all errors are reported together; suspicious content is a
+//! warning.
 //!
-//! # What is refused, and what is said
-//! Measured on the 69 robots of `example-robot-data` 6.0.0: 66 load, 38 of them without a word; three are refused, for a
-//! mimic joint of a joint that does not exist, for negative moments of inertia, and for having no links.
+//! # Errors and warnings
+//! Of the 69 robots of `example-robot-data` 6.0.0, 66 load, 38 of them without warnings; three are refused: for a mimic
+//! joint of a joint that does not exist, for negative moments of inertia, and for having no links.
 //!
-//! - A `floating` joint at the root is a floating base ([`mozzi::Base`]); the empty link that carries it is the space frame, and no link
-//!   of the robot. A `planar` joint `j` becomes the slides `j.x` and `j.y` and the turn `j.theta` about its axis, with massless links
-//!   between: x is along the joint frame's x-axis projected onto the plane (its y-axis where |axis_x| > 0.9), y along axis × x.
-//!   Any other `floating` joint is a free joint of the tree. Ball joints, which URDF does not have, are refused.
-//! - Elements and attributes one slip away from a word of URDF are errors, known extensions (gazebo, transmission, other
-//!   namespaces) silent, other unknown ones a warning once per kind.
-//! - A file that xacro has not expanded is an error, with the command that expands it. Meshes do not matter to a robot's dynamics: [`geometry`]
-//!   alone looks for them.
-//! - An axis that is not of length 1 is a direction, with a warning beyond 10⁻³; positions stay radians or metres.
-//! - A missing limit is a warning, and no limit; limits do not enter the dynamics.
-//! - An inertia that breaks the triangle inequality is computed as given, with a warning. A negative principal moment is an
+//! - A `floating` joint at the root is a floating base ([`mozzi::Base`]); the empty link that carries it is the space
+//!   frame, not a link of the robot. A `planar` joint `j` becomes the prismatic joints `j.x` and `j.y` and the revolute
+//!   joint `j.theta` about its axis, with massless links between: x is along the joint frame's x-axis projected onto
+//!   the plane (its y-axis if
+//!   |axis_x| > 0.9), y along axis × x. Any other `floating` joint is a free joint of the tree. Ball joints, which URDF does not
+//!   have, are refused.
+//! - Probable misspellings of URDF elements and attributes are errors. Known extensions (gazebo, transmission, other
+//!   namespaces) are skipped silently; other unknown ones give one warning per kind.
+//! - A file that xacro has not expanded is an error, with the command that expands it. Meshes do not affect the
+//!   dynamics; only [`geometry`] locates them.
+//! - Only the direction of an axis is used, with a warning if its length differs from 1 by more than 10⁻³; positions
+//!   stay radians or metres.
+//! - A missing limit is a warning and means unlimited; limits do not enter the dynamics.
+//! - An inertia that breaks the triangle inequality is used as given, with a warning. A negative principal moment is an
 //!   error if the rigid body of all links fixed to each other has one, a warning otherwise.
-//! - [`Policy::Strict`] makes errors of all warnings, [`Policy::Lenient`] repairs inertias, and says so.
+//! - [`Policy::Strict`] turns warnings into errors; [`Policy::Lenient`] repairs inertias and reports each repair.
 //!
-//! Time and memory are bounded for any input: 64 MiB, two million elements and texts, 256 levels, 256 attributes on an
-//! element, 64 namespaces at one place, names of 256 bytes, a thousand errors; no document type, no entities.
+//! Time and memory are bounded for any input: 64 MiB, two million elements and texts, 256 levels, 256 attributes per
+//! element, 64 namespaces in scope, names of 256 bytes, a thousand errors; no document type, no entities.
 //!
 //! ```
 //! let robot = mozzi_urdf::open("ur5")?; // or a path
@@ -35,7 +38,7 @@
 //! assert_eq!(
 //!     error.expect_err("a misspelled word").to_string(),
 //!     "arm.urdf is refused: 1 error\n\
-//!      arm.urdf:1:35: error: link `a`: has an element <intertial>, which URDF does not know here"
+//!      arm.urdf:1:35: error: link `a`: has an element <intertial>, which URDF does not define here"
 //! );
 //! # Ok::<(), mozzi_urdf::LoadError>(())
 //! ```
@@ -89,10 +92,10 @@ use source::Source;
 use std::io::Read;
 use std::path::Path;
 
-/// A robot that was read, and what is odd about it.
+/// A robot that was read, with the warnings.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// The robot as its file tells it.
+    /// The content of the file.
     pub description: Description,
     /// In the order of the file.
     pub warnings: Vec<Diagnostic>,
@@ -102,7 +105,7 @@ impl Loaded {
     /// The model of this robot; the warnings are dropped.
     ///
     /// # Errors
-    /// [`LoadError::Build`], which a description that was read does not give.
+    /// [`LoadError::Build`]; does not occur for a description that was read.
     pub fn build(self) -> Result<Model, LoadError> {
         Ok(self.description.build()?)
     }
@@ -113,17 +116,17 @@ impl Loaded {
 pub enum Policy {
     /// Warnings are errors.
     Strict,
-    /// Errors are refused, warnings are said.
+    /// Errors refuse the file; warnings are reported.
     #[default]
     Default,
-    /// An inertia that no body can have is replaced by the nearest that one can have; this is said as a warning.
+    /// Unphysical inertias are replaced by the nearest physical ones, with a warning.
     Lenient,
 }
 
 /// Reads a file.
 ///
 /// # Errors
-/// [`LoadError::File`] when it cannot be read, [`LoadError::Refused`] with all that is wrong with it.
+/// [`LoadError::File`] if it cannot be read, [`LoadError::Refused`] with all its errors.
 pub fn load(path: impl AsRef<Path>) -> Result<Loaded, LoadError> {
     load_with(path, Policy::Default)
 }
@@ -149,10 +152,10 @@ fn file_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
     }
 }
 
-/// Reads a text. The name is what diagnostics call it.
+/// Reads a text. Diagnostics use the name as its file name.
 ///
 /// # Errors
-/// [`LoadError::Refused`] with all that is wrong with it.
+/// [`LoadError::Refused`] with all its errors.
 pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, LoadError> {
     parse_with(file_name, text, Policy::Default)
 }

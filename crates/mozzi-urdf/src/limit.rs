@@ -24,8 +24,8 @@ pub(crate) fn read(
         if kind != "continuous" && !place.has_reported("limits") {
             let message = format!("{}: has no <limit>, expected one on a {kind} joint", joint.subject);
             let help = match kind {
-                "revolute" => "it is taken as unlimited; a joint that turns freely is of type `continuous`",
-                _ => "it is taken as unlimited",
+                "revolute" => "the joint is treated as unlimited; a joint that turns freely is of type `continuous`",
+                _ => "it is treated as unlimited",
             };
             cx.findings.add(Finding::warning("missing_limit", joint.span(), message).help(help));
         }
@@ -58,22 +58,22 @@ pub(crate) fn read(
     };
     let position = match (lower, upper) {
         ((false, _), (false, _)) => {
-            missing("lower", "with neither `lower` nor `upper` the joint is taken as unlimited");
+            missing("lower", "without `lower` and `upper` the joint is treated as unlimited");
             None
         }
         ((true, low), (false, _)) => {
-            missing("upper", "it is taken as 0, URDF's default");
+            missing("upper", "it is treated as 0, URDF's default");
             low.map(|low| [low, 0.0])
         }
         ((false, _), (true, high)) => {
-            missing("lower", "it is taken as 0, URDF's default");
+            missing("lower", "it is treated as 0, URDF's default");
             high.map(|high| [0.0, high])
         }
         ((true, low), (true, high)) => low.zip(high).map(|(low, high)| [low, high]),
     };
     for (name, (is_there, _)) in [("velocity", velocity), ("effort", effort)] {
         if !is_there {
-            missing(name, "it is taken as unlimited");
+            missing(name, "it is treated as unlimited");
         }
     }
     Limits { position, velocity: velocity.1, effort: effort.1 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-/// Why a text is no number, or no vector.
+/// Why a text is not a number or a vector.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum NotNumbers {
     /// One of its words.
@@ -37,9 +37,7 @@ impl NotANumber {
 
     pub fn help(self) -> Option<&'static str> {
         match self {
-            NotANumber::Unit => {
-                Some("a number stands alone, without a unit: metres, radians, kilograms, seconds are meant")
-            }
+            NotANumber::Unit => Some("write the number without a unit: metres, radians, kilograms, seconds"),
             _ => None,
         }
     }
@@ -55,7 +53,7 @@ impl fmt::Display for NotANumber {
     }
 }
 
-/// What people write behind a number.
+/// Units that users write after a number.
 const UNITS: [&str; 14] = ["kg", "g", "m", "cm", "mm", "rad", "deg", "°", "n", "nm", "n*m", "rad/s", "m/s", "kg*m^2"];
 
 /// A number: digits with an optional sign, point and exponent, nothing else.
@@ -94,24 +92,36 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], NotNumbers
 
 /// The first N of the numbers of a text, zeros after them where they are fewer, and how many they are.
 pub(crate) fn up_to<const N: usize>(text: &str) -> Result<([f64; N], usize), NotNumbers> {
-    let is_space = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n');
-    let start = |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
     let (mut values, mut found) = ([0.0; N], 0);
-    for word in text.split(is_space).filter(|word| !word.is_empty()) {
-        let value = number(word).map_err(|why| {
-            let shown = if word.chars().count() > 40 {
-                format!("{}…", word.chars().take(40).collect::<String>())
-            } else {
-                word.to_string()
-            };
-            NotNumbers::Word { span: start(word)..start(word) + word.len(), word: shown, why }
-        })?;
+    for value in each(text) {
+        let value = value?;
         if let Some(slot) = values.get_mut(found) {
             *slot = value;
         }
         found += 1;
     }
     Ok((values, found))
+}
+
+/// All numbers of a text, separated by white space.
+pub(crate) fn all_numbers(text: &str) -> Result<Vec<f64>, NotNumbers> {
+    each(text).collect()
+}
+
+/// The words of a text as numbers.
+fn each(text: &str) -> impl Iterator<Item = Result<f64, NotNumbers>> {
+    let is_space = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n');
+    let start = move |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
+    text.split(is_space).filter(|word| !word.is_empty()).map(move |word| {
+        number(word).map_err(|why| {
+            let shown = if word.chars().count() > 40 {
+                format!("{}…", word.chars().take(40).collect::<String>())
+            } else {
+                word.to_string()
+            };
+            NotNumbers::Word { span: start(word)..start(word) + word.len(), word: shown, why }
+        })
+    })
 }
 
 #[cfg(test)]

@@ -58,6 +58,8 @@ pub(crate) struct Places {
     pub links: Vec<Place>,
     pub joints: Vec<Place>,
     pub frames: Vec<Place>,
+    pub rotors: Vec<Place>,
+    pub states: Vec<Place>,
     /// Links or joints are missing, for a reason that was reported.
     pub is_partial: bool,
 }
@@ -68,6 +70,8 @@ impl Places {
             Element::Link(i) => self.links.get(i),
             Element::Joint(i) => self.joints.get(i),
             Element::Frame(i) => self.frames.get(i),
+            Element::Rotor(i) => self.rotors.get(i),
+            Element::State(i) => self.states.get(i),
             Element::Robot => None,
         };
         place.unwrap_or(&self.robot)

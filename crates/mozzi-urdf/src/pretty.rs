@@ -11,10 +11,10 @@ use std::ops::Range;
 /// Of longer lines only a part is shown.
 const LONG: usize = 400;
 
-/// How a report is drawn.
+/// Style of a rendered report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// ASCII alone, for files and tests.
+    /// ASCII only, for files and tests.
     Ascii,
     /// Lines and signs of Unicode, no colour.
     Unicode,
@@ -34,7 +34,7 @@ impl Style {
 }
 
 impl Diagnostic {
-    /// The report for people.
+    /// The rendered report.
     pub fn pretty(&self, style: Style) -> String {
         let mut text = String::new();
         match style.handler().render_report(&mut text, &View::new(self)) {
@@ -45,7 +45,7 @@ impl Diagnostic {
 }
 
 impl LoadError {
-    /// The report for people: each error with its place, after the warnings beside them.
+    /// The rendered report: warnings, then errors, each with its place.
     pub fn pretty(&self, style: Style) -> String {
         let mut text = String::new();
         let warnings = self.diagnostics().iter().filter(|diagnostic| diagnostic.severity() == Severity::Warning);

@@ -6,7 +6,7 @@ use mozzi::Description;
 use mozzi::model::Element;
 use mozzi::spatial::Rounded;
 
-/// Replaces each inertia that no body can have by the nearest that one can.
+/// Replaces each unphysical inertia by the nearest physical one.
 pub(crate) fn inertias(description: &mut Description, places: &Places, findings: &mut Findings) {
     for (i, link) in description.links.iter_mut().enumerate() {
         let verdict = link.inertia.verdict();
@@ -15,7 +15,7 @@ pub(crate) fn inertias(description: &mut Description, places: &Places, findings:
         };
         let [a, b, c] = nearest.verdict().principal_moments.map(Rounded);
         let message = format!(
-            "link `{}`: inertia: {verdict}; replaced by the nearest that a body can have, of the moments {a}, {b} and {c} kg m²",
+            "link `{}`: inertia: {verdict}; replaced by the nearest physical inertia, with the moments {a}, {b} and {c} kg m²",
             link.name
         );
         let span = places.span(Element::Link(i), "inertia");

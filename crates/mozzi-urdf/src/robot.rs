@@ -46,7 +46,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
             }
             "loop_joint" => {
                 let message = format!("{}: closes a loop of links, which mozzi does not compute", child.subject);
-                let help = "expected a tree: cut the loop by removing this joint, if that is what you want to compute";
+                let help = "expected a tree: remove this joint, if you want to compute the tree without it";
                 cx.findings.add(Finding::error("loop_closure", child.span(), message).help(help));
             }
             _ => {}

@@ -1,5 +1,6 @@
 //! A cheap look at the whole text before the parser: nesting, attributes, namespaces and document types are bounded
-//! here, so that the parser's memory and time are too. It judges nothing else; what is malformed it leaves to the parser.
+//! here, so that the parser's memory and time are too. It judges nothing else; what is malformed it leaves to the
+//! parser.
 
 use crate::finding::Finding;
 use std::ops::Range;
@@ -117,16 +118,16 @@ impl Tag {
             Err(Finding::error(code, self.name.clone(), format!("{found} {what}, expected at most {most}")))
         };
         if depth > MOST_DEPTH {
-            return error("too_deep", "elements are nested here", depth, MOST_DEPTH);
+            return error("too_deep", "nested elements", depth, MOST_DEPTH);
         }
         if self.attributes > MOST_ATTRIBUTES {
-            return error("too_many_attributes", "attributes stand on this element", self.attributes, MOST_ATTRIBUTES);
+            return error("too_many_attributes", "attributes on this element", self.attributes, MOST_ATTRIBUTES);
         }
         if namespaces > MOST_NAMESPACES {
-            return error("too_many_namespaces", "namespaces hold here", namespaces, MOST_NAMESPACES);
+            return error("too_many_namespaces", "namespaces in scope", namespaces, MOST_NAMESPACES);
         }
         if declarations > MOST_DECLARATIONS {
-            let what = "namespaces are declared up to here";
+            let what = "namespaces declared up to here";
             return error("too_many_namespaces", what, declarations, MOST_DECLARATIONS);
         }
         Ok(())

@@ -1,4 +1,5 @@
-//! From text to XML: the parser's complaints, at their places and in our words. What xacro has yet to expand is refused.
+//! From text to XML: the parser's complaints, at their places and in our words. What xacro has yet to expand is
+//! refused.
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
@@ -57,7 +58,7 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
     match error {
         Error::NoRootNode => {
             let message = format!("the file has no element, expected a <{}>", dialect.root());
-            syntax(0..0, message).help("is it the right file?")
+            syntax(0..0, message).help("check that this is the right file")
         }
         Error::UnexpectedCloseTag(expected, found, pos) => {
             let (expected, found) = (shown(&expected), shown(&found));
@@ -71,18 +72,18 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
                 .help(format!("declare it on the root: <{root} xmlns:{prefix}=\"{space}\">"))
         }
         Error::DuplicatedAttribute(name, pos) => {
-            syntax(at(pos), format!("the attribute `{}` stands twice on one element", shown(&name)))
-                .help("keep the one that is meant")
+            syntax(at(pos), format!("the attribute `{}` occurs twice on one element", shown(&name)))
+                .help("keep one of them")
         }
         Error::UnknownEntityReference(name, pos) => {
-            let message = format!("the entity `&{};` is not known, and no entities are expanded", shown(&name));
+            let message = format!("the entity `&{};` is unknown; entities are not expanded", shown(&name));
             syntax(at(pos), message).help("write the character itself; `&` is written `&amp;`")
         }
         Error::MalformedEntityReference(pos) => {
             syntax(at(pos), "`&` begins no entity here".to_string()).help("`&` is written `&amp;`")
         }
         Error::InvalidAttributeValue(pos) | Error::InvalidChar(b'"' | b'\'', b'<', pos) => {
-            syntax(at(pos), "`<` stands inside an attribute's value".to_string())
+            syntax(at(pos), "`<` is inside an attribute's value".to_string())
                 .help("is a closing quote missing before it? `<` itself is written `&lt;`")
         }
         Error::UnknownToken(pos) => {
@@ -90,7 +91,7 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
             let word = shown(rest.split(['\n', '>']).next().unwrap_or_default().trim());
             match rest.starts_with('<') {
                 true => syntax(at(pos), "a second root element begins here, expected the file's end".to_string())
-                    .help("a file holds one robot; is a closing tag too many before it?"),
+                    .help("a file contains one robot; check for an extra closing tag before it"),
                 false => syntax(at(pos), format!("found `{word}`, expected an element"))
                     .help("is it a URDF? It begins with <robot name=\"…\">"),
             }
@@ -99,7 +100,7 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
             syntax(at(pos), format!("expected `{}`, found `{}`", expected as char, found as char))
         }
         Error::InvalidChar2(expected, found, pos) => {
-            let help = "values stand in quotes: <mass value=\"1\"/>";
+            let help = "put values in quotes: <mass value=\"1\"/>";
             let error = syntax(at(pos), format!("expected {expected}, found `{}`", found as char));
             if expected == "a quote" { error.help(help) } else { error }
         }

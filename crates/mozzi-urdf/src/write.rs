@@ -6,7 +6,7 @@ use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::fmt::{self, Write};
 
-/// What of a description URDF has no words for.
+/// The parts of a description that URDF cannot express.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotUrdf {
     /// Each with its element: "joint `a`: a helical joint".
@@ -15,19 +15,20 @@ pub struct NotUrdf {
 
 impl fmt::Display for NotUrdf {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "URDF has no words for {}", self.reasons.join(", nor for "))
+        write!(f, "URDF cannot express {}", self.reasons.join(", nor "))
     }
 }
 
 impl std::error::Error for NotUrdf {}
 
-/// The URDF text of a robot. Read again it gives the same description, numbers to rounding (inertias go through the
-/// centre of mass, orientations through roll, pitch and yaw).
+/// The URDF text of a robot. A round trip gives the same description up to rounding (inertias are converted to the
+/// centre of mass, orientations to roll, pitch and yaw), without the named states and the start, which URDF cannot
+/// express.
 ///
 /// # Errors
-/// [`NotUrdf`] with all that would be lost: balls, helical joints, axes beside the child's frame, armature, further frames, a
-/// named end effector, gravity other than (0, 0, −9.81), control characters in names, names
-/// that xacro would evaluate.
+/// [`NotUrdf`] with everything that would be lost: balls, helical joints, axes that miss the child's frame, armature,
+/// further frames, a named end effector, gravity other than (0, 0, −9.81), control characters in names, names that
+/// xacro would evaluate.
 pub fn write(description: &Description) -> Result<String, NotUrdf> {
     let reasons = not_urdf(description);
     if !reasons.is_empty() {
@@ -83,6 +84,7 @@ fn not_urdf(d: &Description) -> Vec<String> {
     let is_lost = |name: &&String| name.contains(is_control) || has_expression(name); // xacro would evaluate it
     reasons.extend(names.filter(is_lost).map(|name| format!("the name {name:?}")));
     reasons.extend(d.frames.iter().map(|frame| format!("frame `{}`", frame.name)));
+    reasons.extend(d.rotors.iter().map(|rotor| format!("rotor `{}`", rotor.name)));
     reasons.extend(d.end_effector.iter().map(|name| format!("the end effector `{name}`")));
     if d.gravity != [0.0, 0.0, -9.81] {
         reasons.push(format!("gravity {:?}", d.gravity));

@@ -1,4 +1,5 @@
-//! xacro: files that are programs, and write a URDF when they are run. They are refused, with the command that runs them.
+//! xacro: files that are programs, and write a URDF when they are run. They are refused, with the command that runs
+//! them.
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
@@ -35,13 +36,13 @@ pub(crate) fn refuse(document: &Document, file: &str, dialect: Dialect) -> Optio
         let span = name(node);
         if is_xacro(node) {
             let written = shown(&document.input_text()[span.clone()]);
-            return Some((span, format!("<{written}> is a word of xacro, {EXPECTED}")));
+            return Some((span, format!("<{written}> is a xacro element, {EXPECTED}")));
         }
         // in MJCF any word may be a value: there, numbers alone are looked at, where they are read
         let expression = node.attributes().find(|attribute| has_expression(attribute.value()));
         let attribute = expression.filter(|_| dialect == Dialect::Urdf && is_read(node))?;
         let (element, value) = (node.tag_name().name(), shown(attribute.value()));
-        let message = format!("{element}: {}: is `{value}`, an expression of xacro, {EXPECTED}", attribute.name());
+        let message = format!("{element}: {}: is `{value}`, a xacro expression, {EXPECTED}", attribute.name());
         Some((attribute.range_value(), message))
     })?;
     Some(Finding::error("xacro", span, message).help(command(document, file, dialect)))
@@ -146,26 +147,26 @@ mod tests {
     #[test]
     fn what_is_not_expanded_is_named() {
         for (text, message) in [
-            (MACRO, "<xacro:arm> is a word of xacro, expected a file that xacro has expanded"),
+            (MACRO, "<xacro:arm> is a xacro element, expected a file that xacro has expanded"),
             (
                 "<robot xmlns:x='http://ros.org/wiki/xacro'><gazebo><x:if value='1'/></gazebo></robot>",
-                "<x:if> is a word of xacro, expected a file that xacro has expanded",
+                "<x:if> is a xacro element, expected a file that xacro has expanded",
             ),
             (
                 "<robot xmlns:xacro='http://example.org/#interface'><xacro:arm/></robot>",
-                "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+                "<xacro:arm> is a xacro element, expected a file that xacro has expanded",
             ),
             (
                 "<robot><link name='${side}_arm'/></robot>",
-                "link: name: is `${side}_arm`, an expression of xacro, expected a file that xacro has expanded",
+                "link: name: is `${side}_arm`, a xacro expression, expected a file that xacro has expanded",
             ),
             (
                 "<robot><joint><child link='$(arg side)_arm'/></joint></robot>",
-                "child: link: is `$(arg side)_arm`, an expression of xacro, expected a file that xacro has expanded",
+                "child: link: is `$(arg side)_arm`, a xacro expression, expected a file that xacro has expanded",
             ),
             (
                 "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm/></mujoco>",
-                "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+                "<xacro:arm> is a xacro element, expected a file that xacro has expanded",
             ),
         ] {
             assert_eq!(refused("a.xacro", text).map(|(found, _)| found).as_deref(), Some(message), "{text}");

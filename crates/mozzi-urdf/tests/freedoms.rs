@@ -85,9 +85,8 @@ fn a_free_body_is_the_base_and_the_world_is_left() {
     assert_eq!(
         said,
         [
-            "site `mark`: does not move, and is ignored beside the free body `trunk`",
-            "body `post`: does not move, and is ignored beside the free body `trunk` (here, and 1 more)",
-            "body `trunk`: the pose in which it starts is ignored",
+            "site `mark`: does not move, and is ignored next to the free body `trunk`",
+            "body `post`: does not move, and is ignored next to the free body `trunk` (here, and 1 more)",
         ]
     );
     let d = &robot.description;
@@ -98,6 +97,10 @@ fn a_free_body_is_the_base_and_the_world_is_left() {
     let at = [1.0, 0.0, 0.0, 0.0, 3.0, 0.0, 1.0, 0.0];
     let foot = model.forward_kinematics(&at, model.frame("foot").unwrap()).unwrap();
     assert_eq!(foot.p.0, [3.0, 0.0, 0.0]);
+    // it starts where the file puts it
+    let start = model.start();
+    assert_eq!(start.theta, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    assert_eq!((model.description().start.as_deref(), start.dtheta), (Some("qpos0"), vec![0.0; 7]));
 }
 
 #[test]

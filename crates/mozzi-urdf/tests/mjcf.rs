@@ -90,9 +90,9 @@ fn couplings_in_a_circle() {
     assert_eq!(
         parse("a.xml", text).unwrap_err().to_string(),
         "a.xml is refused: 3 errors\n\
-         a.xml:1:131: error: joint `a`: mimic: following `b` leads back in a circle, expected a joint that follows none\n\
-         a.xml:1:161: error: joint `b`: mimic: following `a` leads back in a circle, expected a joint that follows none\n\
-         a.xml:1:166: error: equality: joint: its joint1 follows another already, expected one that it follows"
+         a.xml:1:131: error: joint `a`: mimic: following `b` leads back in a circle, expected an independent joint at the end\n\
+         a.xml:1:161: error: joint `b`: mimic: following `a` leads back in a circle, expected an independent joint at the end\n\
+         a.xml:1:166: error: equality: joint: its joint1 is already a mimic joint, expected at most one coupling per joint"
     );
 }
 
@@ -154,17 +154,17 @@ fn wrong_includes() {
         (
             "cycle",
             "<x><include file='parts/../parts/a.xml'/></x>",
-            "./parts/a.xml:1:19: error: include: `parts/../parts/a.xml` is included already, expected once at most",
+            "./parts/a.xml:1:19: error: include: `parts/../parts/a.xml` is already included, expected at most once",
         ),
         (
             "main_again",
             "<x><include file='main.xml'/></x>",
-            "./parts/a.xml:1:19: error: include: `main.xml` is included already, expected once at most",
+            "./parts/a.xml:1:19: error: include: `main.xml` is already included, expected at most once",
         ),
         (
             "folder",
             "<x><include file='parts'/></x>",
-            "./parts/a.xml:1:19: error: include: `parts` cannot be read: it is no file",
+            "./parts/a.xml:1:19: error: include: `parts` cannot be read: it is not a file",
         ),
         (
             "network",
@@ -176,7 +176,7 @@ fn wrong_includes() {
         (
             "content",
             "<x>\n <worldbody><bodi/></worldbody></x>",
-            "./parts/a.xml:2:14: error: worldbody: has an element <bodi>, which MJCF does not know here",
+            "./parts/a.xml:2:14: error: worldbody: has an element <bodi>, which MJCF does not define here",
         ),
     ];
     for (name, part, message) in cases {

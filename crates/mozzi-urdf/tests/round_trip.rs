@@ -97,7 +97,7 @@ fn odd_names() {
 fn names_for_xacro_are_not_written() {
     let description = Description::new("${a}").link("$5 (b)", mozzi::SpatialInertia::zero());
     let message = write(&description).expect_err("xacro would evaluate it").to_string();
-    assert_eq!(message, "URDF has no words for the name \"${a}\"");
+    assert_eq!(message, "URDF cannot express the name \"${a}\"");
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn what_would_be_lost_is_refused() {
     assert_eq!(
         message,
         format!(
-            "URDF has no words for joint `{first}`: armature 0.5, nor for joint `{second}`: a helical joint, nor for gravity [0.0, 0.0, -1.62]"
+            "URDF cannot express joint `{first}`: armature 0.5, nor joint `{second}`: a helical joint, nor gravity [0.0, 0.0, -1.62]"
         )
     );
 }

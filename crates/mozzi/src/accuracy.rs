@@ -1,4 +1,4 @@
-//! How far two computations of one quantity are apart.
+//! Normalised errors between two computations of a quantity.
 
 /// The largest |x − reference| over ε times the size of the terms that x is the sum of: `terms`, or the largest of the
 /// reference where that is larger. About 1 is rounding; NaN in either is NaN.

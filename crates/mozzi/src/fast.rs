@@ -1,8 +1,9 @@
-//! Every quantity on `f64`, with the instruction set of the machine that runs it: fused multiply-add where the processor has
-//! it, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation after the first call.
+//! Every quantity on `f64`, with the instruction set of the machine that runs it: fused multiply-add where the
+//! processor has it, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation
+//! after the first call.
 //!
-//! Results agree with the plain kernels to rounding, not bit for bit. AVX2 and AVX-512 are deliberately left out: for one state
-//! they make code slower.
+//! Results agree with the plain kernels to rounding, not bit for bit. AVX2 and AVX-512 are deliberately left out: for
+//! one state they make code slower.
 //!
 //! ```
 //! # use mozzi::{fast, quantities::{InverseDynamics, Query}};
@@ -56,8 +57,8 @@ impl Workspace {
         }
     }
 
-    /// Was everything that the last call of this quantity divided by far above rounding? If not, [`Model::compute`] says what is
-    /// singular, if anything is. See [`Pivots`](crate::Pivots).
+    /// True if every pivot of this quantity's last call is well above rounding error. If false, [`Model::compute`]
+    /// checks each pivot and names what is singular. See [`Pivots`](crate::Pivots).
     pub fn are_pivots_clear(&self, query: &Query) -> bool {
         match &self.0 {
             Inner::Plain(memory) => are_clear(query.declaration(), memory),
@@ -69,7 +70,8 @@ impl Workspace {
 /// The outputs of a quantity at one state, matrices by rows.
 ///
 /// # Panics
-/// On slices of a wrong number or length, and on a frame that is missing or another model's: see [`Query::check`].
+/// On a wrong number or length of slices, and if the frame is missing or belongs to another model: see
+/// [`Query::check`].
 #[inline]
 pub fn evaluate(
     query: &Query,

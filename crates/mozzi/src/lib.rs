@@ -12,25 +12,26 @@
 //! let model = Description::from_screws("arm", HomeFrames::Base(&home), &[rod; 2], Screws::Space(&S))?.build()?;
 //!
 //! let (theta, dtheta, ddtheta) = ([0.3, -0.5], [1.0, 0.2], [0.0, 2.0]);
-//! let environment = model.environment(); // gravity −9.81 along z, base at rest, nothing touched
+//! let environment = model.environment(); // gravity −9.81 along z, base at rest, no applied wrenches
 //! let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment)?;
-//! let again = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment)?;
-//! assert!((again[1] - 2.0).abs() < 1e-12);
+//! let round_trip = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment)?;
+//! assert!((round_trip[1] - 2.0).abs() < 1e-12);
 //! # Ok::<(), mozzi::Error>(())
 //! ```
 //!
 //! - Robots: [`Description`] (from screw lists, by hand, or from a file with `mozzi-urdf`), built into a [`Model`].
-//! - Quantities: methods of [`Model`], which check their arguments, allocate and answer with nalgebra's types; or the functions
-//!   of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number, which allocate nothing; or [`fast`], the
-//!   kernels on `f64` with the machine's instruction set, for control loops.
-//! - To look at: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
-//! - In time: [`simulation`].
-//! - Derivatives: along any direction, [`Model::directional_derivative`]; by a robot's parameters, [`Model::with_parameter_tangent`], and
-//!   linear in them, [`Model::regressor`]; through time, [`Model::step_sensitivity`].
-//! - Beside Pinocchio and MuJoCo: [`conventions`].
+//! - Quantities: methods of [`Model`], which check their arguments, allocate and return nalgebra's types; or the
+//!   functions of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number type, without allocation;
+//!   or [`fast`], the kernels on `f64` with the machine's instruction set, for control loops.
+//! - The book's intermediate results: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
+//! - Simulation: [`simulation`].
+//! - Derivatives: along any direction, [`Model::directional_derivative`]; with respect to a robot's parameters,
+//!   [`Model::with_parameter_tangent`]; the regressor, [`Model::regressor`]; of a simulation step,
+//!   [`Model::step_sensitivity`].
+//! - Conversions to and from Pinocchio and MuJoCo: [`conventions`].
 //!
-//! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is
-//! positive. Without the default feature `std` the crate is `no_std` with `alloc`, and takes elementary functions from `libm`.
+//! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. Applied wrenches are those of the robot on
+//! the environment. Without the default feature `std` the crate is `no_std` with `alloc`, and uses `libm`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;

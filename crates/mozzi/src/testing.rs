@@ -2,7 +2,7 @@
 
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
-use crate::model::description::{Joint, JointKind, Mimic};
+use crate::model::description::{Gear, Joint, JointKind, Mimic, Rotor};
 use crate::model::{Base, Description, Freedom, Model};
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
@@ -38,7 +38,8 @@ pub fn distance(a: SE3, b: SE3) -> f64 {
 }
 
 /// A random tree of moving links: revolute, prismatic and helical joints, axes and masses off every frame, masses over
-/// four decades, fixed links folded in between, friction, armature and springs; `mimic joints` of the last joints follow others.
+/// four decades, fixed links folded in between, friction, armature and springs; `mimic joints` of the last joints follow others, and two
+/// joints turn a rotor.
 pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut random = Random(seed + 3000);
     let mut robot = Description::new("tree").link("link0", inertia(seed));
@@ -80,6 +81,10 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
             robot = robot.link(format!("tool{i}"), inertia(seed + 50 + i as u64)).joint(fixed);
         }
     }
+    if mimics > 0 && links >= 5 {
+        let gears = [(3, 0.8), (5, -1.7)].map(|(i, ratio)| Gear { joint: format!("joint{i}"), ratio });
+        robot.rotors.push(Rotor { name: "differential".into(), armature: 0.4, gears: gears.into() });
+    }
     robot = robot.frame("tip", format!("link{links}"), SE3::exp(twist(seed)));
     robot.gravity = [0.3, -1.0, -9.7];
     robot.end_effector = Some("tip".into());
@@ -89,21 +94,33 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
 /// The same with balls and free joints among the others, here and there.
 pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut robot = tree(seed, links, mimics).description().clone();
-    let followed: alloc::vec::Vec<_> =
+    let mut followed: alloc::vec::Vec<_> =
         robot.joints.iter().filter_map(|joint| Some(joint.mimic.as_ref()?.joint.clone())).collect();
+    followed.extend(robot.rotors.iter().flat_map(|rotor| &rotor.gears).map(|gear| gear.joint.clone()));
     let of_one_axis = |joint: &&mut Joint| matches!(joint.kind, JointKind::Screw(_)) && joint.mimic.is_none();
     let free = robot.joints.iter_mut().filter(of_one_axis).filter(|joint| !followed.contains(&joint.name));
     for (k, joint) in free.enumerate() {
         match (k as u64 + seed) % 4 {
             0 => {
                 joint.kind = JointKind::Ball(Vec3(Random(seed + k as u64).array()));
-                (joint.stiffness, joint.spring_reference) = (0.0, 0.0);
+                (joint.stiffness, joint.spring_reference) = (0.9, 0.0);
             }
             2 if k % 3 == 2 => {
-                (joint.kind, joint.friction, joint.armature) = (JointKind::Free, 0.0, 0.0);
+                (joint.kind, joint.friction, joint.armature) = (JointKind::Free, 0.0, 0.3);
                 (joint.stiffness, joint.spring_reference) = (0.0, 0.0);
             }
             _ => {}
+        }
+    }
+    robot.build().expect("a sound robot")
+}
+
+/// A tree of which each link hangs from the one before, so that it is deep.
+pub fn chain(of: &Model) -> Model {
+    let mut robot = of.description().clone();
+    for joint in &mut robot.joints {
+        if let Some(number) = joint.child.strip_prefix("link").and_then(|number| number.parse::<usize>().ok()) {
+            joint.parent = format!("link{}", number - 1);
         }
     }
     robot.build().expect("a sound robot")

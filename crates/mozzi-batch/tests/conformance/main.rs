@@ -8,19 +8,21 @@ mod emitted;
 
 use allocations::allocations;
 use mozzi::quantities::*;
-use mozzi::testing::{floating_tree, state, tree, twist, wrench};
+use mozzi::testing::{floating_mixed_tree, floating_tree, mixed_tree, state, tree, twist, wrench};
 use mozzi::{Dual, Environment, Error, FrameId, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
 use mozzi_batch::{Batch, BatchEnvironment, Compiled, InstructionSet, Number, compile};
 use mozzi_codegen::{Arguments, record_quantity};
 use mozzi_oracle::{Given, SecondWay};
 
-/// Fixed and floating, with and without mimic joints, one joint alone, none.
+/// Fixed and floating, with and without mimic joints, with balls and free joints, one joint alone, none.
 fn robots() -> Vec<(&'static str, Model)> {
     vec![
         ("fixed", tree(1, 7, 0)),
         ("fixed, mimic joints", tree(2, 8, 2)),
         ("floating", floating_tree(3, 5, 0)),
         ("floating, mimic joints", floating_tree(4, 6, 2)),
+        ("balls and a free joint, mimic joints", mixed_tree(4, 5, 1)),
+        ("floating, balls and a free joint", floating_mixed_tree(8, 3, 0)),
         ("one joint", tree(5, 1, 0)),
         ("no joints", tree(6, 0, 0)),
     ]

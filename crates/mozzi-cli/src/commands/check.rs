@@ -1,4 +1,4 @@
-//! `mozzi check`: is the file a robot, and what is odd about it?
+//! `mozzi check`: errors and warnings of a robot's file.
 
 use super::info;
 use crate::failure::{self, Failure, Result};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 pub struct CheckArguments {
     /// A robot's file (URDF, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
-    /// Text with excerpts on standard error, or one JSON object a line on standard output for each diagnostic
+    /// Text with excerpts on standard error, or one JSON object per diagnostic and line on standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// The same as --format json
@@ -79,7 +79,7 @@ fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
         1 => "1 warning".to_string(),
         many => format!("{many} warnings"),
     };
-    failure::write(&format!("{name} is a robot that can be computed, {count}: {}\n", info::headline(model)));
+    failure::write(&format!("{name} is valid, {count}: {}\n", info::headline(model)));
     Ok(String::new())
 }
 

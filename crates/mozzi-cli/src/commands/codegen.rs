@@ -19,23 +19,24 @@ use std::path::{Path, PathBuf};
 pub struct CodegenArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// What is computed; may be repeated [default with --explain: all]
+    /// The quantity to generate; may be repeated [default with --explain: all]
     #[arg(long, value_name = "NAME", value_parser = quantity(), required_unless_present = "explain")]
     quantity: Vec<Query<'static>>,
-    /// The language of the text
+    /// Language of the source text
     #[arg(long, value_name = "LANGUAGE", value_parser = language(), requires = "out", required_unless_present = "explain")]
     lang: Option<Language>,
-    /// Of the text's numbers, and of the machine code that is measured
+    /// Number type of the source text, and of the machine code that is measured
     #[arg(long, default_value = "f64", value_parser = precision())]
     precision: Precision,
-    /// The folder of the files, made where there is none
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR", requires = "lang")]
     out: Option<PathBuf>,
-    /// An argument of the functions instead of numbers in them: parameters (masses, inertias, frictions, springs), gravity, base-twist,
-    /// base-acceleration, about (the point of a momentum), wrench (what the end effector applies) or wrench=FRAME; may be repeated
+    /// Keep this as a function argument instead of a constant: parameters (masses, inertias, frictions, springs),
+    /// gravity, base-twist, base-acceleration, about (reference point of a momentum), wrench (applied by the end
+    /// effector) or wrench=FRAME; may be repeated
     #[arg(long, value_name = "WHAT", value_parser = argument)]
     argument: Vec<Argument>,
-    /// Tell the work before and after folding, and the length of machine code
+    /// Print the number of operations before and after folding constants, and the length of the machine code
     #[arg(long)]
     explain: bool,
 }
@@ -45,7 +46,7 @@ fn language() -> impl TypedValueParser<Value = Language> {
     let values = [
         value("rust", "One file without std, allocation or panic"),
         value("c", "C99, a header and a source"),
-        value("cuda", "CUDA C, a thread a state"),
+        value("cuda", "CUDA C, one thread per state"),
     ];
     PossibleValuesParser::new(values).map(|name| match name.as_str() {
         "rust" => Language::Rust,
@@ -176,7 +177,7 @@ impl Work {
 fn explain(page: &mut Page, model: &Model, works: &[Work]) {
     let lanes: Vec<Shape> = works[0].code.iter().map(|(shape, _)| *shape).collect();
     page.line(info::headline(model));
-    page.line("Recorded on this robot's numbers: zeros, ones and what is computed twice are folded away.");
+    page.line("Recorded with this robot's constants: zeros, ones and common subexpressions are folded away.");
     let states = |shape: &Shape| format!("{} state{}", shape.lanes(), if shape.lanes() == 1 { "" } else { "s" });
     let title = format!("flops, and bytes of machine code ({})", lanes[1].instruction_set());
     let mut rows = vec![["", "before", "after", "left", "div", "sqrt", "sin, cos"].map(String::from).to_vec()];

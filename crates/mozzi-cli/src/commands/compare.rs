@@ -1,4 +1,4 @@
-//! `mozzi compare`: what Pinocchio and MuJoCo compute of the same file, and why it differs.
+//! `mozzi compare`: comparison with Pinocchio and MuJoCo on the same file, with explained differences.
 
 use super::info;
 use crate::failure::{Failure, Result};
@@ -13,13 +13,13 @@ use std::path::Path;
 pub struct CompareArguments {
     /// A robot's file (URDF, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
-    /// The Python that has pin or mujoco [default: that of the active virtual environment, else python3]
+    /// Python interpreter with pin or mujoco installed [default: that of the active virtual environment, else python3]
     #[arg(long, value_name = "PATH")]
     python: Option<String>,
-    /// Random states, within the joints' limits
+    /// Number of random states within the joints' limits
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=1000))]
     states: u16,
-    /// Of the random numbers
+    /// Seed of the random states
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// Print one JSON object instead of text

@@ -1,4 +1,4 @@
-//! `mozzi explain`: what a diagnostic's code means.
+//! `mozzi explain`: the meaning of a diagnostic's code.
 
 use crate::failure::{Failure, Result};
 use crate::text::{page_width, width};
@@ -16,7 +16,7 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
     let Some(asked) = &arguments.code else {
         let codes: BTreeSet<&str> = codes().collect();
         let lines: String = codes.into_iter().map(|code| format!("  {code}\n")).collect();
-        return Ok(format!("{lines}\n`mozzi explain zero_axis` tells what one of them means.\n"));
+        return Ok(format!("{lines}\n`mozzi explain zero_axis` explains one of them.\n"));
     };
     let short = asked.rsplit("::").next().unwrap_or(asked);
     match explain(asked) {

@@ -16,10 +16,10 @@ use mozzi_motion::{Goal, InverseKinematics};
 use serde_json::{Value, json};
 use std::time::Instant;
 
-/// Of the table beside the positions: 1 or 0, what is left, and what it took.
+/// Columns of the table after the positions: reached (1 or 0), remaining errors, effort.
 const COLUMNS: [&str; 5] = ["reached", "angle", "distance", "starts", "iterations"];
 
-const NO_GOAL: &str = "there is no goal, expected --position, --rpy or --quaternion, or --in FILE.csv";
+const NO_GOAL: &str = "the goal is missing, expected --position, --rpy or --quaternion, or --in FILE.csv";
 
 #[derive(Args, Debug)]
 pub struct IkArguments {
@@ -27,46 +27,47 @@ pub struct IkArguments {
     robot: RobotArguments,
     #[command(flatten)]
     goal: GoalArguments,
-    /// Poses in a CSV file with columns x y z qw qx qy qz, one in each row ("-": standard input)
+    /// Poses in a CSV file with columns x y z qw qx qy qz, one per row ("-": standard input)
     #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["position", "rpy", "quaternion"])]
     input: Option<String>,
-    /// Where the table goes: theta_1 …, reached, angle, distance, starts, iterations [default: standard output]
+    /// File for the table theta_1 …, reached, angle, distance, starts, iterations [default: standard output]
     #[arg(long = "out", value_name = "FILE.csv", requires = "input")]
     output: Option<String>,
-    /// Where the search begins [default: joints at 0]; of a table, each row's search
+    /// Initial guess, or the name of a state [default: the robot's start, else joints at 0]; for a table, the guess
+    /// of each row
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     guess: Option<String>,
-    /// Of all solutions that the spare joints allow, the one nearest to these positions
+    /// Redundant robots: prefer the solution nearest to these positions, or to a named state
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     near: Option<String>,
-    /// How a step is damped
+    /// Method of the steps
     #[arg(long, default_value = "levenberg-marquardt")]
     method: Way,
-    /// The largest angle to the goal that is called reached, rad
+    /// Tolerance on the angle to the goal, rad
     #[arg(long, value_name = "RAD", default_value = "1e-8", allow_hyphen_values = true)]
     angle: String,
-    /// The largest distance, m
+    /// Tolerance on the distance to the goal, m
     #[arg(long, value_name = "M", default_value = "1e-8", allow_hyphen_values = true)]
     distance: String,
-    /// Iterations of one start
+    /// Largest number of iterations per start
     #[arg(long, value_name = "K", default_value_t = Options::default().iterations)]
     iterations: usize,
-    /// Starts: the guess, then random positions
+    /// Largest number of starts: the guess, then random positions
     #[arg(long, value_name = "K", default_value_t = Options::default().starts)]
     starts: usize,
-    /// Of the random positions
+    /// Seed of the random positions
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Let the joints go beyond their limits
+    /// Ignore joint limits
     #[arg(long)]
     ignore_limits: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Way {
-    /// Damped: cautious far from the goal
+    /// Damped least squares: robust far from the goal
     LevenbergMarquardt,
-    /// The pseudo-inverse
+    /// Newton-Raphson with the pseudo-inverse
     Newton,
 }
 
@@ -100,7 +101,7 @@ impl IkArguments {
         Ok(Options { method, angle, distance, iterations, starts, seed, limits, ..Options::default() })
     }
 
-    /// A row for each pose, also of those that were not reached: the best there is, with what is left.
+    /// A row for each pose; for poses that were not reached, the best result with its remaining error.
     fn table(
         &self,
         model: &Model,
@@ -137,7 +138,7 @@ impl IkArguments {
         let (count, seconds) = (theta.len(), begin.elapsed().as_secs_f64());
         let micros = 1e6 * seconds / count.max(1) as f64;
         failure::note(&format!(
-            "{} of {count} poses reached, {} s, {} µs a pose",
+            "{} of {count} poses reached, {} s, {} µs per pose",
             count - missed.len(),
             about(seconds),
             about(micros)
@@ -197,7 +198,7 @@ fn page(model: &Model, found: &Solution) -> Result<String> {
     let mut page = Page::default();
     let starts = if found.starts == 1 { "1 start".to_string() } else { format!("{} starts", found.starts) };
     page.line(format!(
-        "{}: `{}` is at its goal but for {}; {starts}, {} iterations",
+        "{}: `{}` reaches its goal within {}; {starts}, {} iterations",
         model.description().name,
         model.frame_name(frame),
         found.residual,
@@ -207,7 +208,7 @@ fn page(model: &Model, found: &Solution) -> Result<String> {
     let rows: Vec<Vec<String>> = names.zip(column(&found.theta)).map(|(name, value)| vec![name, value]).collect();
     page.blank().line(format!("θ in {}", Units::of(model).input(0))).lines(&table(&rows, "lr"));
     let T = model.forward_kinematics(&found.theta, frame)?.to_matrix();
-    page.blank().line(format!("T of it, seen from {}", space_frame(model))).lines(&crate::text::constants(T));
+    page.blank().line(format!("T, its pose in {}", space_frame(model))).lines(&crate::text::constants(T));
     let list: Vec<String> = found.theta.iter().map(|x| format!("{x:?}")).collect();
     page.blank().line(format!("--theta {}", list.join(",")));
     Ok(page.end())

@@ -1,11 +1,12 @@
-//! `mozzi info`: what the robot consists of.
+//! `mozzi info`: joints, limits, links, masses and frames of a robot.
 
 use crate::failure::Result;
 use crate::json;
 use crate::robot::{RobotArguments, Units};
 use crate::text::{Page, column, column_of_some, column_within, largest, rows_of, scalar, table, tuple};
 use clap::Args;
-use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::State;
+use mozzi::model::description::{Gear, Joint, JointKind, Rotor};
 use mozzi::{Description, Error, Model, SE3, SpatialInertia};
 use mozzi::{Freedom, Place};
 use serde_json::{Value, json};
@@ -68,22 +69,30 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     let mut page = Page::default();
     page.line(headline(model)).line(surroundings(model));
     if model.is_floating() {
-        page.title("the base, free").lines(&base(model));
+        page.title("floating base").lines(&base(model));
     }
     let several = several(model);
     if !several.is_empty() {
         page.title("joints of several axes").lines(&several);
     }
     page.title("joints").lines(&joints(model));
-    page.lines(&[format!("units: {}, {}, {}, s; a dash: none", units.input(0), units.input(1), units.input(3))]);
+    page.lines(&[format!("units: {}, {}, {}, s; a dash means none", units.input(0), units.input(1), units.input(3))]);
+    let rotors = rotors(robot);
+    if !rotors.is_empty() {
+        page.title("rotors that several joints turn: inertia [kg m² or kg], gears").lines(&rotors);
+    }
+    let states = states(model);
+    if !states.is_empty() {
+        page.title("states").lines(&states);
+    }
     let folded = folded(model);
     if !folded.is_empty() {
-        page.title("links that fixed joints fold into the body that carries them [kg]").lines(&folded);
+        page.title("links merged into a moving body by fixed joints [kg]").lines(&folded);
     }
     page.title("links: mass [kg], centre of mass in the link's frame [m]").lines(&masses(robot));
     page.title("links: inertia about the centre of mass, along the axes of the link's frame [kg m²]");
     page.lines(&inertias(robot));
-    page.title("frames at θ = 0: origin in the base frame [m], turned by ω̂θ [rad]").lines(&frames(model, poses));
+    page.title("frames at θ = 0: origin in the base frame [m], rotation vector ω̂θ [rad]").lines(&frames(model, poses));
     page.end()
 }
 
@@ -98,7 +107,7 @@ fn base(model: &Model) -> Vec<String> {
         "the quaternion (w, x, y, z) and the origin, m, are its pose in {s}; its twist (ω, v) and its wrench (m, f) are in its own"
             .to_string(),
         "coordinates; gravity is in {s}".to_string(),
-        format!("it weighs {} kg with all that is fixed to it, centre of mass at {} m", scalar(G.mass), tuple(&G.center_of_mass().0)),
+        format!("its mass with all links fixed to it is {} kg, centre of mass at {} m", scalar(G.mass), tuple(&G.center_of_mass().0)),
     ]
 }
 
@@ -112,9 +121,9 @@ fn several(model: &Model) -> Vec<String> {
         let says = match place.freedom {
             Freedom::One => return None,
             Freedom::Ball => {
-                "the quaternion (w, x, y, z) turns its link's axes from where they are at 0; ω in its link's axes"
+                "the quaternion (w, x, y, z) rotates its link's axes from their orientation at 0; ω in its link's axes"
             }
-            Freedom::Free => "pose seen from where its link is at 0; twist (ω, v) in its link's coordinates",
+            Freedom::Free => "pose relative to its link's pose at 0; twist (ω, v) in its link's coordinates",
         };
         Some(format!("{}: θ has {positions}, θ̇ has {velocities}: {says}", joint.name))
     };
@@ -161,6 +170,36 @@ fn joints(model: &Model) -> Vec<String> {
         .collect();
     let columns = columns.into_iter().map(|(name, cells)| [vec![name.to_string()], cells].concat()).collect();
     table(&rows_of(columns), &align)
+}
+
+fn rotors(robot: &Description) -> Vec<String> {
+    let gears = |rotor: &Rotor| {
+        let gear = |gear: &Gear| format!("{} · {}", scalar(gear.ratio), gear.joint);
+        rotor.gears.iter().map(gear).collect::<Vec<_>>().join(" + ")
+    };
+    let row = |rotor: &Rotor| vec![rotor.name.clone(), scalar(rotor.armature), gears(rotor)];
+    table(&robot.rotors.iter().map(row).collect::<Vec<_>>(), "lrl")
+}
+
+/// Positions of a state that a line has room for.
+const SHOWN: usize = 10;
+
+/// The states that the robot's file names, and which of them is the start.
+fn states(model: &Model) -> Vec<String> {
+    let start = model.description().start.as_deref();
+    let row = |name: &str| {
+        let State { time, theta, dtheta } = model.state(name).ok()?;
+        let more = if theta.len() > SHOWN { format!(" … {} in all", theta.len()) } else { String::new() };
+        let is_start = if start == Some(name) { "the start" } else { "" };
+        let moves = if dtheta.iter().any(|&x| x != 0.0) { "moving" } else { "at rest" };
+        let theta = format!("{}{more}", tuple(&theta[..theta.len().min(SHOWN)]));
+        Some(
+            [name, is_start, &format!("t = {} s", scalar(time)), moves, &format!("θ = {theta}")]
+                .map(str::to_string)
+                .to_vec(),
+        )
+    };
+    table(&model.state_names().filter_map(row).collect::<Vec<_>>(), "l")
 }
 
 /// Each body that is made of several links: its own, then those fixed to it, each with its mass.
@@ -257,6 +296,10 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
             })),
         })
     };
+    let state = |name| {
+        let State { time, theta, dtheta } = model.state(name).ok()?;
+        Some(json!({ "name": name, "time": time, "theta": json::vector(&theta), "dtheta": json::vector(&dtheta) }))
+    };
     json!({
         "robot": robot.name,
         "n": model.n(),
@@ -267,7 +310,13 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
         "moving_links": model.moving_links(),
         "total_mass": total_mass(robot),
         "gravity": json::vector(&model.gravity().0),
+        "rotors": robot.rotors.iter().map(|rotor| json!({
+            "name": rotor.name, "armature": rotor.armature,
+            "gears": rotor.gears.iter().map(|gear| json!({ "joint": gear.joint, "ratio": gear.ratio })).collect::<Value>(),
+        })).collect::<Value>(),
         "end_effector": model.end_effector().ok().map(|frame| model.frame_name(frame)),
+        "states": model.state_names().filter_map(state).collect::<Value>(),
+        "start": robot.start,
         "independent_joints": model.joint_names().collect::<Vec<_>>(),
         "joints": robot.joints.iter().map(joint).collect::<Value>(),
         "links": robot.links.iter().map(|link| json!({

@@ -1,14 +1,17 @@
-//! What `mozzi simulate` has to say.
+//! The outcome of `mozzi simulate`.
 
 use mozzi::Trajectory;
+use mozzi::simulation::{Account, Method, Occurrence, Stopped};
 use mozzi_motion::controllers::{Overload, TrackingError};
-use mozzi_motion::integrators::{Occurrence, Stopped};
 
-/// A motion, and what is to be said of it.
+/// A motion and its notes.
 pub struct Outcome {
+    /// Its rows, or some of them: those for the table, JSON and the page.
     pub motion: Trajectory,
-    /// The method's name, and its step in seconds or its tolerance.
-    pub method: &'static str,
+    /// What all of its rows say of the energy.
+    pub account: Account,
+    pub method: Method,
+    /// Seconds; of an adaptive method between two rows.
     pub step: f64,
     pub duration: f64,
     pub motors: String,
@@ -16,7 +19,7 @@ pub struct Outcome {
     pub stops: Vec<Stopped>,
     /// What `--until` and `--report-event` found, in the order of time.
     pub events: Vec<Occurrence>,
-    /// The conditions that were looked for and not found.
+    /// The conditions that did not become true.
     pub missed: Vec<String>,
     pub tracking: Option<TrackingError>,
 }
@@ -25,5 +28,13 @@ impl Outcome {
     /// Did a condition end it?
     pub fn is_ended(&self) -> bool {
         self.events.last().is_some_and(|event| event.stop)
+    }
+
+    /// The step in seconds, of an adaptive method its tolerance.
+    pub fn step(&self) -> f64 {
+        match self.method {
+            Method::DormandPrince { tolerance } => tolerance,
+            _ => self.step,
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::state::{StartArguments, positions};
 use crate::text::scalar;
 use clap::{Args, Subcommand, ValueEnum};
 use mozzi::Model;
-use mozzi_motion::integrators::{self, Measured};
+use mozzi_motion::convergence::{self, Measured};
 use mozzi_report::Motion;
 use mozzi_report::figure::Figure;
 use mozzi_report::pictures::{self, Convergence, Plane};
@@ -29,18 +29,18 @@ enum What {
     Energy(MotionArguments),
     /// θ̇ over θ, joint by joint
     Phase(MotionArguments),
-    /// How the error of each method falls with its step and with the work, the motors being off; of Dormand-Prince by tolerances from 1e-3 on
+    /// Error of each method over its step and its work, without torques; Dormand-Prince for tolerances from 1e-3 on
     Convergence(ConvergenceArguments),
-    /// Manipulability and force ellipses at the end effector, at one configuration or more
+    /// Manipulability and force ellipses at the end effector, at one or more configurations
     Ellipsoids(EllipsoidArguments),
 }
 
 #[derive(Args, Debug)]
 struct OutArguments {
-    /// Where the figure goes: .svg, or .png where the program was built with the feature `png`
+    /// Output file: .svg, or .png if built with the feature `png`
     #[arg(long, value_name = "FILE.svg")]
     out: String,
-    /// What stands above it [default: what it shows]
+    /// Title [default: a description of the figure]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
 }
@@ -49,7 +49,7 @@ struct OutArguments {
 struct MotionArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// A CSV file with columns t, theta_1 …, and what else is known; such as `mozzi simulate --out` writes
+    /// A CSV file with columns t, theta_1 … and optionally others, as `mozzi simulate --out` writes it
     trajectory: String,
     #[command(flatten)]
     out: OutArguments,
@@ -61,13 +61,13 @@ struct ConvergenceArguments {
     robot: RobotArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// How long the motion is, s
+    /// Duration of the motion, s
     #[arg(long, value_name = "SECONDS", default_value = "1", allow_hyphen_values = true)]
     time: String,
     /// Longest step, s
     #[arg(long, value_name = "SECONDS", default_value = "0.02", allow_hyphen_values = true)]
     step: String,
-    /// How often it is halved
+    /// How often the step is halved
     #[arg(long, value_name = "K", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=12))]
     halvings: u8,
     #[command(flatten)]
@@ -78,10 +78,10 @@ struct ConvergenceArguments {
 struct EllipsoidArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// Positions θ, rad or m; may be given often
+    /// Positions θ, rad or m, or the name of a state; may be repeated [default: the robot's start, else joints at 0]
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     theta: Vec<String>,
-    /// The plane of {s} that is looked at
+    /// Plane of {s} to project on
     #[arg(long, value_name = "PLANE", default_value = "xz")]
     plane: View,
     #[command(flatten)]
@@ -126,11 +126,11 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let coarsest = mozzi::simulation::Options::with_step(time, step)?.steps;
     let mut progress = None;
     let found =
-        integrators::convergence(&model, [&theta, &dtheta], time, coarsest, arguments.halvings.into(), |done, all| {
+        convergence::convergence(&model, [&theta, &dtheta], time, coarsest, arguments.halvings.into(), |done, all| {
             progress.get_or_insert_with(|| Progress::new("convergence", all, "evaluations")).at(done);
         })?;
     drop(progress);
-    let curve = |each: &integrators::Convergence| {
+    let curve = |each: &convergence::Convergence| {
         let points = |x: fn(&Measured) -> f64| each.measured.iter().map(|of| [x(of), of.error]).collect::<Vec<_>>();
         let by_step = if each.is_adaptive() { Vec::new() } else { points(|of| of.step) };
         let by_work = points(|of| of.evaluations as f64);
@@ -143,7 +143,9 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
         let by = if each.is_adaptive() { " by its evaluations" } else { "" };
         let order = each
             .measured_order()
-            .map_or("unknown: too few motions went well, or all too well".into(), |order| format!("{order:.2}{by}"));
+            .map_or("unknown: too few motions succeeded, or all errors are rounding".into(), |order| {
+                format!("{order:.2}{by}")
+            });
         text += &format!("{}: order {}, measured {order}\n", each.name, each.order);
     }
     Ok(text)
@@ -176,7 +178,7 @@ fn save(figure: Figure, out: &OutArguments) -> Result<String> {
         _ => return Err(Failure::wrong(format!("--out is {file}, expected a file that ends in .svg or .png"))),
     };
     columns::save(file, bytes)?;
-    Ok(format!("a figure written to {file}\n"))
+    Ok(format!("wrote a figure to {file}\n"))
 }
 
 /// The figure at twice its size in points, with the fonts of this machine.
@@ -200,6 +202,6 @@ fn png(svg: &str) -> Result<Vec<u8>> {
 #[cfg(not(feature = "png"))]
 fn png(_svg: &str) -> Result<Vec<u8>> {
     Err(Failure::wrong(
-        "--out ends in .png, which this program was built without: cargo install --features png; .svg works",
+        "--out ends in .png, but this program was built without PNG: cargo install --features png; .svg works",
     ))
 }

@@ -38,7 +38,7 @@ pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
             "base = \"floating\"".to_string(),
             format!("Gbase = np.array(\n{}\n)", nested(&model.base_inertia().to_matrix())),
             String::new(),
-            "# import modern_robotics as mr; it knows fixed bases only: theta, dtheta, tau are the joints', the base at rest"
+            "# import modern_robotics as mr; it supports fixed bases only: theta, dtheta, tau are the joints', the base at rest"
                 .to_string(),
             call.to_string(),
         ]),

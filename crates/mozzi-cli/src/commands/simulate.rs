@@ -1,25 +1,24 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
 use super::outcome::Outcome;
-use super::simulate_page::{columns, object, page, told};
+use super::simulate_page::{object, page, told};
 use crate::conditions::{EventArguments, happened};
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::motors::{Followed, Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
-use crate::report::{self, MeshArguments};
+use crate::report::{self, PageArguments};
 use crate::robot::RobotArguments;
 use crate::state::StartArguments;
 use crate::text::scalar;
 use crate::{interrupt, json, log};
 use clap::{Args, ValueEnum};
-use mozzi::Model;
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Friction, Input, Method, Options};
+use mozzi::simulation::{Account, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
+use mozzi::{Model, Trajectory};
 use mozzi_batch::{Compiled, Engine, compile};
-use mozzi_motion::controllers::{Saturated, tracking_error};
-use mozzi_motion::integrators::{Event, Integrator, Run, Simulation};
+use mozzi_motion::controllers::{Saturated, Tracking};
 use mozzi_motion::trajectories::Hold;
 use std::ops::ControlFlow;
 
@@ -29,71 +28,71 @@ pub struct SimulateArguments {
     robot: RobotArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// How a step is taken
+    /// Integration method
     #[arg(long, default_value = "rk4")]
     method: Way,
-    /// Longest step, s; of dopri the time between two rows
+    /// Step size, s; dopri: the time between two rows
     #[arg(long, value_name = "SECONDS", default_value = "0.001", allow_hyphen_values = true)]
     step: String,
-    /// Of dopri: the largest estimated error of a step
+    /// dopri only: tolerance on the local error
     #[arg(long, value_name = "EPS", default_value = "1e-9", allow_hyphen_values = true)]
     tolerance: String,
-    /// How long, s [default: as long as what is followed, else 2]
+    /// Duration, s [default: that of the --follow table, else 2]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     time: Option<String>,
     #[command(flatten)]
     motors: MotorArguments,
-    /// What is made of the joints' position limits; where they are respected a joint comes to rest at its limit
+    /// How to treat position limits; if enforced, a joint stops at its limit
     #[arg(long, value_name = "WHAT", default_value = "report")]
     joint_limits: Limit,
     #[command(flatten)]
     events: EventArguments,
-    /// Make Coulomb friction smooth: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
+    /// Smooth Coulomb friction: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
     #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
     slip_speed: Option<String>,
-    /// Forward dynamics by machine code, made for the robot before it moves: each step the same to rounding, in a fraction of the time
+    /// Compute forward dynamics by machine code generated for this robot: equal up to rounding, two to three times as fast
     #[arg(long)]
     compiled: bool,
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1)]
     record_every: usize,
-    /// Write the motion to a file, by its ending: .csv ("-": standard output), .npy, .npz, .arrow, .feather; .parquet and .mcap where
-    /// the program was built with these features. Columns t, theta_1 … tau_n, energies and works
+    /// Write the motion to a file, row by row; its ending chooses the format: .csv ("-": standard output), .npy, .npz, .arrow,
+    /// .feather; .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and works
     #[arg(long, value_name = "FILE")]
     out: Option<String>,
-    /// Write the motion as a page to look at: the robot in 3-D, plots, one HTML file that needs no network
+    /// Write the motion as one HTML file that needs no network: the robot in 3-D, and plots
     #[arg(long, value_name = "FILE.html")]
     report: Option<String>,
     #[command(flatten)]
-    meshes: MeshArguments,
+    page: PageArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Way {
-    /// The book's: order 1
+    /// Euler's method, as in the book: order 1
     Euler,
-    /// Velocities first: order 1, energy stays bounded
+    /// Semi-implicit Euler, velocities first: order 1, energy stays bounded
     SemiImplicitEuler,
-    /// Runge-Kutta of order 4
+    /// Runge-Kutta, order 4
     Rk4,
-    /// Dormand-Prince of order 5, steps by tolerance
+    /// Dormand-Prince, order 5, adaptive steps
     Dopri,
     /// Implicit midpoint in (θ, p): order 2, symplectic, energy stays bounded
     Midpoint,
 }
 
+/// Rows that are kept for the table on the screen.
+const KEPT: usize = 20_000;
+
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
     arguments.out.as_deref().map(log::Format::of).transpose()?; // before the motion, which may take long
     let model = arguments.robot.load()?;
     let outcome = arguments.simulate(&model)?;
-    if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
-        log::write(file, &model, &outcome.motion)?;
-    }
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
         Some("-") => {
             told(&outcome).iter().for_each(|line| failure::note(line));
-            columns(&model, &outcome.motion).text()
+            String::new() // the rows are there already
         }
         _ if arguments.robot.json => json::print(&object(&model, &outcome)),
         file => {
@@ -101,7 +100,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
             page(&model, &outcome, file) + &said
         }
     };
-    if outcome.motion.complete || outcome.is_ended() {
+    if outcome.motion.complete || outcome.is_ended() || !interrupt::asked() {
         return Ok(text);
     }
     let last = outcome.motion.last().t;
@@ -116,7 +115,7 @@ impl SimulateArguments {
     fn simulate(&self, model: &Model) -> Result<Outcome> {
         let followed = self.motors.followed(model)?;
         let (mut theta, mut dtheta) = self.start.read(model)?;
-        if let (None, Some(Followed { start, .. })) = (&self.start.theta, &followed) {
+        if let (None, None, Some(Followed { start, .. })) = (&self.start.state, &self.start.theta, &followed) {
             theta.clone_from(&start[0]);
             if self.start.dtheta.is_none() {
                 dtheta.clone_from(&start[1]);
@@ -133,18 +132,22 @@ impl SimulateArguments {
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
         let input = (&mut motors, self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
-        let (Run { motion, events, stops }, method, step) =
-            self.integrate(model, [&theta, &dtheta], input, end, events)?;
+        let options = self.options(end)?;
+        let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
+        let (motion, account, Ending { events, stops, .. }) =
+            self.integrate(model, [&theta, &dtheta], input, options, events, &mut tracking)?;
         Ok(Outcome {
-            method,
-            step,
+            method: options.method,
+            // of a motion of no duration there is no shorter step
+            step: if end == 0.0 { number("--step", &self.step)? } else { options.step() },
             duration: end,
+            account,
             motors: controller.as_ref().map_or_else(|| self.motors.torque.clone(), Controller::name),
             overloads: motors.overloads().cloned().collect(),
             stops,
             missed: self.events.missed(&events),
             events,
-            tracking: followed.as_ref().map(|followed| tracking_error(model, &motion, &followed.reference)),
+            tracking: tracking.map(|tracking| tracking.error()),
             motion,
         })
     }
@@ -156,65 +159,68 @@ impl SimulateArguments {
         }
         let robot = compile(model, &[ForwardDynamics.into()])?;
         if let Engine::Kernels(refusal) = robot.engine(ForwardDynamics) {
-            failure::note(&format!("--compiled: not by machine code: {refusal}"));
+            failure::note(&format!("--compiled: machine code is not used: {refusal}"));
         } else if self.motors.tip_wrench.is_some() {
-            failure::note("--compiled: machine code knows no tip wrench; where there is one, the kernels compute");
+            failure::note("--compiled: machine code does not support a tip wrench; the kernels compute steps with one");
         }
         Ok(Some(robot))
     }
 
     fn write_report(&self, file: &str, model: &Model, outcome: &Outcome) -> Result<String> {
-        let (motion, method, motors) = (&outcome.motion, outcome.method, &outcome.motors);
+        let (motion, method, motors) = (&outcome.motion, outcome.method.name(), &outcome.motors);
         let happened: Vec<String> = std::iter::once(String::new()).chain(happened(&outcome.events)).collect();
         let (time, happened) = (scalar(motion.last().t), happened.join("; "));
         let title = format!("{method}, {time} s in {} steps, motors: {motors}{happened}", motion.steps);
         let motion = report::simulated(title, motion, self.motors.wrench(model, outcome.duration)?)?;
-        self.meshes.write(file, &self.robot.model, model, Some(&motion))
+        self.page.write(file, &self.robot.model, model, Some((motion, outcome.account.rows)))
     }
 
+    fn options(&self, end: f64) -> Result<Options> {
+        let friction = match &self.slip_speed {
+            None => Friction::Coulomb,
+            Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
+        };
+        let method = match self.method {
+            Way::Euler => Method::Euler,
+            Way::SemiImplicitEuler => Method::SemiImplicitEuler,
+            Way::Rk4 => Method::RungeKutta4,
+            Way::Dopri => Method::DormandPrince { tolerance: number("--tolerance", &self.tolerance)? },
+            Way::Midpoint => Method::Midpoint,
+        };
+        let (record_every, joint_limits) = (self.record_every, self.joint_limits.into());
+        let options = Options::with_step(end, number("--step", &self.step)?)?;
+        Ok(Options { method, friction, record_every, joint_limits, ..options })
+    }
+
+    /// The motion, its rows written as they come, and those that are kept.
     fn integrate(
         &self,
         model: &Model,
         [theta, dtheta]: [&[f64]; 2],
         input: impl Input,
-        end: f64,
+        options: Options,
         events: Vec<Event>,
-    ) -> Result<(Run, &'static str, f64)> {
-        let step = number("--step", &self.step)?;
-        let friction = match &self.slip_speed {
-            None => Friction::Coulomb,
-            Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
-        };
-        let options = Options { friction, record_every: self.record_every, ..Options::with_step(end, step)? };
-        // of a motion of no duration there is no shorter step
-        let step = if end == 0.0 { step } else { options.step() };
-        let integrator = match self.method {
-            Way::Euler => Integrator::Fixed(Method::Euler, step),
-            Way::SemiImplicitEuler => Integrator::Fixed(Method::SemiImplicitEuler, step),
-            Way::Rk4 => Integrator::Fixed(Method::RungeKutta4, step),
-            Way::Dopri => Integrator::DormandPrince { tolerance: number("--tolerance", &self.tolerance)? },
-            Way::Midpoint => Integrator::Midpoint { step },
-        };
+        tracking: &mut impl Recorder,
+    ) -> Result<(Trajectory, Account, Ending)> {
+        options.check()?;
         let robot = self.machine_code(model)?;
-        let simulation = Simulation {
-            integrator,
-            forward_dynamics: robot.as_ref().and_then(Compiled::simulator),
-            friction,
-            stops: self.joint_limits.into(),
-            record: step * self.record_every as f64,
-            events,
-            ..Simulation::new(end)
-        };
+        let forward_dynamics = robot.as_ref().and_then(Compiled::simulator);
+        let simulation = Simulation { options, events, forward_dynamics };
+        let rows = 1 + options.steps.div_ceil(options.record_every);
+        let mut log = self.out.as_deref().map(|file| log::Log::new(file, model, rows)).transpose()?;
+        let kept = if self.robot.json { usize::MAX } else { self.page.rows(self.report.is_some()).max(KEPT) };
+        let (mut kept, mut account) = (Thinned::new(model, kept), Account::default());
         interrupt::listen();
-        let progress = Progress::new(integrator.name(), options.steps, "steps of time");
-        let run = simulation.run_with_progress(model, theta, dtheta, input, |t| {
-            progress.at((t / end * options.steps as f64) as usize);
+        let progress = Progress::new(options.method.name(), options.steps, "steps of time");
+        let mut recorder = (&mut log, (&mut kept, (&mut account, tracking)));
+        let ending = simulation.stream(model, theta, dtheta, input, &mut recorder, |t| {
+            progress.at((t / options.duration * options.steps as f64) as usize);
             if interrupt::asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
-        let shown = match integrator {
-            Integrator::DormandPrince { tolerance } => tolerance,
-            _ => step,
-        };
-        Ok((run, integrator.name(), shown))
+        drop(progress);
+        log.map(log::Log::finish).transpose()?;
+        let mut motion = kept.into_trajectory();
+        (motion.steps, motion.complete) = (ending.steps, ending.complete);
+        Ok((motion, account, ending))
     }
 }

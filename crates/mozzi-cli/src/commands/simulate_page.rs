@@ -1,37 +1,20 @@
 //! What `mozzi simulate` answers: a table for a file, JSON, or a page.
 
 use super::outcome::Outcome;
-use crate::columns::Columns;
 use crate::conditions::happened;
-use crate::csv::ENERGIES;
 use crate::json;
 use crate::robot::Units;
 use crate::text::{Decimals, Page, about, scalar, table};
-use mozzi::{Model, Trajectory, simulation};
+use mozzi::simulation::{Energy, Stopped};
+use mozzi::{Model, Trajectory};
 use mozzi_motion::controllers::Overload;
-use mozzi_motion::integrators::Stopped;
 use serde_json::{Value, json};
 
 /// Rows of the table on the screen.
 const SHOWN: usize = 20;
 
-/// The motion by columns, as it goes to a file.
-pub fn columns(model: &Model, motion: &Trajectory) -> Columns {
-    let mut columns = Columns::default();
-    let group = |values: &[f64], n: usize| values.chunks(n.max(1)).map(<[f64]>::to_vec).collect::<Vec<_>>();
-    columns.add("t", motion.t.clone());
-    columns.add_group(model, "theta", &group(&motion.theta, motion.nq));
-    columns.add_group(model, "dtheta", &group(&motion.dtheta, motion.n));
-    columns.add_group(model, "ddtheta", &group(&motion.ddtheta, motion.n));
-    columns.add_group(model, "tau", &group(&motion.tau, motion.n));
-    for (name, values) in ENERGIES.iter().zip(energies(motion)) {
-        columns.add(*name, values);
-    }
-    columns
-}
-
-pub fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
-    let of = |pick: fn(&simulation::Energy) -> f64| motion.energy.iter().map(pick).collect();
+fn energies(motion: &Trajectory) -> [Vec<f64>; 5] {
+    let of = |pick: fn(&Energy) -> f64| motion.energy.iter().map(pick).collect();
     [of(|e| e.kinetic), of(|e| e.potential), of(|e| e.motor_work), of(|e| e.friction_loss), of(|e| e.applied_work)]
 }
 
@@ -42,8 +25,8 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
     json::of_robot(
         model,
         json!({
-            "method": outcome.method,
-            "step": outcome.step,
+            "method": outcome.method.name(),
+            "step": outcome.step(),
             "steps": motion.steps,
             "t": json::vector(&motion.t),
             "theta": lists(&motion.theta, motion.nq),
@@ -55,7 +38,7 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
             "motor_work": motor,
             "friction_loss": friction,
             "applied_work": applied,
-            "largest_drift": motion.largest_drift(),
+            "largest_drift": outcome.account.largest_drift,
             "complete": motion.complete,
             "events": outcome.events.iter().map(|e| json!({
                 "condition": e.name, "t": e.t, "theta": json::vector(&e.theta), "dtheta": json::vector(&e.dtheta), "end": e.stop,
@@ -115,16 +98,15 @@ pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
 
 pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
     let (motion, mut page) = (&outcome.motion, Page::default());
-    let adaptive = outcome.method.starts_with("Dormand");
     page.line(format!(
         "{} for {} s by {}, {} steps {} {}{}, motors: {}",
         model.description().name,
         scalar(motion.last().t),
-        outcome.method,
+        outcome.method.name(),
         motion.steps,
-        if adaptive { "to a tolerance of" } else { "of" },
-        if adaptive { format!("{:e}", outcome.step) } else { scalar(outcome.step) },
-        if adaptive { "" } else { " s" },
+        if outcome.method.is_adaptive() { "to a tolerance of" } else { "of" },
+        if outcome.method.is_adaptive() { format!("{:e}", outcome.step()) } else { scalar(outcome.step()) },
+        if outcome.method.is_adaptive() { "" } else { " s" },
         outcome.motors
     ));
     page.blank().lines(&rows(model, motion, SHOWN));
@@ -133,7 +115,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         let what = if model.is_floating() { "positions" } else { "joints" };
         page.lines(&[format!("… the first {shown} of {} {what}; --out FILE.csv or --json gives all", model.nq())]);
     }
-    let end = motion.last().energy;
+    let (account, end) = (&outcome.account, outcome.account.last);
     page.blank().line(format!("θ in {}; K kinetic, P potential energy", Units::of(model).input(0)));
     page.line(format!(
         "work since the start: motors {} J, lost in friction {} J, given to the environment {} J",
@@ -142,13 +124,13 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         scalar(end.applied_work)
     ));
     page.line(format!(
-        "drift: energy that the method made or lost, at most {} J, against {} J of kinetic energy",
-        about(motion.largest_drift()),
-        scalar(motion.largest_kinetic_energy())
+        "drift: energy error of the method, at most {} J; largest kinetic energy {} J",
+        about(account.largest_drift),
+        scalar(account.largest_kinetic_energy)
     ));
     if let Some(error) = &outcome.tracking {
         page.line(format!(
-            "tracking error θ_d ⊖ θ: at most {}, root of the mean square at most {} ({})",
+            "tracking error θ_d ⊖ θ: at most {}, root mean square at most {} ({})",
             about(error.worst()),
             about(error.worst_rms()),
             Units::of(model).input(0)
@@ -158,7 +140,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         page.line(line);
     });
     if let Some(file) = file {
-        page.line(format!("{} rows written to {file}", motion.len()));
+        page.line(format!("{} rows written to {file}", account.rows));
     }
     page.end()
 }
@@ -166,7 +148,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
 /// A sentence for each event that happened or did not, each joint that came to its limit, and each motor that was asked for more than it has.
 pub fn told(outcome: &Outcome) -> Vec<String> {
     let missed = |condition: &String| {
-        format!("event: `{condition}` did not happen until t = {} s", scalar(outcome.motion.last().t))
+        format!("event: `{condition}` did not happen up to t = {} s", scalar(outcome.motion.last().t))
     };
     let events = happened(&outcome.events).into_iter().chain(outcome.missed.iter().map(missed));
     let stop = |stop: &Stopped| {
@@ -181,7 +163,7 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
     };
     let overload = |overload: &Overload| {
         let (asked, limit, first) = (scalar(overload.largest), scalar(overload.limit), scalar(overload.first));
-        format!("effort limit: `{}` was asked for up to {asked} of its {limit}, first at t = {first} s", overload.joint)
+        format!("effort limit: `{}` needed up to {asked} of its {limit}, first at t = {first} s", overload.joint)
     };
     events.chain(outcome.stops.iter().map(stop)).chain(outcome.overloads.iter().map(overload)).collect()
 }

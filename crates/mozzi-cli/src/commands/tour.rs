@@ -5,6 +5,7 @@ use super::terms::values::Terms;
 use super::{info, screws, simulate_page};
 use crate::columns::save;
 use crate::failure::{Failure, Result};
+use crate::log;
 use crate::task::TaskArguments;
 use crate::text::{Page, about, table};
 use mozzi::quantities::{
@@ -28,19 +29,17 @@ const STEPS: usize = 2000;
 pub fn run() -> Result<String> {
     let model = mozzi_urdf::open(ROBOT)?.build()?;
     let mut page = Page::default();
-    page.line("mozzi: every term of a robot's dynamics, in the words of Lynch & Park, Modern Robotics, chapter 8");
+    page.line("mozzi: every term of a robot's dynamics, in the notation of Lynch & Park, Modern Robotics, chapter 8");
     page.line(format!("{}; {}", info::headline(&model), info::surroundings(&model)));
     robot(&model, &mut page);
     one_state(&model, &mut page)?;
     fall(&model, &mut page)?;
     page.title("next");
     page.lines(&[
-        "mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0 --stacked   all of this at a state of yours, and 𝒜 𝒢 𝒲 ℒ"
-            .to_string(),
-        "mozzi info my_robot.urdf                                 a robot of yours; mozzi check says what is wrong"
-            .to_string(),
-        "mozzi simulate panda --torque gravity-compensation       motors that hold the arm's weight".to_string(),
-        "mozzi --help                                             all subcommands, by example".to_string(),
+        "mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0 --stacked   all of this at your state, and 𝒜 𝒢 𝒲 ℒ".to_string(),
+        "mozzi info my_robot.urdf                                 your robot; mozzi check lists its errors".to_string(),
+        "mozzi simulate panda --torque gravity-compensation       motors compensate gravity".to_string(),
+        "mozzi --help                                             all subcommands, with examples".to_string(),
     ]);
     Ok(page.end())
 }
@@ -49,11 +48,12 @@ fn robot(model: &Model, page: &mut Page) {
     let Ok(lists) = model.screws() else { return };
     page.title("1  a robot is a list of screws and a list of masses");
     page.lines(&[
-        "At θ = 0, in base coordinates: joint i at 1 rad/s moves what hangs on it at the twist S_i = (ω, v),"
+        "At θ = 0, in base coordinates: joint i at 1 rad/s moves the links beyond it with the twist S_i = (ω, v),"
             .to_string(),
     ]);
-    page.lines(&["ω in rad/s, and v in m/s of the point at the base's origin. Six numbers are angular first, always."
-        .to_string()]);
+    page.lines(&[
+        "ω in rad/s, and v in m/s of the point at the base's origin. Six-vectors are angular first.".to_string()
+    ]);
     page.lines(&screws::axes(&lists, &lists.S));
     page.lines(&[
         "Mass m [kg], centre of mass p [m], inertia about it [kg m²], in frame {i} at the centre of mass:".to_string()
@@ -71,7 +71,7 @@ fn one_state(model: &Model, page: &mut Page) -> Result<()> {
         &terms,
         &[
             ("J_b(θ): V_b = J_b θ̇, the tip's twist, and τ = J_bᵀF", BodyJacobian.into(), 0),
-            ("T_sb(θ): where the tip is, [R p]", ForwardKinematics.into(), 0),
+            ("T_sb(θ), the tip's pose [R p]", ForwardKinematics.into(), 0),
         ],
     ));
     page.lines(&blocks(
@@ -115,7 +115,7 @@ fn fall(model: &Model, page: &mut Page) -> Result<()> {
     }
     if let Some((method, motion)) = motions.last() {
         page.lines(&[format!(
-            "by {}; K kinetic, P potential energy, drift of K + P; the joints' limits stop nothing:",
+            "by {}; K kinetic, P potential energy, drift of K + P; joint limits are not enforced:",
             method.name()
         )]);
         page.lines(&simulate_page::rows(model, motion, 8));
@@ -152,16 +152,13 @@ fn drifts(motions: &[(Method, Trajectory)]) -> Vec<String> {
 }
 
 /// One table: a column that names the method, then those of `mozzi simulate`.
-fn csv(model: &Model, motions: &[(Method, Trajectory)]) -> String {
-    let mut text = String::new();
+fn csv(model: &Model, motions: &[(Method, Trajectory)]) -> Vec<u8> {
+    let mut text = format!("method,{}\n", log::names(model).join(",")).into_bytes();
     for (method, motion) in motions {
-        let table = simulate_page::columns(model, motion).text();
-        let mut lines = table.lines();
-        let header = lines.next().unwrap_or_default();
-        if text.is_empty() {
-            text = format!("method,{header}\n");
+        for row in motion.samples() {
+            text.extend(format!("{},", method.name()).into_bytes());
+            let _ = log::line(&mut text, &row); // writing to memory cannot fail
         }
-        lines.for_each(|line| text.push_str(&format!("{},{line}\n", method.name())));
     }
     text
 }

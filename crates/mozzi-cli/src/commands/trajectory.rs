@@ -24,31 +24,33 @@ use serde_json::{Value, json};
 pub struct TrajectoryArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// Where the motion begins [default: joints at 0, a floating base at {s}]
+    /// Initial positions, or the name of a state [default: the robot's start, else joints at 0 and a floating base
+    /// at {s}]
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     from: Option<String>,
-    /// Where it ends
+    /// Final positions, or the name of a state
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     to: Option<String>,
-    /// Points to pass, in a CSV file with columns theta_1 …; with a column t, at these times, by a spline at rest at both ends
+    /// Via points in a CSV file with columns theta_1 …; with a column t, passed at these times by a spline at rest at
+    /// both ends
     #[arg(long, value_name = "FILE.csv")]
     via: Option<String>,
-    /// The way: of the joints, or of the end effector to --to's pose or to --position and --rpy
-    #[arg(long, value_name = "WAY", default_value = "joints", conflicts_with = "via")]
+    /// The path: of the joints, or of the end effector to the pose of --to or of --position and --rpy
+    #[arg(long, value_name = "PATH", default_value = "joints", conflicts_with = "via")]
     path: Way,
     #[command(flatten)]
     goal: GoalArguments,
-    /// How far off its way the end effector may be, ‖(ω, v)‖, rad and m
+    /// Tolerance on the end effector's path, ‖(ω, v)‖, rad and m
     #[arg(long, value_name = "EPS", default_value = "1e-6", allow_hyphen_values = true)]
     deviation: String,
-    /// How the way is run through [default: quintic]
+    /// Time scaling along the path [default: quintic]
     #[arg(long)]
     profile: Option<Shaped>,
-    /// How long, s [default: as short as the limits allow]
+    /// Duration, s [default: as short as the limits allow]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     time: Option<String>,
-    /// Of a trapezoid: the part of the time in which it rises, and falls
-    #[arg(long, value_name = "PART", default_value = "0.25", allow_hyphen_values = true)]
+    /// trapezoidal only: the fraction of the time spent accelerating, and decelerating
+    #[arg(long, value_name = "FRACTION", default_value = "0.25", allow_hyphen_values = true)]
     ramp_fraction: String,
     /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
@@ -69,7 +71,7 @@ pub struct TrajectoryArguments {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Way {
-    /// In proportion to each other
+    /// A straight line in joint space
     Joints,
     /// A screw motion of the end effector
     Screw,
@@ -79,19 +81,19 @@ enum Way {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Shaped {
-    /// At rest at both ends
+    /// Velocity is zero at both ends
     Cubic,
-    /// And without acceleration there
+    /// Velocity and acceleration are zero at both ends
     Quintic,
     /// Constant acceleration, velocity, deceleration
     Trapezoidal,
-    /// As fast as the limits of velocity, acceleration and torque allow at each place
+    /// Time-optimal within the limits of velocity, acceleration and torque
     Fastest,
 }
 
 /// Rows of the table on the screen.
 const SHOWN: usize = 10;
-/// Places at which limits are looked at.
+/// Number of points at which limits are checked.
 const PLACES: usize = 500;
 
 pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
@@ -101,7 +103,7 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     let step = number("--step", &arguments.step)?;
     if !(step > 0.0) || motion.duration() / step > 1e7 {
         return Err(Failure::wrong(format!(
-            "--step is {step}, expected a positive number of seconds, at most 10⁷ of them"
+            "--step is {step}, expected a positive number of seconds that gives at most 10⁷ rows"
         )));
     }
     let rows = motion.sampled((motion.duration() / step).ceil().max(1.0) as usize);
@@ -162,7 +164,7 @@ impl TrajectoryArguments {
                         check_times(&samples, times)?;
                         if self.profile.is_some() {
                             return Err(Failure::wrong(format!(
-                                "--profile and the column t of {file} both say when, expected one of them"
+                                "--profile and the column t of {file} both define the timing, expected one of them"
                             )));
                         }
                         let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
@@ -198,7 +200,7 @@ impl TrajectoryArguments {
         let to = self.to.as_deref().map(|text| positions("--to", Some(text), model)).transpose()?;
         let shape = match (self.path, &to) {
             (Way::Joints, Some(to)) => return Ok(Box::new(Line::new(model, &from, to)?)),
-            (Way::Joints, None) => return Err(Failure::wrong("there is no end, expected --to or --via")),
+            (Way::Joints, None) => return Err(Failure::wrong("the final position is missing, expected --to or --via")),
             (Way::Screw, _) => Shape::Screw,
             (Way::Line, _) => Shape::Straight,
         };
@@ -227,7 +229,8 @@ fn columns(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Columns 
     columns
 }
 
-/// A sentence for each limit that the motion passes: positions as the robot has them, the others as they were asked for.
+/// A message for each exceeded limit: the robot's position limits, and the given limits of velocity, acceleration and
+/// torque.
 fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits) -> Vec<String> {
     let mut told = Vec::new();
     for (joint, place) in model.joints().zip(model.places()).filter(|(_, place)| place.freedom == Freedom::One) {
@@ -240,7 +243,7 @@ fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Lim
             let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
             if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
                 let (name, x, limit, t) = (&joint.name, scalar(x), scalar(limit), scalar(rows[worst].0));
-                told.push(format!("{what} limit: `{name}` is asked for {x}, beyond its {limit}, at t = {t} s"));
+                told.push(format!("{what} limit: `{name}` reaches {x}, beyond its limit {limit}, at t = {t} s"));
             }
         };
         say("joint", &|row| rows[row].1.theta[q], [low, high]);

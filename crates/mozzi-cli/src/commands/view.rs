@@ -1,7 +1,7 @@
 //! `mozzi view`: the robot to look at, still or moving, in a file or served to this machine's browser.
 
 use crate::failure::{self, Failure, Result};
-use crate::report::{self, MeshArguments};
+use crate::report::{self, PageArguments};
 use crate::robot::RobotArguments;
 use crate::serve;
 use clap::Args;
@@ -10,31 +10,41 @@ use clap::Args;
 pub struct ViewArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// A CSV file with columns t, theta_1 …, and what else is known of dtheta_, ddtheta_, tau_ and the tip's wrench;
-    /// without it sliders move the joints
+    /// A CSV file with columns t, theta_1 … and optionally dtheta_, ddtheta_, tau_ and the tip's wrench; without it,
+    /// sliders move the joints
     trajectory: Option<String>,
     #[command(flatten)]
-    meshes: MeshArguments,
+    page: PageArguments,
+    /// Named state shown at first [default: the robot's start]
+    #[arg(long, value_name = "NAME", conflicts_with = "trajectory")]
+    state: Option<String>,
     /// Write the page to a file instead of serving it
     #[arg(long, value_name = "FILE.html")]
     out: Option<String>,
-    /// The port on 127.0.0.1 [default: a free one]
+    /// Port on 127.0.0.1 [default: a free one]
     #[arg(long, value_name = "PORT", conflicts_with = "out")]
     port: Option<u16>,
 }
 
 pub fn run(arguments: &ViewArguments) -> Result<String> {
-    let model = arguments.robot.load()?;
-    let motion = arguments.trajectory.as_deref().map(|file| report::read(file, &model)).transpose()?;
-    if let Some(file) = &arguments.out {
-        return Ok(arguments.meshes.write(file, &arguments.robot.model, &model, motion.as_ref())? + "\n");
+    let mut model = arguments.robot.load()?;
+    if let Some(name) = &arguments.state {
+        model = model.with_start(name)?;
     }
-    let page = arguments.meshes.page(&arguments.robot.model, &model, motion.as_ref())?;
+    let motion = arguments.trajectory.as_deref().map(|file| report::read(file, &model)).transpose()?;
+    let motion = motion.map(|motion| {
+        let rows = motion.t.len();
+        (motion, rows)
+    });
+    if let Some(file) = &arguments.out {
+        return Ok(arguments.page.write(file, &arguments.robot.model, &model, motion)? + "\n");
+    }
+    let (page, size) = arguments.page.page(&arguments.robot.model, &model, motion)?;
     let cannot = |error: std::io::Error| Failure::wrong(format!("the page cannot be served on 127.0.0.1: {error}"));
     let server = serve::Server::new(arguments.port.unwrap_or(0)).map_err(cannot)?;
     let address = server.address().map_err(cannot)?;
     failure::write(&format!(
-        "{} is at http://{address}/ for this machine alone; Ctrl-C ends it\n",
+        "{} is at http://{address}/ on this machine only ({size}); Ctrl-C ends it\n",
         model.description().name
     ));
     server.run(&page).map_err(cannot)?;

@@ -1,43 +1,51 @@
 //! MCAP: `/joint_states`, `/tf` and the energies as messages of ROS 2.
 
+use super::Rows;
 use super::ros::{self, FLOAT64, JOINT_STATE, Message, TRANSFORMS};
-use crate::failure::{Failure, Result};
-use crate::interrupt::Writing;
 use ::mcap::records::MessageHeader;
 use ::mcap::{McapResult, WriteOptions, Writer};
-use mozzi::{Freedom, Place};
-use mozzi::{Model, Trajectory};
+use mozzi::simulation::Sample;
+use mozzi::{Freedom, Model, Place};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 
-pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
-    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
-    let _writing = Writing::to(file);
-    let to = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
-    let mut log = Log::new(to).map_err(|error| cannot(&error))?;
-    // JointState speaks of joints of one axis; the others are in the transforms
-    let of_one_axis: Vec<(&str, &Place)> =
-        model.joint_names().zip(model.places()).filter(|(_, place)| place.freedom == Freedom::One).collect();
-    let names: Vec<&str> = of_one_axis.iter().map(|(name, _)| *name).collect();
-    let space = ros::space_frame(model);
-    let topics = [
-        ("/joint_states", JOINT_STATE),
-        ("/tf", TRANSFORMS),
-        ("/kinetic_energy", FLOAT64),
-        ("/potential_energy", FLOAT64),
-    ];
-    let mut channels = Vec::new();
-    for (topic, message) in topics {
-        channels.push(log.channel(topic, &message).map_err(|error| cannot(&error))?);
+pub struct Mcap<'m> {
+    model: &'m Model,
+    /// JointState speaks of joints of one axis; the others are in the transforms.
+    of_one_axis: Vec<(&'m str, &'m Place)>,
+    space: &'m str,
+    log: Log,
+    channels: Vec<u16>,
+    rows: usize,
+}
+
+impl<'m> Mcap<'m> {
+    pub fn new(to: File, model: &'m Model) -> io::Result<Self> {
+        let mut log = Log::new(BufWriter::new(to)).map_err(io::Error::other)?;
+        let of_one_axis =
+            model.joint_names().zip(model.places()).filter(|(_, place)| place.freedom == Freedom::One).collect();
+        let topics = [
+            ("/joint_states", JOINT_STATE),
+            ("/tf", TRANSFORMS),
+            ("/kinetic_energy", FLOAT64),
+            ("/potential_energy", FLOAT64),
+        ];
+        let channels = topics.iter().map(|(topic, message)| log.channel(topic, message)).collect::<McapResult<_>>();
+        let channels = channels.map_err(io::Error::other)?;
+        Ok(Mcap { model, of_one_axis, space: ros::space_frame(model), log, channels, rows: 0 })
     }
-    for (sequence, row) in motion.samples().enumerate() {
-        let time = ros::nanoseconds(row.t);
-        let poses = model.frame_poses(row.theta)?;
+}
+
+impl Rows for Mcap<'_> {
+    fn row(&mut self, row: &Sample) -> io::Result<()> {
+        let (time, space) = (ros::nanoseconds(row.t), self.space);
+        let poses = self.model.frame_poses(row.theta).map_err(io::Error::other)?;
         let frames: Vec<_> =
-            model.frames().map(|(_, name)| name).zip(poses).filter(|(name, _)| *name != space).collect();
+            self.model.frames().map(|(_, name)| name).zip(poses).filter(|(name, _)| *name != space).collect();
+        let names: Vec<&str> = self.of_one_axis.iter().map(|(name, _)| *name).collect();
         let of = |list: &[f64], at: fn(&Place) -> usize| -> Vec<f64> {
-            of_one_axis.iter().map(|(_, place)| list[at(place)]).collect()
+            self.of_one_axis.iter().map(|(_, place)| list[at(place)]).collect()
         };
         let joints = [of(row.theta, |place| place.q), of(row.dtheta, |place| place.j), of(row.tau, |place| place.j)];
         let joints = joints.each_ref().map(Vec::as_slice);
@@ -47,11 +55,16 @@ pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
             ros::float64(row.energy.kinetic),
             ros::float64(row.energy.potential),
         ];
-        for (channel, bytes) in channels.iter().zip(messages) {
-            log.message(*channel, sequence, time, &bytes).map_err(|error| cannot(&error))?;
+        for (channel, bytes) in self.channels.iter().zip(messages) {
+            self.log.message(*channel, self.rows, time, &bytes).map_err(io::Error::other)?;
         }
+        self.rows += 1;
+        Ok(())
     }
-    log.finish().map_err(|error| cannot(&error))
+
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        self.log.finish().map_err(io::Error::other)
+    }
 }
 
 struct Log(Writer<BufWriter<File>>);

@@ -1,135 +1,121 @@
-//! A motion as a file, in the format that its name asks for.
+//! A motion as a file, row by row as it is simulated; its ending chooses the format.
 
+mod arrow;
 #[cfg(feature = "mcap")]
 mod cdr;
+mod csv;
+mod format;
 #[cfg(feature = "mcap")]
 mod mcap;
+mod npy;
+mod npz;
 #[cfg(feature = "mcap")]
 mod ros;
+mod row;
 
-use crate::columns::{Columns, save};
-use crate::commands::simulate_page::{columns, energies};
-use crate::csv::ENERGIES;
+pub use csv::line;
+pub use format::Format;
+pub use row::names;
+
 use crate::failure::{Failure, Result};
-#[cfg(feature = "parquet")]
 use crate::interrupt::Writing;
-use crate::tables::array::Array;
-use crate::tables::{arrow, npy, npz};
-use mozzi::{Model, Trajectory};
-use std::path::Path;
+use mozzi::Model;
+use mozzi::simulation::{Recorder, Sample};
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::ops::ControlFlow;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Csv,
-    /// One array, its columns as of CSV.
-    Npy,
-    /// Arrays by name, (N,) and (N, n).
-    Npz,
-    Arrow,
-    Parquet,
-    /// ROS 2's joint states and transforms, which Foxglove and Rerun show.
-    Mcap,
+/// Takes the rows of a motion.
+pub trait Rows {
+    fn row(&mut self, row: &Sample) -> io::Result<()>;
+    /// What the format has at its end.
+    fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-impl Format {
-    /// By the file's ending; "-" is CSV.
-    pub fn of(file: &str) -> Result<Self> {
-        let ending = Path::new(file).extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        let format = match ending.as_deref() {
-            _ if file == "-" => Format::Csv,
-            Some("csv") => Format::Csv,
-            Some("npy") => Format::Npy,
-            Some("npz") => Format::Npz,
-            Some("arrow" | "feather" | "ipc") => Format::Arrow,
-            Some("parquet") => Format::Parquet,
-            Some("mcap") => Format::Mcap,
-            _ => {
-                let expected = ".csv, .npy, .npz, .arrow, .feather, .parquet or .mcap";
-                return Err(Failure::wrong(format!("{file}: expected a name that ends in {expected}")));
+/// A file to which rows go. It is made at the first row, so that wrong arguments leave an older file as it is, and
+/// removed if it is not [finished](Self::finish).
+pub struct Log<'m> {
+    file: String,
+    format: Format,
+    model: &'m Model,
+    expected: usize,
+    rows: Option<Box<dyn Rows + 'm>>,
+    error: Option<io::Error>,
+    writing: Option<Writing>,
+}
+
+impl<'m> Log<'m> {
+    /// As many rows are expected; "-" is standard output.
+    pub fn new(file: &str, model: &'m Model, expected: usize) -> Result<Self> {
+        let format = Format::of(file)?;
+        Ok(Log { file: file.to_string(), format, model, expected, rows: None, error: None, writing: None })
+    }
+
+    fn open(&mut self) -> io::Result<Box<dyn Rows + 'm>> {
+        let model = self.model;
+        if self.file == "-" {
+            return Ok(Box::new(csv::Csv::new(BufWriter::new(io::stdout().lock()), model)?));
+        }
+        let to = File::create(&self.file)?;
+        self.writing = Some(Writing::to(&self.file));
+        Ok(match self.format {
+            Format::Csv => Box::new(csv::Csv::new(BufWriter::new(to), model)?),
+            Format::Npy => Box::new(npy::Npy::new(to, model, self.expected)?),
+            Format::Npz => Box::new(npz::Npz::new(to, &self.file, model)?),
+            Format::Arrow => Box::new(arrow::Batches::to_arrow(to, model)?),
+            #[cfg(feature = "parquet")]
+            Format::Parquet => Box::new(arrow::Batches::to_parquet(to, model)?),
+            #[cfg(feature = "mcap")]
+            Format::Mcap => Box::new(mcap::Mcap::new(to, model)?),
+            #[cfg(not(all(feature = "parquet", feature = "mcap")))]
+            _ => return Err(io::Error::other("this program was built without its format")),
+        })
+    }
+
+    /// The whole file is written.
+    pub fn finish(mut self) -> Result<()> {
+        let rows = self.rows.take();
+        let error = self.error.take().or_else(|| rows?.finish().err());
+        match error {
+            // who reads has seen enough
+            Some(error) if self.file == "-" && error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            Some(error) => {
+                self.remove();
+                let name = if self.file == "-" { "standard output" } else { &self.file };
+                Err(Failure::wrong(format!("{name} cannot be written: {error}")))
             }
+            None => Ok(()),
+        }
+    }
+
+    /// Files alone: a pipe or a device is not ours to remove.
+    fn remove(&self) {
+        if self.writing.is_some() && std::fs::metadata(&self.file).is_ok_and(|found| found.is_file()) {
+            let _ = std::fs::remove_file(&self.file); // the error itself is already reported
+        }
+    }
+}
+
+impl Drop for Log<'_> {
+    fn drop(&mut self) {
+        if self.rows.is_some() {
+            self.remove();
+        }
+    }
+}
+
+impl Recorder for Log<'_> {
+    fn take(&mut self, row: &Sample) -> ControlFlow<()> {
+        let written = match &mut self.rows {
+            Some(rows) => rows.row(row),
+            None => self.open().and_then(|rows| self.rows.insert(rows).row(row)),
         };
-        for (needs, is_there, feature) in
-            [(Format::Parquet, cfg!(feature = "parquet"), "parquet"), (Format::Mcap, cfg!(feature = "mcap"), "mcap")]
-        {
-            if format == needs && !is_there {
-                return Err(Failure::wrong(format!(
-                    "{file}: this program was built without .{feature}: cargo install --path crates/mozzi-cli --features {feature}"
-                )));
+        match written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.error.get_or_insert(error);
+                ControlFlow::Break(())
             }
         }
-        Ok(format)
-    }
-}
-
-pub fn write(file: &str, model: &Model, motion: &Trajectory) -> Result<()> {
-    let table = || columns(model, motion);
-    match Format::of(file)? {
-        Format::Csv => save(file, table().text()),
-        Format::Npy => save(file, matrix(table())),
-        Format::Npz => npz::write(file, &arrays(motion)),
-        Format::Arrow => arrow::write(file, table().into_pairs()),
-        Format::Parquet => parquet(file, table()),
-        Format::Mcap => mcap(file, model, motion),
-    }
-}
-
-fn matrix(table: Columns) -> Vec<u8> {
-    let (rows, columns) = (table.rows(), table.into_pairs());
-    let values: Vec<f64> = (0..rows).flat_map(|row| columns.iter().map(move |(_, column)| column[row])).collect();
-    npy::bytes(&[rows, columns.len()], &values)
-}
-
-fn arrays(motion: &Trajectory) -> Vec<Array> {
-    let rows = motion.len();
-    let list = |name, values| Array::new(name, vec![rows], values);
-    let table = |name, width, values: &[f64]| Array::new(name, vec![rows, width], values.to_vec());
-    let mut arrays = vec![
-        list("t", motion.t.clone()),
-        table("theta", motion.nq, &motion.theta),
-        table("dtheta", motion.n, &motion.dtheta),
-        table("ddtheta", motion.n, &motion.ddtheta),
-        table("tau", motion.n, &motion.tau),
-    ];
-    arrays.extend(ENERGIES.into_iter().zip(energies(motion)).map(|(name, values)| list(name, values)));
-    arrays
-}
-
-#[cfg(feature = "parquet")]
-fn parquet(file: &str, table: Columns) -> Result<()> {
-    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
-    let rows = arrow::batch(table.into_pairs()).map_err(|error| cannot(&error))?;
-    let _writing = Writing::to(file);
-    let to = std::fs::File::create(file).map_err(|error| cannot(&error))?;
-    let mut writer = ::parquet::arrow::ArrowWriter::try_new(to, rows.schema(), None).map_err(|error| cannot(&error))?;
-    writer.write(&rows).map_err(|error| cannot(&error))?;
-    writer.close().map(|_| ()).map_err(|error| cannot(&error))
-}
-
-#[cfg(not(feature = "parquet"))]
-fn parquet(file: &str, _: Columns) -> Result<()> {
-    Format::of(file).map(|_| ())
-}
-
-#[cfg(feature = "mcap")]
-use mcap::write as mcap;
-
-#[cfg(not(feature = "mcap"))]
-fn mcap(file: &str, _: &Model, _: &Trajectory) -> Result<()> {
-    Format::of(file).map(|_| ())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_name_tells_the_format() {
-        assert_eq!(Format::of("a/b.CSV").ok(), Some(Format::Csv));
-        assert_eq!(Format::of("-").ok(), Some(Format::Csv));
-        assert_eq!(Format::of("x.feather").ok(), Some(Format::Arrow));
-        let said = |file| format!("{:?}", Format::of(file).expect_err("unknown"));
-        assert!(said("motion.txt").contains("motion.txt: expected a name that ends in .csv, .npy"));
-        assert_eq!(Format::of("x.mcap").is_ok(), cfg!(feature = "mcap"));
-        assert_eq!(Format::of("x.parquet").is_ok(), cfg!(feature = "parquet"));
     }
 }

@@ -1,4 +1,4 @@
-//! The messages of ROS 2 that a motion is told in: their definitions, and their bytes.
+//! The ROS 2 messages of a motion: their definitions and their bytes.
 
 use super::cdr::Cdr;
 use mozzi::{Model, SE3};
@@ -58,7 +58,7 @@ pub fn joint_state(time: u64, names: &[&str], values: [&[f64]; 3]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The frame that transforms are seen from: the base link, or what a floating base is seen from.
+/// The parent frame of transforms: the base link, or {s} for a floating base.
 pub fn space_frame(model: &Model) -> &str {
     match model.is_floating() {
         true => &model.description().free_joint.parent,

@@ -37,7 +37,7 @@ fn at(row: Option<usize>, before: usize, what: String) -> String {
     row.map_or(format!(" {what}"), |row| format!(", row {} (counted from 0) {what}", before + row))
 }
 
-/// A column's numbers, or the row and what is wrong with it.
+/// A column's numbers, or the row and its error.
 fn numbers(column: &dyn Array, to: &mut Vec<f64>) -> std::result::Result<(), (Option<usize>, String)> {
     if let Some(row) = (0..column.len()).find(|&row| column.is_null(row)) {
         return Err((Some(row), "is null, expected a number".into()));

@@ -1,5 +1,5 @@
-//! NumPy's .npy (numpy.lib.format), of floats: a magic word, the version, the header's length; the header, a Python dictionary of
-//! type, order and shape; the numbers.
+//! NumPy's .npy (numpy.lib.format), of floats: a magic word, the version, the header's length; the header, a Python
+//! dictionary of type, order and shape; the numbers.
 
 use super::array::{Array, tuple};
 use super::precision::Precision;
@@ -10,9 +10,9 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// `place` is the file, or an archive and its array, which has this name.
 pub fn parse(place: &dyn Display, name: &str, bytes: &[u8]) -> Result<Array> {
-    let wrong = |what: &str| Failure::wrong(format!("{place} is no .npy: {what}"));
+    let wrong = |what: &str| Failure::wrong(format!("{place} is not a .npy file: {what}"));
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| wrong("it does not begin with \\x93NUMPY"))?;
-    let cut = || wrong("it ends within its header");
+    let cut = || wrong("it ends inside its header");
     let (length, rest) = match rest {
         [1, _, a, b, rest @ ..] => (usize::from(u16::from_le_bytes([*a, *b])), rest),
         [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]) as usize, rest),
@@ -76,20 +76,27 @@ fn by_rows(shape: &[usize], values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// As `numpy.save` writes it: version 1, numbers from a multiple of 64 bytes on.
-pub fn bytes<T: Precision>(shape: &[usize], values: &[T]) -> Vec<u8> {
+/// Digits that the first number of a shape has room for, so that a header is as long whatever that number is.
+const ROWS: usize = 20;
+
+/// What stands before the numbers, as `numpy.save` writes it: version 1, numbers from a multiple of 64 bytes on.
+pub fn header<T: Precision>(shape: &[usize]) -> Vec<u8> {
     let size = size_of::<T>();
     let mut header = format!("{{'descr': '<f{size}', 'fortran_order': False, 'shape': {}, }}", tuple(shape));
+    let room = ROWS - shape.first().map_or(ROWS, |rows| rows.to_string().len());
+    header.extend(std::iter::repeat_n(' ', room));
     let before = MAGIC.len() + 4;
     while !(before + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
     }
     header.push('\n');
-    let mut bytes = Vec::with_capacity(before + header.len() + size_of_val(values));
-    bytes.extend(MAGIC);
-    bytes.extend([1, 0]);
-    bytes.extend((header.len() as u16).to_le_bytes());
-    bytes.extend(header.as_bytes());
+    [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat()
+}
+
+/// The whole file.
+pub fn bytes<T: Precision>(shape: &[usize], values: &[T]) -> Vec<u8> {
+    let mut bytes = header::<T>(shape);
+    bytes.reserve(size_of_val(values));
     values.iter().for_each(|x| x.write(&mut bytes));
     bytes
 }
@@ -111,6 +118,7 @@ mod tests {
             assert_eq!((written.len() - 8 * values.len()) % 64, 0);
             assert_eq!(parse(&"x", "x", &written).expect("an array"), Array::new("x", shape.clone(), values));
         }
+        assert_eq!(header::<f64>(&[1, 7]).len(), header::<f64>(&[usize::MAX, 7]).len());
         let single = parse(&"x", "x", &bytes(&[2], &[0.5_f32, -3.0])).expect("an array");
         assert_eq!(single.values, [0.5, -3.0]);
     }
@@ -128,9 +136,9 @@ mod tests {
         let long = file(&of("'<f8'", "(99999999999, 99999999999)"), &[0; 16]);
         for (bytes, word) in [
             (b"PK\x03\x04".to_vec(), "does not begin"),
-            (MAGIC.to_vec(), "ends within its header"),
+            (MAGIC.to_vec(), "ends inside its header"),
             ([MAGIC, &[9, 0, 1, 0]].concat(), "version is 9"),
-            ([MAGIC, &[1, 0, 200, 0, b'{']].concat(), "ends within its header"),
+            ([MAGIC, &[1, 0, 200, 0, b'{']].concat(), "ends inside its header"),
             (file("{'descr': '<f8'}", &[]), "no `fortran_order`"),
             (file(&of("'<i8'", "(1,)"), &[0; 8]), "type <i8"),
             (file(&of("[('a', '<f8')]", "(1,)"), &[0; 8]), "a structure"),

@@ -27,15 +27,19 @@ pub fn read(file: &str) -> Result<Vec<Array>> {
     Ok(arrays)
 }
 
-/// As `numpy.savez` writes it: not compressed.
+/// Not compressed, as `numpy.savez` writes arrays.
+pub fn stored() -> SimpleFileOptions {
+    SimpleFileOptions::default().compression_method(CompressionMethod::Stored).large_file(true)
+}
+
+/// As `numpy.savez` writes it.
 pub fn write<T: Precision>(file: &str, arrays: &[Array<T>]) -> Result<()> {
     let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
     let _writing = Writing::to(file);
     let writer = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
     let mut archive = ZipWriter::new(writer);
-    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored).large_file(true);
     for array in arrays {
-        archive.start_file(format!("{}.npy", array.name), options).map_err(|error| cannot(&error))?;
+        archive.start_file(format!("{}.npy", array.name), stored()).map_err(|error| cannot(&error))?;
         let bytes = npy::bytes(&array.shape, &array.values);
         archive.write_all(&bytes).map_err(|error| cannot(&error))?;
     }

@@ -88,7 +88,7 @@ fn shape(model: &Model, table: &str) -> Vec<usize> {
     }
 }
 
-/// One array: the inputs of the quantity beside each other, then perhaps the tip's wrench.
+/// One array: the inputs of the quantity in order, then optionally the tip's wrench.
 fn one_array(file: &str, query: Query, model: &Model, needs_wrench: bool) -> Result<Samples> {
     let bytes = std::fs::read(file).map_err(|error| Failure::wrong(format!("{file} cannot be read: {error}")))?;
     let Array { shape, values, .. } = npy::parse(&file, "", &bytes)?;

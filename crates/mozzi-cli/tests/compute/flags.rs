@@ -21,7 +21,7 @@ fn flags_without_an_effect_are_refused() {
         ("body-jacobian", "--wrench", "tool0=0,0,0,0,0,0", "--theta, --frame"),
         ("mass-matrix", "--frame", "tool0", "--theta"),
         ("inverse-dynamics", "--frame", "tool0", "--theta"),
-        ("body-jacobian", "--task", "vx", "--theta, --frame"),
+        ("body-jacobian", "--task", "vx", "--theta, --frame, --state"),
         ("body-jacobian", "--task-frame", "body", "--theta, --frame"),
         ("task-space-dynamics", "--about", "0,0,0", "--theta, --dtheta, --frame, --task, --task-frame, "),
     ] {
@@ -65,7 +65,7 @@ fn an_unknown_quantity_lists_what_there_is() {
     for words in ["'mass-matrx'", "a similar value exists: 'mass-matrix'", "inverse-dynamics, forward-dynamics,"] {
         assert!(message.contains(words), "{words} in {message}");
     }
-    wrong(&["panda", "body-jacobian"], "the end effector has to be named");
+    wrong(&["panda", "body-jacobian"], "the end effector must be named");
     wrong(&["ur5", "task-space-dynamics", "--task", "vw"], "--task: there is no row `vw`");
     wrong(&["ur5", "momentum", "--about", "1,2"], "--about has 2 entries, expected 3: x, y, z");
 }

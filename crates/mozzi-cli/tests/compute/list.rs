@@ -84,7 +84,7 @@ fn the_list_has_formulas_flags_and_shapes() {
         assert!(page.contains(&format!("{name}: {}\n", declaration.formula)), "{name} in {page}");
         assert!(help.contains(&name), "{name} in {help}");
     }
-    for line in ["takes --theta, --dtheta, --frame\n", "--tip-wrench, --wrench, --gravity\n", "gives M (n, n)\n"] {
+    for line in ["takes --theta, --dtheta, --frame, --state\n", "--wrench, --gravity, --state\n", "gives M (n, n)\n"] {
         assert!(page.contains(line), "{line} in {page}");
     }
     assert_eq!(mozzi(&["compute"]).status.code(), Some(2));

@@ -1,4 +1,5 @@
-//! `mozzi compute` with tables, and `mozzi bench`: every quantity beside the library at one state, every kind of file, what is wrong with one.
+//! `mozzi compute` with tables, and `mozzi bench`: every quantity beside the library at one state, every kind of file,
+//! what is wrong with one.
 #![allow(non_snake_case)]
 
 mod by_python;
@@ -255,7 +256,7 @@ fn what_is_wrong_is_named() {
         (
             "inverse-dynamics",
             &cut,
-            "cut.npy is no .npy: there are 568 bytes of numbers, expected those of shape (4, 18)",
+            "cut.npy is not a .npy file: there are 568 bytes of numbers, expected those of shape (4, 18)",
         ),
         ("mass-matrix", &theta, "theta.npz: `theta` has shape (4, 5), expected (N, 6) of `ur5`"),
         (
@@ -292,7 +293,7 @@ fn what_is_wrong_is_named() {
     let (code, text) = said("mass-matrix", &all, &["--instruction-set", "neon"]);
     assert!(code == 2 && text.contains("expected one of portable, avx2, avx512"), "{text}");
     let (code, text) = complaint(&["compute", "ur5", "mass-matrix", "--in", &all, "--out", "-", "--json"]);
-    assert!(code == 1 && text.contains("--json and --out - both ask for standard output"), "{text}");
+    assert!(code == 1 && text.contains("--json and --out - both write to standard output"), "{text}");
     let (code, text) = complaint(&["compute", "panda", "body-jacobian", "--in", &all, "--out", &out]);
     assert!(code == 1 && text.contains("end effector"), "{text}");
     let output = mozzi(&["compute", "ur5", "mass-matrix", "--in", &whole, "--out", &out]);
@@ -317,7 +318,7 @@ fn bench_tells_this_machines_times() {
     }
     assert!(!table["processor"].as_str().expect("a name").is_empty());
     let page = common::text(&small);
-    for word in ["one state", "portable f64", "portable f32", "body-jacobian", "on 2 threads", "70 states a batch"] {
+    for word in ["one state", "portable f64", "portable f32", "body-jacobian", "on 2 threads", "70 states per batch"] {
         assert!(page.contains(word), "{word} in {page}");
     }
 }

@@ -1,7 +1,7 @@
 //! Programs as source text: Rust, C99 and CUDA C.
 //!
-//! All three say the same steps in the same order, one line each; what differs is a [`Dialect`]. The text is the same for the same
-//! robot and quantities, whatever the machine.
+//! All three have the same steps in the same order, one line each; they differ in the [`Dialect`]. The text depends
+//! only on the robot and the quantities, not on the machine.
 
 mod body;
 mod c;
@@ -23,20 +23,20 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A language that programs are written in.
+/// Language of emitted source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Language {
-    /// One file without attributes of a crate, for `mod` or `include!`: no `std`, no allocation, no panic, no dependency. Arguments are
-    /// references to arrays.
+    /// One file without attributes of a crate, for `mod` or `include!`: no `std`, no allocation, no panic, no
+    /// dependency. Arguments are references to arrays.
     Rust,
     /// C99, a header and a source, dependent on <stdint.h> and <math.h> alone; from C++, too.
     C,
-    /// CUDA C, one file without includes: a function for one state, and for many, a thread each, kernels on two layouts: `_rows` (entry k
-    /// of state i at `i · length + k`) and `_columns` (at `k · count + i`).
+    /// CUDA C, one file without includes: a function for one state, and for many, a thread each, kernels on two
+    /// layouts: `_rows` (entry k of state i at `i · length + k`) and `_columns` (at `k · count + i`).
     Cuda,
 }
 
-/// The numbers of a text.
+/// Number type of a source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// `float`.
@@ -50,24 +50,24 @@ impl Precision {
         self == Precision::F64
     }
 
-    /// The largest angle whose sine is computed.
+    /// The largest angle for which sines are computed.
     pub fn largest_angle(self) -> f64 {
         if self.is_f64() { f64::LARGEST } else { f32::LARGEST.into() }
     }
 }
 
-/// A file to be written.
+/// A generated file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourceFile {
     /// Its name, without a folder.
     pub name: String,
-    /// What is in it.
+    /// Its content.
     pub text: String,
 }
 
 impl SourceFile {
-    /// Writes it into a folder, which is made; not where it stands there already: tools that look at times see a change only where there is
-    /// one.
+    /// Writes it into a folder, which is made; not where it stands there already: tools that look at times see a change
+    /// only where there is one.
     ///
     /// # Errors
     /// [`EmitError::Write`].
@@ -81,7 +81,7 @@ impl SourceFile {
     }
 }
 
-/// Why there is no text.
+/// Errors of emitting source text.
 #[derive(Debug)]
 pub enum EmitError {
     /// No quantity was asked for.
@@ -111,9 +111,10 @@ impl fmt::Display for EmitError {
 }
 impl std::error::Error for EmitError {}
 
-/// The text of a robot's quantities; what is not one of the `arguments` is constant: its own gravity, its base at rest, nothing touched. Each becomes a function named
-/// for the quantity, of a frame for both; in C and CUDA the robot's name stands before. Names are made valid, and each once. The text's
-/// first lines tell the robot, its joints and units, frames and gravity; each function's, its arguments and its work.
+/// The text of a robot's quantities; what is not one of the `arguments` is constant: its own gravity, its base at rest,
+/// nothing touched. Each becomes a function named for the quantity, of a frame for both; in C and CUDA the robot's name
+/// stands before. Names are made valid, and each once. The text's first lines tell the robot, its joints and units,
+/// frames and gravity; each function's, its arguments and its work.
 ///
 /// ```
 /// use mozzi::quantities::GravityForces;
@@ -126,8 +127,8 @@ impl std::error::Error for EmitError {}
 /// # Ok(()) }
 /// ```
 ///
-/// Sines are the library's own, within an ulp up to |x| = 10⁶ (`f32`: 8192, 1.5 ulp); a larger angle, or NaN, gives NaN in all that
-/// depends on it. Compilers must not be allowed to reorder sums (`-ffast-math`): C refuses it.
+/// Sines are the library's own, within an ulp up to |x| = 10⁶ (`f32`: 8192, 1.5 ulp); a larger angle, or NaN, gives NaN
+/// in all that depends on it. Compilers must not be allowed to reorder sums (`-ffast-math`): C refuses it.
 ///
 /// # Errors
 /// [`EmitError`].
@@ -155,8 +156,8 @@ pub fn emit(
     files(&model.description().name, about, functions, language, precision)
 }
 
-/// [`emit`] into a folder. In a project's `build.rs` that is `OUT_DIR`, from which `include!` takes the text, so that it is written anew from
-/// the robot's file at every build; `examples/panda_controller` is such a project.
+/// [`emit`] into a folder. In a project's `build.rs` that is `OUT_DIR`, from which `include!` takes the text, so that
+/// it is written anew from the robot's file at every build; `examples/panda_controller` is such a project.
 ///
 /// # Errors
 /// [`EmitError`].

@@ -16,18 +16,19 @@ use crate::program::{Array, Program};
 use executable::Executable;
 use mozzi::scalar::Float;
 
-/// Why there is no machine code.
+/// Reasons why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// Nobody asked for it.
     NotAsked,
     /// The processor has not the instructions, or is no x86-64.
     Processor,
-    /// The program has a function that there is no machine code for (tanh), or more arrays than there are registers for their addresses.
+    /// The program has a function that there is no machine code for (tanh), or more arrays than there are registers for
+    /// their addresses.
     Program,
-    /// The code is longer than [`LONGEST_CODE`]: loops are faster.
+    /// The code would be longer than [`LONGEST_CODE`]; the kernels are faster then.
     Long,
-    /// The system grants no memory that becomes executable.
+    /// The system does not allow executable memory.
     Memory,
 }
 
@@ -44,10 +45,11 @@ impl std::fmt::Display for Refusal {
 }
 impl std::error::Error for Refusal {}
 
-/// The most bytes of code: beyond, the straight line is fetched from the second-level cache at every call, and loops are faster.
+/// Largest code size in bytes: longer code is fetched from the second-level cache at every call, and loops are faster.
 pub const LONGEST_CODE: usize = 64 << 10;
 
-/// A program as machine code for one or several states at once. It belongs to no thread, and a call allocates nothing.
+/// A program as machine code for one or several states at once. It can be shared between threads; calls do not
+/// allocate.
 #[derive(Debug)]
 pub struct Kernel {
     executable: Executable,
@@ -68,8 +70,8 @@ impl Kernel {
         Self::condensing(program, shape, usize::MAX)
     }
 
-    /// Likewise; in the place of each output from number `condensed` on stand its least entry and the sum of its entries: all that the quick
-    /// test of pivots needs.
+    /// Likewise; in the place of each output from number `condensed` on stand its least entry and the sum of its
+    /// entries: all that the quick test of pivots needs.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -91,7 +93,7 @@ impl Kernel {
         Ok(Kernel { executable, shape, angle_limit: largest * largest, code_bytes, instructions, frame_bytes, flops })
     }
 
-    /// The registers and numbers that it works on.
+    /// Its instruction set and number type.
     pub fn shape(&self) -> Shape {
         self.shape
     }
@@ -101,24 +103,24 @@ impl Kernel {
         self.code_bytes
     }
 
-    /// How many instructions, loads and stores among them.
+    /// The number of instructions, including loads and stores.
     pub fn instructions(&self) -> usize {
         self.instructions
     }
 
-    /// Operations in floating point at one state, those of the sines among them; a product with a sum is two.
+    /// Floating-point operations per state, including those of the sines; a fused multiply-add counts as two.
     pub fn flops(&self) -> usize {
         self.flops
     }
 
-    /// The memory for what registers could not hold, in bytes.
+    /// Stack memory for spilled registers, in bytes.
     pub fn frame_bytes(&self) -> usize {
         self.frame_bytes
     }
 
-    /// Fills the outputs of as many states as the shape has lanes. Entry k of an array has its lanes one after the other, from
-    /// `k · lanes` on. `squares` takes, of each lane, the sum of the squares of all angles, whose sine is computed; see
-    /// [`is_exact`](Self::is_exact).
+    /// Fills the outputs of as many states as the shape has lanes. Entry k of an array has its lanes one after the
+    /// other, from `k · lanes` on. `squares` takes, of each lane, the sum of the squares of all angles, whose sine is
+    /// computed; see [`is_exact`](Self::is_exact).
     ///
     /// # Panics
     /// When numbers are not of the shape's type, an array is missing, or one is too short.
@@ -133,7 +135,8 @@ impl Kernel {
         self.angle_limit
     }
 
-    /// Are the angles of a lane so small that their sines were reduced exactly? Else, and for NaN, its outputs mean nothing.
+    /// True if all angles of a lane are within the range of exact reduction. If false, or NaN, the lane's outputs are
+    /// invalid.
     #[inline(always)]
     pub fn is_exact<S: Float>(&self, squares: S) -> bool {
         squares <= S::from_f64(self.angle_limit)

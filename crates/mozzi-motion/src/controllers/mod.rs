@@ -20,7 +20,7 @@ pub use computed_torque::ComputedTorque;
 pub use pd_gravity::PdGravity;
 pub use saturation::{Overload, Saturated};
 pub use task_space::{Law, TaskSpace};
-pub use tracking::{TrackingError, tracking_error};
+pub use tracking::{Tracking, TrackingError, tracking_error, tracking_error_of_rows};
 
 use crate::Error;
 use crate::error::check;

@@ -1,6 +1,6 @@
 //! Motors that are as strong as they are.
 
-use crate::policy::Policy;
+use crate::Policy;
 use mozzi::simulation::Input;
 use mozzi::{Error, FrameId, Model, Wrench};
 
@@ -21,7 +21,8 @@ pub struct Overload {
 
 /// An input whose torques are held to the joints' effort limits, or only compared with them. A joint without a limit has none.
 pub struct Saturated<I> {
-    input: I,
+    /// What drives the robot, before its limits.
+    pub input: I,
     policy: Policy,
     names: Vec<String>,
     limits: Vec<f64>,

@@ -1,7 +1,9 @@
 //! How well a motion followed its reference.
 
 use crate::trajectories::Reference;
+use mozzi::simulation::{Recorder, Sample};
 use mozzi::{Model, Trajectory, difference};
+use std::ops::ControlFlow;
 
 /// The error e = θ_d ⊖ θ of each joint over a motion; a floating base follows nothing.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,15 +31,68 @@ impl TrackingError {
 /// # Panics
 /// When the motion or the reference is another robot's.
 pub fn tracking_error(model: &Model, motion: &Trajectory, reference: &impl Reference) -> TrackingError {
-    let (base, mut e) = (model.base().velocities(), vec![0.0; model.n()]);
-    let (mut squares, mut largest) = (vec![0.0; model.n() - base], vec![0.0_f64; model.n() - base]);
+    let mut tracking = Tracking::new(model, reference);
     for row in motion.samples() {
-        difference(model, row.theta, &reference.at(row.t).theta, &mut e);
-        for (j, e) in e[base..].iter().enumerate() {
-            squares[j] += e * e;
-            largest[j] = largest[j].max(e.abs());
+        let ControlFlow::Continue(()) = tracking.take(&row) else { break };
+    }
+    tracking.error()
+}
+
+/// Of any rows (t, θ).
+///
+/// # Panics
+/// When the rows or the reference are another robot's.
+pub fn tracking_error_of_rows<'a>(
+    model: &Model,
+    rows: impl IntoIterator<Item = (f64, &'a [f64])>,
+    reference: &impl Reference,
+) -> TrackingError {
+    let mut tracking = Tracking::new(model, reference);
+    rows.into_iter().for_each(|(t, theta)| tracking.add(t, theta));
+    tracking.error()
+}
+
+/// [`tracking_error`] of rows that come one by one.
+pub struct Tracking<'a, R> {
+    model: &'a Model,
+    reference: &'a R,
+    rows: usize,
+    squares: Vec<f64>,
+    largest: Vec<f64>,
+    e: Vec<f64>,
+}
+
+impl<'a, R: Reference> Tracking<'a, R> {
+    /// Of no rows.
+    pub fn new(model: &'a Model, reference: &'a R) -> Self {
+        let (n, joints) = (model.n(), model.n() - model.base().velocities());
+        Tracking { model, reference, rows: 0, squares: vec![0.0; joints], largest: vec![0.0; joints], e: vec![0.0; n] }
+    }
+
+    /// One more row.
+    ///
+    /// # Panics
+    /// When it or the reference is another robot's.
+    pub fn add(&mut self, t: f64, theta: &[f64]) {
+        self.rows += 1;
+        difference(self.model, theta, &self.reference.at(t).theta, &mut self.e);
+        let base = self.model.base().velocities();
+        for (j, e) in self.e[base..].iter().enumerate() {
+            self.squares[j] += e * e;
+            self.largest[j] = self.largest[j].max(e.abs());
         }
     }
-    let rms = squares.iter().map(|sum| (sum / motion.len().max(1) as f64).sqrt()).collect();
-    TrackingError { rms, largest }
+
+    /// Over the rows so far.
+    pub fn error(&self) -> TrackingError {
+        let rms = self.squares.iter().map(|sum| (sum / self.rows.max(1) as f64).sqrt()).collect();
+        TrackingError { rms, largest: self.largest.clone() }
+    }
+}
+
+impl<R: Reference> Recorder for Tracking<'_, R> {
+    fn take(&mut self, row: &Sample) -> ControlFlow<()> {
+        self.add(row.t, row.theta);
+        ControlFlow::Continue(())
+    }
 }

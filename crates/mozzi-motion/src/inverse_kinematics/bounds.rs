@@ -1,48 +1,26 @@
-//! How far the joints may go.
+//! Joints within their bounds.
 
-use mozzi::model::description::Source;
+use mozzi::model::Bounds;
 use mozzi::random::Random;
-use mozzi::{Freedom, Model, Place, SE3, SO3, Vec3};
+use mozzi::{Freedom, Place, SE3, SO3, Vec3};
 use std::f64::consts::PI;
 
-/// Lowest and highest value of each independent joint, as many as there are joints: −∞ and ∞ where there is no limit. A mimic joint's
-/// limits are its source joint's, too. Of a ball the value is the angle that it turns from 0.
-#[derive(Clone, Debug)]
-pub(crate) struct Bounds {
-    /// Where the joints stand in θ and in θ̇.
-    pub places: Vec<Place>,
-    pub joints: Vec<[f64; 2]>,
-    /// Does the joint turn?
-    turns: Vec<bool>,
+/// What a search under bounds needs.
+pub(crate) trait Within {
+    /// The joint, if it is one of one axis, of velocity j, at its lower (−1) or upper (1) bound: 0 where it is at
+    /// neither.
+    fn side(&self, theta: &[f64], j: usize) -> f64;
+
+    /// Puts each joint that is beyond a bound onto it.
+    fn clamp(&self, theta: &mut [f64]);
+
+    /// Anywhere within the bounds; of a joint without, half a turn or a metre around the guess. A floating base and
+    /// free joints stay.
+    fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64>;
 }
 
-impl Bounds {
-    pub fn of(model: &Model) -> Self {
-        let free = [f64::NEG_INFINITY, f64::INFINITY];
-        let mut joints = vec![free; model.joint_names().len()];
-        for (joint, Source { joint: j, ratio, offset }) in model.moving_joints().zip(model.sources()) {
-            let (Some(limits), true) = (joint.limits.position, ratio != 0.0) else { continue };
-            let [a, b] = limits.map(|x| (x - offset) / ratio);
-            let [low, high] = joints[j];
-            let both = [low.max(a.min(b)), high.min(a.max(b))];
-            // a mimic joint that its source joint's limits never let into its own says nothing
-            joints[j] = if both[0] <= both[1] { both } else { joints[j] };
-        }
-        let turns = model.joints().map(|joint| joint.kind.name() != "prismatic").collect();
-        Bounds { places: model.places().to_vec(), joints, turns }
-    }
-
-    /// What of joint k is within its bounds: its position, of a ball the angle that it turns from 0.
-    pub fn value(&self, theta: &[f64], k: usize) -> f64 {
-        let Place { freedom, q, .. } = self.places[k];
-        match freedom {
-            Freedom::Ball => SO3::from_quaternion(theta[q], vector(&theta[q + 1..])).log().norm(),
-            _ => theta[q],
-        }
-    }
-
-    /// The joint, if it is one of one axis, of velocity j, at its lower (−1) or upper (1) bound: 0 where it is at neither.
-    pub fn side(&self, theta: &[f64], j: usize) -> f64 {
+impl Within for Bounds {
+    fn side(&self, theta: &[f64], j: usize) -> f64 {
         let is_it = |place: &Place| place.freedom == Freedom::One && place.j == j;
         let Some(joint) = self.places.iter().position(is_it) else { return 0.0 };
         let ([low, high], q) = (self.joints[joint], self.value(theta, joint));
@@ -55,8 +33,7 @@ impl Bounds {
         }
     }
 
-    /// Puts each joint that is beyond a bound onto it.
-    pub fn clamp(&self, theta: &mut [f64]) {
+    fn clamp(&self, theta: &mut [f64]) {
         for (k, (&Place { freedom, q, .. }, &[low, high])) in self.places.iter().zip(&self.joints).enumerate() {
             match freedom {
                 Freedom::One => theta[q] = theta[q].clamp(low, high),
@@ -69,8 +46,7 @@ impl Bounds {
         }
     }
 
-    /// Anywhere within the bounds; of a joint without, half a turn or a metre around the guess. A floating base and free joints stay.
-    pub fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64> {
+    fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64> {
         let mut theta = guess.to_vec();
         for ((place, &[low, high]), turns) in self.places.iter().zip(&self.joints).zip(&self.turns) {
             let q = match place.freedom {

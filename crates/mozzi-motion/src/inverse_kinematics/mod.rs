@@ -19,7 +19,8 @@ pub use step::Method;
 
 use crate::Error;
 use crate::error::check;
-pub(crate) use bounds::Bounds;
+use bounds::Within;
+use mozzi::model::Bounds;
 use mozzi::nalgebra::Vector6;
 use mozzi::testing::Random;
 use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};

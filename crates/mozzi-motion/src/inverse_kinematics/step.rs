@@ -1,7 +1,8 @@
 //! One step of a least-squares method under bounds: δ = JᵀA⁻¹e with A = JJᵀ + λI, six equations however many joints there are.
 
-use super::bounds::Bounds;
+use super::bounds::Within;
 use mozzi::Twist;
+use mozzi::model::Bounds;
 use mozzi::nalgebra::{Matrix6, SymmetricEigen, Vector6};
 use std::ops::Range;
 

@@ -19,7 +19,7 @@ pub(super) struct Demand {
     pub b: Vec<f64>,
     /// g + k(θ − θ₀) + μ sgn θ′.
     pub c: Vec<f64>,
-    /// g + k(θ − θ₀): what is asked for at rest.
+    /// g + k(θ − θ₀): the torques at rest.
     pub g: Vec<f64>,
     /// The viscous friction of θ′.
     pub d: Vec<f64>,

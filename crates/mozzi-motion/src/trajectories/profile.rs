@@ -133,12 +133,19 @@ impl Profile {
         if t > self.duration() {
             return Progress { s: 1.0, ..Progress::default() };
         }
+        let Progress { s, ds, dds } = self.continued(t);
+        // none of them goes back but by rounding
+        Progress { s: s.clamp(0.0, 1.0), ds: ds.max(0.0), dds }
+    }
+
+    /// As [`at`](Self::at), but before the start and after the end the first and the last polynomial go on, as in the Modern Robotics package: s
+    /// leaves 0 to 1 there.
+    pub fn continued(&self, t: f64) -> Progress {
         let k = self.times.partition_point(|&begin| begin <= t).clamp(1, self.pieces.len()) - 1;
         let ([a, b, c, d, e, f], x) = (self.pieces[k], t - self.times[k]);
         Progress {
-            s: (a + x * (b + x * (c + x * (d + x * (e + x * f))))).clamp(0.0, 1.0),
-            // none of them goes back but by rounding
-            ds: (b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f)))).max(0.0),
+            s: a + x * (b + x * (c + x * (d + x * (e + x * f)))),
+            ds: b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f))),
             dds: 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f)),
         }
     }
@@ -180,6 +187,15 @@ mod tests {
                 assert!((after.s - before.s - 2.0 * e * now.ds).abs() < 1e-9);
                 assert!(!inside || (after.ds - before.ds - 2.0 * e * now.dds).abs() < 1e-8, "{profile:?} {t}");
             }
+        }
+    }
+
+    #[test]
+    fn beyond_the_ends_the_polynomials_go_on() {
+        let (cubic, quintic) = (Profile::cubic(2.0).expect("fine"), Profile::quintic(1.0).expect("fine"));
+        for x in [-0.7_f64, 0.4, 1.9] {
+            assert!((cubic.continued(2.0 * x).s - x * x * (3.0 - 2.0 * x)).abs() < 1e-14);
+            assert!((quintic.continued(x).s - x.powi(3) * (10.0 + x * (6.0 * x - 15.0))).abs() < 1e-13);
         }
     }
 

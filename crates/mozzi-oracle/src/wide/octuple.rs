@@ -62,6 +62,7 @@ impl Neg for Octuple {
 }
 
 impl Scalar for Octuple {
+    const DIGITS: u32 = 237;
     fn from_f64(x: f64) -> Self {
         Octuple(f256::from(x))
     }

@@ -3,16 +3,30 @@
 Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
 """
 
-from . import _quantities, conventions, models, modern_robotics
+from . import _quantities, controllers, conventions, models, modern_robotics, trajectories
 from ._compare import Comparison, compare
-from ._mozzi import DivergedError, LoadError, LoadWarning, Model, SingularError, __version__
+from ._mozzi import (
+    DivergedError,
+    InverseKinematics,
+    LoadError,
+    LoadWarning,
+    Model,
+    MotionError,
+    SingularError,
+    __version__,
+)
 from ._quantities import *
 from ._results import (
     BaseParameters,
     ClosedForm,
     Engine,
+    LimitReached,
     NewtonEuler,
+    Occurrence,
+    ReportSize,
     ScrewLists,
+    Solution,
+    State,
     Trajectories,
     Trajectory,
 )
@@ -23,18 +37,27 @@ __all__ = [
     "Comparison",
     "DivergedError",
     "Engine",
+    "InverseKinematics",
+    "LimitReached",
     "LoadError",
     "LoadWarning",
     "Model",
+    "MotionError",
     "NewtonEuler",
+    "Occurrence",
+    "ReportSize",
     "ScrewLists",
     "SingularError",
+    "Solution",
+    "State",
     "Trajectories",
     "Trajectory",
     "__version__",
     "compare",
+    "controllers",
     "conventions",
     "models",
     "modern_robotics",
+    "trajectories",
 ]
 __all__ += _quantities.__all__

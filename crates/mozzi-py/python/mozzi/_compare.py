@@ -1,4 +1,4 @@
-"""What Pinocchio and MuJoCo compute of the same robot."""
+"""Compare a robot's dynamics with Pinocchio and MuJoCo."""
 
 import html
 import json
@@ -10,16 +10,16 @@ from ._mozzi import Model, _compare
 
 
 class Comparison:
-    """What was found: printed it is a report for people. Made by ``mozzi.compare``.
+    """The result of ``mozzi.compare``; ``print`` shows it as a report.
 
     Attributes
     ----------
     agrees : bool
-        Did somebody compute, and everybody who did the same?
+        Whether at least one library computed results, and all of them agree.
     explained : bool
-        Did somebody compute, and is every difference explained?
+        Whether at least one library computed results, and every difference is explained.
     refused : bool
-        mozzi refuses the file, and the others were asked whether they load it.
+        Whether mozzi refuses the file; the report then shows whether the other libraries load it.
     libraries : dict
         For each library, by its name: its "status" ("agrees", "explained", "unexplained", "refused", "loaded", "not installed" or
         "no answer"), "version", and under "comparison" the errors and their causes, as in ``mozzi compare --json``.
@@ -52,22 +52,21 @@ def compare(
     python: str | os.PathLike[str] | None = None,
     policy: Literal["default", "strict", "lenient"] = "default",
 ) -> Comparison:
-    """Compare M, g, h and τ with what Pinocchio and MuJoCo compute of the same file, and say why they differ.
+    """Compare M, g, h and τ with Pinocchio and MuJoCo on the same file, and explain differences.
 
-    Each library is asked in a process of its own. A cause counts only if the difference goes where it is accounted for, and comes back
-    where it is not.
+    Each library runs in a process of its own. A cause counts only if the difference vanishes with it and returns without it.
 
     Parameters
     ----------
     robot : str, path or Model
-        A file of URDF or MJCF, or the name of a robot that mozzi brings along. A ``Model`` is written as URDF for the others, and refused
-        where URDF has no words for it.
+        A file of URDF or MJCF, or the name of an embedded robot. A ``Model`` is written as URDF for the other libraries, and refused
+        if URDF cannot express it.
     states : int
-        Random states, within the joints' limits.
+        Number of random states within the joints' limits.
     seed : int
-        Of the random numbers.
+        Seed of the random states.
     python : str or path, optional
-        The Python that has ``pin`` or ``mujoco``, in place of this one.
+        Python interpreter with ``pin`` or ``mujoco``; by default this one.
     policy : {'default', 'strict', 'lenient'}
         How mozzi reads the file.
 
@@ -79,7 +78,7 @@ def compare(
     Raises
     ------
     RuntimeError
-        Neither library is there.
+        Neither library is installed.
 
     Examples
     --------

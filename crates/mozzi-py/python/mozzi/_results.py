@@ -17,8 +17,92 @@ class Engine(NamedTuple):
     many: str
 
 
+class State(NamedTuple):
+    """Positions (nq,), velocities (n,) and time, s: see ``Model.state``."""
+
+    theta: Array
+    dtheta: Array
+    time: float
+
+
+class Solution(NamedTuple):
+    """What inverse kinematics found, of one target or of many: see ``InverseKinematics.solve``."""
+
+    theta: Array
+    """Shape (..., nq): the best positions found, rad or m."""
+    reached: Any
+    """bool, or an array of shape (...)."""
+    angle: Any
+    """The angle that is left, rad: float, array of shape (...), or None if the goal is a position."""
+    distance: Any
+    """The distance that is left, m: float, array of shape (...), or None if the goal is an orientation."""
+    iterations: Any
+    """Of all starts: int, or an array of shape (...)."""
+    starts: Any
+    """Starts that were needed: int, or an array of shape (...)."""
+    reason: Any
+    """Why the goal was not reached, '' if it was: str, or an array of shape (...)."""
+
+
+class Progress(NamedTuple):
+    """s, ṡ, 1/s, and s̈, 1/s², of a time scaling: see ``trajectories.Profile.at``."""
+
+    s: Any
+    ds: Any
+    dds: Any
+
+
+class PathPoint(NamedTuple):
+    """θ (..., nq), θ′ and θ″ (..., n) of a path: see ``trajectories.Path.at``."""
+
+    theta: Array
+    slope: Array
+    curvature: Array
+
+
+class Desired(NamedTuple):
+    """θ_d (..., nq), θ̇_d and θ̈_d (..., n) of a motion: see ``trajectories.Reference.at``."""
+
+    theta: Array
+    dtheta: Array
+    ddtheta: Array
+
+
+class Overload(NamedTuple):
+    """A motor that was asked for more than it has: see ``controllers.Saturated``."""
+
+    joint: str
+    largest: float
+    """The largest |τ| that was asked for: N m or N."""
+    limit: float
+    """The joint's effort limit: N m or N."""
+    first: float
+    """When it was first asked for more, s."""
+    last: float
+    """When it was last asked for more, s."""
+
+
+class TrackingError(NamedTuple):
+    """The error e = θ_d ⊖ θ of each joint over a motion: see ``controllers.tracking_error``."""
+
+    rms: Array
+    """√(mean of e²), shape (..., n): rad or m."""
+    largest: Array
+    """max |e|, shape (..., n): rad or m."""
+
+    @property
+    def worst(self) -> Any:
+        """The largest of all joints: float, or an array of shape (...)."""
+        return self.largest.max(-1)
+
+    @property
+    def worst_rms(self) -> Any:
+        """The largest root of a mean square of all joints: float, or an array of shape (...)."""
+        return self.rms.max(-1)
+
+
 class ClosedForm(NamedTuple):
-    """The book's stacked matrices over N bodies, and what they give: see ``Model.closed_form``."""
+    """The book's stacked matrices over N bodies, and their results: see ``Model.closed_form``."""
 
     A: Array
     G: Array
@@ -73,7 +157,7 @@ class ScrewLists(NamedTuple):
 
 
 def _columns(motion: "Trajectory | Trajectories") -> dict[str, Array]:
-    """The numbers of each joint, by what they are and the joint's name; many motions one after the other."""
+    """Columns named by quantity and joint; many motions are concatenated."""
     columns = {f"theta.{name}": motion.theta[..., k].ravel() for k, name in enumerate(motion.position_names)}
     for what in ("dtheta", "ddtheta", "tau"):
         numbers = getattr(motion, what)
@@ -109,8 +193,36 @@ class Trajectories(NamedTuple):
         return pandas.DataFrame(_columns(self), index=index)
 
 
+class Occurrence(NamedTuple):
+    """An event of a simulation: its time, s, the state there, and whether the motion ends there."""
+
+    name: str
+    t: float
+    theta: Array
+    dtheta: Array
+    end: bool
+
+
+class LimitReached(NamedTuple):
+    """A joint that came to a limit, rad or m: when first, s, how far beyond it at most, and how often."""
+
+    joint: str
+    limit: float
+    first: float
+    beyond: float
+    times: int
+
+
+class ReportSize(NamedTuple):
+    """The rows of a motion on a page, of all its rows, and the page's bytes."""
+
+    rows: int
+    all_rows: int
+    bytes: int
+
+
 class Trajectory(NamedTuple):
-    """A simulated motion: one row for each recorded time; works in J since the start."""
+    """A simulated motion: one row for each recorded time; works in J since the start; what ``until``, ``events`` and ``joint_limits`` found."""
 
     t: Array
     theta: Array
@@ -125,6 +237,8 @@ class Trajectory(NamedTuple):
     position_names: list[str]
     velocity_names: list[str]
     model: "Model"
+    events: list[Occurrence]
+    joint_limits: list[LimitReached]
 
     @property
     def energy(self) -> Array:
@@ -143,9 +257,10 @@ class Trajectory(NamedTuple):
         shapes: str | os.PathLike[str] | None = None,
         meshes: Literal["visual", "collision", "none"] = "visual",
         title: str = "simulated",
-    ) -> None:
+        rows: int | None = 20_000,
+    ) -> ReportSize:
         """The motion as one HTML file that needs nothing but a browser: see ``Model.report``."""
-        self.model.report(path, self, shapes=shapes, meshes=meshes, title=title)
+        return self.model.report(path, self, shapes=shapes, meshes=meshes, title=title, rows=rows)
 
     def plot(self) -> Any:
         """A matplotlib figure of θ, θ̇, τ and the energies over t."""

@@ -1,4 +1,4 @@
-"""The same states, forces and matrices as Pinocchio and MuJoCo have them, there and back.
+"""Conversions of states, forces and matrices to and from the conventions of Pinocchio and MuJoCo.
 
 >>> import mozzi
 >>> from mozzi.conventions import Pinocchio
@@ -10,10 +10,10 @@
 >>> bool((bridge.from_configuration(q) == anymal.neutral_configuration).all())
 True
 
-So results compare in a line: ``bridge.force(robot.inverse_dynamics(θ, θ̇, θ̈))`` beside ``pin.rnea(model, data, bridge.configuration(θ),
+To compare results: ``bridge.force(robot.inverse_dynamics(θ, θ̇, θ̈))`` equals ``pin.rnea(model, data, bridge.configuration(θ),
 bridge.velocity(θ̇), bridge.acceleration(θ̈))``. All methods take leading axes. Six-vectors are angular first in mozzi, (ω, v) and (m, f);
-`linear_first` and `angular_first` exchange the halves. Wrenches are what the robot applies to the environment in mozzi, and what the
-environment applies to the robot in both others: `external` exchanges halves and sign.
+`linear_first` and `angular_first` exchange the halves. Wrenches are those of the robot on the environment in mozzi, and those
+of the environment on the robot in Pinocchio and MuJoCo: `external` exchanges halves and sign.
 """
 
 from typing import Any, Optional, cast
@@ -48,7 +48,7 @@ from_external = external
 
 
 def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
-    """The bridge to Pinocchio, as its reader of URDF orders the joints; or as a `pin.Model` of the same robot has them.
+    """The conversions to and from Pinocchio, with joints in the order of its URDF reader, or of a `pin.Model` of the same robot.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
 
 
 def MuJoCo(robot: Model, model: Optional[Any] = None) -> _MuJoCo:
-    """The bridge to MuJoCo, its joints in mozzi's own order; or as an `mujoco.MjModel` of the same robot has them.
+    """The conversions to and from MuJoCo, with joints in mozzi's order, or in that of an `mujoco.MjModel` of the same robot.
 
     Parameters
     ----------

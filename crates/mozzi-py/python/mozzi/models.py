@@ -1,4 +1,4 @@
-"""The robots that mozzi brings along, each a function: ``mozzi.models.ur5()``."""
+"""The embedded robots, each a function: ``mozzi.models.ur5()``."""
 
 from ._mozzi import Model
 

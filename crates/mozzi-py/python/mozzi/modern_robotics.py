@@ -1,24 +1,26 @@
 """The functions of the Modern Robotics package (``modern_robotics`` 1.1.1 on PyPI), by the same names, computed by mozzi.
 
 ``import mozzi.modern_robotics as mr`` in place of ``import modern_robotics as mr``: names, order of arguments and results are the
-package's. Its lists are converted at every call; nothing is kept between calls. For more than a few calls on one robot,
-``mozzi.Model.from_screws`` is faster and has more to offer.
+package's. Lists are converted at every call. For more than a few calls on one robot, ``mozzi.Model.from_screws`` is faster and
+has more functions.
 
-What the package does with unusual input, and what happens here:
+Differences for unusual input:
 
-- A screw axis that is not unit: θ counts in units of 1/‖ω‖, as in the package. A column of zeros is a joint that moves nothing.
+- A screw axis that is not unit: θ is in units of 1/‖ω‖, as in the package. A column of zeros is a joint without effect.
 - ``NearZero`` is the package's, 10⁻⁶. Exponentials and logarithms do not round at it: rotations by less than 10⁻⁶ rad are computed,
-  where the package takes the identity. So results differ by up to 10⁻⁶ there, and these are the exact ones.
-- Logarithms near half a turn keep all digits, where the package's arc cosine loses up to half of them, or by rounding finds no turn.
+  where the package uses the identity. So results differ by up to 10⁻⁶ there; mozzi's are exact.
+- Logarithms near half a turn keep all digits; the package's arc cosine loses up to half of them, or rounds to the identity.
   At half a turn the axis has the package's sign.
-- A rotation whose digits were cut, by less than 10⁻³, is replaced by the nearest rotation; the package computes on with what it is given.
-  What is no rotation, or has another last row than 0, 0, 0, 1, is refused where a logarithm, an adjoint or a robot is made of it.
-- A spatial inertia that no arrangement of mass has (not symmetric, or 𝒢 without the form [[I, [mc]], [−[mc], m]]) is refused. Negative
-  masses and moments are computed as given, as in the package.
-- Lists that are longer than θ are cut, as in the package; shorter ones are refused.
-- A singular mass matrix is ``numpy.linalg.LinAlgError``, also where rounding keeps the package's inverse from noticing.
+- A matrix within 10⁻³ of a rotation (truncated digits) is replaced by the nearest rotation; the package uses it as given.
+  Other matrices, or a last row other than 0, 0, 0, 1, are refused by logarithms, adjoints and robots.
+- A spatial inertia of an invalid form (not symmetric, or 𝒢 other than [[I, [mc]], [−[mc], m]]) is refused. Negative masses and
+  moments are used as given, as in the package.
+- Lists longer than θ are truncated, as in the package; shorter ones are refused.
+- A singular mass matrix raises ``numpy.linalg.LinAlgError``, also if rounding hides it from the package's inverse.
 - ``TransToRp`` and ``RotInv`` give views of new arrays, integers stay integers where the package keeps them.
-- ``IKinBody`` and ``IKinSpace`` take the package's at most 20 steps of Newton's method.
+- ``IKinBody`` and ``IKinSpace`` take the package's at most 20 steps of Newton's method, from the guess alone, without limits, and answer with
+  the last step's θ where they do not converge. ``mozzi.InverseKinematics`` keeps limits, tries other starts, and answers with the best θ.
+- Time scalings go on as polynomials before 0 and after T, as in the package; ``mozzi.trajectories.Profile`` rests there.
 """
 
 import importlib
@@ -263,7 +265,7 @@ def ad(V: Any) -> Any:
 def InverseDynamics(
     thetalist: Any, dthetalist: Any, ddthetalist: Any, g: Any, Ftip: Any, Mlist: Any, Glist: Any, Slist: Any,
 ) -> Any:  # fmt: skip
-    """τ = Mθ̈ + c + g + JᵀF (n,). Ftip (6,) is what the end effector applies, in its own frame; Mlist (n + 1, 4, 4) are the links' frames,
+    """τ = Mθ̈ + c + g + JᵀF (n,). Ftip (6,) is the wrench that the end effector applies, in its own frame; Mlist (n + 1, 4, 4) are the links' frames,
     each seen from the one before, Glist (n, 6, 6) their spatial inertias, Slist (6, n) the screws in the space frame."""
     return _compiled.inverse_dynamics(thetalist, dthetalist, ddthetalist, g, Ftip, Mlist, Glist, Slist)
 
@@ -311,9 +313,6 @@ class _Robot:
         k = self.k
         return k * self.model.inverse_dynamics(k * theta, k * dtheta, k * ddtheta, wrench)
 
-    def mass_matrix(self, theta: Any) -> Any:
-        return self.k[:, None] * self.model.mass_matrix(self.k * theta) * self.k
-
     def steps(self, theta: Any, dtheta: Any, tau: Any, wrench: Any, dt: Any, count: Any) -> Any:
         """Euler's method."""
         k, wrench = self.k, wrench if np.any(wrench) else None
@@ -326,7 +325,7 @@ class _Robot:
 def InverseDynamicsTrajectory(
     thetamat: Any, dthetamat: Any, ddthetamat: Any, g: Any, Ftipmat: Any, Mlist: Any, Glist: Any, Slist: Any,
 ) -> Any:  # fmt: skip
-    """τ (N, n) of a motion: θ, θ̇, θ̈ (N, n), and what the end effector applies, (N, 6)."""
+    """τ (N, n) of a motion: θ, θ̇, θ̈ (N, n), and the end effector's wrench, (N, 6)."""
     thetamat, dthetamat, ddthetamat = (np.asarray(x, float) for x in (thetamat, dthetamat, ddthetamat))
     robot = _Robot(thetamat.shape[1], g, Mlist, Glist, Slist)
     return robot.inverse_dynamics(thetamat, dthetamat, ddthetamat, np.asarray(Ftipmat, float))
@@ -353,20 +352,18 @@ def ForwardDynamicsTrajectory(
 
 def CubicTimeScaling(Tf: Any, t: Any) -> Any:
     """s(t) = 3(t/T)² − 2(t/T)³."""
-    x = t / Tf
-    return x * x * (3 - 2 * x)
+    return _compiled.time_scaling(t / Tf, 3)
 
 
 def QuinticTimeScaling(Tf: Any, t: Any) -> Any:
     """s(t) = 10(t/T)³ − 15(t/T)⁴ + 6(t/T)⁵."""
-    x = t / Tf
-    return x**3 * (10 + x * (6 * x - 15))
+    return _compiled.time_scaling(t / Tf, 5)
 
 
 def _scaling(Tf: Any, N: Any, method: Any) -> Any:
     """s at N times from 0 to T: 3 is cubic, all else quintic, as in the package."""
     t = Tf / (N - 1.0) * np.arange(N)
-    return CubicTimeScaling(Tf, t) if method == 3 else QuinticTimeScaling(Tf, t)
+    return (CubicTimeScaling if method == 3 else QuinticTimeScaling)(Tf, t)
 
 
 def JointTrajectory(thetastart: Any, thetaend: Any, Tf: Any, N: Any, method: Any) -> Any:
@@ -409,7 +406,7 @@ def _computed_torque(
     theta, dtheta, ddtheta_d = np.asarray(theta, float), np.asarray(dtheta, float), np.asarray(ddtheta_d, float)
     e = np.subtract(theta_d, theta)
     feedback = Kp * e + Ki * (np.array(eint) + e) + Kd * np.subtract(dtheta_d, dtheta)
-    return robot.mass_matrix(theta) @ feedback + robot.inverse_dynamics(theta, dtheta, ddtheta_d)
+    return robot.inverse_dynamics(theta, dtheta, ddtheta_d + feedback)
 
 
 def SimulateControl(

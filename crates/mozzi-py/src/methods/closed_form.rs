@@ -74,7 +74,7 @@ impl PyModel {
     /// -------
     /// ClosedForm
     ///     Matrices over N bodies, the moving links and a floating base: `A` (6N, n), `G`, `W`, `L`, `ad_V`, `ad_Adtheta` (6N, 6N); `V`,
-    ///     `V_base`, `dV_base`, `F_tip` (6N,); `M` (n, n); `c`, `g`, `tip_forces`, `friction`, `armature`,
+    ///     `V_base`, `dV_base`, `F_tip` (6N,); `M`, `armature` (n, n); `c`, `g`, `tip_forces`, `friction`,
     ///     `springs` (n,).
     ///
     /// Examples
@@ -118,7 +118,7 @@ impl PyModel {
             vector(py, &form.gravity_forces())?,
             vector(py, &form.tip_forces())?,
             vector(py, &form.friction)?,
-            vector(py, &form.armature)?,
+            matrix(py, &form.armature)?,
             vector(py, &form.springs)?,
         ];
         named(py, "ClosedForm", fields)

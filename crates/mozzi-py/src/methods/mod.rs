@@ -6,5 +6,6 @@ mod documentation;
 mod edits;
 mod quantity;
 mod report;
+mod states;
 
 pub use attach::add_to;

@@ -1,8 +1,9 @@
 //! A robot and its motion as a page.
 
-use crate::array::{Numbers, shown, wrong_shape};
+use crate::array::list;
 use crate::failure::{LoadWarning, of_loader};
 use crate::model::PyModel;
+use crate::results::named;
 use mozzi::Trajectory;
 use mozzi::simulation::{Energy, Sample};
 use mozzi_report::{Drawing, Meshes, Motion};
@@ -22,12 +23,7 @@ fn meshes(name: &str) -> PyResult<Meshes> {
 
 /// The numbers of an attribute.
 fn column(of: &Bound<'_, PyAny>, name: &'static str, shape: &[usize]) -> PyResult<Vec<f64>> {
-    let mut numbers = Numbers::new(name, &of.getattr(name)?)?;
-    if numbers.shape != shape {
-        return Err(wrong_shape(name, &numbers.shape, shown(shape)));
-    }
-    numbers.spread::<f64>(&[], shape.len())?;
-    Ok(numbers.slice::<f64>()?.to_vec())
+    list(name, &of.getattr(name)?, shape)
 }
 
 /// Row k of a table.
@@ -82,26 +78,30 @@ impl PyModel {
     ///     Which meshes of that file go into the page.
     /// title : str
     ///     What the motion is, in a few words.
+    /// rows : int, optional
+    ///     At most so many rows of the motion, at equal times; None for all.
     ///
     /// Returns
     /// -------
-    /// None
-    ///     The file is written.
+    /// ReportSize
+    ///     `rows` on the page, of `all_rows`, and `bytes` of the file.
     ///
     /// Warns
     /// -----
     /// LoadWarning
     ///     For each shape that is left out.
-    #[pyo3(signature = (path, trajectory=None, *, shapes=None, meshes="visual", title="simulated"))]
-    fn report(
+    #[pyo3(signature = (path, trajectory=None, *, shapes=None, meshes="visual", title="simulated", rows=Some(mozzi_report::ROWS)))]
+    #[allow(clippy::too_many_arguments)] // Python's
+    fn report<'py>(
         &self,
-        py: Python<'_>,
+        py: Python<'py>,
         path: PathBuf,
-        trajectory: Option<&Bound<'_, PyAny>>,
+        trajectory: Option<&Bound<'py, PyAny>>,
         shapes: Option<PathBuf>,
         meshes: &str,
         title: &str,
-    ) -> PyResult<()> {
+        rows: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (model, meshes) = (&self.robot().model, self::meshes(meshes)?);
         let drawing = match shapes {
             Some(file) => Drawing::of_file(&file.to_string_lossy(), meshes).map_err(|error| of_loader(py, error))?,
@@ -113,9 +113,13 @@ impl PyModel {
             PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
         }
         let motion = trajectory.map(|given| self::trajectory(model, given)).transpose()?;
-        let motion = motion.map(|motion| Motion::simulated(title, &motion));
+        let all_rows = motion.as_ref().map_or(0, Trajectory::len);
+        let motion = motion.map(|motion| Motion::simulated(title, &motion).thinned(rows.unwrap_or(usize::MAX)));
         let page = mozzi_report::html(model, &drawing, motion.as_ref());
         let page = page.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        std::fs::write(&path, page).map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))
+        std::fs::write(&path, &page).map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))?;
+        let rows = motion.map_or(0, |motion| motion.t.len());
+        let numbers = [rows, all_rows, page.len()].map(|x| x.into_pyobject(py).map(Bound::into_any));
+        named(py, "ReportSize", numbers.into_iter().collect::<Result<_, _>>()?)
     }
 }

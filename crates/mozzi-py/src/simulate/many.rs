@@ -100,11 +100,6 @@ impl Robots<'_> {
         Err(self.wrong(robot, Error::Diverged { quantity, joint, value, step, time, step_size }))
     }
 
-    /// Is this step recorded?
-    fn is_recorded(&self, step: usize) -> bool {
-        step.is_multiple_of(self.options.record_every) || step == self.options.steps
-    }
-
     /// Under torques that stay as they are: the batch takes many steps at once.
     fn move_steadily(&self, py: Python, start: [&[f64]; 2], tau: &[f64], record: &mut Record) -> PyResult<()> {
         let [mut theta, mut dtheta] = start.map(<[f64]>::to_vec);
@@ -122,7 +117,7 @@ impl Robots<'_> {
             self.check_bounded("theta", theta, |robot| (robot, done))?;
             self.check_bounded("dtheta", dtheta, |robot| (robot, done))?;
             py.check_signals()?;
-            if self.is_recorded(done) {
+            if self.options.is_recorded(done) {
                 record.write(self.options.time(done), theta, dtheta, tau);
             }
         }
@@ -160,19 +155,20 @@ impl Robots<'_> {
             Ok::<[f64; 0], PyErr>([])
         };
         let (space, robots) = (self.model.configuration_space(), dtheta.len() / self.model.n());
+        let method = self.options.method.explicit().map_err(of_model)?;
         let mut motion =
             Motion::start_many(space, robots, 0.0, theta, dtheta, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
         record.write(0.0, &motion.theta, &motion.dtheta, &tau);
         for step in 1..=self.options.steps {
             let (h, t) = (self.options.step(), self.options.time(step));
-            motion.step(self.options.method, h, t, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
+            motion.step(method, h, t, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
             for (quantity, numbers) in
                 [("theta", &motion.theta), ("dtheta", &motion.dtheta), ("ddtheta", &motion.ddtheta)]
             {
                 self.check_bounded(quantity, numbers, |robot| (robot, step))?;
             }
             py.check_signals()?;
-            if self.is_recorded(step) {
+            if self.options.is_recorded(step) {
                 record.write(t, &motion.theta, &motion.dtheta, &tau);
             }
         }
@@ -232,7 +228,7 @@ pub fn simulate<'py>(
         Record { t: Vec::with_capacity(rows), theta: table(model.nq())?, dtheta: table(n)?, tau: table(n)? };
     match torque {
         _ if start[1].is_empty() => {
-            record.t.extend((0..=options.steps).filter(|&k| robots.is_recorded(k)).map(|k| options.time(k)))
+            record.t.extend((0..=options.steps).filter(|&k| options.is_recorded(k)).map(|k| options.time(k)))
         }
         Torque::None => robots.move_steadily(py, start, &vec![0.0; start[1].len()], &mut record)?,
         Torque::Constant(tau) => {

@@ -2,16 +2,18 @@
 
 mod many;
 mod one;
+mod watched;
 
 use crate::arguments::Given;
 use crate::array::{Numbers, common_leading};
 use crate::model::PyModel;
 use crate::threads::Threads;
 use mozzi::Vec3;
-use mozzi::simulation::{Friction, Method, Options};
+use mozzi::simulation::{Friction, Method, Options, Policy};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+use watched::Watched;
 
 /// What the motors do.
 enum Torque<'a, 'py> {
@@ -42,15 +44,26 @@ impl<'a, 'py> Torque<'a, 'py> {
     }
 }
 
-fn method(name: &str) -> PyResult<Method> {
+fn method(name: &str, tolerance: f64) -> PyResult<Method> {
     match name {
         "rk4" => Ok(Method::RungeKutta4),
         "semi-implicit-euler" => Ok(Method::SemiImplicitEuler),
         "euler" => Ok(Method::Euler),
+        "dopri" => Ok(Method::DormandPrince { tolerance }),
+        "midpoint" => Ok(Method::Midpoint),
         _ => {
-            let expected = "'rk4', 'semi-implicit-euler' or 'euler'";
+            let expected = "'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
             Err(PyValueError::new_err(format!("method is '{name}', expected {expected}")))
         }
+    }
+}
+
+fn policy(name: &str) -> PyResult<Policy> {
+    match name {
+        "ignore" => Ok(Policy::Ignore),
+        "report" => Ok(Policy::Report),
+        "respect" => Ok(Policy::Respect),
+        _ => Err(PyValueError::new_err(format!("joint_limits is '{name}', expected 'ignore', 'report' or 'respect'"))),
     }
 }
 
@@ -67,15 +80,27 @@ impl PyModel {
     /// duration : float
     ///     s.
     /// steps : int
-    ///     At least 1.
+    ///     At least 1. With 'dopri', whose steps are its own, the number of intervals between rows.
     /// torque : callable, array_like, 'gravity_compensation' or None
     ///     The motors' τ: `torque(t, theta, dtheta)`, asked at each stage of each step; constant, shape (..., n); τ = g(θ) + k(θ − θ₀), what holds
     ///     gravity and springs; or none. Of many
     ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers (..., n).
-    /// method : {'rk4', 'semi-implicit-euler', 'euler'}
-    ///     How a step is taken.
+    /// method : {'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
+    ///     How a step is taken. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and
+    ///     symplectic: the energy's error stays bounded. These two take one start.
+    /// tolerance : float
+    ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇.
     /// record_every : int
     ///     Record the start, every k-th step and the last.
+    /// until : str, callable, or a list of them, optional
+    ///     End the motion where one of these becomes true: a condition in words, such as 'elbow > 1.2' (as it rises
+    ///     through it), '<' (falls), '=' (either), of a joint, 'theta_2', 'dtheta_2' or 'tool0.z'; 'joint-limit'; or a
+    ///     zero of `function(t, theta, dtheta)`. One start only.
+    /// events : str, callable, or a list of them, optional
+    ///     Likewise, reported in the result's `events`; the motion goes on. One start only.
+    /// joint_limits : {'report', 'ignore', 'respect'}
+    ///     How to treat the joints' position limits: 'report' lists them in the result's `joint_limits`, 'respect'
+    ///     brings a joint to rest at its limit. 'respect' takes one start; many starts report no limits.
     /// gravity : array_like, shape (3,), optional
     ///     In place of the model's own: m/s².
     /// slip_speed : float, optional
@@ -108,7 +133,7 @@ impl PyModel {
     /// >>> falls = pendulum.simulate(starts, [0.0, 0.0], 1.0, 100, record_every=10)
     /// >>> falls.t.shape, falls.theta.shape
     /// ((11,), (50, 11, 2))
-    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="rk4", record_every=1, gravity=None, slip_speed=None, threads=None))]
+    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="rk4", tolerance=1e-9, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, threads=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn simulate<'py>(
         slf: &Bound<'py, Self>,
@@ -118,7 +143,11 @@ impl PyModel {
         steps: usize,
         torque: Given<'_, 'py>,
         method: &str,
+        tolerance: f64,
         record_every: usize,
+        until: Given<'_, 'py>,
+        events: Given<'_, 'py>,
+        joint_limits: &str,
         gravity: Given<'_, 'py>,
         slip_speed: Option<f64>,
         threads: Option<Threads>,
@@ -130,7 +159,9 @@ impl PyModel {
             Ok(numbers)
         };
         let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta)?);
-        let mut options = Options { method: self::method(method)?, record_every, ..Options::new(duration, steps) };
+        let (method, joint_limits) = (self::method(method, tolerance)?, policy(joint_limits)?);
+        let mut options = Options { method, record_every, joint_limits, ..Options::new(duration, steps) };
+        let watched = Watched { until, events };
         if let Some(gravity) = gravity {
             options.gravity = Some(Vec3(Numbers::fixed("gravity", gravity, "(3,): m/s²")?));
         }
@@ -145,13 +176,19 @@ impl PyModel {
         let leading = common_leading(tables.iter().map(|table| (table.name, table.leading(1))))?;
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;
         let start = [theta.slice()?, dtheta.slice()?];
-        match slip_speed {
-            _ if leading.is_empty() => one::simulate(slf, start, torque, &options),
-            None => many::simulate(slf, &leading, start, torque, &options, gravity, threads),
-            Some(speed) => {
-                let expected = "None of many starts: their joints' friction is μ sgn θ̇";
-                Err(PyValueError::new_err(format!("slip_speed is {speed}, expected {expected}")))
+        if leading.is_empty() {
+            return one::simulate(slf, start, torque, &options, watched);
+        }
+        let only_one = [
+            ("slip_speed", slip_speed.map(|speed| speed.to_string()), "None"),
+            ("until or events", (!watched.is_empty()).then(|| "given".into()), "None"),
+            ("joint_limits", (joint_limits == Policy::Respect).then(|| "'respect'".into()), "'report' or 'ignore'"),
+        ];
+        for (name, found, expected) in only_one {
+            if let Some(found) = found {
+                return Err(PyValueError::new_err(format!("{name} is {found}, expected {expected} of many starts")));
             }
         }
+        many::simulate(slf, &leading, start, torque, &options, gravity, threads)
     }
 }

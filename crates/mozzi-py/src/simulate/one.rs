@@ -1,13 +1,14 @@
 //! One start: what drives the robot, from Python's arguments, and the motion with its energies as arrays.
 
 use super::Torque;
+use super::watched::{Watched, happened, stopped};
 use crate::array::Numbers;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::results::named;
 use crate::robot::Robot;
 use mozzi::Error;
-use mozzi::simulation::{Energy, GravityCompensation, Input, Options, Trajectory, Zero};
+use mozzi::simulation::{Energy, GravityCompensation, Input, Options, Run, Simulation, Zero};
 use pyo3::prelude::*;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -50,58 +51,64 @@ impl Input for Function<'_, '_> {
     }
 }
 
+/// Steps between two looks at whether Python was interrupted.
+const BETWEEN_LOOKS: usize = 500;
+
 /// The motion of one robot.
 pub fn simulate<'py>(
     robot: &Bound<'py, PyModel>,
     [theta, dtheta]: [&[f64]; 2],
     torque: Torque<'_, 'py>,
     options: &Options,
+    watched: Watched<'_, 'py>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, this) = (robot.py(), robot.get());
-    let (model, start, raised) = (&this.robot().model, [theta, dtheta], RefCell::new(None));
+    let (model, raised) = (&this.robot().model, RefCell::new(None));
+    let simulation = Simulation {
+        options: *options,
+        events: watched.events(model, &raised)?,
+        forward_dynamics: this.robot().compiled.as_ref().and_then(|machine| machine.code.simulator()),
+    };
+    let go = |input: &mut dyn Input| run(py, this.robot(), [theta, dtheta], input, &simulation, &raised);
     let found = match torque {
-        Torque::None => run(py, this.robot(), start, Zero, options, &raised)?,
-        Torque::Constant(tau) => {
-            run(py, this.robot(), start, Constant(tau.slice::<f64>()?.to_vec()), options, &raised)?
-        }
+        Torque::None => go(&mut Zero)?,
+        Torque::Constant(tau) => go(&mut Constant(tau.slice::<f64>()?.to_vec()))?,
         Torque::GravityCompensation => {
-            let motors = GravityCompensation::against(model, options.gravity.unwrap_or(model.gravity()));
-            run(py, this.robot(), start, motors, options, &raised)?
+            go(&mut GravityCompensation::against(model, options.gravity.unwrap_or(model.gravity())))?
         }
-        Torque::Function(function) => {
-            run(py, this.robot(), start, Function { model: this, function, raised: &raised }, options, &raised)?
-        }
+        Torque::Function(function) => go(&mut Function { model: this, function, raised: &raised })?,
     };
     trajectory(py, robot, found)
 }
 
-/// Simulates, by machine code where there is some for θ̈, and looks now and then whether Python was interrupted.
+/// Looks now and then whether Python was interrupted, or a function raised an exception.
 fn run(
     py: Python<'_>,
     robot: &Robot,
     start: [&[f64]; 2],
-    input: impl Input,
-    options: &Options,
+    input: &mut dyn Input,
+    simulation: &Simulation,
     raised: &RefCell<Option<PyErr>>,
-) -> PyResult<Trajectory> {
-    let progress = |_, _| match py.check_signals() {
-        Ok(()) => ControlFlow::Continue(()),
-        Err(error) => {
+) -> PyResult<Run> {
+    let mut steps = 0;
+    let progress = |_| {
+        steps += 1;
+        if steps % BETWEEN_LOOKS == 0
+            && let Err(error) = py.check_signals()
+        {
             *raised.borrow_mut() = Some(error);
-            ControlFlow::Break(())
         }
+        if raised.borrow().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let found = match &robot.compiled {
-        Some(machine) => machine.code.simulate_with_progress(start[0], start[1], input, options, progress),
-        None => robot.model.simulate_with_progress(start[0], start[1], input, options, progress),
-    };
+    let found = simulation.run_with_progress(&robot.model, start[0], start[1], input, progress);
     match raised.borrow_mut().take() {
         Some(error) => Err(error),
         None => found.map_err(of_model),
     }
 }
 
-fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, found: Trajectory) -> PyResult<Bound<'py, PyAny>> {
+fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, run: Run) -> PyResult<Bound<'py, PyAny>> {
+    let Run { motion: found, events, stops } = run;
     let rows = found.len();
     let names = |names: Vec<&str>| names.into_pyobject(py);
     let energies = |part: fn(&Energy) -> f64| array(py, &[rows], found.energy.iter().map(part));
@@ -120,6 +127,8 @@ fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, found: Trajecto
         names(model.position_names().collect())?,
         names(model.velocity_names().collect())?,
         robot.clone().into_any(),
+        happened(py, events)?,
+        stopped(py, stops)?,
     ];
     named(py, "Trajectory", fields)
 }

@@ -6,7 +6,7 @@ pub enum Scale {
     /// Evenly.
     #[default]
     Linear,
-    /// By their logarithms; what is not positive is not drawn.
+    /// Logarithmic; values that are not positive are not drawn.
     Logarithmic,
 }
 

@@ -9,14 +9,15 @@ pub struct Convergence {
     pub name: String,
     /// Its order.
     pub order: u32,
-    /// (h, error): step in seconds, and the largest entry of θ(t_f) ⊖ θ_reference(t_f); none where steps are found by a tolerance.
+    /// (h, error): step in seconds, and the largest entry of θ(t_f) ⊖ θ_reference(t_f); empty for adaptive steps.
     pub by_step: Vec<[f64; 2]>,
     /// (evaluations of θ̈, error).
     pub by_work: Vec<[f64; 2]>,
 }
 
 impl Convergence {
-    /// All methods in two panels: over the step, with the slopes that their orders promise as dashed lines, and over the evaluations.
+    /// All methods in two panels: over the step, with the slopes that their orders promise as dashed lines, and over
+    /// the evaluations.
     pub fn figure(title: impl Into<String>, found: &[Convergence]) -> Figure {
         let (mut by_step, mut by_work) = (Vec::new(), Vec::new());
         for (color, Convergence { name, order, by_step: steps, by_work: work }) in found.iter().enumerate() {

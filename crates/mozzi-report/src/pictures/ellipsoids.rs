@@ -34,9 +34,10 @@ impl Plane {
     }
 }
 
-/// At each configuration the robot's links up to a frame, and in its origin two ellipses of this plane of {s}: of velocities,
-/// { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a floating base and free joints are held. The force ellipse is
-/// scaled to the size of the other, as the legend tells, and left out where J_v is singular.
+/// At each configuration the robot's links up to a frame, and in its origin two ellipses of this plane of {s}: of
+/// velocities, { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a
+/// floating base and free joints are held. The force ellipse is scaled to the size of the other, as the legend states,
+/// and omitted where J_v is singular.
 ///
 /// # Errors
 /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 /// A mesh that was not found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotLocated {
-    /// As the robot's file names it.
+    /// The name in the robot's file.
     pub file: String,
-    /// Where it was looked for; empty where its address is of a kind that is not looked for.
+    /// The places searched; empty for unsupported kinds of addresses.
     pub tried: Vec<PathBuf>,
 }
 
@@ -18,7 +18,7 @@ impl fmt::Display for NotLocated {
         let Some(first) = self.tried.first() else {
             return write!(f, "mesh {}: expected package://, file://, or a path", self.file);
         };
-        write!(f, "mesh {} is not at hand: neither {}", self.file, first.display())?;
+        write!(f, "mesh {} was not found: neither {}", self.file, first.display())?;
         match self.tried.len() - 1 {
             0 => Ok(()),
             more => write!(f, " nor {more} other places"),
@@ -28,9 +28,10 @@ impl fmt::Display for NotLocated {
 
 impl std::error::Error for NotLocated {}
 
-/// The file of a mesh that the robot in `robot_file` names. A path is relative to the robot's file; `file://` is absolute;
-/// `package://NAME/PATH` (two slashes or three) is looked for as `NAME/PATH` in every folder above the robot's file, then in those of
-/// `ROS_PACKAGE_PATH`, and as `share/NAME/PATH` in those of `AMENT_PREFIX_PATH`. Nothing is fetched.
+/// The file of a mesh that the robot in `robot_file` names. A path is relative to the robot's file; `file://` is
+/// absolute; `package://NAME/PATH` (two slashes or three) is searched as `NAME/PATH` in every folder above the robot's
+/// file, then in those of `ROS_PACKAGE_PATH`, and as `share/NAME/PATH` in those of `AMENT_PREFIX_PATH`. Nothing is
+/// fetched.
 ///
 /// # Errors
 /// [`NotLocated`] with the places.
@@ -91,7 +92,7 @@ mod tests {
     fn what_is_missing_is_named_with_a_place() {
         let error =
             locate(Path::new("/robots/arm.urdf"), "package://arm/a.stl").expect_err("nothing there").to_string();
-        assert!(error.starts_with("mesh package://arm/a.stl is not at hand: neither /"), "{error}");
+        assert!(error.starts_with("mesh package://arm/a.stl was not found: neither /"), "{error}");
         let error = locate(Path::new("a.urdf"), "http://a/b.stl").expect_err("no network").to_string();
         assert_eq!(error, "mesh http://a/b.stl: expected package://, file://, or a path");
     }

@@ -22,7 +22,7 @@ use std::path::Path;
 pub struct Geometry {
     /// In the order of the file.
     pub shapes: Vec<Shape>,
-    /// What could not be read, and is left out: warnings, since a robot moves without its looks.
+    /// Invalid shapes, which are omitted: warnings, since shapes do not affect the dynamics.
     pub left_out: Vec<Diagnostic>,
 }
 
@@ -40,7 +40,7 @@ pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
     Ok(parse(name_or_path, file_bytes(Path::new(name_or_path))?))
 }
 
-/// The shapes of a text. The name is what diagnostics call it.
+/// The shapes of a text. Diagnostics use the name as its file name.
 pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));

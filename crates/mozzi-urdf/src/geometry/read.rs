@@ -40,8 +40,8 @@ fn placed_form(element: &Element, cx: &mut Context) -> Option<(SE3, Form)> {
     let T = children(element, "origin").next().map_or(Some(SE3::identity()), |origin| origin::read(&origin, cx));
     let first = children(element, "geometry").next().and_then(|geometry| geometry.elements().next());
     let Some(form) = first else {
-        let message = format!("{}: has no <geometry> with a form in it", element.subject);
-        let help = "a form is <box>, <cylinder>, <sphere>, <capsule> or <mesh>, inside of <geometry>";
+        let message = format!("{}: has no <geometry> that contains a shape", element.subject);
+        let help = "a shape is <box>, <cylinder>, <sphere>, <capsule> or <mesh>, inside <geometry>";
         cx.findings.add(Finding::warning("missing_element", element.span(), message).help(help));
         return None;
     };
@@ -63,8 +63,8 @@ fn read_form(form: &Element, cx: &mut Context) -> Option<Form> {
             Some(Form::Mesh { file, scale })
         }
         other => {
-            let message = format!("{}: `{}` is none of the forms that are drawn", form.subject, shown(other));
-            let help = "a form is <box>, <cylinder>, <sphere>, <capsule> or <mesh>";
+            let message = format!("{}: `{}` is not a shape that can be drawn", form.subject, shown(other));
+            let help = "a shape is <box>, <cylinder>, <sphere>, <capsule> or <mesh>";
             cx.findings.add(Finding::warning("unknown_element", form.span(), message).help(help));
             None
         }

@@ -7,9 +7,9 @@ use mozzi::SE3;
 pub struct Shape {
     /// The link that it belongs to.
     pub link: String,
-    /// To be seen, or to collide.
+    /// Visual or collision shape.
     pub purpose: Purpose,
-    /// Its frame, seen from the link's.
+    /// Configuration of its frame relative to the link's.
     pub T: SE3,
     /// What it is.
     pub form: Form,
@@ -67,7 +67,7 @@ pub enum Form {
     Mesh {
         /// As written; [`locate`](super::locate) finds the file.
         file: String,
-        /// By which its numbers are multiplied to be metres; a negative one mirrors.
+        /// Scale factors that convert its coordinates to metres; negative ones mirror.
         scale: [f64; 3],
     },
 }

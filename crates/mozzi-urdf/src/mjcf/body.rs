@@ -53,10 +53,10 @@ impl<'a> Model<'a> {
         let class = self.classes.named(&element, "childclass", inside.class, cx);
         let mut origin = inside.T * pose(&item, &self.compiler, cx);
         if item.number("gravcomp", 0.0, cx) != 0.0 {
-            self.ignored.force("gravcomp", &item, "gravcomp", "a compensation of gravity");
+            self.ignored.force("gravcomp", &item, "gravcomp", "gravity compensation");
         }
         if item.flag("mocap", false, cx) {
-            self.ignored.force("mocap", &item, "mocap", "a motion that is given");
+            self.ignored.force("mocap", &item, "mocap", "a prescribed motion");
         }
         let mut contents = Contents::default();
         self.gather(&element, SE3::identity(), class, carrier.depth, &mut contents, cx);
@@ -65,7 +65,7 @@ impl<'a> Model<'a> {
         if let Some(value) = element.attribute("name") {
             place.set("name", value.span);
         }
-        let is_free = self.free(&contents, carrier.link, &name.shown(), cx);
+        let is_free = self.free(&contents, carrier.link, &name.shown(), origin, cx);
         let is_static = carrier.is_static && contents.joints.is_empty() && !is_free;
         let inertia = self.inertia(&element, &contents, &mut place, is_static, cx);
         // joints act one after the other, the first at the parent; between them are massless links
@@ -82,11 +82,7 @@ impl<'a> Model<'a> {
             (parent, origin) = (child, SE3::identity());
         }
         let link = if count == 0 { self.tree.links.len() } else { parent };
-        if is_free {
-            if origin != SE3::identity() {
-                self.ignored.start(&element);
-            }
-        } else if count == 0 {
+        if count == 0 && !is_free {
             let fixed = Name::generated(format!("{}:fixed", name.shown()));
             self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
         }
@@ -129,7 +125,7 @@ impl<'a> Model<'a> {
         geom.check_attributes(&vocabulary::GEOM, cx);
         geom.check_children(&vocabulary::GEOM, cx);
         if let Some(plugin) = geom.elements().find(|child| child.name() == "plugin") {
-            self.ignored.list("plugin", plugin.span(), &geom.subject, "it makes a shape for contacts");
+            self.ignored.list("plugin", plugin.span(), &geom.subject, "it generates a shape for contacts");
         }
     }
 
@@ -160,9 +156,9 @@ impl<'a> Model<'a> {
                 Mass::Wrong => place.report("mass"),
                 Mass::Mesh if is_static => self.ignored.mesh(&item),
                 Mass::Mesh => {
-                    let help = "give the body an <inertial>, or the geom the mass 0; MuJoCo writes inertias into the file that \
+                    let help = "give the body an <inertial>, or the geom mass=\"0\"; MuJoCo writes inertias into the file that \
                                 it saves with the compiler's saveinertial";
-                    let message = "is a mesh, whose inertia would be needed: mozzi reads no meshes";
+                    let message = "is a mesh, whose inertia is needed: mozzi does not read meshes";
                     cx.findings.add(item.error("mesh_inertia", "mesh", message).help(help));
                     place.report("mass");
                 }
@@ -172,13 +168,12 @@ impl<'a> Model<'a> {
         self.bounded(inertia)
     }
 
-    /// Scales all bodies to the mass that the compiler is told to.
+    /// Scales all bodies to the compiler's settotalmass.
     pub fn scale_to_total_mass(&mut self, cx: &mut Context) {
         let Some(total) = self.compiler.total_mass else { return };
         let mass: f64 = self.tree.links.iter().map(|link| link.inertia.mass).sum();
         if !(mass > 0.0) {
-            let message =
-                format!("compiler: settotalmass: the bodies have the mass {mass}, which cannot become {total}");
+            let message = format!("compiler: settotalmass: the bodies' total mass {mass} cannot be scaled to {total}");
             cx.findings.add(Finding::error("no_mass", self.tree.links[0].place.span(""), message));
             return;
         }

@@ -102,7 +102,8 @@ impl<'a> Classes<'a> {
         for child in element.elements().filter(|child| child.name() == "default") {
             let Some(name) = child.required_name("class", cx) else { continue };
             if self.names.contains_key(name.text) {
-                let message = format!("default: the class `{}` is taken, expected a name of its own", shown(name.text));
+                let message =
+                    format!("default: the class `{}` is used twice, expected a unique name", shown(name.text));
                 cx.findings.error("duplicate_name", name.span, message);
                 continue;
             }

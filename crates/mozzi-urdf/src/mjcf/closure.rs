@@ -1,5 +1,5 @@
-//! `<equality>`, `<tendon>` and `<actuator>`: what couples joints or closes loops. An affine coupling of two joints is a
-//! mimic joint; the rest is refused by name, unless it has no effect on the dynamics.
+//! `<equality>`: what couples joints or closes loops, and the order of what couples them otherwise. An affine coupling
+//! of two joints is a mimic joint; the rest is refused by name, unless it has no effect on the dynamics.
 
 use super::Model;
 use super::attributes::Item;
@@ -26,9 +26,12 @@ impl<'a> Model<'a> {
                 _ => continue,
             };
         }
-        for (section, child) in
-            sections.iter().flat_map(|section| section.elements().map(move |child| (section, child)))
-        {
+        let all = |is_first: bool| {
+            // actuators move tendons, so these come first
+            let sections = sections.iter().filter(move |section| (section.name() != "actuator") == is_first);
+            sections.flat_map(|section| section.elements().map(move |child| (section, child)))
+        };
+        for (section, child) in all(true).chain(all(false)) {
             if cx.findings.is_full() {
                 return;
             }
@@ -36,8 +39,8 @@ impl<'a> Model<'a> {
             let child = child.called(format!("{}: {}{name}", section.name(), child.name()));
             match section.name() {
                 "equality" => self.equality(child, &names, cx),
-                "tendon" => self.tendon(child, cx),
-                "actuator" => self.actuator(child, cx),
+                "tendon" => self.tendon(child, &names, cx),
+                "actuator" => self.actuator(child, &names, cx),
                 "deformable" if child.name() == "flex" => {
                     let message = format!("{}: is a flexible body, which mozzi does not compute", child.subject);
                     cx.findings.add(Finding::error("unsupported_element", child.span(), message));
@@ -45,6 +48,7 @@ impl<'a> Model<'a> {
                 _ => {}
             }
         }
+        self.settle_rotors(&names);
     }
 
     fn equality(&mut self, element: Element<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
@@ -65,7 +69,7 @@ impl<'a> Model<'a> {
                 _ => "ties a flexible body",
             };
             let message = format!("{}: {what}, which mozzi does not compute", item.element.subject);
-            let help = "remove it, or set active=\"false\", if the tree without it is what you want to compute";
+            let help = "remove it, or set active=\"false\", if you want to compute the tree without it";
             cx.findings.add(Finding::error(code, item.element.span(), message).help(help));
             return;
         }
@@ -83,7 +87,7 @@ impl<'a> Model<'a> {
         let subject = &item.element.subject;
         let refuse = |what: &str| {
             let message = format!("{subject}: {what}");
-            let help = "expected a coupling of two joints by a straight line, polycoef=\"a b 0 0 0\"";
+            let help = "expected a linear coupling of two joints, polycoef=\"a b 0 0 0\"";
             Finding::error("unsupported_equality", item.element.span(), message).help(help)
         };
         let mut find = |attribute: &str| {
@@ -98,56 +102,21 @@ impl<'a> Model<'a> {
         };
         let mimic_joint = find("joint1");
         if item.element.attribute("joint2").is_none() {
-            cx.findings.add(refuse("holds a joint where it is, which mozzi does not compute"));
+            cx.findings.add(refuse("fixes a joint at its position, which mozzi does not compute"));
             return;
         }
         let (Some((y, _)), Some((x, source))) = (mimic_joint, find("joint2")) else { return };
         if curved != [0.0; 3] {
-            cx.findings.add(refuse("couples joints by a curve, which mozzi does not compute"));
+            cx.findings.add(refuse("couples joints nonlinearly, which mozzi does not compute"));
             return;
         }
         if self.tree.joints[y].joint.mimic.is_some() {
-            cx.findings.add(refuse("its joint1 follows another already, expected one that it follows"));
+            cx.findings.add(refuse("its joint1 is already a mimic joint, expected at most one coupling per joint"));
             return;
         }
         let offset = self.tree.joints[y].reference + a0 - a1 * self.tree.joints[x].reference;
         let joint = &mut self.tree.joints[y];
         joint.place.set("mimic", source.span);
         joint.joint.mimic = Some(Mimic { joint: source.text.to_string(), ratio: a1, offset });
-    }
-
-    /// A tendon that only transmits the force of an actuator has no effect of its own.
-    fn tendon(&mut self, element: Element<'a>, cx: &mut Context) {
-        if !vocabulary::TENDONS.many.contains(&element.name()) {
-            return; // which was said
-        }
-        let item = self.classes.item(element, "tendon", Class::MAIN, cx);
-        item.element.check_attributes(&vocabulary::TENDON, cx);
-        let force = ["stiffness", "damping"].into_iter().find(|name| item.overlaid::<3>(name, cx) != [0.0; 3]);
-        let more = ["frictionloss", "armature"].into_iter().find(|name| item.number(name, 0.0, cx) != 0.0);
-        let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");
-        let is_limited = limited == "true" || limited == "auto" && item.has("range") && self.compiler.autolimits;
-        let Some(name) = force.or(more).or(is_limited.then_some("range")) else {
-            let help = "without stiffness, damping, friction, armature and limits it acts on nothing";
-            self.ignored.list("tendon", item.element.span(), "mujoco", help);
-            return;
-        };
-        let what = if name == "range" { "is limited" } else { "has a force of its own" };
-        let message = format!("{name}: the tendon {what}, which mozzi does not compute");
-        let help = "remove it if the tree without it is what you want to compute";
-        cx.findings.add(item.error("unsupported_tendon", name, &message).help(help));
-    }
-
-    /// The torques of actuators are arguments; their rotors and dampers are not.
-    fn actuator(&mut self, element: Element<'a>, cx: &mut Context) {
-        let item = self.classes.item(element, "actuator", Class::MAIN, cx);
-        if item.number("armature", 0.0, cx) != 0.0 {
-            let message = "armature: is an inertia of the actuator, which mozzi does not add to its joint's";
-            let help = "give the joint the armature, times the square of the gear";
-            cx.findings.add(item.error("actuator_armature", "armature", message).help(help));
-        }
-        if item.overlaid::<3>("damping", cx) != [0.0; 3] {
-            self.ignored.force("actuator damping", &item, "damping", "a damping of the actuator");
-        }
     }
 }

@@ -8,7 +8,7 @@ use crate::finding::Finding;
 use crate::vocabulary::shown;
 use mozzi::{SO3, Vec3};
 
-/// Where the inertia of a body is from.
+/// The source of a body's inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FromGeoms {
     Never,
@@ -20,7 +20,7 @@ pub(crate) enum FromGeoms {
 /// The settings that matter here.
 pub(crate) struct Compiler {
     degrees: bool,
-    /// Axis, and does it turn with the frame?
+    /// The axis, and whether it turns with the frame.
     sequence: [(usize, bool); 3],
     pub autolimits: bool,
     pub align_free: bool,
@@ -33,7 +33,7 @@ pub(crate) struct Compiler {
 }
 
 impl Compiler {
-    /// Of several sections, the last that says something counts.
+    /// The last of several sections takes precedence.
     pub fn read<'a: 's, 's>(sections: impl Iterator<Item = &'s Element<'a>>, cx: &mut Context) -> Self {
         let mut compiler = Compiler {
             degrees: true,
@@ -74,7 +74,7 @@ impl Compiler {
                 Some(&[a, b, c]) => self.sequence = [a, b, c],
                 _ => {
                     let message = format!("compiler: eulerseq: is `{}`, expected three axes", shown(value.text));
-                    let help = "such as `xyz`, which turn with the frame, or `XYZ`, which do not";
+                    let help = "such as `xyz` (axes that turn with the frame) or `XYZ` (fixed axes)";
                     cx.findings.add(Finding::error("unknown_word", value.span, message).help(help));
                 }
             }

@@ -11,7 +11,7 @@ use crate::finding::Finding;
 use crate::scan::MOST_DEPTH;
 use mozzi::SE3;
 
-/// Something in a body, and the frame that it is told in, seen from the body's.
+/// An element of a body, with the configuration of its frame relative to the body's.
 pub(crate) struct Inside<'a> {
     pub item: Item<'a>,
     pub T: SE3,
@@ -34,14 +34,14 @@ pub(crate) struct Contents<'a> {
 /// Files may include each other, and so nest deeper than one file can.
 pub(crate) fn is_too_deep(element: &Element, depth: usize, cx: &mut Context) -> bool {
     if depth > MOST_DEPTH {
-        let message = format!("more than {MOST_DEPTH} elements are nested here");
+        let message = format!("more than {MOST_DEPTH} nested elements");
         cx.findings.error("too_deep", element.span(), message);
     }
     depth > MOST_DEPTH
 }
 
 impl<'a> Model<'a> {
-    /// Adds what stands in an element, whose frame T is seen from the body's.
+    /// Adds the contents of an element whose frame is at T relative to the body's.
     pub fn gather(
         &mut self,
         element: &Element<'a>,

@@ -1,4 +1,5 @@
-//! `<freejoint>`, and joints of type `free`: a body that hangs on nothing, and, where it is all that moves, the robot's base.
+//! `<freejoint>`, and joints of type `free`: a body that hangs on nothing, and, where it is all that moves, the robot's
+//! base.
 
 use super::Model;
 use super::attributes::Item;
@@ -11,8 +12,8 @@ use mozzi::SE3;
 use mozzi::model::description::JointKind;
 
 impl<'a> Model<'a> {
-    /// Is the body, whose link comes next, free? Adds its joint; a free joint that cannot be is refused.
-    pub fn free(&mut self, contents: &Contents<'a>, carrier: usize, body: &str, cx: &mut Context) -> bool {
+    /// Whether the next link's body is free. Adds its joint with this initial pose; reports an invalid free joint.
+    pub fn free(&mut self, contents: &Contents<'a>, carrier: usize, body: &str, start: SE3, cx: &mut Context) -> bool {
         let Some(Inside { item, .. }) = contents.free.first() else { return false };
         self.tree.degrees += contents.free.len();
         let is_word = item.element.name() == "freejoint";
@@ -24,61 +25,61 @@ impl<'a> Model<'a> {
         let why = if carrier != 0 {
             Some("is a free joint inside the tree: in MJCF only a body of the world can be free")
         } else if contents.joints.len() + contents.free.len() > 1 {
-            Some("is a free joint beside other joints of its body, expected it alone")
+            Some("is a free joint in a body with other joints, expected no others")
         } else {
             None
         };
         if let Some(why) = why {
-            let help = "MuJoCo refuses it, too; inside the tree, a ball and three slides in one body move as a free joint does";
+            let help =
+                "MuJoCo refuses it, too; inside the tree, a ball and three slides in one body move like a free joint";
             cx.findings.add(item.error("unsupported_joint", "", why).help(help));
             return false;
         }
-        let damping = self.forces(&item, cx);
+        let [damping, armature] = self.forces(&item, cx);
         let aligned = match item.word("align", &["auto", "true", "false"], cx).filter(|_| is_word) {
             Some("true") => true,
             Some("false") => false,
             _ => self.compiler.align_free && is_word,
         };
         if aligned && contents.bodies.is_empty() {
-            let message = "is aligned with the body's inertia, which moves the body's frame";
-            let help = "set align=\"false\": positions are then those of the frame that the file says";
+            let message = "would be aligned with the body's inertia, which moves the body's frame";
+            let help = "set align=\"false\": positions are then those of the file's frame";
             cx.findings.add(item.error("unsupported_attribute", "align", message).help(help));
         }
         let mut place = Place::new(item.element.span());
-        if let Some(value) = item.value("damping") {
-            place.set("damping", value.span);
+        for name in ["damping", "armature"] {
+            if let Some(value) = item.value(name) {
+                place.set(name, value.span);
+            }
         }
         let link = self.tree.links.len();
         // its positions are the pose in the world, wherever the body is at first
         let added = self.tree.joint(name, [carrier, link], SE3::identity(), place);
-        (added.joint.kind, added.joint.damping) = (JointKind::Free, damping);
+        (added.joint.kind, added.joint.damping, added.joint.armature) = (JointKind::Free, damping, armature);
+        added.start = start;
         true
     }
 
-    /// What acts between the world and the body: its damping; other forces are told, an inertia is not left out.
-    fn forces(&mut self, item: &Item<'a>, cx: &mut Context) -> f64 {
+    /// The damping and the armature of a free joint. A warning lists forces that are not computed.
+    fn forces(&mut self, item: &Item<'a>, cx: &mut Context) -> [f64; 2] {
         if item.element.name() == "freejoint" {
-            return 0.0;
-        }
-        if item.number("armature", 0.0, cx) != 0.0 {
-            let message = "armature: would add an inertia between the world and the body, which mozzi does not";
-            let help = "set armature=\"0\" on the free joint";
-            cx.findings.add(item.error("unsupported_attribute", "armature", message).help(help));
+            return [0.0; 2];
         }
         let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
         if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
-            self.ignored.force("damping", item, "damping", "a damping that is not linear");
+            self.ignored.force("damping", item, "damping", "nonlinear damping");
         }
         if self.options.friction && item.number("frictionloss", 0.0, cx) != 0.0 {
-            self.ignored.force("free frictionloss", item, "frictionloss", "a friction of a free body");
+            self.ignored.force("free frictionloss", item, "frictionloss", "friction of a free body");
         }
         if self.options.spring && item.overlaid::<3>("stiffness", cx) != [0.0; 3] {
             self.ignored.force("free stiffness", item, "stiffness", "a spring of a free body");
         }
-        if self.options.damper { linear } else { 0.0 }
+        [if self.options.damper { linear } else { 0.0 }, item.number("armature", 0.0, cx)]
     }
 
-    /// Where one free body, undamped, with all that it carries is all that moves, it alone is the robot: its base floats. Else the world is the base.
+    /// If one free body carries all moving bodies, and its joint has neither damping nor armature, it is a floating
+    /// base. Otherwise the world is the base.
     pub fn leave_the_world(&mut self) {
         let mut free = self.tree.joints.iter().filter(|joint| joint.joint.kind == JointKind::Free);
         let (Some(base), None) = (free.next(), free.next()) else { return };
@@ -90,12 +91,12 @@ impl<'a> Model<'a> {
             stays[joint.child] = stays[joint.parent];
         }
         let beside = |joint: &Joint| !stays[joint.child] && joint.joint.kind != JointKind::Fixed;
-        if base.joint.damping != 0.0 || self.tree.joints.iter().any(beside) {
+        if base.joint.damping != 0.0 || base.joint.armature != 0.0 || self.tree.joints.iter().any(beside) {
             return;
         }
-        let joint = base.name.given.clone();
+        let (joint, start) = (base.name.given.clone(), base.start);
         self.tree.joints.retain(|joint| joint.child != link);
-        let mut free = Free { link, joint };
+        let mut free = Free { link, joint, start };
         let base = self.tree.links[free.link].name.shown();
         for (link, _) in self.tree.links.iter().zip(&stays).skip(1).filter(|(_, stays)| !**stays) {
             self.ignored.beside("body", &link.name.shown(), link.place.span(""), &base);

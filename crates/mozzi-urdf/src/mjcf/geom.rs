@@ -6,7 +6,7 @@ use super::orientation::{pose, to_z, unit};
 use crate::context::Context;
 use mozzi::{SE3, Solid, SpatialInertia, Vec3};
 
-/// MuJoCo's density where none is given, that of water: kg/m³.
+/// MuJoCo's default density, that of water: kg/m³.
 const DENSITY: f64 = 1000.0;
 
 const TYPES: [&str; 9] = ["plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"];
@@ -15,14 +15,14 @@ const TYPES: [&str; 9] = ["plane", "hfield", "sphere", "capsule", "ellipsoid", "
 pub(crate) enum Mass {
     /// In the body's frame.
     Known(SpatialInertia),
-    /// A mesh tells, which is not read.
+    /// It needs a mesh, which is not read.
     Mesh,
-    /// It cannot be read, which was reported.
+    /// It is invalid, which was reported.
     Wrong,
 }
 
 impl Model<'_> {
-    /// The inertia of a geom that is told in a frame T of its body.
+    /// The inertia of a geom that is given in a frame T of its body.
     pub fn mass_of(&self, item: &Item, T: SE3, cx: &mut Context) -> Mass {
         let nothing = Mass::Known(SpatialInertia::zero());
         let [low, high] = self.compiler.groups;

@@ -43,7 +43,7 @@ impl Ignored {
                 code: "ignored_force",
                 span: value.map_or_else(|| item.element.span(), |value| value.span),
                 message: format!("{}: {name}:{text} {what}, which mozzi does not compute", item.element.subject),
-                help: "M, c, g and inverse and forward dynamics leave it out; add what it does to the joints' torques",
+                help: "M, c, g and inverse and forward dynamics omit it; add its effect to the joint torques",
                 count: 1,
             }
         });
@@ -54,47 +54,36 @@ impl Ignored {
         self.add("mesh", || Kind {
             code: "ignored_mesh",
             span: item.element.span(),
-            message: format!("{}: is a mesh, whose mass is not known; the body does not move", item.element.subject),
-            help: "the mass of what does not move enters nothing but the sum of masses",
+            message: format!("{}: is a mesh of unknown mass; the body does not move", item.element.subject),
+            help: "the mass of a body that does not move affects only the total mass",
             count: 1,
         });
     }
 
-    /// An element that says nothing about dynamics.
+    /// An element that does not affect the dynamics.
     pub fn element(&mut self, element: &Element, parent: &str) {
-        self.list(element.name(), element.span(), parent, "it is for the eye only");
+        self.list(element.name(), element.span(), parent, "it affects appearance only");
     }
 
-    /// The plugins that are declared with an instance: each may act on bodies without being named there again.
+    /// Plugins declared with an instance: each may act on bodies that do not name it.
     fn plugins(&mut self, extension: &Element) {
         for plugin in extension.elements() {
             let name = plugin.attribute("plugin").map_or("", |value| value.text);
             let acts = !HARMLESS_PLUGINS.iter().any(|start| name.starts_with(start));
             if acts && plugin.elements().any(|instance| instance.name() == "instance") {
                 let item = Item::plain(&plugin.called("extension: plugin"));
-                self.force("plugin", &item, "plugin", "a plugin, whose forces are its own");
+                self.force("plugin", &item, "plugin", "a plugin, which may apply forces");
             }
         }
     }
 
-    /// Where a free body is at first.
-    pub fn start(&mut self, body: &Element) {
-        self.add("start", || Kind {
-            code: "ignored_element",
-            span: body.span(),
-            message: format!("{}: the pose in which it starts is ignored", body.subject),
-            help: "states are given to the functions; the positions of a free body are its pose in the world, as MuJoCo's are",
-            count: 1,
-        });
-    }
-
-    /// What stands in the world beside a free body, and does not move either.
+    /// A body of the world next to a free body, which does not move.
     pub fn beside(&mut self, what: &str, name: &str, span: Range<usize>, free: &str) {
         self.add(&format!("beside {what}"), || Kind {
             code: "ignored_element",
             span,
-            message: format!("{what} `{name}`: does not move, and is ignored beside the free body `{free}`"),
-            help: "it touches the free body by contacts alone, which are not computed",
+            message: format!("{what} `{name}`: does not move, and is ignored next to the free body `{free}`"),
+            help: "it acts on the free body by contacts only, which are not computed",
             count: 1,
         });
     }
@@ -115,17 +104,16 @@ impl Ignored {
     pub fn sections(&mut self, sections: &[Element]) {
         for section in sections {
             let help = match section.name() {
-                "actuator" => "the joints' torques are given to the functions",
+                "actuator" => "joint torques are arguments of the functions",
                 "contact" => "contacts are not computed; give their forces as applied wrenches",
-                "sensor" => "everything that a sensor measures can be asked for",
-                "keyframe" => "states are given to the functions",
-                "custom" => "it says nothing about dynamics",
+                "sensor" => "mozzi computes the measured quantities on request",
+                "custom" => "it does not affect the dynamics",
                 "extension" => "plugins are not computed",
-                "size" => "it is memory for MuJoCo",
+                "size" => "it sets MuJoCo's memory size",
                 "asset" => {
-                    "it is for the eye and for contacts; a mesh whose inertia is needed is refused where it is used"
+                    "it affects appearance and contacts; a mesh whose inertia is needed is refused where it is used"
                 }
-                "visual" | "statistic" | "deformable" => "it is for the eye only",
+                "visual" | "statistic" | "deformable" => "it affects appearance only",
                 _ => continue,
             };
             match section.name() {
@@ -138,7 +126,7 @@ impl Ignored {
         }
     }
 
-    /// Says all of it.
+    /// Reports all of it.
     pub fn tell(&mut self, cx: &mut Context) {
         for (element, LeftOut { span, names }) in std::mem::take(&mut cx.left_out) {
             let names: Vec<&str> = names.into_iter().collect();

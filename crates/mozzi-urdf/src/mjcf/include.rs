@@ -59,7 +59,7 @@ pub(crate) fn gather(
                 }
                 Ok(_) => {
                     let message = format!(
-                        "include: more than {MOST_FILES} files or {MOST_BYTES} bytes in all, expected at most these"
+                        "include: more than {MOST_FILES} files or {MOST_BYTES} bytes in total, expected at most these"
                     );
                     cx.findings.error("too_large", include.span, message);
                     return None;
@@ -100,8 +100,11 @@ fn open(include: &Include, folder: Option<&Path>, known: &mut BTreeSet<PathBuf>)
     };
     let shown = shown(file);
     let Some(folder) = folder else {
-        return Err(error("include", format!("include: `{shown}` is searched beside the model, which is no file"))
-            .help("read the model from its file"));
+        return Err(error(
+            "include",
+            format!("include: `{shown}` is relative to the model, which was not read from a file"),
+        )
+        .help("read the model from its file"));
     };
     if file.contains("://") || file.starts_with(r"\\") || file.starts_with("//") {
         return Err(error("include", format!("include: `{shown}` is not on this machine, expected a file")));
@@ -113,14 +116,14 @@ fn open(include: &Include, folder: Option<&Path>, known: &mut BTreeSet<PathBuf>)
     };
     let real = path.canonicalize().map_err(|why| fails(why.to_string()))?;
     if !real.is_file() {
-        return Err(fails("it is no file".to_string()));
+        return Err(fails("it is not a file".to_string()));
     }
     if !known.insert(real.clone()) {
         return Err(error(
             "repeated_include",
-            format!("include: `{shown}` is included already, expected once at most"),
+            format!("include: `{shown}` is already included, expected at most once"),
         )
-        .help("a file that includes itself, over one or more steps, would never end"));
+        .help("include each file once"));
     }
     let mut content = Vec::new();
     let read = std::fs::File::open(real).and_then(|file| file.take(MOST_BYTES as u64 + 1).read_to_end(&mut content));

@@ -51,7 +51,7 @@ impl Model<'_> {
         SpatialInertia::new(mass, T.p, I)
     }
 
-    /// The inertia, raised to the compiler's bounds and balanced, where it is told to.
+    /// The inertia after the compiler's bounds and balancing, if set.
     pub fn bounded(&self, given: SpatialInertia) -> SpatialInertia {
         let (bound, mass) = (self.compiler.bound_inertia, given.mass.max(self.compiler.bound_mass));
         let verdict = given.verdict();

@@ -50,10 +50,10 @@ impl<'a> Model<'a> {
         let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
         let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
-        let stiffness = match is_ball {
-            true => self.spring_of_ball(&item, cx),
-            false => self.stiffness(&item, cx),
-        };
+        let stiffness = self.stiffness(&item, cx);
+        if is_ball && self.options.spring && item.has("springdamper") {
+            self.ignored.force("springdamper of a ball", &item, "springdamper", "a ball's stiffness chosen by MuJoCo");
+        }
         let [time, ratio] = item.vector::<2>("springdamper", cx).unwrap_or([0.0; 2]);
         let Options { spring, damper, .. } = self.options;
         let spring_damper =
@@ -74,7 +74,7 @@ impl<'a> Model<'a> {
         shown
     }
 
-    /// A range as the file writes it, where another attribute, or the compiler, says that it counts.
+    /// A range of the file, if another attribute or the compiler enables it.
     fn range(&self, item: &Item, range: &str, limited: &str, cx: &mut Context) -> Option<[f64; 2]> {
         let numbers = item.vector::<2>(range, cx);
         match item.word(limited, &["auto", "true", "false"], cx).unwrap_or("auto") {
@@ -85,8 +85,9 @@ impl<'a> Model<'a> {
                 None
             }
             "auto" if item.has(range) && !self.compiler.autolimits => {
-                let message =
-                    format!("{range}: counts only with {limited}=\"true\", since the compiler's autolimits is `false`");
+                let message = format!(
+                    "{range}: is used only with {limited}=\"true\", since the compiler's autolimits is `false`"
+                );
                 let help = format!("write `{limited}`, true or false");
                 cx.findings.add(item.error("unclear_limit", range, &message).help(help));
                 None
@@ -95,12 +96,12 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// The greatest force of all actuators of the joint, where it is the same in both directions.
+    /// The largest force of the joint's actuators, if their ranges are symmetric.
     fn effort(&self, item: &Item, cx: &mut Context) -> Option<f64> {
         const NAME: &str = "actuatorfrcrange";
         let [low, high] = self.range(item, NAME, "actuatorfrclimited", cx)?;
         if !(low < high) {
-            let message = format!("{NAME}: goes from {low} to {high}, expected the lower first");
+            let message = format!("{NAME}: goes from {low} to {high}, expected the lower bound first");
             cx.findings.add(item.error("reversed_limits", NAME, &message));
         } else if low != -high {
             let span = item.value(NAME).map_or_else(|| item.element.span(), |value| value.span);
@@ -113,24 +114,13 @@ impl<'a> Model<'a> {
     fn friction(&mut self, item: &Item, cx: &mut Context) -> [f64; 2] {
         let [linear, quadratic, cubic] = item.overlaid::<3>("damping", cx);
         if self.options.damper && (quadratic != 0.0 || cubic != 0.0) {
-            self.ignored.force("damping", item, "damping", "a damping that is not linear");
+            self.ignored.force("damping", item, "damping", "nonlinear damping");
         }
         let loss = item.number("frictionloss", 0.0, cx);
         [if self.options.damper { linear } else { 0.0 }, if self.options.friction { loss } else { 0.0 }]
     }
 
-    /// A ball's spring is not computed, and told.
-    fn spring_of_ball(&mut self, item: &Item, cx: &mut Context) -> f64 {
-        let is_stiff = item.overlaid::<3>("stiffness", cx) != [0.0; 3];
-        for (name, is_given) in [("stiffness", is_stiff), ("springdamper", item.has("springdamper"))] {
-            if self.options.spring && is_given {
-                self.ignored.force("spring of a ball", item, name, "a spring of a ball");
-            }
-        }
-        0.0
-    }
-
-    /// The stiffness of a spring; what of it is not linear is told.
+    /// The linear stiffness of a spring, with a warning about nonlinear terms.
     fn stiffness(&mut self, item: &Item, cx: &mut Context) -> f64 {
         let [linear, quadratic, cubic] = item.overlaid::<3>("stiffness", cx);
         let springyield = item.number("springyield", 0.0, cx);
@@ -138,16 +128,16 @@ impl<'a> Model<'a> {
             return 0.0;
         }
         if quadratic != 0.0 || cubic != 0.0 {
-            self.ignored.force("stiffness", item, "stiffness", "a spring that is not linear");
+            self.ignored.force("stiffness", item, "stiffness", "a nonlinear spring");
         }
         if springyield > 0.0 && linear != 0.0 {
-            self.ignored.force("springyield", item, "springyield", "a spring that yields");
+            self.ignored.force("springyield", item, "springyield", "a yielding spring");
         }
         linear
     }
 }
 
-/// The screw in the body's frame; None, and reported, where the axis has no direction.
+/// The screw axis in the body's frame; reports an axis of length 0 and returns `None`.
 fn screw(item: &Item, T: SE3, is_slide: bool, cx: &mut Context) -> Option<ScrewAxis> {
     let axis = Vec3(item.vector::<3>("axis", cx).unwrap_or([0.0, 0.0, 1.0]));
     let position = Vec3(item.vector::<3>("pos", cx).unwrap_or([0.0; 3]));

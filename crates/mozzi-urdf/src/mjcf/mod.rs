@@ -1,36 +1,47 @@
-//! MuJoCo's models (MJCF): the tree of bodies with hinges, slides and balls, on the ground or free, and several trees beside each other.
+//! MuJoCo's models (MJCF): trees of bodies with hinges, slides and balls, with fixed or floating bases, and several
+//! free bodies.
 //!
-//! [`load`](crate::load), [`parse`](crate::parse) and [`open`](crate::open) read them too: the root element `<mujoco>`
-//! tells, whatever the file is called.
+//! [`load`](crate::load), [`parse`](crate::parse) and [`open`](crate::open) read them, too. The root element `<mujoco>`
+//! decides, not the file's name.
 //!
 //! # What is read
-//! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls, several in a body, with `ref`,
-//! `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and `springdamper`; inertias, given or computed from geoms; default classes;
-//! includes; the compiler's settings that matter; gravity; an equality of two joints that is affine, as a mimic joint.
+//! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
+//! several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and
+//! `springdamper`; inertias, given or computed from geoms; default classes; includes; compiler settings that affect the
+//! tree; gravity; keyframes; a linear equality of two joints, as a mimic joint; the armature of actuators, and of fixed
+//! tendons, as rotors that several joints turn.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
-//!   MuJoCo's `qpos`, with `ref`. Between two joints of one body stands a massless link `body:joint`.
-//! - Where one body of the world is free, undamped, and with what it carries all that moves, it is the robot's base instead ([`mozzi::Base`]), and its
-//!   positions are MuJoCo's with the quaternion first; its velocities are in the body's axes, angular first. The world, and what else stands in
-//!   it, is no link then. Any other free body hangs on the world by a free joint with the same positions and velocities.
-//! - A ball has MuJoCo's quaternion and angular velocity; its spring is not computed.
-//! - What has no name is called by its number in MuJoCo: `body3`, `joint1`.
-//! - A coupling of joints is rigid here; in MuJoCo its solver keeps it approximately.
+//!   MuJoCo's `qpos`, with `ref`. Between two joints of one body there is a massless link `body:joint`.
+//! - If one free body of the world carries all moving bodies, without damping and armature, it is the robot's floating
+//!   base ([`mozzi::Base`]). Its positions are MuJoCo's with the quaternion first; its velocities are in the body's
+//!   axes, angular first. The world, and other bodies in it, are then not links. Any other free body is attached to the
+//!   world by a free joint with the same positions and velocities.
+//! - A ball has MuJoCo's quaternion, angular velocity and spring.
+//! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
+//! - A coupling of joints is rigid here; MuJoCo's solver keeps it approximately.
+//! - A key of `<keyframe>` is a named state ([`mozzi::Model::state`]): its time, `qpos` and `qvel`. A key without a
+//!   name is called by its number, `key0`. If the file's own configuration is not θ = 0, because a free body is
+//!   elsewhere or a joint has a `ref`, it is the state `qpos0`, and the robot starts there ([`mozzi::Model::start`]),
+//!   as in MuJoCo. Numbers of mimic joints are checked against their source joints', and not kept.
 //!
-//! # What is not
-//! - Refused by name: closures (`connect`, `weld`, curved couplings, tendons with forces or limits),
-//!   flexible bodies, `replicate`, `attach` and `composite`, meshes where the inertia would be needed, shells.
-//! - Loaded with a warning that names the force: springs and damping that are not linear, gravity compensation, fluids.
-//! - Listed in warnings of the codes `ignored_element` and `ignored_attribute`, once per kind, which the strict policy lets
-//!   pass: actuators, sensors, contacts, assets, keyframes, settings of MuJoCo's solver and what is for the eye only.
+//! # What is not read
+//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces or limits, spatial
+//!   tendons with an armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
+//!   shells.
+//! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
+//! - Listed in warnings with the codes `ignored_element` and `ignored_attribute`, once per kind, accepted by the strict
+//!   policy: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies, settings of MuJoCo's
+//!   solver, appearance.
 //!
-//! Each word of MuJoCo's schema is in one of these classes: a test goes through all of them.
+//! Every element and attribute of MuJoCo's schema is in one of these classes; a test checks all of them.
 mod attributes;
 mod body;
 mod class;
 mod closure;
 mod compiler;
 mod contents;
+mod coordinates;
 mod explain;
 mod free;
 mod geom;
@@ -38,8 +49,10 @@ mod ignored;
 mod include;
 mod inertial;
 mod joint;
+mod keyframe;
 mod option;
 mod orientation;
+mod rotor;
 #[cfg(test)]
 mod schema;
 mod spring;
@@ -60,22 +73,23 @@ use crate::syntax;
 use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
+use keyframe::Key;
 use mozzi::Description;
 use option::Options;
 use std::path::Path;
 use tree::Tree;
 
-/// Is this text a model of MuJoCo's, as far as its first element tells?
+/// Whether the first element of this text is that of an MJCF model.
 pub fn is_mjcf(text: &str) -> bool {
     Dialect::of(text) == Dialect::Mjcf
 }
 
-/// Is this the code of a warning about what is right in MJCF, and has no place here? The strict policy lets it pass.
+/// Whether this is the code of a warning about valid MJCF content that is ignored. The strict policy accepts it.
 pub(crate) fn is_list(code: &str) -> bool {
     matches!(code, "mozzi::mjcf::ignored_attribute" | "mozzi::mjcf::ignored_element" | "mozzi::mjcf::renamed_site")
 }
 
-/// What the readers of a model share.
+/// State shared by the readers of a model.
 pub(crate) struct Model<'a> {
     pub compiler: Compiler,
     pub options: Options,
@@ -109,7 +123,7 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     if root.name() != "mujoco" {
         let message =
             format!("the root element is <{}>, expected <mujoco>", crate::vocabulary::shown(root.written_name()));
-        let help = "a <mujocoinclude> is a part of a model: open the file that includes it";
+        let help = "<mujocoinclude> is a part of a model: open the file that includes it";
         cx.findings.add(Finding::error("wrong_root", root.span(), message).help(help));
         return None;
     }
@@ -133,6 +147,7 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     model.scale_to_total_mass(cx);
     model.closures(&sections, cx);
     model.leave_the_world();
+    let keys = Key::read(of("keyframe"), cx);
     model.ignored.sections(&sections);
     model.ignored.tell(cx);
     if cx.findings.is_full() {
@@ -140,7 +155,9 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     }
     let name = root.attribute("model").map_or("mujoco", |value| value.text);
     let tunings = spring::tunings(&model.tree.joints);
-    let (mut description, places) = model.tree.describe(name, model.options.gravity, cx);
+    let slots = model.tree.slots();
+    let (mut description, mut places) = model.tree.describe(name, model.options.gravity, cx);
     spring::tune(&mut description, &tunings, cx);
+    keyframe::add(keys, &slots, &mut description, &mut places, cx);
     Some((description, places))
 }

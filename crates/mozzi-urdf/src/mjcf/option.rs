@@ -22,7 +22,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Of several sections, the last that says something counts.
+    /// The last of several sections takes precedence.
     pub fn read<'a: 's, 's>(
         sections: impl Iterator<Item = &'s Element<'a>>,
         ignored: &mut Ignored,

@@ -10,13 +10,13 @@ use mozzi::{SE3, SO3, Vec3};
 
 pub(crate) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// The frame of an element seen from the one around it; what cannot be read is reported, and left out.
+/// Configuration of an element's frame relative to its parent's; invalid parts are reported and omitted.
 pub(crate) fn pose(item: &Item, compiler: &Compiler, cx: &mut Context) -> SE3 {
     let p = item.vector::<3>("pos", cx).unwrap_or([0.0; 3]);
     SE3 { R: orientation(item, compiler, cx), p: Vec3(p) }
 }
 
-/// The orientation alone. What the element itself says counts before what its class does.
+/// The orientation only. The element's own attributes take precedence over its class.
 fn orientation(item: &Item, compiler: &Compiler, cx: &mut Context) -> SO3 {
     let own: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| item.element.attribute(name).is_some()).collect();
     if own.len() > 1 {
@@ -46,7 +46,7 @@ fn orientation(item: &Item, compiler: &Compiler, cx: &mut Context) -> SO3 {
         Some(Some(R)) => R,
         Some(None) => {
             let text = item.value(name).map_or("", |value| value.text.trim());
-            let message = format!("{name}: is `{}`, which has no direction", crate::vocabulary::shown(text));
+            let message = format!("{name}: is `{}`, a vector of length 0", crate::vocabulary::shown(text));
             cx.findings.add(item.error("zero_axis", name, &message));
             SO3::identity()
         }

@@ -22,13 +22,15 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
         "mujoco/body/geom" | "mujoco/default/geom" => &vocabulary::GEOM,
         "mujoco/body/site" | "mujoco/default/site" => &vocabulary::SITE,
         "mujoco/equality/joint" | "mujoco/default/equality" => &vocabulary::COUPLING,
+        "mujoco/keyframe" => &vocabulary::KEYFRAME,
+        "mujoco/keyframe/key" => &vocabulary::KEY,
         "mujoco/tendon/spatial" | "mujoco/tendon/fixed" | "mujoco/default/tendon" => &vocabulary::TENDON,
         _ => return None,
     })
 }
 
-/// Elements that are told as a whole, with all that is in them: the path, such an element, and the code.
-const TOLD: [(&str, &str, &str); 24] = [
+/// Elements that are reported with all their contents: the path, such an element, and the code.
+const TOLD: [(&str, &str, &str); 23] = [
     ("mujoco/compiler/lengthrange", "<compiler><§/></compiler>", "ignored_attribute"),
     ("mujoco/size", "<§/>", "ignored_element"),
     ("mujoco/statistic", "<§/>", "ignored_element"),
@@ -52,7 +54,6 @@ const TOLD: [(&str, &str, &str); 24] = [
     ("mujoco/actuator", "<§/>", "ignored_element"),
     ("mujoco/sensor", "<§/>", "ignored_element"),
     ("mujoco/custom", "<§/>", "ignored_element"),
-    ("mujoco/keyframe", "<§/>", "ignored_element"),
 ];
 
 /// Errors or warnings of a model.
@@ -86,6 +87,7 @@ fn model(path: &str, attribute: &str) -> String {
             "<joint name='a'/><joint name='b'/><geom size='1'/>",
             &format!("<equality><joint joint1='a' joint2='b' {attribute}/></equality>"),
         ),
+        "mujoco/keyframe/key" => format!("<keyframe><key {attribute}/></keyframe>"),
         _ => String::new(),
     }
 }

@@ -3,19 +3,19 @@
 use super::tree::Joint;
 use crate::context::Context;
 use crate::finding::Finding;
-use mozzi::Description;
 use mozzi::quantities::MassMatrixInverse;
+use mozzi::{Description, Freedom, Place};
 
-/// What a joint alone is to move like, instead of a stiffness and a damping.
+/// MuJoCo's springdamper: time constant and damping ratio instead of stiffness and damping.
 #[derive(Clone, Copy)]
 pub(crate) struct SpringDamper {
     /// T, s.
     pub time: f64,
     /// ζ.
     pub ratio: f64,
-    /// Springs are not switched off.
+    /// Whether springs are enabled.
     pub spring: bool,
-    /// Nor are dampers.
+    /// Whether dampers are enabled.
     pub damper: bool,
 }
 
@@ -31,8 +31,8 @@ pub(crate) fn tunings(joints: &[Joint]) -> Vec<Tuning> {
     joints.iter().map(tuning).collect()
 }
 
-/// As MuJoCo's compiler: k = I / (T ζ)² and d = 2 I / T with the inertia I = 1 / (M⁻¹)_jj at the file's configuration, all joints
-/// independent. Of a robot that is refused for another reason nothing is computed.
+/// As MuJoCo's compiler: k = I / (T ζ)² and d = 2 I / T with the inertia I = 1 / (M⁻¹)_jj at the file's configuration,
+/// all joints independent. Of a robot that is refused for another reason nothing is computed.
 pub(crate) fn tune(robot: &mut Description, tunings: &[Tuning], cx: &mut Context) {
     if tunings.iter().all(|(_, tuned)| tuned.is_none()) {
         return;
@@ -41,20 +41,22 @@ pub(crate) fn tune(robot: &mut Description, tunings: &[Tuning], cx: &mut Context
     free.joints.iter_mut().for_each(|joint| joint.mimic = None);
     let Ok(model) = free.build() else { return };
     let place = |name: &str| robot.joints.iter().position(|joint| joint.name == name);
-    let places: Vec<usize> = model.joint_names().filter_map(place).collect();
+    let of_one_axis = |(place, _): &(&Place, usize)| place.freedom == Freedom::One;
+    let places = model.places().iter().zip(model.joint_names().filter_map(place)).filter(of_one_axis);
+    let joints: Vec<(&Place, usize)> = places.collect();
     let mut theta = model.neutral_configuration::<f64>();
-    for (theta, &i) in theta[model.base().positions()..].iter_mut().zip(&places) {
-        *theta = tunings[i].0;
+    for &(place, i) in &joints {
+        theta[place.q] = tunings[i].0;
     }
     let inverse = model.compute(MassMatrixInverse, &[&theta], &model.environment());
-    for (j, i) in (model.base().velocities()..).zip(places) {
+    for (&Place { j, .. }, i) in joints {
         let Some((tuned, span)) = &tunings[i].1 else { continue };
         let Ok(inverse) = &inverse else {
             let message = format!(
                 "joint `{}`: springdamper: the mass matrix is singular, expected an inertia",
                 robot.joints[i].name
             );
-            let help = "give `stiffness` and `damping` themselves";
+            let help = "write `stiffness` and `damping` instead";
             cx.findings.add(Finding::error("unsupported_attribute", span.clone(), message).help(help));
             continue;
         };

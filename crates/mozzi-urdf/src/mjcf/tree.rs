@@ -6,19 +6,19 @@ use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
 use crate::vocabulary::shown;
-use mozzi::model::description::{self, FreeJoint, JointKind};
+use mozzi::model::description::{self, FreeJoint, Gear, JointKind};
 use mozzi::{Base, Description, SE3, SpatialInertia};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// The name of an element, or what it is called without one.
+/// The name of an element, or its generated name.
 pub(crate) struct Name {
     pub given: Option<String>,
     pub otherwise: String,
 }
 
 impl Name {
-    /// What the file calls it, and how it is called where the file does not.
+    /// The name in the file, and the generated name if there is none.
     pub fn of(element: &Element, otherwise: String, cx: &mut Context) -> Self {
         let is_named = element.attribute("name").is_some_and(|name| !name.text.is_empty());
         let value = if is_named { element.required_name("name", cx) } else { None };
@@ -49,8 +49,22 @@ pub(crate) struct Joint {
     pub joint: description::Joint,
     /// The position of the file's own configuration.
     pub reference: f64,
+    /// The pose of a free body there.
+    pub start: SE3,
     /// In place of stiffness and damping.
     pub spring_damper: Option<SpringDamper>,
+    pub place: Place,
+}
+
+/// A tendon with an inertia; its name is settled at the end.
+pub(crate) struct Rotor {
+    pub name: Name,
+    pub armature: f64,
+    pub gears: Vec<Gear>,
+    /// Is it a `fixed` tendon, which has constant ratios?
+    pub is_fixed: bool,
+    /// Is it refused, for a reason that was reported?
+    pub is_refused: bool,
     pub place: Place,
 }
 
@@ -62,10 +76,12 @@ pub(crate) struct Site {
     pub place: Place,
 }
 
-/// A free body: its link, and the name of its joint.
+/// A free body that is the base: its link, and the name of its joint.
 pub(crate) struct Free {
     pub link: usize,
     pub joint: Option<String>,
+    /// Its pose in the file's own configuration.
+    pub start: SE3,
 }
 
 /// Links, joints and sites in the order of the file; the first link is the world.
@@ -74,6 +90,7 @@ pub(crate) struct Tree {
     pub links: Vec<Link>,
     pub joints: Vec<Joint>,
     pub sites: Vec<Site>,
+    pub rotors: Vec<Rotor>,
     /// The body that is free.
     pub free: Option<Free>,
     /// How many bodies and joints MuJoCo counts so far.
@@ -89,13 +106,31 @@ impl Tree {
             place: Place::new(root.span()),
         };
         let place = Place::new(root.span());
-        Tree { place, links: vec![world], joints: Vec::new(), sites: Vec::new(), free: None, bodies: 0, degrees: 0 }
+        Tree {
+            place,
+            links: vec![world],
+            joints: Vec::new(),
+            sites: Vec::new(),
+            rotors: Vec::new(),
+            free: None,
+            bodies: 0,
+            degrees: 0,
+        }
     }
 
     /// Adds a joint between two links, at first fixed.
     pub fn joint(&mut self, name: Name, [parent, child]: [usize; 2], origin: SE3, place: Place) -> &mut Joint {
         let joint = description::Joint::new("", "", "", origin, JointKind::Fixed);
-        self.joints.push(Joint { name, parent, child, joint, reference: 0.0, spring_damper: None, place });
+        self.joints.push(Joint {
+            name,
+            parent,
+            child,
+            joint,
+            reference: 0.0,
+            start: SE3::identity(),
+            spring_damper: None,
+            place,
+        });
         let last = self.joints.len() - 1;
         &mut self.joints[last]
     }
@@ -120,7 +155,7 @@ impl Tree {
                         let (site_name, other) = (shown(&name), shown(&other));
                         (
                             site.place.span("name"),
-                            format!("site `{site_name}`: a body has this name too; it is called `{other}` here"),
+                            format!("site `{site_name}`: a body has this name, too; the site is called `{other}` here"),
                             0,
                         )
                     })
@@ -133,7 +168,7 @@ impl Tree {
         }
         if let Some((span, message, count)) = renamed {
             let message = if count == 1 { message } else { format!("{message} (and {} more)", count - 1) };
-            let help = "bodies and sites are both frames here, so such a site is called after both";
+            let help = "bodies and sites are both frames in mozzi; the site's new name combines both names";
             cx.findings.add(Finding::warning("renamed_site", span, message).help(help));
         }
         taken.extend(description.frames.iter().map(|frame| frame.name.clone()));
@@ -155,30 +190,36 @@ impl Tree {
             places.joints.push(joint.place);
             description.joints.push(description::Joint { name, parent, child, ..joint.joint });
         }
+        let mut names = Names::new("tendon", self.rotors.iter().filter_map(|rotor| rotor.name.given.clone()).collect());
+        for rotor in self.rotors {
+            let name = names.settle(rotor.name, &rotor.place, cx);
+            places.rotors.push(rotor.place);
+            description.rotors.push(description::Rotor { name, armature: rotor.armature, gears: rotor.gears });
+        }
         (description, places)
     }
 }
 
-/// The names of bodies or of joints, as they are given out.
-struct Names {
+/// The names of bodies, joints or keys, as they are given out.
+pub(crate) struct Names {
     what: &'static str,
-    /// What the file gives, to whatever it is, and what was made up.
+    /// Names from the file, and generated names.
     taken: BTreeSet<String>,
     given: BTreeSet<String>,
 }
 
 impl Names {
-    fn new(what: &'static str, taken: BTreeSet<String>) -> Self {
+    pub fn new(what: &'static str, taken: BTreeSet<String>) -> Self {
         Names { what, taken, given: BTreeSet::new() }
     }
 
-    /// The name as it is given; where there is none, or, which is reported, where it is another's, one that is free.
-    fn settle(&mut self, name: Name, place: &Place, cx: &mut Context) -> String {
+    /// The given name; a generated one if it is missing or, with an error, already used.
+    pub fn settle(&mut self, name: Name, place: &Place, cx: &mut Context) -> String {
         if let Some(given) = name.given {
             if self.given.insert(given.clone()) {
                 return given;
             }
-            let message = format!("{} `{}`: the name is taken, expected one of its own", self.what, shown(&given));
+            let message = format!("{} `{}`: the name is used twice, expected a unique name", self.what, shown(&given));
             cx.findings.add(Finding::error("duplicate_name", place.span("name"), message).help("rename one of them"));
         }
         let name = free(&name.otherwise, &self.taken);

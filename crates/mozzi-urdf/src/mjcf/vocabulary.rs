@@ -314,5 +314,11 @@ pub(crate) const TENDON: Vocabulary = Vocabulary {
     ],
     ..NOTHING
 };
+pub(crate) const KEYFRAME: Vocabulary = Vocabulary { many: &["key"], ..NOTHING };
+pub(crate) const KEY: Vocabulary = Vocabulary {
+    attributes: &["name", "time", "qpos", "qvel"],
+    listed: &["act", "ctrl", "mpos", "mquat", "plastic"],
+    ..NOTHING
+};
 pub(crate) const ACTUATOR: Vocabulary =
     Vocabulary { attributes: &["class", "armature", "damping", "gear", "joint", "tendon"], ..NOTHING };

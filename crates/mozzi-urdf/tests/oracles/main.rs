@@ -157,7 +157,30 @@ fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
     }
     let mut worst = Worst::default();
     oracle["states"].as_array().unwrap().iter().for_each(|state| compare(model, &order, oracle, state, &mut worst));
+    let starts = oracle.get("starts").and_then(Value::as_array);
+    starts.into_iter().flatten().for_each(|start| compare_start(name, model, start));
     worst
+}
+
+/// Where MuJoCo starts, or one of its keys: the time, and each body's pose and twist.
+fn compare_start(name: &str, model: &Model, expected: &Value) {
+    let state = match expected["state"].as_str() {
+        None => model.start(),
+        Some(key) => model.state(key).unwrap(),
+    };
+    assert_eq!(Some(state.time), expected["time"].as_f64(), "{name}");
+    for (body, pose) in expected["poses"].as_object().unwrap() {
+        let frame = model.frame(body).unwrap();
+        let found = model.forward_kinematics(&state.theta, frame).unwrap().to_matrix();
+        let V = &model.body_jacobian(&state.theta, frame).unwrap() * &state.dtheta[..];
+        let pose: Vec<f64> = pose.as_array().unwrap().iter().flat_map(vector).collect();
+        let twist = vector(&expected["twists"][body]);
+        for (found, expected) in [(found.as_flattened(), pose), (&V.to_array(), twist)] {
+            let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+            let is_close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12 * size;
+            assert!(found.iter().zip(&expected).all(is_close), "{name}: `{body}`: {found:?}, expected {expected:?}");
+        }
+    }
 }
 
 /// Every file of a folder; a line for each robot, and the worst of all.

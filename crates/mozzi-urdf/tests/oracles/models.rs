@@ -1,5 +1,5 @@
-//! `docs/published-models.md`: what becomes of each MJCF model of gymnasium and dm_control, where `MOZZI_ORACLES` names a
-//! folder that `oracles/make_mjcf.py` wrote into.
+//! `docs/published-models.md`: what becomes of each MJCF model of gymnasium and dm_control, where `MOZZI_ORACLES` names
+//! a folder that `oracles/make_mjcf.py` wrote into.
 //!
 //! `cargo xtask docs` writes the page anew.
 
@@ -13,23 +13,23 @@ use std::path::Path;
 const HEAD: &str = "\
 # Published models of MuJoCo
 
-Every MJCF file of PyPI's `gymnasium` 1.4.0 and `dm_control` 1.0.50, as mozzi reads it. This page is made by
-`cargo xtask docs`; a test of `cargo xtask test` compares it with what is read today.
+Every MJCF file of PyPI's `gymnasium` 1.4.0 and `dm_control` 1.0.50, as mozzi reads it. `cargo xtask docs` writes this page; a test of
+`cargo xtask test` checks that it is current.
 ";
 
 /// What the refusals mean; one that is not here fails the test.
 const WHY: [(&str, &str); 9] = [
-    ("include", "A file that it includes is not there; MuJoCo says the same."),
+    ("include", "An included file is missing; MuJoCo reports the same."),
     ("loop_closure", "`connect` or `weld` ties two bodies: a closed loop, not a tree."),
     (
         "mesh_inertia",
-        "Inertias are to be computed from meshes, which mozzi does not read. MuJoCo's `saveinertial` writes them down.",
+        "Inertias would have to be computed from meshes, which mozzi does not read. MuJoCo's `saveinertial` writes them into the file.",
     ),
     (
         "unsupported_attribute",
         "`springdamper` chooses a spring by the mass matrix, which is singular without the inertias of meshes, which mozzi does not read.",
     ),
-    ("unsupported_equality", "Tendons are tied to each other, by forces that a tree does not have."),
+    ("unsupported_equality", "Tendons are coupled, by constraint forces that a tree does not have."),
     ("unsupported_joint", "A free joint inside the tree, which MuJoCo refuses, too."),
     ("unsupported_tendon", "A tendon with stiffness, damping or limits puts forces on several joints at once."),
     (
@@ -136,7 +136,7 @@ fn page(entries: &[Entry], written: &BTreeMap<&str, f64>) -> String {
     let mut kinds = BTreeMap::new();
     let _ = writeln!(
         page,
-        "\n## Refused\n\nMuJoCo's column says what it makes of the file.\n\n| file | MuJoCo | code | first error |\n|---|---|---|---|"
+        "\n## Refused\n\nThe second column is MuJoCo's result.\n\n| file | MuJoCo | code | first error |\n|---|---|---|---|"
     );
     for Entry { name, verdict, outcome, .. } in entries {
         let Err(error) = outcome else { continue };

@@ -1,5 +1,5 @@
-//! `docs/published-robots.md`: every warning and every refusal on the URDFs of `example-robot-data`, where `MOZZI_ROBOTS`
-//! names that package's folder of robots.
+//! `docs/published-robots.md`: every warning and every refusal on the URDFs of `example-robot-data`, where
+//! `MOZZI_ROBOTS` names that package's folder of robots.
 //!
 //! `cargo xtask docs` writes the page anew.
 
@@ -15,9 +15,8 @@ use std::path::{Path, PathBuf};
 const HEAD: &str = "\
 # Published robots
 
-What mozzi says of each URDF of PyPI's `example-robot-data` 6.0.0 in the default policy. Robots that are not in the second
-table load without a word. This page is made by `cargo xtask docs`; a test of `cargo xtask test` compares it with what is
-said today.
+The diagnostics of each URDF of PyPI's `example-robot-data` 6.0.0 under the default policy. Robots that are not in the second
+table load without warnings. `cargo xtask docs` writes this page; a test of `cargo xtask test` checks that it is current.
 ";
 
 /// Why each kind is right; a kind that is not here fails the test.
@@ -25,51 +24,46 @@ const WHY: [(&str, &str); 11] = [
     (
         "fixed_mimic",
         "The arms of Talos were reduced by making joints fixed, and their `<mimic>` was left in. A fixed joint does not \
-         move, so these fingers stay where they are: whoever expects a gripper that closes should know.",
+         move, so these fingers stay as they are: the warning is for users who expect a gripper that closes.",
     ),
-    (
-        "implausible_mass",
-        "Moments of inertia without a mass: something was measured and half of it forgotten, or both are placeholders.",
-    ),
+    ("implausible_mass", "Moments of inertia without a mass: one of them was forgotten, or both are placeholders."),
     (
         "indefinite_inertia",
-        "Negative moments of the trunk and of the thighs, in bodies that move. Turning them would have a negative kinetic \
-         energy: no forward dynamics. Refused; `--lenient` takes the nearest inertia that a body can have.",
+        "Negative moments of the trunk and of the thighs, in moving bodies. Rotation would have a \
+             negative kinetic energy, so forward dynamics is meaningless. Refused; `--lenient` uses the \
+             nearest physical inertia.",
     ),
     (
         "massless_leaf",
-        "Fingers that move and have no `<inertial>`. Inverse dynamics is right; forward dynamics answers with an error that \
-         names the joint.",
+        "Fingers that move and have no `<inertial>`. Inverse dynamics works; forward dynamics returns an \
+             error that names the joint.",
     ),
-    ("missing_attribute", "A robot has to have a name; this file is what xacro leaves of an empty macro."),
+    ("missing_attribute", "A robot needs a name; this file is xacro's output for an empty macro."),
     (
         "missing_limit",
         "Wheels and knees of type `revolute` with effort and velocity and without bounds. URDF's default of 0 would lock \
-         them, which nobody means; they turn freely here, and it is said.",
+         them, which nobody intends; they turn freely here, with a warning.",
     ),
     ("no_links", "The same file has no links: there is no robot to compute."),
     (
         "unknown_attribute",
-        "`D`, `K`, `mu_coulomb` and `mu_viscous` of the Panda are friction and stiffness in words of its own that would \
-         change the joints' torques; `dont_collapse`, `current`, `command_effort` and `gear_velocity` \
-         concern other programs. URDF does not say what they mean, \
-         so they are left out, and named once.",
+        "`D`, `K`, `mu_coulomb` and `mu_viscous` of the Panda are the Panda's own names for friction and stiffness, which would change the joint torques; `dont_collapse`, `current`, `command_effort` and `gear_velocity` \
+         concern other programs. URDF does not define them, so they are ignored, with one warning each.",
     ),
     (
         "unknown_element",
-        "`<gravity>` and `<kinematic>` are SDF's words in the wrong place, `<origin>` and `<surface>` in a link mean nothing \
-         in URDF: their authors expect an effect that they do not have. `<self_filter>` and `<collision_checking>` are for \
+        "`<gravity>` and `<kinematic>` are SDF elements in the wrong place, `<origin>` and `<surface>` in a link are not defined in URDF: they do not have the effect that their authors expect. `<self_filter>` and `<collision_checking>` are for \
          programs of their own.",
     ),
     (
         "unknown_joint",
         "Fingers follow `index_q1`, and the joint is called `Left_index_q1`. Without the coupling the hand would have eight \
-         more freedoms than it has: refused.",
+         degrees of freedom too many: refused.",
     ),
     (
         "unphysical_inertia",
-        "Placeholders (all six entries 10⁻⁶), digits that were rounded, moments that were guessed: no body has them. The \
-         equations hold all the same, so the numbers are used as they stand.",
+        "Placeholders (all six entries 10⁻⁶), rounded digits, guessed moments: no rigid body has them. \
+             The equations of motion are sound, so the numbers are used as given.",
     ),
 ];
 
@@ -115,7 +109,7 @@ fn page(robots: &[Robot]) -> String {
     let silent = robots.iter().filter(|robot| robot.said.is_empty()).count();
     let _ = writeln!(
         page,
-        "\nOf {} files {} load, {silent} of them without a word; {refused} are refused.",
+        "\nOf {} files {} load, {silent} of them without warnings; {refused} are refused.",
         robots.len(),
         robots.len() - refused
     );
@@ -129,7 +123,7 @@ fn page(robots: &[Robot]) -> String {
             kind.1.insert(&robot.name);
         }
     }
-    let _ = writeln!(page, "\n## Kinds\n\n| code | | times | files | why it is right |\n|---|---|---|---|---|");
+    let _ = writeln!(page, "\n## Kinds\n\n| code | | times | files | explanation |\n|---|---|---|---|---|");
     for ((code, severity), (count, files)) in &kinds {
         let why = WHY.iter().find(|(known, _)| known == code).unwrap_or_else(|| panic!("{code} needs a word"));
         let link = format!("[`{code}`](diagnostics.md#mozziurdf{code})");
@@ -148,11 +142,11 @@ fn page(robots: &[Robot]) -> String {
         "\n## The policy on inertias\n\n\
          {triangle} links break the triangle inequality of the principal moments, {negative} have a negative moment: {} in \
          all. Refusing them would refuse ANYmal, HyQ, Tiago and PR2, whose equations of motion are sound: the mass matrix \
-         is positive definite, only no body has such numbers. So they are computed as given, and told. Of the {negative} \
-         negative ones {severe} make the moving body that they are part of indefinite, which is an error: there, forward \
-         dynamics would mean nothing. The others are antennas fixed to a base that outweighs them.\n\n\
-         Fourteen links of the two iCubs have moments of 10⁻¹⁸ kg m² and less, of either sign. This is rounding of zero: \
-         point masses, which are fine, and told nothing.\n",
+         is positive definite, although no rigid body has such numbers. So they are used as given, with a \
+             warning. Of the {negative} \
+         negative ones {severe} make their moving body indefinite, which is an error: its forward dynamics would be meaningless. \
+             The others are antennas fixed to a much heavier base.\n\n\
+         Fourteen links of the two iCubs have moments of 10⁻¹⁸ kg m² and less, of either sign. This is rounding of zero: they are point masses, which are valid and give no warning.\n",
         triangle + negative
     );
 
@@ -165,7 +159,7 @@ fn page(robots: &[Robot]) -> String {
         let (n, links) = robot.size.map_or(("refused".into(), "–".into()), |(n, l)| (n.to_string(), l.to_string()));
         let _ = writeln!(page, "| {} | {n} | {links} | {} | {errors} |", robot.name, robot.said.len() - errors);
     }
-    let _ = writeln!(page, "\n## Everything that is said");
+    let _ = writeln!(page, "\n## All diagnostics");
     for robot in robots.iter().filter(|robot| !robot.said.is_empty()) {
         let _ = writeln!(page, "\n### {}\n", robot.name);
         for found in &robot.said {

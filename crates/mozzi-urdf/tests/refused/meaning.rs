@@ -30,7 +30,7 @@ fn joints() {
         (
             joint("type='§spherical'", ""),
             "unsupported_joint",
-            "joint `j`: type: is `spherical`, which turns about every axis",
+            "joint `j`: type: is `spherical`, a ball joint, which URDF does not define",
         ),
         (
             joint("type='planar'", "<axis xyz='§0 0 0'/>"),
@@ -40,17 +40,17 @@ fn joints() {
         (
             joint("type='planar'", "<§mimic joint='j.x'/>"),
             "unsupported_joint",
-            "joint `j`: mimic: a planar joint has several positions, and can follow none",
+            "joint `j`: mimic: a planar joint has several positions and cannot be a mimic joint",
         ),
         (
             joint("type='floating'", "<§mimic joint='k'/>"),
             "unsupported_joint",
-            "joint `j`: mimic: a floating joint has several positions, and can follow none",
+            "joint `j`: mimic: a floating joint has several positions and cannot be a mimic joint",
         ),
         (
             limit("lower='§1' upper='-1'"),
             "reversed_limits",
-            "joint `j`: limits: go from 1 to -1, expected the lower first",
+            "joint `j`: limits: go from 1 to -1, expected the lower bound first",
         ),
         (
             joint(HINGE, "<limit lower='0' upper='1' effort='§-1' velocity='1'/>"),
@@ -130,34 +130,34 @@ fn words() {
         (
             joint(TURNS, "<§axsi xyz='0 0 1'/>"),
             "misspelled_element",
-            "joint `j`: has an element <axsi>, which URDF does not know here",
+            "joint `j`: has an element <axsi>, which URDF does not define here",
         ),
         (
             joint(TURNS, "<§Origin/>"),
             "misspelled_element",
-            "joint `j`: has an element <Origin>, which URDF does not know here",
+            "joint `j`: has an element <Origin>, which URDF does not define here",
         ),
         (
             joint(TURNS, "<origin §xzy='0 0 1'/>"),
             "misspelled_attribute",
-            "joint `j`: origin: has an attribute `xzy`, which URDF does not know",
+            "joint `j`: origin: has an attribute `xzy`, which URDF does not define",
         ),
         (
             joint(TURNS, "<dynamics §dampling='1'/>"),
             "misspelled_attribute",
-            "joint `j`: dynamics: has an attribute `dampling`, which URDF does not know",
+            "joint `j`: dynamics: has an attribute `dampling`, which URDF does not define",
         ),
         (joint(TURNS, "<origin/><§origin/>"), "duplicate_element", "joint `j`: has a second <origin>, expected one"),
         (joint(TURNS, "<§parent link='a'/>"), "duplicate_element", "joint `j`: has a second <parent>, expected one"),
         (
             "<robot name='r'><link name='a'><§intertial/></link></robot>",
             "misspelled_element",
-            "link `a`: has an element <intertial>, which URDF does not know here",
+            "link `a`: has an element <intertial>, which URDF does not define here",
         ),
         (
             "<robot name='r'><link name='a'/><§lnk name='b'/></robot>",
             "misspelled_element",
-            "robot: has an element <lnk>, which URDF does not know here",
+            "robot: has an element <lnk>, which URDF does not define here",
         ),
         (
             "<robot name='r'><link name='a'><§inertial><mass value='1'/></inertial></link></robot>",
@@ -172,19 +172,19 @@ fn words() {
         (
             "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/><§xacro:arm/></robot>",
             "xacro",
-            "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+            "<xacro:arm> is a xacro element, expected a file that xacro has expanded",
         ),
     ]);
     warned(&[
         (
             joint(TURNS, "<§rotor/><rotor/>"),
             "unknown_element",
-            "joint `j`: has an element <rotor>, which URDF does not know here",
+            "joint `j`: has an element <rotor>, which URDF does not define here",
         ),
         (
             joint(TURNS, "<dynamics §K='1'/>"),
             "unknown_attribute",
-            "joint `j`: dynamics: has an attribute `K`, which URDF does not know",
+            "joint `j`: dynamics: has an attribute `K`, which URDF does not define",
         ),
         (joint(TURNS, "§hm"), "stray_text", "joint `j`: has the text `hm`, expected only elements"),
     ]);

@@ -18,7 +18,7 @@ fn what_has_no_place_is_refused_by_name() {
         (
             body!("<§freejoint/><joint/><geom size='1'/>"),
             "unsupported_joint",
-            "body `b`: freejoint: is a free joint beside other joints of its body, expected it alone",
+            "body `b`: freejoint: is a free joint in a body with other joints, expected no others",
         ),
         (
             body!("<geom size='1'/><body name='c'><§joint name='j' type='free'/><geom size='1'/></body>"),
@@ -28,17 +28,12 @@ fn what_has_no_place_is_refused_by_name() {
         (
             body!("<freejoint align='§true'/><geom size='1'/>"),
             "unsupported_attribute",
-            "body `b`: freejoint: is aligned with the body's inertia, which moves the body's frame",
-        ),
-        (
-            body!("<joint type='free' armature='§1'/><geom size='1'/>"),
-            "unsupported_attribute",
-            "body `b`: joint: armature: would add an inertia between the world and the body, which mozzi does not",
+            "body `b`: freejoint: would be aligned with the body's inertia, which moves the body's frame",
         ),
         (
             body!("<joint name='j' type='ball' range='§10 20'/><geom size='1'/>"),
             "reversed_limits",
-            "joint `j`: limits: go from 0.17453292519943295 to 0.3490658503988659, expected 0 and the largest angle that a ball turns",
+            "joint `j`: limits: go from 0.17453292519943295 to 0.3490658503988659, expected 0 and the ball's largest angle",
         ),
         (
             body!("<§replicate count='3'/>"),
@@ -48,7 +43,7 @@ fn what_has_no_place_is_refused_by_name() {
         (
             body!("<joint/><geom name='hull' type='mesh' mesh='§hull'/>"),
             "mesh_inertia",
-            "geom `hull`: is a mesh, whose inertia would be needed: mozzi reads no meshes",
+            "geom `hull`: is a mesh, whose inertia is needed: mozzi does not read meshes",
         ),
         (
             body!("<joint/><geom size='1' shellinertia='§true'/>"),
@@ -58,7 +53,7 @@ fn what_has_no_place_is_refused_by_name() {
         (
             "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><§xacro:arm/></mujoco>",
             "xacro",
-            "<xacro:arm> is a word of xacro, expected a file that xacro has expanded",
+            "<xacro:arm> is a xacro element, expected a file that xacro has expanded",
         ),
         (body!("<joint/><geom size='1' mass='§${m}'/>"), "xacro", "body `b`: geom: mass: is `${m}`, expected a number"),
         (
@@ -74,12 +69,12 @@ fn what_has_no_place_is_refused_by_name() {
         (
             pair!("<equality><§joint joint1='p' joint2='q' polycoef='0 1 0.1'/></equality>"),
             "unsupported_equality",
-            "equality: joint: couples joints by a curve, which mozzi does not compute",
+            "equality: joint: couples joints nonlinearly, which mozzi does not compute",
         ),
         (
             pair!("<equality><§joint name='e' joint1='p'/></equality>"),
             "unsupported_equality",
-            "equality: joint `e`: holds a joint where it is, which mozzi does not compute",
+            "equality: joint `e`: fixes a joint at its position, which mozzi does not compute",
         ),
         (
             pair!("<equality><joint joint1='p' joint2='§r'/></equality>"),
@@ -99,9 +94,31 @@ fn what_has_no_place_is_refused_by_name() {
             "tendon: spatial: range: the tendon is limited, which mozzi does not compute",
         ),
         (
-            pair!("<actuator><motor joint='p' armature='§0.1'/></actuator>"),
+            pair!("<actuator><motor site='s' armature='§0.1'/></actuator>"),
             "actuator_armature",
-            "actuator: motor: armature: is an inertia of the actuator, which mozzi does not add to its joint's",
+            "actuator: motor: armature: is the inertia of an actuator that drives neither a joint nor a tendon",
+        ),
+        (
+            pair!("<tendon><spatial armature='§1'><site site='s'/></spatial></tendon>"),
+            "unsupported_tendon",
+            "tendon: spatial: armature: the tendon has an inertia that varies with the joints, which mozzi does not compute",
+        ),
+        (
+            pair!(
+                "<tendon><spatial name='t'><site site='s'/></spatial></tendon><actuator><motor tendon='t' armature='§1'/></actuator>"
+            ),
+            "unsupported_tendon",
+            "actuator: motor: armature: acts through a spatial tendon, whose effective inertia varies with the joints",
+        ),
+        (
+            pair!("<actuator><motor tendon='§t' armature='1'/></actuator>"),
+            "unknown_joint",
+            "actuator: motor: tendon: there is no tendon `t`",
+        ),
+        (
+            pair!("<tendon><fixed armature='1'><joint joint='§r' coef='1'/></fixed></tendon>"),
+            "unknown_joint",
+            "tendon: fixed: joint: joint: there is no joint `r`",
         ),
         (
             pair!("<deformable><§flex name='f'/></deformable>"),
@@ -118,13 +135,13 @@ fn words_and_numbers() {
         (
             "<mujoco><§worldbdy/></mujoco>",
             "misspelled_element",
-            "mujoco: has an element <worldbdy>, which MJCF does not know here",
+            "mujoco: has an element <worldbdy>, which MJCF does not define here",
         ),
-        (body!("<§jiont/>"), "misspelled_element", "body `b`: has an element <jiont>, which MJCF does not know here"),
+        (body!("<§jiont/>"), "misspelled_element", "body `b`: has an element <jiont>, which MJCF does not define here"),
         (
             body!("<joint name='j' §axs='1 0 0'/><geom size='1'/>"),
             "misspelled_attribute",
-            "joint `j`: has an attribute `axs`, which MJCF does not know",
+            "joint `j`: has an attribute `axs`, which MJCF does not define",
         ),
         (
             body!("<joint type='§hing'/><geom size='1'/>"),
@@ -139,7 +156,7 @@ fn words_and_numbers() {
         (
             body!("<joint range='§1 -1'/><geom size='1'/>"),
             "reversed_limits",
-            "joint `joint0`: limits: go from 0.017453292519943295 to -0.017453292519943295, expected the lower first",
+            "joint `joint0`: limits: go from 0.017453292519943295 to -0.017453292519943295, expected the lower bound first",
         ),
         (
             body!("<joint limited='§true'/><geom size='1'/>"),
@@ -149,7 +166,7 @@ fn words_and_numbers() {
         (
             body!("<joint actuatorfrcrange='§2 -2'/><geom size='1'/>"),
             "reversed_limits",
-            "joint `joint0`: actuatorfrcrange: goes from 2 to -2, expected the lower first",
+            "joint `joint0`: actuatorfrcrange: goes from 2 to -2, expected the lower bound first",
         ),
         (
             body!("<joint armature='§-1'/><geom size='1'/>"),
@@ -209,22 +226,22 @@ fn words_and_numbers() {
         (
             "<mujoco><worldbody><body quat='§0 0 0 0'/></worldbody></mujoco>",
             "zero_axis",
-            "body `body1`: quat: is `0 0 0 0`, which has no direction",
+            "body `body1`: quat: is `0 0 0 0`, a vector of length 0",
         ),
         (
             "<mujoco><worldbody><body xyaxes='§1 0 0 2 0 0'/></worldbody></mujoco>",
             "zero_axis",
-            "body `body1`: xyaxes: is `1 0 0 2 0 0`, which has no direction",
+            "body `body1`: xyaxes: is `1 0 0 2 0 0`, a vector of length 0",
         ),
         (
             "<mujoco><worldbody><body name='a'/><body name='§a'/></worldbody></mujoco>",
             "duplicate_name",
-            "body `a`: the name is taken, expected one of its own",
+            "body `a`: the name is used twice, expected a unique name",
         ),
         (
             "<mujoco><worldbody><body><joint name='a'/><geom size='1'/></body><body><joint name='§a'/><geom size='1'/></body></worldbody></mujoco>",
             "duplicate_name",
-            "joint `a`: the name is taken, expected one of its own",
+            "joint `a`: the name is used twice, expected a unique name",
         ),
         (
             "<mujoco><worldbody><§joint/></worldbody></mujoco>",
@@ -239,7 +256,7 @@ fn words_and_numbers() {
         (
             "<mujoco><default><default class='a'/><default class='§a'/></default></mujoco>",
             "duplicate_name",
-            "default: the class `a` is taken, expected a name of its own",
+            "default: the class `a` is used twice, expected a unique name",
         ),
         (
             "<mujoco><default><§default/></default></mujoco>",
@@ -259,12 +276,12 @@ fn words_and_numbers() {
         (
             "<§mujoco><compiler settotalmass='3'/></mujoco>",
             "no_mass",
-            "compiler: settotalmass: the bodies have the mass 0, which cannot become 3",
+            "compiler: settotalmass: the bodies' total mass 0 cannot be scaled to 3",
         ),
         (
             "<mujoco><compiler autolimits='false'/><worldbody><body><joint range='§0 1'/><geom size='1'/></body></worldbody></mujoco>",
             "unclear_limit",
-            "joint `joint0`: range: counts only with limited=\"true\", since the compiler's autolimits is `false`",
+            "joint `joint0`: range: is used only with limited=\"true\", since the compiler's autolimits is `false`",
         ),
         // a default that is no number is told once, however many take it
         (
@@ -275,7 +292,7 @@ fn words_and_numbers() {
         (
             "<mujoco><include file='§a.xml'/></mujoco>",
             "include",
-            "include: `a.xml` is searched beside the model, which is no file",
+            "include: `a.xml` is relative to the model, which was not read from a file",
         ),
         ("<mujoco><§include/></mujoco>", "missing_attribute", "include: has no attribute `file`"),
         ("<mujoco><§worldbody>", "syntax", "the file ends before <worldbody> is closed"),
@@ -290,6 +307,6 @@ fn values_and_couplings() {
         "<mujoco><worldbody><body name='b'><joint name='p' range='0 1'/><joint name='q' axis='1 0 0' range='0 1'/><geom size='1'/>\
          </body></worldbody><equality><joint joint1='p' joint2='§q' polycoef='5 1'/></equality></mujoco>",
         "contradictory_limits",
-        "joint `p`: mimic: moves from 5 to 5.017453292519943 as `q` moves within its limits, but its own are 0 and 0.017453292519943295",
+        "joint `p`: mimic: moves from 5 to 5.017453292519943 as `q` moves within its limits, but its own limits are 0 and 0.017453292519943295",
     )]);
 }

@@ -10,27 +10,27 @@ fn what_is_left_out_is_said() {
         (
             body!("<joint name='j' stiffness='§8 1'/><joint stiffness='2 0 3'/><joint stiffness='2'/><geom size='1'/>"),
             "ignored_force",
-            "joint `j`: stiffness: is `8 1`, a spring that is not linear, which mozzi does not compute (here, and 1 more)",
+            "joint `j`: stiffness: is `8 1`, a nonlinear spring, which mozzi does not compute (here, and 1 more)",
         ),
         (
             body!("<joint name='j' stiffness='8' springyield='§0.1'/><geom size='1'/>"),
             "ignored_force",
-            "joint `j`: springyield: is `0.1`, a spring that yields, which mozzi does not compute",
+            "joint `j`: springyield: is `0.1`, a yielding spring, which mozzi does not compute",
         ),
         (
             body!("<joint name='j' damping='§1 0 2'/><geom size='1'/>"),
             "ignored_force",
-            "joint `j`: damping: is `1 0 2`, a damping that is not linear, which mozzi does not compute",
+            "joint `j`: damping: is `1 0 2`, nonlinear damping, which mozzi does not compute",
         ),
         (
             "<mujoco><worldbody><body name='b' gravcomp='§1'><geom size='1'/></body></worldbody></mujoco>",
             "ignored_force",
-            "body `b`: gravcomp: is `1`, a compensation of gravity, which mozzi does not compute",
+            "body `b`: gravcomp: is `1`, gravity compensation, which mozzi does not compute",
         ),
         (
             body!("<joint type='free' frictionloss='§1'/><geom size='1'/>"),
             "ignored_force",
-            "body `b`: joint: frictionloss: is `1`, a friction of a free body, which mozzi does not compute",
+            "body `b`: joint: frictionloss: is `1`, friction of a free body, which mozzi does not compute",
         ),
         (
             "<mujoco><option density='§1.2'/></mujoco>",
@@ -45,13 +45,13 @@ fn what_is_left_out_is_said() {
         (
             body!("<§geom type='mesh' mesh='m'/>"),
             "ignored_mesh",
-            "body `b`: geom: is a mesh, whose mass is not known; the body does not move",
+            "body `b`: geom: is a mesh of unknown mass; the body does not move",
         ),
-        (body!("<§gadget/>"), "unknown_element", "body `b`: has an element <gadget>, which MJCF does not know here"),
+        (body!("<§gadget/>"), "unknown_element", "body `b`: has an element <gadget>, which MJCF does not define here"),
         (
             "<mujoco><worldbody><§body name='b'><joint name='j'/></body></worldbody></mujoco>",
             "massless_leaf",
-            "link `b`: mass: joint `j` moves it, but there is no inertia: forward dynamics has no answer",
+            "link `b`: mass: joint `j` moves it, but it has no inertia: forward dynamics is undefined",
         ),
         (
             body!("<joint/><inertial mass='1' diaginertia='§1 1 3'/>"),
@@ -70,7 +70,7 @@ fn plugins_are_told_where_they_are_declared() {
     };
     let listed = "mujoco: <extension> is ignored";
     let force =
-        "extension: plugin: plugin: is `org.wind`, a plugin, whose forces are its own, which mozzi does not compute";
+        "extension: plugin: plugin: is `org.wind`, a plugin, which may apply forces, which mozzi does not compute";
     assert_eq!(extension("org.wind", "<instance name='i'/>"), [listed, force]);
     assert_eq!(extension("org.wind", ""), [listed]);
     assert_eq!(extension("mujoco.pid", "<instance name='i'/>"), [listed]);
@@ -95,10 +95,14 @@ fn attributes_without_effect_are_listed() {
 #[test]
 fn what_is_right_and_has_no_place_is_listed() {
     let text = "<mujoco><asset/><worldbody><light/><body name='b'><joint name='j'/><camera/><camera/><geom size='1'/><site name='b'/>\
-                </body></worldbody><actuator><motor joint='j'/></actuator><sensor/><keyframe/><visual/></mujoco>";
+                </body></worldbody><actuator><motor joint='j'/></actuator><sensor/><keyframe><key ctrl='1'/></keyframe><visual/></mujoco>";
     for policy in [Policy::Default, Policy::Strict] {
         let robot = parse_with("a.xml", text, policy).expect("a model");
-        let is_known = |code: &str| ["mozzi::mjcf::ignored_element", "mozzi::mjcf::renamed_site"].contains(&code);
+        let is_known = |code: &str| {
+            ["ignored_attribute", "ignored_element", "renamed_site"]
+                .iter()
+                .any(|known| code == format!("mozzi::mjcf::{known}"))
+        };
         assert!(robot.warnings.iter().all(|warning| is_known(warning.code())));
         let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
         assert_eq!(
@@ -107,10 +111,10 @@ fn what_is_right_and_has_no_place_is_listed() {
                 "mujoco: <asset> is ignored",
                 "worldbody: <light> is ignored",
                 "body `b`: <camera> is ignored (here, and 1 more)",
-                "site `b`: a body has this name too; it is called `b:site` here",
+                "site `b`: a body has this name, too; the site is called `b:site` here",
                 "mujoco: <actuator> is ignored",
                 "mujoco: <sensor> is ignored",
-                "mujoco: <keyframe> is ignored",
+                "key: `ctrl` is ignored",
                 "mujoco: <visual> is ignored",
             ]
         );

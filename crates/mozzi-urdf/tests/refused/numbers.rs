@@ -31,11 +31,7 @@ fn no_numbers() {
             "link `b`: inertial: mass: value: is `1e999`, expected a number below 1.8e308",
         ),
         (mass("§1,5"), "decimal_comma", "link `b`: inertial: mass: value: is `1,5`, expected a number"),
-        (
-            mass("§${m}"),
-            "xacro",
-            "mass: value: is `${m}`, an expression of xacro, expected a file that xacro has expanded",
-        ),
+        (mass("§${m}"), "xacro", "mass: value: is `${m}`, a xacro expression, expected a file that xacro has expanded"),
         (mass("§1 2"), "wrong_count", "link `b`: inertial: mass: value: `1 2` has 2 numbers, expected 1"),
         (mass("§-1"), "negative_mass", "link `b`: mass: is -1 kg, expected at least 0"),
         (origin("0 0 §0,5"), "decimal_comma", "link `b`: inertial: origin: xyz: is `0,5`, expected a number"),
@@ -63,7 +59,7 @@ fn inertias() {
     refused(&[(
         overflow,
         "not_finite",
-        "link `b`: inertia: is not finite, computed from mass, centre of mass and moments: one of them is not, or too large",
+        "link `b`: inertia: is not finite: mass, centre of mass or a moment is infinite, NaN or too large",
     )]);
     warned(&[
         (
@@ -74,7 +70,7 @@ fn inertias() {
         (
             inertial(&format!("<mass value='§0'/>{}", SOUND.replace('1', "0"))),
             "massless_leaf",
-            "link `b`: mass: joint `j` moves it, but there is no inertia: forward dynamics has no answer",
+            "link `b`: mass: joint `j` moves it, but it has no inertia: forward dynamics is undefined",
         ),
     ]);
 }
@@ -89,10 +85,10 @@ fn a_link_is_judged_by_its_body() {
         <joint name='k' type='fixed'><parent link='b'/><child link='c'/></joint></robot>";
     let message = "link `c`: inertia: the smallest principal moment about the centre of mass is -0.1 kg m², expected \
                    at least 0";
-    let sound = format!("{message}; the body that it is part of is sound").leak();
+    let sound = format!("{message}; the body that it is part of is positive definite").leak();
     warned(&[(text, "unphysical_inertia", sound)]);
     let light = text.replace("ixx='1'", "ixx='0.01'").replace("iyy='1'", "iyy='0.01'").replace("izz='1'", "izz='0.01'");
-    let broken = format!("{message}; the body that it is part of has a negative moment too").leak();
+    let broken = format!("{message}; the body that it is part of has a negative moment, too").leak();
     refused(&[(light.leak(), "indefinite_inertia", broken)]);
 }
 
@@ -109,7 +105,7 @@ fn lenient() {
         if zz == "3" {
             assert_eq!(
                 warning.to_string(),
-                "a.urdf:4:30: warning: link `b`: inertia: the principal moments about the centre of mass, 1, 1 and 3 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1; replaced by the nearest that a body can have, of the moments 1.5, 1.5 and 3 kg \
+                "a.urdf:4:30: warning: link `b`: inertia: the principal moments about the centre of mass, 1, 1 and 3 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1; replaced by the nearest physical inertia, with the moments 1.5, 1.5 and 3 kg \
                  m²"
             );
         }

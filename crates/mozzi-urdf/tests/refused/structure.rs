@@ -24,12 +24,12 @@ fn trees() {
         (
             "<robot name='r'><link name='a'/>\n<link name='§a'/></robot>",
             "duplicate_name",
-            "link `a`: name: `a` is taken, expected a name of its own",
+            "link `a`: name: `a` is used twice, expected a unique name",
         ),
         (
             robot(&[("j", "a", "b"), ("§j", "b", "c")]),
             "duplicate_name",
-            "joint `j`: name: `j` is taken, expected a name of its own",
+            "joint `j`: name: `j` is used twice, expected a unique name",
         ),
         (
             robot(&[("j", "§nn", "b"), ("k", "b", "c")]),
@@ -97,11 +97,15 @@ fn mimic_joints_in_a_circle_and_at_odds() {
     let error = parse("a.urdf", both).expect_err("a circle").to_string();
     assert_eq!(error.matches("leads back in a circle").count(), 2, "{error}");
     let odd = text(&limit("0", "1"), &format!("{}<mimic joint='§j' offset='2'/>", limit("0", "1")));
-    let message = "joint `k`: mimic: moves from 2 to 3 as `j` moves within its limits, but its own are 0 and 1";
+    let message = "joint `k`: mimic: moves from 2 to 3 as `j` moves within its limits, but its own limits are 0 and 1";
     warned(&[(odd.leak(), "contradictory_limits", message)]);
     let fixed =
         text(&limit("0", "1"), "<mimic joint='§j'/>").replace("name='k' type='revolute'", "name='k' type='fixed'");
-    warned(&[(fixed.leak(), "fixed_mimic", "joint `k`: mimic: follows `j`, but is fixed: it does not move")]);
+    warned(&[(
+        fixed.leak(),
+        "fixed_mimic",
+        "joint `k`: mimic: follows `j`, but is a fixed joint, which does not move",
+    )]);
 }
 
 #[test]

@@ -17,12 +17,12 @@ fn broken_xml() {
         (
             "<robot name='a'><link name='b' §name='c'/></robot>",
             "syntax",
-            "the attribute `name` stands twice on one element",
+            "the attribute `name` occurs twice on one element",
         ),
         ("<robot name='a'><§drake:link name='b'/></robot>", "syntax", "the prefix `drake:` is not declared"),
-        ("<robot name='§&who;'/>", "syntax", "the entity `&who;` is not known, and no entities are expanded"),
+        ("<robot name='§&who;'/>", "syntax", "the entity `&who;` is unknown; entities are not expanded"),
         ("<robot name='a§&b'/>", "syntax", "`&` begins no entity here"),
-        ("<robot name='a>\n §<link name='b'/>\n</robot>", "syntax", "`<` stands inside an attribute's value"),
+        ("<robot name='a>\n §<link name='b'/>\n</robot>", "syntax", "`<` is inside an attribute's value"),
         ("<robot name=§a/>", "syntax", "expected a quote, found `a`"),
         ("<robot name§/>", "syntax", "expected `=`, found `/`"),
         (
@@ -46,9 +46,9 @@ fn too_much() {
     let spaces: String = (0..65).map(|k| format!(" xmlns:n{k}='{k}'")).collect();
     let spaces = format!("<§robot name='a'{spaces}/>");
     refused(&[
-        (deep.leak(), "too_deep", "257 elements are nested here, expected at most 256"),
-        (wide.leak(), "too_many_attributes", "257 attributes stand on this element, expected at most 256"),
-        (spaces.leak(), "too_many_namespaces", "65 namespaces hold here, expected at most 64"),
+        (deep.leak(), "too_deep", "257 nested elements, expected at most 256"),
+        (wide.leak(), "too_many_attributes", "257 attributes on this element, expected at most 256"),
+        (spaces.leak(), "too_many_namespaces", "65 namespaces in scope, expected at most 64"),
     ]);
     let long = format!("<robot name='a'><link name='§{}'/></robot>", "b".repeat(257));
     refused(&[(long.leak(), "long_name", "link: name: has 257 bytes, expected at most 256")]);

@@ -67,12 +67,16 @@ fn robots() -> Vec<Broken> {
     all
 }
 
-/// The models of MuJoCo, and one that is too deep for the folder.
+/// The models of MuJoCo, and those that are too large for the folder.
 fn models() -> Vec<Broken> {
     let read = |path: PathBuf| Broken { name: name(&path), text: Vec::new(), path: Some(path) };
     let mut all: Vec<Broken> = files(&folder().join("mjcf"), "xml").map(read).collect();
     let text = format!("<mujoco><worldbody>{}</worldbody></mujoco>", "<body>".repeat(300) + &"</body>".repeat(300));
     all.push(Broken { name: "too_deep".to_string(), text: text.into_bytes(), path: None });
+    let body = "<worldbody><body name=\"b\"><freejoint/><geom size=\"1\"/></body></worldbody>";
+    let keys = "<key/>\n".repeat(1_000_000 / 7 + 1);
+    let text = format!("<mujoco>\n{body}\n<keyframe>\n{keys}</keyframe>\n</mujoco>\n");
+    all.push(Broken { name: "too_many_keys".to_string(), text: text.into_bytes(), path: None });
     all.sort_by(|a, b| a.name.cmp(&b.name));
     all
 }

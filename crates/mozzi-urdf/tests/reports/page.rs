@@ -1,4 +1,4 @@
-//! `docs/diagnostics.md`: every code, what it means, how to mend it, and an example.
+//! `docs/diagnostics.md`: every code, its meaning, its remedy, and an example.
 //!
 //! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports`, writes it anew.
 
@@ -10,12 +10,12 @@ use std::path::Path;
 const HEAD: &str = "\
 # Diagnostics
 
-What `mozzi check` and every other command that reads a robot may say, with an example of each. The same texts are printed
-by `mozzi explain CODE`. An *error* refuses the file; all errors of meaning are reported in one run, of syntax the first. A
-*warning* is said, and the file is loaded: `--strict` makes an error of it (but for the lists of what MJCF holds and a tree
-does not need). `--lenient` repairs inertias, and says so.
+The errors and warnings of `mozzi check`, and of every other command that reads a robot, with an example of each. `mozzi explain
+CODE` prints the same texts. An *error* refuses the file; all errors in content are reported together, syntax errors stop at the
+first. After a *warning* the file is loaded; `--strict` turns warnings into errors (except for the lists of ignored MJCF content).
+`--lenient` repairs inertias and reports each repair.
 
-This page is made by `cargo xtask docs`.
+`cargo xtask docs` writes this page.
 ";
 
 /// Lines of an example are cut here: some are of names of 300 letters.
@@ -54,8 +54,7 @@ fn severity(all: &[Broken], language: &str, code: &str) -> &'static str {
 fn entry(page: &mut String, all: &[Broken], language: &str, code: &str) {
     let full = format!("mozzi::{language}::{code}");
     let (meaning, mend) = (explain(&full).unwrap_or_default(), remedy(&full).unwrap_or_default());
-    let _ =
-        writeln!(page, "\n### `{full}`\n\n*{}*. {meaning}\n\n**To mend it**: {mend}.", severity(all, language, code));
+    let _ = writeln!(page, "\n### `{full}`\n\n*{}*. {meaning}\n\n**Remedy**: {mend}.", severity(all, language, code));
     let Some(broken) = example(all, code) else { return };
     let cut = |line: &str| match line.char_indices().nth(WIDTH) {
         Some((at, _)) => format!("{}…\n", &line[..at]),

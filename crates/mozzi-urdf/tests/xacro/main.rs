@@ -1,5 +1,5 @@
-//! A file of xacro's is refused with the command that expands it, and what PyPI's xacro 2.1.1 makes of it by that command
-//! (`arm.urdf`, beside it) loads without a word.
+//! A file of xacro's is refused with the command that expands it, and what PyPI's xacro 2.1.1 makes of it by that
+//! command (`arm.urdf`, beside it) loads without a word.
 
 use mozzi::model::Severity;
 use mozzi_urdf::{load, model, open};
@@ -16,7 +16,7 @@ fn one_error_with_the_command() {
     assert_eq!((found.severity(), found.code()), (Severity::Error, "mozzi::urdf::xacro"));
     assert_eq!(
         found.to_string(),
-        "tests/xacro/arm.urdf.xacro:4:4: error: <xacro:arg> is a word of xacro, expected a file that xacro has expanded"
+        "tests/xacro/arm.urdf.xacro:4:4: error: <xacro:arg> is a xacro element, expected a file that xacro has expanded"
     );
     assert_eq!(
         found.help(),

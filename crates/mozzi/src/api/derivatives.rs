@@ -5,7 +5,8 @@ use crate::quantities as q;
 use crate::spatial::Wrench;
 use nalgebra::{DMatrix, DVector};
 
-/// The derivatives of τ, each n × n, row i being τ_i's; by θ along the velocities: of a floating base along its body twist.
+/// The derivatives of τ, each n × n with row i for τ_i. Derivatives with respect to θ are along the velocities: for a
+/// floating base, along its body twist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InverseDynamicsDerivatives {
     /// ∂τ/∂θ.
@@ -16,7 +17,8 @@ pub struct InverseDynamicsDerivatives {
     pub d_ddtheta: DMatrix<f64>,
 }
 
-/// θ̈ and its derivatives, each n × n, row i being θ̈_i's; by θ along the velocities: of a floating base along its body twist.
+/// θ̈ and its derivatives, each n × n with row i for θ̈_i. Derivatives with respect to θ are along the velocities: for
+/// a floating base, along its body twist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForwardDynamicsDerivatives {
     /// θ̈ itself.
@@ -47,7 +49,8 @@ impl Model<f64> {
         Ok(InverseDynamicsDerivatives { d_theta: next(), d_dtheta: next(), d_ddtheta: next() })
     }
 
-    /// θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹: see [`forward_dynamics_derivatives`](crate::forward_dynamics_derivatives()).
+    /// θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹: see
+    /// [`forward_dynamics_derivatives`](crate::forward_dynamics_derivatives()).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
@@ -73,7 +76,8 @@ impl Model<f64> {
         self.matrix(q::GravityForcesDerivative, &[theta], &self.environment())
     }
 
-    /// ∂(JᵀF)/∂θ of wrenches that frames apply to the environment: see [`tip_forces_derivative`](crate::tip_forces_derivative).
+    /// ∂(JᵀF)/∂θ for wrenches that frames apply to the environment: see
+    /// [`tip_forces_derivative`](crate::tip_forces_derivative).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.

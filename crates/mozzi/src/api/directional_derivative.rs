@@ -1,4 +1,4 @@
-//! Directional derivatives of anything that is computed of θ, in one call.
+//! Directional derivatives of any function of θ.
 
 use crate::kinematics::{integrate, seed_direction};
 use crate::model::{Error, Model};
@@ -6,9 +6,10 @@ use crate::scalar::Dual;
 use alloc::vec::Vec;
 
 impl Model<f64> {
-    /// f(θ ⊕ δθ ε) at ε = 0, with its derivative in ε: f gets the positions as dual numbers that move along δθ, and its answer is
-    /// this method's. δθ has n entries, as velocities have; a floating base moves along the twist δθ₁ … δθ₆ in its own coordinates.
-    /// Other arguments that move (θ̇, τ, …) are dual numbers of [`Dual::list`], constant ones of [`Dual::constants`].
+    /// f(θ ⊕ δθ ε) at ε = 0, with its derivative in ε: calls f with the positions as dual numbers with the direction
+    /// δθ, and returns its result. δθ has n entries; a floating base moves along the twist δθ₁ … δθ₆ in its own
+    /// coordinates. Make dual numbers of other arguments of f with [`Dual::list`] if they vary, and with
+    /// [`Dual::constants`] if they do not.
     ///
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};
@@ -54,10 +55,10 @@ impl Model<f64> {
         Ok(f(&seed_direction(self, theta, along)))
     }
 
-    /// f(θ ⊕ (u ε₁ + v ε₂)) with its derivatives, for two directions: of each number x of the answer `x.value.derivative` is
-    /// ∂f/∂ε₁, `x.derivative.value` is ∂f/∂ε₂, and `x.derivative.derivative` ∂²f/∂ε₁∂ε₂, at ε = 0. The last is
-    /// symmetric in u and v, also of a floating base, whose directions are added before it moves (e^{`[u + v]`}). See
-    /// [`directional_derivative`](Self::directional_derivative).
+    /// f(θ ⊕ (u ε₁ + v ε₂)) with its derivatives for two directions at ε = 0: for each number x of the result,
+    /// `x.value.derivative` is ∂f/∂ε₁, `x.derivative.value` is ∂f/∂ε₂, and `x.derivative.derivative` is ∂²f/∂ε₁∂ε₂. The
+    /// last is symmetric in u and v, also for a floating base, whose directions are added before the exponential
+    /// (e^{`[u + v]`}). See [`directional_derivative`](Self::directional_derivative).
     ///
     /// Cost: one f on dual numbers of dual numbers.
     ///

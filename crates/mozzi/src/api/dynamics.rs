@@ -1,5 +1,6 @@
 //! Inverse dynamics, its parts, and energies as methods.
 
+use crate::dynamics::set_armature;
 use crate::model::{Environment, Error, FrameId, Model};
 use crate::quantities::{self as q, Query};
 use crate::spatial::Wrench;
@@ -45,7 +46,7 @@ impl Model<f64> {
         self.vector(q::GravityForces, &[theta], &self.environment())
     }
 
-    /// JᵀF of wrenches that frames apply to the environment: see [`tip_forces`](crate::tip_forces).
+    /// JᵀF for wrenches that frames apply to the environment: see [`tip_forces`](crate::tip_forces).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -59,6 +60,15 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn joint_friction(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
         self.vector(q::JointFriction, &[dtheta], &self.environment())
+    }
+
+    /// The rotors' part of M, n × n and constant: on the diagonal Σ ratio² armature of each joint and its mimic joints
+    /// (0 for a floating base), and a JᵀJ for each rotor that several joints turn, with the row J of its gear ratios.
+    /// kg m² or kg.
+    pub fn armature_matrix(&self) -> DMatrix<f64> {
+        let mut M = DMatrix::zeros(self.n(), self.n());
+        set_armature(self, M.as_mut_slice());
+        M
     }
 
     /// f_s(θ) = k(θ − θ₀): see [`spring_forces`](crate::spring_forces()).

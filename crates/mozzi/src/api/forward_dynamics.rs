@@ -35,8 +35,8 @@ impl Model<f64> {
         self.vector(q::ForwardDynamicsByMassMatrix, &[theta, dtheta, tau], environment)
     }
 
-    /// θ̈ from τ as the book has it (Modern Robotics, section 8.5): h by one call of inverse dynamics, M by n calls with
-    /// θ̈ = e_i, and a dense LDLᵀ. O(n³): to read and to compare.
+    /// θ̈ from τ by the book's method (Modern Robotics, section 8.5): h by one call of inverse dynamics, M by n calls
+    /// with θ̈ = e_i, and a dense LDLᵀ. O(n³): for teaching and comparison.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.

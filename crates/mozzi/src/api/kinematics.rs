@@ -10,7 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl Model<f64> {
-    /// `T_sb` of a frame {b} seen from the base: see [`forward_kinematics`](kernel::forward_kinematics).
+    /// `T_sb` of a frame {b} relative to {s}: see [`forward_kinematics`](kernel::forward_kinematics).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
@@ -20,7 +20,7 @@ impl Model<f64> {
         Ok(kernel::forward_kinematics(self, theta, frame))
     }
 
-    /// The configurations of all frames seen from the base, in the order of [`frames`](Self::frames).
+    /// The configurations of all frames relative to {s}, in the order of [`frames`](Self::frames).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

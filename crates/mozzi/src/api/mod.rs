@@ -1,5 +1,5 @@
-//! The methods of [`Model`]: the kernels on plain numbers, answering with an error where a kernel would panic, and with
-//! nalgebra's vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
+//! The methods of [`Model`]: the kernels on `f64`. They return errors where a kernel would panic, and nalgebra's
+//! vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
 
 mod derivatives;
 mod directional_derivative;
@@ -15,12 +15,14 @@ pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 pub use task_space::TaskSpaceDynamics;
 
+use crate::lie::length_off_unit;
 use crate::model::{Environment, Error, FrameId, Freedom, Model};
-use crate::scalar::{Real, Scalar};
+use crate::scalar::Real;
 use alloc::format;
 
 impl<C: Real + Into<f64>> Model<C> {
-    /// Every argument as long as it must be: θ nq, the others, with their names, n; and every quaternion (a floating base's, a ball's, a free joint's) of length 1, to 10⁻³.
+    /// Checks the lengths of the arguments, nq for θ and n for the others (with their names), and that every quaternion
+    /// has length 1 to 10⁻³.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for the quaternion.
@@ -33,7 +35,7 @@ impl<C: Real + Into<f64>> Model<C> {
         self.check_velocities(velocities)
     }
 
-    /// Is θ as long as it must be, and is each quaternion in it of length 1 to 10⁻³?
+    /// Checks that the length of θ is nq and that every quaternion has length 1 to 10⁻³.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::BadArgument`].
@@ -63,7 +65,7 @@ impl<C: Real + Into<f64>> Model<C> {
         velocities.into_iter().try_for_each(|(what, slice)| check_length(what, slice, self.n()))
     }
 
-    /// Is this a frame of this model, not of a larger one?
+    /// Checks that the frame belongs to this model.
     ///
     /// # Errors
     /// [`Error::BadArgument`].
@@ -76,7 +78,7 @@ impl<C: Real + Into<f64>> Model<C> {
         Err(Error::BadArgument { what: "the frame", found, expected: "a frame of this model" })
     }
 
-    /// Are the environment's wrenches on frames of this model?
+    /// Checks that the environment's wrenches are on frames of this model.
     ///
     /// # Errors
     /// [`Error::BadArgument`].
@@ -92,10 +94,7 @@ fn check_length<C>(what: &'static str, slice: &[C], expected: usize) -> Result<(
 
 /// A floating base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
 pub(crate) fn check_unit(q: [f64; 4]) -> Result<(), Error> {
-    let length = Scalar::sqrt(q.iter().map(|x| x * x).sum::<f64>());
-    if (length - 1.0).abs() <= 1e-3 || length.is_nan() {
-        return Ok(());
-    }
+    let Some(length) = length_off_unit(q) else { return Ok(()) };
     let found = format!("{q:?}, of length {length}");
     let expected =
         "a unit quaternion (w, x, y, z), to 1e-3: theta of a floating base is (w, x, y, z), its origin, and the joints";

@@ -7,10 +7,10 @@ use crate::spatial::Wrench;
 use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
-    /// The centre of mass of all that moves, in {s}.
+    /// The centre of mass of the moving links and a floating base, in {s}.
     ///
     /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] where nothing that moves has a mass.
+    /// [`Error::WrongLength`]; [`Error::NoMass`] if the moving links have no mass.
     pub fn center_of_mass(&self, theta: &[f64]) -> Result<Vec3, Error> {
         self.point(q::CenterOfMass, &[theta])
     }
@@ -39,8 +39,8 @@ impl Model<f64> {
         self.matrix(q::CenterOfMassJacobian, &[theta], &self.environment())
     }
 
-    /// The momentum of all that moves, (angular, linear) in kg m²/s and kg m/s, about a point of {s}, in {s} coordinates: see
-    /// [`momentum`](crate::momentum()).
+    /// The momentum of the moving links and a floating base, (angular, linear) in kg m²/s and kg m/s, about a point of
+    /// {s}, in {s} coordinates: see [`momentum`](crate::momentum()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -48,8 +48,8 @@ impl Model<f64> {
         self.wrench(Query::from(q::Momentum).about(about), &[theta, dtheta])
     }
 
-    /// ḣ of the momentum about a fixed point of {s} along a motion; or, about where the centre of mass is now, of the centroidal
-    /// momentum. See [`momentum_rate`](crate::momentum_rate).
+    /// ḣ, the rate of the momentum about a fixed point of {s}; with the present centre of mass as the point, the rate
+    /// of the centroidal momentum. See [`momentum_rate`](crate::momentum_rate).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -57,8 +57,8 @@ impl Model<f64> {
         self.wrench(Query::from(q::MomentumRate).about(about), &[theta, dtheta, ddtheta])
     }
 
-    /// The 6 × n centroidal momentum matrix A_G, angular rows first: `h_G` = A_G θ̇ is the momentum about the centre of mass, in
-    /// {s} axes.
+    /// The 6 × n centroidal momentum matrix A_G, angular rows first: `h_G` = A_G θ̇ is the momentum about the centre of
+    /// mass, in {s} axes.
     ///
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).
@@ -66,8 +66,8 @@ impl Model<f64> {
         self.matrix(q::CentroidalMomentumMatrix, &[theta], &self.environment())
     }
 
-    /// Ȧ_G θ̇: what [`centroidal_momentum_matrix`](Self::centroidal_momentum_matrix) leaves out of the rate
-    /// ḣ_G = A_G θ̈ + Ȧ_G θ̇.
+    /// Ȧ_G θ̇, the bias term of ḣ_G = A_G θ̈ + Ȧ_G θ̇: see
+    /// [`centroidal_momentum_matrix`](Self::centroidal_momentum_matrix).
     ///
     /// # Errors
     /// As [`center_of_mass`](Self::center_of_mass).

@@ -1,4 +1,4 @@
-//! What the recursion of inverse dynamics finds on its way: twists, accelerations, wrenches, reactions.
+//! Intermediate results of the Newton-Euler recursion: twists, accelerations, wrenches, reactions.
 
 use crate::dynamics as kernel;
 use crate::kinematics::link_twists;
@@ -9,12 +9,13 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DVector;
 
-/// In which frame of each moving link its quantities are expressed.
+/// The frame of each moving link in which its quantities are expressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyFrame {
     /// The link's own frame, as in the file.
     Link,
-    /// The book's frame {i}: at the centre of mass of the link with all that is fixed to it, oriented as the link's.
+    /// The book's frame {i}: at the centre of mass of the link and all links fixed to it, with the axes of the link's
+    /// frame.
     CenterOfMass,
 }
 
@@ -25,18 +26,18 @@ pub struct NewtonEuler {
     pub twists: Vec<Twist>,
     /// 𝒱̇_i, with gravity as an upward acceleration of the base, as in the book: at rest it is −g.
     pub accelerations: Vec<Twist>,
-    /// 𝓕_i: the wrench that joint i transmits to link i; its part along the joint is the motor's, the other five are
-    /// the bearing's reaction.
+    /// 𝓕_i: the wrench that joint i transmits to link i. Its component along the joint is the motor's, the other five
+    /// are the bearing's reaction.
     pub wrenches: Vec<Wrench>,
-    /// The wrench that the base needs from the ground, its own weight included, or, where it is free, from whatever drives it:
-    /// then it is the first six entries of τ. In base coordinates.
+    /// The wrench on the base in base coordinates: from the ground, including the base's own weight; for a floating
+    /// base, the first six entries of τ.
     pub base_reaction: Wrench,
     /// τ.
     pub tau: DVector<f64>,
 }
 
 impl Model<f64> {
-    /// Inverse dynamics with all that the recursion finds on its way, in the frames asked for.
+    /// Inverse dynamics with the intermediate results of the recursion, in the given kind of frames.
     ///
     /// # Errors
     /// [`Error::WrongLength`].

@@ -5,7 +5,8 @@ use crate::quantities as q;
 use nalgebra::{DMatrix, RowDVector};
 
 impl Model<f64> {
-    /// Y(θ, θ̇, θ̈), n × p: see [`regressor`](crate::regressor()). τ = Y π + JᵀF with π = [`parameters`](Model::parameters).
+    /// Y(θ, θ̇, θ̈), n × p: see [`regressor`](crate::regressor()). τ = Y π + JᵀF with π =
+    /// [`parameters`](Model::parameters).
     ///
     /// ```
     /// use mozzi::{Description, HomeFrames, SE3, ScrewAxis, Screws, Solid, nalgebra::DVector};
@@ -18,7 +19,7 @@ impl Model<f64> {
     /// let Y = arm.regressor(&theta, &dtheta, &ddtheta, &arm.environment())?;
     /// let tau = arm.inverse_dynamics(&theta, &dtheta, &ddtheta, &arm.environment())?;
     /// assert!((Y * DVector::from_vec(arm.parameters()) - tau).amax() < 1e-12);
-    /// // of 2 · 10 + 2 · 5 parameters, fifteen combinations can be told from forces and motions
+    /// // of 2 · 10 + 2 · 5 parameters, fifteen combinations can be identified from forces and motions
     /// assert_eq!((arm.parameter_count(), arm.base_parameters().count()), (30, 15));
     /// # Ok::<(), mozzi::Error>(())
     /// ```

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 /// 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱) for the k rows of a task.
 #[derive(Clone, Debug)]
 pub struct TaskSpaceDynamics {
-    /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k: the mass matrix that the task's frame shows.
+    /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k: the task-space mass matrix.
     pub Lambda: DMatrix<f64>,
     /// η = Λ(J M⁻¹h − J̇θ̇), k.
     pub eta: DVector<f64>,
@@ -19,21 +19,21 @@ pub struct TaskSpaceDynamics {
 }
 
 impl TaskSpaceDynamics {
-    /// 𝓕 = Λ𝒱̇ + η: the wrench that moves the task's frame so, by τ = Jᵀ𝓕.
+    /// 𝓕 = Λ𝒱̇ + η: the wrench that produces this acceleration by τ = Jᵀ𝓕.
     pub fn wrench(&self, dV: &DVector<f64>) -> DVector<f64> {
         &self.Lambda * dV + &self.eta
     }
 }
 
 impl Model<f64> {
-    /// Λ and η of a task. Where the task has n independent rows they are the book's J⁻ᵀMJ⁻¹ and
-    /// J⁻ᵀh − ΛJ̇J⁻¹𝒱; where the robot has more joints, the dynamically consistent ones. h as
-    /// [`bias_forces`](Self::bias_forces) in this environment, without friction and springs. O(n³).
+    /// Λ and η of a task. If the task has n independent rows, they are the book's J⁻ᵀMJ⁻¹ and J⁻ᵀh − ΛJ̇J⁻¹𝒱; for
+    /// redundant robots they are the dynamically consistent ones. h is [`bias_forces`](Self::bias_forces) in this
+    /// environment, without friction and springs. O(n³).
     ///
     /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] for rows that are none or not distinct;
-    /// [`Error::SingularMassMatrix`]; [`Error::SingularTask`] with the singular values of J where its rows cannot be moved
-    /// independently (the smallest below 10⁻¹² of the largest).
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for missing, invalid or repeated rows;
+    /// [`Error::SingularMassMatrix`]; [`Error::SingularTask`] with the singular values of J if its rows are dependent
+    /// (the smallest below 10⁻¹² of the largest).
     pub fn task_space_dynamics(
         &self,
         theta: &[f64],

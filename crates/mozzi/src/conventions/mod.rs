@@ -1,7 +1,7 @@
-//! Other libraries' conventions: the same states, forces and matrices in their order, frames and signs, there and back.
+//! Conversions of states, forces and matrices to and from the order, frames and signs of other libraries.
 //!
-//! Their velocities ν are linear in mozzi's, θ̇ = X(θ)ν, with X invertible. The rest follows: equal power gives forces Xᵀτ, equal
-//! energy the mass matrix XᵀMX, and differentiation the accelerations, θ̈ = Xν̇ + Ẋν.
+//! Their velocities ν are linear in mozzi's, θ̇ = X(θ)ν, with X invertible. The rest follows: equal power gives forces
+//! Xᵀτ, equal energy the mass matrix XᵀMX, and differentiation the accelerations, θ̈ = Xν̇ + Ẋν.
 
 mod joint_order;
 mod mujoco;

@@ -10,7 +10,7 @@ use crate::spatial::Twist;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// States, forces and matrices of a model in the coordinates of MuJoCo, and back.
+/// Converts states, forces and matrices of a model to and from MuJoCo's coordinates.
 ///
 /// | | mozzi | MuJoCo (a floating base is its `freejoint`), R = `R_sb` |
 /// |---|---|---|
@@ -21,41 +21,44 @@ use nalgebra::{DMatrix, DVector};
 /// | mass matrix | M | XᵀMX, with θ̇ = X `qvel` |
 /// | h | h | Xᵀ(h + Mβ), with θ̈ = X `qacc` + β, β = (0, −ω × v, 0) |
 ///
-/// A ball has the quaternion and ω in both. A free joint inside the robot is as a floating base; MuJoCo, which has them on the world alone, takes the pose in
-/// {s} where mozzi's is seen from where the joint's frame is at 0.
+/// A ball has the same quaternion and ω in both. A free joint inside the robot is like a floating base; MuJoCo allows
+/// them on the world only and has the pose in {s}, mozzi the pose relative to the joint's frame at 0.
 ///
-/// h is no [`force`](Self::force) alone: it is what θ̈ = 0 needs, and `qfrc_bias` what `qacc` = 0 needs.
+/// h does not convert like a [`force`](Self::force): it is the force for θ̈ = 0, `qfrc_bias` the force for `qacc` = 0.
 ///
-/// All is exact to the rounding of one rotation; permutations, and all of a fixed robot, to the bit. Where mozzi's methods take θ
-/// to know R, those that lead back take `qpos`.
+/// Results are exact up to the rounding of one rotation; permutations, and everything for a fixed base, are exact to
+/// the bit. Conversions to MuJoCo take θ to compute R, conversions from MuJoCo take `qpos`.
 #[derive(Clone, Debug)]
 pub struct MuJoCo {
     order: JointOrder,
-    /// Of each free joint (and a floating base) by its number among the places, where MuJoCo sees its configuration from: at 0 of it, seen from {s}.
+    /// Of each free joint (and a floating base) by its number among the places, where MuJoCo sees its configuration
+    /// from: at 0 of it, seen from {s}.
     homes: Vec<(usize, SE3)>,
 }
 
 impl MuJoCo {
-    /// Joints in mozzi's own order, as MuJoCo has it too when it reads the same file: depth first, siblings as they stand.
+    /// Joints in mozzi's own order, which is MuJoCo's for the same file: depth first, siblings in the file's order.
     pub fn new(model: &Model) -> Self {
         MuJoCo::of(model, JointOrder::new(model, (0..model.joint_names().len()).collect()))
     }
 
-    /// Joints as a MuJoCo model names them, the free one left out.
+    /// Joints in the order of these names from a MuJoCo model, without the free joint of a floating base.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`], [`Error::BadArgument`]: unless these are the independent joints, each once.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`] or [`Error::BadArgument`] unless the names are the independent
+    /// joints, each once.
     pub fn with_joints(model: &Model, names: &[&str]) -> Result<Self, Error> {
         Ok(MuJoCo::of(model, JointOrder::by_name(model, names)?))
     }
 
     fn of(model: &Model, order: JointOrder) -> Self {
         let free = order.places().iter().enumerate().filter(|(_, place)| place.freedom == Freedom::Free);
-        let homes = free.map(|(k, place)| (k, model.home_on_base(place).unwrap_or(SE3::identity()))).collect();
+        let on_base = model.homes_on_base();
+        let homes = free.map(|(k, place)| (k, on_base.get(&place.j).copied().unwrap_or(SE3::identity()))).collect();
         MuJoCo { order, homes }
     }
 
-    /// mozzi's number, among the joints, of each of MuJoCo's.
+    /// mozzi's joint index of each of MuJoCo's joints.
     pub fn joints(&self) -> &[usize] {
         self.order.joints()
     }
@@ -104,7 +107,7 @@ impl MuJoCo {
     /// `qvel` from θ̇: (Rv, ω, joints).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
     pub fn velocity(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
         let R = self.orientations(theta)?;
         Ok(turned(self.order.velocities_to("dtheta", dtheta)?, R))
@@ -113,7 +116,7 @@ impl MuJoCo {
     /// θ̇ from `qvel`.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
     pub fn from_velocity(&self, qpos: &[f64], qvel: &[f64]) -> Result<DVector<f64>, Error> {
         self.turned_back(qpos, "qvel", qvel)
     }
@@ -121,7 +124,7 @@ impl MuJoCo {
     /// `qacc` from θ̈: (R(v̇ + ω × v), ω̇, joints).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
     pub fn acceleration(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64]) -> Result<DVector<f64>, Error> {
         let (R, beta) = (self.orientations(theta)?, self.spin(dtheta)?);
         check_length("ddtheta", ddtheta.len(), self.order.n())?;
@@ -131,7 +134,7 @@ impl MuJoCo {
     /// θ̈ from `qacc`.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
     pub fn from_acceleration(&self, qpos: &[f64], qvel: &[f64], qacc: &[f64]) -> Result<DVector<f64>, Error> {
         let dtheta = self.from_velocity(qpos, qvel)?;
         Ok(self.turned_back(qpos, "qacc", qacc)? + self.spin(dtheta.as_slice())?)
@@ -140,7 +143,7 @@ impl MuJoCo {
     /// `qfrc_*` from τ: (Rf, m, joints). For h see [`bias_forces`](Self::bias_forces).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
     pub fn force(&self, theta: &[f64], tau: &[f64]) -> Result<DVector<f64>, Error> {
         let R = self.orientations(theta)?;
         Ok(turned(self.order.velocities_to("tau", tau)?, R))
@@ -149,7 +152,7 @@ impl MuJoCo {
     /// τ from `qfrc_*`.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
     pub fn from_force(&self, qpos: &[f64], qfrc: &[f64]) -> Result<DVector<f64>, Error> {
         self.turned_back(qpos, "qfrc", qfrc)
     }
@@ -157,7 +160,7 @@ impl MuJoCo {
     /// `mj_fullM`'s matrix from M: XᵀMX.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
     pub fn mass_matrix(&self, theta: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let R = self.orientations(theta)?;
         Ok(congruent(self.order.matrix_to("M", M)?, R))
@@ -166,7 +169,7 @@ impl MuJoCo {
     /// M from `mj_fullM`'s matrix.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
     pub fn from_mass_matrix(&self, qpos: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let R = self.orientations(self.from_configuration(qpos)?.as_slice())?;
         self.order.check_matrix("M", M)?;
@@ -176,7 +179,7 @@ impl MuJoCo {
     /// `qfrc_bias` from h and M, both mozzi's: Xᵀ(h + Mβ), β = (0, −ω × v, 0).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
     pub fn bias_forces(
         &self,
         theta: &[f64],
@@ -195,7 +198,7 @@ impl MuJoCo {
     /// h from `qfrc_bias` and M, this one mozzi's: X⁻ᵀ`qfrc_bias` − Mβ.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or a quaternion that is none.
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
     pub fn from_bias_forces(
         &self,
         qpos: &[f64],
@@ -213,7 +216,8 @@ impl MuJoCo {
 
     /// Where MuJoCo sees the configuration of this place from, unless from the same frame.
     fn home(&self, k: usize) -> Option<SE3> {
-        self.homes.iter().find(|(place, home)| *place == k && *home != SE3::identity()).map(|(_, home)| *home)
+        let found = self.homes.binary_search_by_key(&k, |(place, _)| *place).ok()?;
+        Some(self.homes[found].1).filter(|home| *home != SE3::identity())
     }
 
     /// Of each free joint, where its linear velocity stands in `qvel`, and the rotation from its axes to MuJoCo's.

@@ -11,7 +11,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// States, forces and matrices of a model in the order of Pinocchio, and back.
+/// Converts states, forces and matrices of a model to and from Pinocchio's order.
 ///
 /// | | mozzi | Pinocchio (a floating base is its `JointModelFreeFlyer`) |
 /// |---|---|---|
@@ -20,13 +20,14 @@ use nalgebra::{DMatrix, DVector};
 /// | acceleration | its derivative | `a`, its derivative: the spatial one, in the same |
 /// | force | (m, f, joints) | `tau` = (f, m, joints) |
 ///
-/// A ball is its `JointModelSpherical`: (q_x, q_y, q_z, q_w), and ω in both. A free joint inside the robot is as a floating base.
+/// A ball is its `JointModelSpherical`: (q_x, q_y, q_z, q_w), and the same ω. A free joint inside the robot is like a
+/// floating base.
 ///
-/// Joints stand as Pinocchio's reader of URDF orders them: depth first, siblings by the alphabet. One that turns without limits
-/// (URDF: continuous) has two positions, (cos θ, sin θ). Mimic joints have none, as with `mimic=True`.
+/// Joints are in the order of Pinocchio's URDF reader: depth first, siblings alphabetically. A continuous joint has two
+/// positions, (cos θ, sin θ). Mimic joints have none, as with `mimic=True`.
 ///
-/// X is a permutation, so all but those two positions is exact, there and back. h, c, g and JᵀF are [`force`](Self::force)s; C,
-/// Ṁ, M⁻¹, ∂τ and ∂θ̈ convert as M.
+/// X is a permutation, so round trips are exact except for those two positions. h, c, g and JᵀF convert like a
+/// [`force`](Self::force); C, Ṁ, M⁻¹, ∂τ and ∂θ̈ like M.
 ///
 /// ```
 /// # use mozzi::{Base, Description, Solid};
@@ -41,13 +42,13 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Clone, Debug)]
 pub struct Pinocchio {
     order: JointOrder,
-    /// Has the k-th joint the positions (cos θ, sin θ)?
+    /// Whether the k-th joint has the positions (cos θ, sin θ).
     is_circle: Vec<bool>,
 }
 
 impl Pinocchio {
-    /// As Pinocchio reads the robot's URDF. (A `revolute` joint to which the file gives no bounds turns without limits in mozzi, and has
-    /// one position in Pinocchio: [`with_joints`](Self::with_joints) knows better.)
+    /// The order in which Pinocchio reads the robot's URDF. A `revolute` joint without bounds in the file is unlimited
+    /// in mozzi but has one position in Pinocchio: for such robots use [`with_joints`](Self::with_joints).
     pub fn new(model: &Model) -> Self {
         let order = JointOrder::new(model, depth_first_by_the_alphabet(model));
         let joints: Vec<&Joint> = model.joints().collect();
@@ -55,12 +56,12 @@ impl Pinocchio {
         Pinocchio { order, is_circle }
     }
 
-    /// As a Pinocchio model says itself: the names of its joints (`model.names`, from the first after the universe and the free
-    /// flyer on), and the number of positions of each (`model.nqs`, likewise).
+    /// The order of a Pinocchio model: the names of its joints (`model.names`, without the universe and the free
+    /// flyer), and their numbers of positions (`model.nqs`, likewise).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`], [`Error::BadArgument`]: unless these are the independent joints, each once,
-    /// with 1 or 2 positions, of a ball 4, of a free joint 7.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`] or [`Error::BadArgument`] unless the names are the independent
+    /// joints, each once, with 1 or 2 positions, 4 for a ball, 7 for a free joint.
     pub fn with_joints(model: &Model, names: &[&str], nqs: &[usize]) -> Result<Self, Error> {
         let order = JointOrder::by_name(model, names)?;
         check_length("the list of joints' numbers of positions", nqs.len(), names.len())?;
@@ -78,12 +79,13 @@ impl Pinocchio {
         Ok(Pinocchio { order, is_circle: nqs.iter().map(|&nq| nq == 2).collect() })
     }
 
-    /// mozzi's number, among the joints, of each of Pinocchio's.
+    /// mozzi's joint index of each of Pinocchio's joints.
     pub fn joints(&self) -> &[usize] {
         self.order.joints()
     }
 
-    /// mozzi's places in Pinocchio's order, a floating base's first, and which of them have the positions (cos θ, sin θ).
+    /// mozzi's places in Pinocchio's order, a floating base's first, and which of them have the positions (cos θ, sin
+    /// θ).
     fn places(&self) -> impl Iterator<Item = (&Place, bool)> {
         let base = self.order.places().len() - self.is_circle.len();
         self.order.places().iter().zip(core::iter::repeat_n(false, base).chain(self.is_circle.iter().copied()))
@@ -168,7 +170,7 @@ impl Pinocchio {
         self.order.velocities_from("a", a)
     }
 
-    /// `tau` from τ; so too `nle` from h, and every other force.
+    /// `tau` from τ; likewise `nle` from h, and every other force.
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -184,7 +186,7 @@ impl Pinocchio {
         self.order.velocities_from("tau", tau)
     }
 
-    /// `M` from M; so too C and Ṁ.
+    /// `M` from M; likewise C and Ṁ.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square.

@@ -1,6 +1,7 @@
 //! The book's stacked closed form (Modern Robotics, section 8.4): dense, to look at, and computed apart from the kernels,
 //! from the screws in the centre-of-mass frames.
 
+use super::armature::{add_coriolis_blocks, set_armature};
 use super::joint_friction::joint_friction;
 use super::spring_forces::spring_forces;
 use crate::kinematics::base_pose;
@@ -8,6 +9,7 @@ use crate::lie::SE3;
 use crate::model::{Environment, Error, Model, Motion};
 use crate::scalar::{Real, Scalar};
 use crate::spatial::{Twist, Wrench};
+use alloc::vec;
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, DMatrix, DVector};
 use num_traits::{One, Zero};
 
@@ -52,8 +54,10 @@ pub struct ClosedForm<S = f64> {
     pub F_tip: DVector<S>,
     /// θ̇.
     pub dtheta: DVector<S>,
-    /// The rotors' inertia at each joint.
-    pub armature: DVector<S>,
+    /// The rotors' inertia, n × n: armature on the diagonal, and a JᵀJ of a rotor that several joints turn.
+    pub armature: DMatrix<S>,
+    /// The armature's part of C, n × n: `a[ω]` where a free joint has armature, else 0.
+    pub armature_coriolis: DMatrix<S>,
     /// f(θ̇), the friction in the joints.
     pub friction: DVector<S>,
     /// f_s(θ) = k(θ − θ₀), the springs in the joints.
@@ -82,10 +86,15 @@ impl<S: Entry> Model<S> {
             dV_base: DVector::zeros(6 * N),
             F_tip: DVector::zeros(6 * N),
             dtheta: DVector::from_column_slice(dtheta),
-            armature: DVector::from_column_slice(&self.armature),
+            armature: DMatrix::zeros(n, n),
+            armature_coriolis: DMatrix::zeros(n, n),
             friction: DVector::from_fn(n, |j, _| joint_friction(self, j, dtheta[j])),
             springs: DVector::zeros(n),
         };
+        set_armature(self, form.armature.as_mut_slice());
+        let mut of_rows = vec![<S as Scalar>::zero(); n * n];
+        add_coriolis_blocks(self, dtheta, &mut of_rows);
+        form.armature_coriolis = DMatrix::from_row_slice(n, n, &of_rows);
         spring_forces(self, theta, form.springs.as_mut_slice());
         if let (Some(&V), true) = (dtheta.first_chunk(), self.is_floating()) {
             let Ad = matrix6(base_pose(self, theta).inverse().Ad().to_matrix());
@@ -157,9 +166,9 @@ impl<S: Entry> Model<S> {
 }
 
 impl<S: Entry> ClosedForm<S> {
-    /// M = 𝒜ᵀℒᵀ𝒢ℒ𝒜 + diag(armature).
+    /// M = 𝒜ᵀℒᵀ𝒢ℒ𝒜 + armature.
     pub fn mass_matrix(&self) -> DMatrix<S> {
-        self.jacobians().transpose() * &self.G * self.jacobians() + DMatrix::from_diagonal(&self.armature)
+        self.jacobians().transpose() * &self.G * self.jacobians() + &self.armature
     }
 
     /// The stacked body Jacobians ℒ𝒜, 6N × n: block i is J_ib, with 𝒱_i = J_ib θ̇ and M = Σ J_ibᵀ𝒢_iJ_ib.
@@ -176,7 +185,7 @@ impl<S: Entry> ClosedForm<S> {
 
     /// c, base at rest.
     pub fn velocity_product(&self) -> DVector<S> {
-        self.book_coriolis_matrix() * &self.dtheta
+        (self.book_coriolis_matrix() + &self.armature_coriolis) * &self.dtheta
     }
 
     /// g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base.
@@ -203,7 +212,8 @@ impl<S: Entry> ClosedForm<S> {
     /// τ = 𝒜ᵀ𝓕 + armature θ̈ + f(θ, θ̇), at any motion of the base.
     pub fn inverse_dynamics(&self, ddtheta: &DVector<S>) -> DVector<S> {
         self.A.transpose() * self.wrenches(ddtheta)
-            + self.armature.component_mul(ddtheta)
+            + &self.armature * ddtheta
+            + &self.armature_coriolis * &self.dtheta
             + &self.friction
             + &self.springs
     }
@@ -232,7 +242,7 @@ impl<S: Entry> ClosedForm<S> {
         }
         let inner = (&self.G * &self.ad_V - self.ad_V.transpose() * &self.G + H) * S::from_f64(0.5)
             - &self.G * &self.L * &self.ad_Adtheta * &self.W;
-        self.jacobians().transpose() * inner * self.jacobians()
+        self.jacobians().transpose() * inner * self.jacobians() + &self.armature_coriolis
     }
 }
 

@@ -1,12 +1,13 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
+use super::armature::add_coriolis_blocks;
+use super::composite::{BaseRates, Does, Filled, add_moved_by_link, composite_pass};
 use crate::kinematics::{base_twist, joint_transforms};
-use crate::lie::SE3;
 use crate::linalg::add_transpose;
-use crate::model::{Model, Workspace};
+use crate::model::{Model, Pair, Workspace};
 use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
-use crate::spatial::{Twist, Wrench};
+use crate::spatial::{CoriolisFactor, Twist};
 
 /// C(θ, θ̇) of the Christoffel symbols, n × n, row-major into `C`: Cθ̇ = c and Ṁ − 2C skew-symmetric; base at rest.
 ///
@@ -35,84 +36,29 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
 fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     model: &Model<C0>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>, C: &mut [S],
 ) {
-    let n = model.n();
     model.assert_lengths(theta.len(), [dtheta.len()]);
-    assert!(C.len() == n * n, "C has {} entries, expected n² = {}", C.len(), n * n);
     joint_transforms(model, theta, workspace);
-    let Workspace { T, V, dV, F: P, G_c, dG_c, .. } = workspace;
-    let half = S::from_f64(0.5);
-
-    C.fill(S::zero());
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, pairs: [pairs, _], G_c, B, .. } = workspace;
+    let (T, V, pairs) = (&T[..slots], &mut V[..slots], &mut pairs[..slots]);
+    let (G_c, B, half) = (&mut G_c[..slots], &mut B[..slots], S::from_f64(0.5));
     V[0] = base_twist;
-    let G_0 = model.base_inertia.map(S::from);
-    (G_c[0], dG_c[0], P[0]) = (G_0, G_0.rate(V[0]), G_0 * V[0]);
+    let G = model.base_inertia.map(S::from);
+    (G_c[0], B[0]) = (G, CoriolisFactor::new(G, V[0], G * V[0]));
     for (i, link) in model.outward::<S>() {
-        V[i]    = T[i].Ad() * V[link.parent] + link.A() * link.rate(dtheta);
-        dV[i]   = (V[i].ad() * (link.A() * link.ratio())).twist();                         // rate of A, per unit of θ̇_j
-        G_c[i]  = link.G();
-        dG_c[i] = link.G().rate(V[i]);
-        P[i]    = link.G() * V[i];                                             // momentum
-        if link.is_last && link.is_next() {
-            moved_by_all(model, i, T, V, dV);
+        V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j];
+        let (A, G) = (link.A(), link.G());
+        let moved = if link.has_one_axis() { (V[i].ad() * A).twist() } else { Twist::zero() };
+        pairs[i] = Pair { r: moved, s: A.twist().w * half };
+        if !link.has_one_axis() && link.is_last {
+            add_moved_by_link(model, i, T, V[i], pairs);
         }
+        (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V[i], G * V[i]));
     }
-    for (i, link) in model.inward::<S>() {
-        let (j, A) = (link.j, link.A().twist() * link.ratio());
-        let (dGA, HA): (Wrench<S>, Wrench<S>) = (dG_c[i] * A, -(A.ad().transpose() * P[i]));
-        let mut F1 = G_c[i] * dV[i] + (dGA + HA) * half;                     // column j of C, as a wrench
-        let mut F2 = G_c[i] * A;                                             // row j: times the rate of A …
-        let mut F3 = (dGA - HA) * half;                                      // … and times A
-        C[j * n + j] += A.dot(F1);
-        let mut k = i;
-        while model.links[k - 1].parent > 0 {
-            let Ad = T[k].Ad().transpose();
-            (F1, F2, F3) = (Ad * F1, Ad * F2, Ad * F3);
-            k = model.links[k - 1].parent;
-            let below = model.link::<S>(k);
-            C[below.j * n + j] += below.ratio() * (below.A() * F1);
-            C[j * n + below.j] += dV[k].dot(F2) + below.ratio() * (below.A() * F3);
-        }
-        if model.is_floating() {
-            let Ad = T[k].Ad().transpose();
-            (F1, F2, F3) = (Ad * F1, Ad * F2, Ad * F3);
-            let row = V[0].ad().transpose() * F2 + F3;                       // each axis e turns with [ad_𝒱_0] e
-            for (r, (column, row)) in F1.to_array().into_iter().zip(row.to_array()).enumerate() {
-                C[r * n + j] += column;
-                C[j * n + r] += row;
-            }
-        }
-        if link.parent > 0 || model.is_floating() {
-            let Ad = T[i].Ad();
-            let (G_i, dG_i, P_i) = (G_c[i].congruence(Ad), dG_c[i].congruence(Ad), Ad.transpose() * P[i]);
-            G_c[link.parent]  += G_i;
-            dG_c[link.parent] += dG_i;
-            P[link.parent]    += P_i;
-        }
-    }
-    if model.is_floating() {
-        for (r, e) in Twist::axes().into_iter().enumerate() {
-            let column = G_c[0] * (V[0].ad() * e) + (dG_c[0] * e - e.ad().transpose() * P[0]) * half;
-            for (s, entry) in column.to_array().into_iter().enumerate() {
-                C[s * n + r] = entry;
-            }
-        }
-    }
-}
-
-/// The rates of the axes of a ball or a free joint, whose last is i: its link moves them all.
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip]
-fn moved_by_all<S: Scalar + From<C0>, C0: Scalar>(model: &Model<C0>, i: usize, T: &[SE3<S>], V: &[Twist<S>], dV: &mut [Twist<S>]) {
-    let mut V_J = V[i];
-    let mut above = i;
-    for (k, link) in model.to_base::<S>(model.links[i - 1].parent) {
-        V_J = T[above].inverse().Ad() * V_J;
-        dV[k] = (V_J.ad() * link.unit()).twist();
-        if !link.is_next() {
-            break;
-        }
-        above = k;
-    }
+    let base = BaseRates { X: base_twist, Y: None, sigma: half };
+    let does = Does { adds_factors: true, adds_wrenches: false, is_composite: false, first_is_by_theta: false };
+    composite_pass(model, workspace, [Filled { X: C, base }], None, does);
+    add_coriolis_blocks(model, dtheta, C);
 }
 
 /// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is left out: in C + Cᵀ

@@ -1,5 +1,6 @@
 //! Kinetic and potential energy.
 
+use super::armature::rotor_energy;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
@@ -30,10 +31,7 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         twice += V[i].dot(link.G() * V[i]);
     }
-    for (&armature, &rate) in model.armature.iter().zip(dtheta) {
-        twice += S::from(armature) * rate * rate;
-    }
-    twice * S::from_f64(0.5)
+    (twice + rotor_energy(model, dtheta)) * S::from_f64(0.5)
 }
 
 /// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at its origin and a

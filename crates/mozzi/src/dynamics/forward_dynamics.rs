@@ -1,8 +1,10 @@
 //! Forward dynamics: the articulated-body algorithm (Featherstone 2008, section 7.3).
 
+use super::armature::add_velocity_products;
 use super::inverse_dynamics::carrier_twist;
 use super::joint_friction::joint_friction;
 use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
+use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
@@ -14,8 +16,8 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ, θ̇)
 ///
-/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a 6 × 6 LDLᵀ at the root; where joints follow
-/// others, by the mass matrix. No allocation. Where M is singular the result is not finite or meaningless: the methods
+/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a 6 × 6 LDLᵀ at the root; where joints are coupled, by
+/// a mimic joint or a rotor, by the mass matrix. No allocation. Where M is singular the result is not finite or meaningless: the methods
 /// of [`Model`] look at the pivots and answer with an error.
 ///
 /// # Panics
@@ -30,7 +32,7 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     ddtheta: &mut [S],
 ) {
-    if model.has_mimic_joints() {
+    if model.has_coupled_joints() {
         let mut M = core::mem::take(&mut workspace.matrix);
         forward_dynamics_by_mass_matrix(model, theta, dtheta, tau, environment, workspace, &mut M, ddtheta);
         workspace.matrix = M;
@@ -50,9 +52,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     joint_sines(model, theta, workspace);
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, G_hat, U, u, sin_cos, pivots, vector, .. } = workspace;
-    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
-    let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
+    let Workspace { V, dV, F, G_hat, vector, .. } = workspace;
     vector.fill(S::zero());
     let (V_0, dV_0) = base_motion(model, theta, dtheta, vector, environment);
     let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
@@ -63,25 +63,21 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         G_hat[0] = G.into();
     }
 
-    // τ − f, in place of θ̈ until that is known
+    // f − τ, in place of θ̈ until that is known
     for j in 0..model.n() {
-        ddtheta[j] = tau[j] - joint_friction(model, j, dtheta[j]);
+        ddtheta[j] = joint_friction(model, j, dtheta[j]) - tau[j];
     }
-    for spring in &model.springs {
-        ddtheta[spring.j] -= spring.force(theta);
-    }
+    add_spring_forces(model, theta, ddtheta);
+    add_velocity_products(model, dtheta, ddtheta);
 
     // base to tips: twists, and what each link's motion needs where no joint accelerates
-    for (i, link) in model.outward::<S>() {
-        let (A, dq) = (link.A(), link.rate(dtheta));
-        let T_i = link.transform_with(sin_cos[i], theta);
-        let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;
-        let V_c = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
-        let (V_i, dV_i) = V_i.classical_acceleration((V_c.ad() * (A * dq)).twist());  // velocity-product acceleration
-        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
-        F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
-        G_hat[i] = link.G().into();
+    match model.structure.of_one_axis {
+        true => motions::<true, S, C>(model, theta, dtheta, workspace),
+        false => motions::<false, S, C>(model, theta, dtheta, workspace),
     }
+    let Workspace { T, dV, F, G_hat, U, u, pivots, .. } = workspace;
+    let (T, dV, F) = (&T[..slots], &mut dV[..slots], &mut F[..slots]);
+    let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
@@ -93,7 +89,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         let GA = G_hat[i] * A;
         let d  = A * GA + S::from(model.armature[j]);
         let one_over_d = S::one() / d;
-        u[i] = (ddtheta[j] - A * F[i]) * one_over_d;
+        u[i] = -(ddtheta[j] + A * F[i]) * one_over_d;
         U[i] = GA * one_over_d;
         pivots[j] = d;
         if link.parent > 0 || model.is_floating() {
@@ -119,6 +115,29 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         let dV_i = T[i].Ad() * dV[link.parent] + dV[i];
         ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
         dV[i] = dV_i + link.A() * ddtheta[link.j];
+    }
+}
+
+/// From that of the base, 𝒱 of each link where no joint accelerates, 𝒱̇ less what the parent adds, and 𝓕 and 𝒢 of its own.
+#[inline(always)]
+#[rustfmt::skip]
+fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
+) {
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, dV, F, carrier, G_hat, sin_cos, .. } = workspace;
+    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
+    let G_hat = &mut G_hat[..slots];
+    for (i, link) in model.outward::<S>() {
+        let link = link.among::<ONE_AXIS>();
+        let (A, dq) = (link.A(), dtheta[link.j]);
+        let T_i = link.transform_with(sin_cos[i], theta);
+        let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;
+        let V_c = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
+        let (V_i, dV_i) = V_i.classical_acceleration((V_c.ad() * (A * dq)).twist());  // velocity-product acceleration
+        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
+        F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
+        G_hat[i] = link.G().into();
     }
 }
 

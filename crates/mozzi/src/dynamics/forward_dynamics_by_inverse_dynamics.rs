@@ -1,5 +1,6 @@
 //! Forward dynamics as the book has it (Modern Robotics, section 8.5): to read and to compare.
 
+use super::armature::set_armature;
 use super::inverse_dynamics::{inverse_dynamics, newton_euler};
 use crate::linalg::{Vec3, ldlt};
 use crate::model::{Environment, Model, Workspace};
@@ -29,12 +30,11 @@ pub(crate) fn forward_dynamics_by_inverse_dynamics<S: Scalar + From<C>, C: Scala
     ddtheta: &mut [S],
 ) {
     let (n, nothing) = (model.n(), Environment::with_gravity(Vec3::zero()));
+    set_armature(model, M);
     for i in 0..n {
         e.fill(S::zero());
         e[i] = S::one();
         let row = &mut M[i * n..][..n]; // M being symmetric
-        row.fill(S::zero());
-        row[i] = S::from(model.armature[i]);
         newton_euler(model, theta, zeros, e, &nothing, workspace, row);
     }
     inverse_dynamics(model, theta, dtheta, zeros, environment, workspace, ddtheta); // h + f

@@ -1,7 +1,9 @@
 //! ∂θ̈ of forward dynamics, by those of inverse dynamics and the factors of M (Carpentier and Mansard 2018).
 
+use super::armature::{add_velocity_product_rates, add_velocity_products};
 use super::bias_forces::take_zeros;
-use super::derivatives::{add_accelerations, inward_pass, joint_forces, outward_pass};
+use super::composite::{Does, Filled, composite_pass};
+use super::derivatives::{add_accelerations, add_damping, base_rates, joint_forces, outward_pass};
 use super::joint_friction::joint_friction;
 use super::spring_forces::{add_spring_forces, add_stiffness};
 use crate::kinematics::joint_transforms;
@@ -41,8 +43,10 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     workspace.vector = zero;
 
     // M θ̈ = τ − h − f
-    inward_pass(model, theta, environment, workspace, true, [None, None, Some(d_tau)]);
+    let does = Does { adds_factors: true, adds_wrenches: true, is_composite: false, first_is_by_theta: false };
+    composite_pass(model, workspace, [], Some(d_tau), does);
     joint_forces(model, workspace, ddtheta);
+    add_velocity_products(model, dtheta, ddtheta);
     add_spring_forces(model, theta, ddtheta);
     for j in 0..n {
         ddtheta[j] = tau[j] - ddtheta[j] - joint_friction(model, j, dtheta[j]);
@@ -51,8 +55,13 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     ldlt::solve(pattern, d_tau, ddtheta);
 
     add_accelerations(model, ddtheta, workspace);
-    inward_pass(model, theta, environment, workspace, false, [Some(d_theta), Some(d_dtheta), None]);
-    add_stiffness(model, d_theta);
+    let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
+    let both = [Filled { X: d_theta, base: by_theta }, Filled { X: d_dtheta, base: by_dtheta }];
+    let does = Does { adds_wrenches: false, is_composite: true, first_is_by_theta: true, ..does };
+    composite_pass(model, workspace, both, None, does);
+    add_damping(model, d_dtheta);
+    add_stiffness(model, theta, d_theta);
+    add_velocity_product_rates(model, dtheta, d_dtheta);
     ldlt::solve_rows(pattern, d_tau, [d_theta, d_dtheta]);
     ldlt::invert(pattern, d_tau, &mut workspace.vector);
 }

@@ -1,5 +1,6 @@
 //! Inverse dynamics of an open chain: recursive Newton-Euler (Modern Robotics, section 8.3.2).
 
+use super::armature::{add_rotor_forces, add_velocity_products};
 use super::joint_friction::joint_friction;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
@@ -37,10 +38,11 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
         tau[j] = S::from(model.armature[j]).mul_add(ddtheta[j], joint_friction(model, j, dtheta[j]));
     }
     newton_euler(model, theta, dtheta, ddtheta, environment, workspace, tau);
+    add_rotor_forces(model, ddtheta, tau);
     add_spring_forces(model, theta, tau);
 }
 
-/// The links' part of τ, without armature, friction and springs, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
+/// The links' part of τ and all velocity products, without what armature adds to Mθ̈, friction and springs, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
 /// 𝓕 of every link, the motion as seen from beside it; 𝓕_0 is the wrench that a fixed base applies to the chain, or that a free
 /// one, itself included, needs.
 ///
@@ -56,32 +58,24 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
     joint_sines(model, theta, workspace);
-    let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, sin_cos, .. } = workspace;
-    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
 
     // base: its twist, accelerating against gravity; nothing hangs from it yet
     let (V_0, dV_0) = base_motion(model, theta, dtheta, ddtheta, environment);
     let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
-    (V[0], dV[0]) = (V_0.twist(), dV_0);
-    F[0] = Wrench::zero();
+    (workspace.V[0], workspace.dV[0]) = (V_0.twist(), dV_0);
+    workspace.F[0] = Wrench::zero();
     if model.is_floating() {
         let G = model.base_inertia.map(S::from);
-        F[0] = G * dV_0 - V_0.ad_transpose() * (G * V_0);                                 // (8.53)
+        workspace.F[0] = G * dV_0 - V_0.ad_transpose() * (G * V_0);                       // (8.53)
     }
 
     // base to tips: twist and acceleration of each link, and what its own motion needs
-    for (i, link) in model.outward::<S>() {
-        let (A, p) = (link.A(), link.parent);
-        let (dq, ddq) = (link.rate(dtheta), link.rate(ddtheta));
-        let T_i  = link.transform_with(sin_cos[i], theta);                                // T_{i,i−1}(θ) (8.50)
-        let V_i  = T_i.Ad() * V[p].spin() + A * dq;                                       // (8.51)
-        let V_c  = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
-        let dV_i = T_i.Ad() * dV[p] + V_c.ad() * (A * dq) + A * ddq;                      // (8.52)
-        let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
-        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
-        F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
+    match model.structure.of_one_axis {
+        true => motions::<true, S, C>(model, theta, dtheta, ddtheta, workspace),
+        false => motions::<false, S, C>(model, theta, dtheta, ddtheta, workspace),
     }
+    let slots = model.links.len() + 1;
+    let (T, F) = (&workspace.T[..slots], &mut workspace.F[..slots]);
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;                        // by link i to the environment
@@ -90,11 +84,35 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     // tips to base: what each joint must carry (a mimic joint adds to its source joint)
     for (i, link) in model.inward::<S>() {
         let p = link.parent;
-        tau[link.j] += link.ratio() * (link.A() * F[i]);                                  // (8.54)
+        tau[link.j] += link.A() * F[i];                                  // (8.54)
         F[p] = T[i].Ad().transpose().mul_add(F[i], F[p]);                                 // (8.53), the child's part
     }
     if model.is_floating() {
         for (tau, F) in tau.iter_mut().zip(F[0].to_array()) { *tau += F; }                // (8.54) with A = I
+    }
+    add_velocity_products(model, dtheta, tau);
+}
+
+/// From those of the base, 𝒱 and 𝒱̇ of each link, and of 𝓕 what its own motion needs; `ONE_AXIS` says that all joints have one.
+#[inline(always)]
+#[rustfmt::skip]
+fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
+) {
+    let slots = model.links.len() + 1;
+    let Workspace { T, V, dV, F, carrier, sin_cos, .. } = workspace;
+    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
+    for (i, link) in model.outward::<S>() {
+        let link = link.among::<ONE_AXIS>();
+        let (A, p) = (link.A(), link.parent);
+        let (dq, ddq) = (dtheta[link.j], ddtheta[link.j]);
+        let T_i  = link.transform_with(sin_cos[i], theta);                                // T_{i,i−1}(θ) (8.50)
+        let V_i  = T_i.Ad() * V[p].spin() + A * dq;                                       // (8.51)
+        let V_c  = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
+        let dV_i = T_i.Ad() * dV[p] + V_c.ad() * (A * dq) + A * ddq;                      // (8.52)
+        let (V_i, dV_i) = V_i.classical_acceleration(dV_i);
+        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
+        F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
     }
 }
 

@@ -1,5 +1,6 @@
 //! ∂τ of inverse dynamics, by every argument at once.
 
+use super::armature::add_velocity_product_rates;
 use super::derivatives::derivatives;
 use super::spring_forces::add_stiffness;
 use crate::kinematics::joint_transforms;
@@ -27,7 +28,8 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 ) {
     joint_transforms(model, theta, workspace);
     derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some([d_dtheta, M]));
-    add_stiffness(model, d_theta);
+    add_stiffness(model, theta, d_theta);
+    add_velocity_product_rates(model, dtheta, d_dtheta);
 }
 
 /// See [`inverse_dynamics_derivatives`].

@@ -1,11 +1,12 @@
 //! The mass matrix: composite rigid bodies (Walker and Orin 1982; Featherstone 2008, section 6.2).
 
+use super::composite::{Does, composite_pass};
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
-/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal. kg m², kg m or kg.
+/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ of each rotor that several joints turn. kg m², kg m or kg.
 ///
 /// Each link's composite inertia 𝒢ᶜ holds all that hangs from it. Accelerating joint i alone needs the wrench 𝒢ᶜA at
 /// link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their block is the
@@ -22,46 +23,12 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     model.assert_lengths(theta.len(), []);
     assert!(M.len() == n * n, "M has {} entries, expected n² = {}", M.len(), n * n);
     joint_transforms(model, theta, workspace);
-    let slots = model.links.len() + 1;
-    let (T, G_c) = (&workspace.T[..slots], &mut workspace.G_c[..slots]);
-
-    M.fill(S::zero());
-    for (j, &armature) in model.armature.iter().enumerate() {
-        M[j * n + j] = S::from(armature);
-    }
-    G_c[0] = model.base_inertia.map(S::from);
+    workspace.G_c[0] = model.base_inertia.map(S::from);
     for (i, link) in model.outward::<S>() {
-        G_c[i] = link.G();
+        workspace.G_c[i] = link.G();
     }
-    for (i, link) in model.inward::<S>() {
-        let j = link.j;
-        let (p, G) = (link.parent, G_c[i]);
-        let mut F = G * link.A() * link.ratio();                            // 𝒢ᶜ A
-        M[j * n + j] += link.ratio() * (link.A() * F);
-        let mut k = i;
-        for (below_k, below) in model.to_base::<S>(p) {
-            F = T[k].Ad().transpose() * F;                                   // seen from the link below
-            k = below_k;
-            let entry = below.ratio() * (below.A() * F);
-            M[j * n + below.j] += entry;
-            M[below.j * n + j] += entry;
-        }
-        if model.is_floating() {
-            F = T[k].Ad().transpose() * F;                                   // seen from the base
-            for (r, entry) in F.to_array().into_iter().enumerate() {
-                M[j * n + r] += entry;
-                M[r * n + j] += entry;
-            }
-        }
-        if p > 0 || model.is_floating() {
-            G_c[p] = G.congruence_add(T[i].Ad(), G_c[p]);
-        }
-    }
-    if model.is_floating() {
-        for (row, entries) in M.chunks_exact_mut(n).zip(G_c[0].to_matrix()) {
-            row[..6].copy_from_slice(&entries);
-        }
-    }
+    let does = Does { adds_factors: false, adds_wrenches: false, is_composite: false, first_is_by_theta: false };
+    composite_pass(model, workspace, [], Some(M), does);
 }
 
 /// See [`mass_matrix`].

@@ -1,10 +1,12 @@
 //! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇).
 
+mod armature;
 mod base_parameters;
 mod bias_forces;
 mod center_of_mass;
 mod centroidal_momentum;
 mod closed_form;
+mod composite;
 mod coriolis_matrix;
 mod derivatives;
 mod energy;
@@ -19,6 +21,7 @@ mod mass_matrix;
 mod mass_matrix_inverse;
 mod mass_matrix_solve;
 mod momentum;
+mod path;
 mod regressor;
 mod spring_forces;
 mod task_space_dynamics;
@@ -26,6 +29,7 @@ mod task_space_dynamics;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub(crate) use armature::set_armature;
 pub use base_parameters::BaseParameters;
 pub use bias_forces::{
     BiasForces, GravityForces, TipForces, VelocityProduct, bias_forces, gravity_forces, tip_forces, velocity_product,
@@ -52,5 +56,6 @@ pub use mass_matrix_inverse::{MassMatrixInverse, mass_matrix_inverse};
 pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};
 pub use momentum::{Momentum, MomentumRate, momentum, momentum_matrix, momentum_rate, total_inertia};
 pub use regressor::{EnergyRegressors, Regressor, energy_regressors, regressor};
+pub(crate) use spring_forces::add_spring_forces;
 pub use spring_forces::{SpringForces, spring_forces};
 pub use task_space_dynamics::{TaskSpaceDynamics, task_space_dynamics};

@@ -84,7 +84,7 @@ pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE
     T[0] = T_bs;
     for (i, link) in model.outward::<S>() {
         T[i] = T[i] * T[link.parent];                                                     // T_is
-        A[link.j] += T[i].Ad().transpose() * (G_c[i] * link.A() * link.ratio());
+        A[link.j] += T[i].Ad().transpose() * (G_c[i] * link.A());
     }
 }
 

@@ -1,10 +1,11 @@
 //! Forces and energies, linear in the model's parameters: the regressor (Khosla and Kanade 1985; Atkeson, An and Hollerbach 1986).
 
+use super::armature::of_free_joint;
 use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Workspace};
+use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Spring, Workspace};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, Rare, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist};
@@ -21,8 +22,9 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// > F_k = 𝒢_k 𝒱̇ − `[ad_𝒱]`ᵀ 𝒢_k 𝒱, Y_jk = Σ ratio A_jᵀ `[Ad_T]`ᵀ F_k
 ///
-/// A joint's armature, damping, friction, stiffness and preload have the columns θ̈_j, θ̇_j, sgn θ̇_j, θ_j and −1 in its own row; of a ball the first three
-/// in each of its three rows, for it has no spring. Entries are N m or N over
+/// A joint's armature, damping, friction, stiffness and preload have the columns θ̈_j, θ̇_j, sgn θ̇_j, θ_j and −1 in its own row; of a ball the first four
+/// in each of its three rows, its rotation vector in place of θ_j; of a free joint the first three in each of its six, and ω × v
+/// beside the linear θ̈. A rotor's armature has the column Jᵀ Jθ̈, J the row of its gears. Entries are N m or N over
 /// the parameter's unit.
 ///
 /// Cost O(N · depth), no allocation.
@@ -52,7 +54,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
             let F_b = G * dV_b - V_b.ad().transpose() * (G * V_b);               // (8.53) of a unit
             let mut F = Ad.transpose() * F_b;
             for (i, link) in model.to_base::<S>(slot) {
-                Y[link.j * p + column] += link.ratio() * (link.A() * F);             // (8.54)
+                Y[link.j * p + column] += link.A() * F;             // (8.54)
                 F = T[i].Ad().transpose() * F;
             }
             if model.is_floating() {
@@ -67,9 +69,24 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
         for j in place.velocities() {
             Y[j * p + column..][..3].copy_from_slice(&[ddtheta[j], dtheta[j], dtheta[j].sgn()]);
         }
-        if place.freedom == Freedom::One {
-            Y[place.j * p + column + 3..][..2].copy_from_slice(&[theta[place.q], -S::one()]);
+        if place.freedom == Freedom::Free {
+            let (w, v) = of_free_joint(dtheta, place.j);
+            for (k, x) in w.cross(v).0.into_iter().enumerate() {
+                Y[(place.j + 3 + k) * p + column] += x;
+            }
         }
+        if place.freedom != Freedom::Free {
+            for (j, stretch) in place.velocities().zip(Spring::<C>::stretch(place, theta)) {
+                Y[j * p + column + 3] = stretch;
+            }
+        }
+        if place.freedom == Freedom::One {
+            Y[place.j * p + column + 4] = -S::one();
+        }
+    }
+    let first = p - model.rotors.len();
+    for (column, rotor) in (first..).zip(&model.rotors) {
+        rotor.add(rotor.rate(ddtheta), &mut Y[column..], p);
     }
 }
 
@@ -77,7 +94,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
 /// [`potential_energy`](super::potential_energy) have them, with π = [`parameters`](Model::parameters); `V_s` is the twist
 /// of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy at θ = 0.
 ///
-/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments, ½ θ² of
+/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments, ½ θ² (½ ‖φ‖² of a ball) of
 /// > stiffnesses, −θ of preloads
 ///
 /// Joules over the parameter's unit. Cost O(N), no allocation.
@@ -115,12 +132,19 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
         potential[10 * body + 1..][..3].copy_from_slice(&(-down).0);
     }
     let first = 10 * model.bodies().count();
+    for (y, rotor) in kinetic[p - model.rotors.len()..].iter_mut().zip(&model.rotors) {
+        let rate = rotor.rate(dtheta);
+        *y = half * rate * rate;
+    }
     let of_joints = kinetic[first..].chunks_mut(JOINT_PARAMETERS).zip(potential[first..].chunks_mut(JOINT_PARAMETERS));
     for ((kinetic, potential), place) in of_joints.zip(model.places()) {
         kinetic[0] = place.velocities().fold(S::zero(), |sum, j| (half * dtheta[j]).mul_add(dtheta[j], sum));
+        if place.freedom != Freedom::Free {
+            let stretch = Vec3(Spring::<C>::stretch(place, theta));
+            potential[3] = half * stretch.dot(stretch);
+        }
         if place.freedom == Freedom::One {
-            let theta = theta[place.q];
-            potential[3..].copy_from_slice(&[half * theta * theta, -theta]);
+            potential[4] = -theta[place.q];
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, Rare, THETA, V
 use crate::scalar::Scalar;
 
 /// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: what holds the joints against their springs. θ is not wrapped. A mimic joint's spring
-/// acts on q = ratio θ + offset and adds ratio k(q − θ₀) to its source joint.
+/// acts on q = ratio θ + offset and adds ratio k(q − θ₀) to its source joint. A ball's is kφ in the axes of its link, φ being the rotation vector, ‖φ‖ ≤ π,
+/// of its quaternion: the spring turns it back the shorter way, and jumps at a half turn.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -20,17 +21,17 @@ pub fn spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 
 /// Adds f_s to a force.
 #[cfg_attr(not(test), inline(always))]
-pub(super) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
+pub(crate) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
     for spring in &model.springs {
-        tau[spring.j] += spring.force(theta);
+        spring.add_force(theta, tau);
     }
 }
 
-/// Adds ∂f_s/∂θ = k to the diagonal of ∂τ/∂θ.
+/// Adds ∂f_s/∂θ to ∂τ/∂θ.
 #[cfg_attr(not(test), inline(always))]
-pub(super) fn add_stiffness<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, d_theta: &mut [S]) {
+pub(super) fn add_stiffness<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], d_theta: &mut [S]) {
     for spring in &model.springs {
-        d_theta[spring.j * (model.n() + 1)] += S::from(spring.stiffness);
+        spring.add_stiffness(model.n(), theta, d_theta);
     }
 }
 
@@ -42,7 +43,7 @@ impl Quantity for SpringForces {
     type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "spring_forces",
-        "f_s(θ) = k(θ − θ₀) of each joint, θ not wrapped",
+        "f_s(θ) = k(θ − θ₀) of each joint, θ not wrapped; kφ of a ball, φ its rotation vector",
         &[THETA],
         &[output("f", VECTOR, FORCE)],
     );

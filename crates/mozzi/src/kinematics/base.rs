@@ -5,7 +5,7 @@ use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// `T_sb` of the base link: the first seven positions where it is free, else I.
+/// `T_sb` of the base link: the first seven positions of a floating base, else I.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn base_pose<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]) -> SE3<S> {
     match theta.first_chunk() {
@@ -14,8 +14,8 @@ pub(crate) fn base_pose<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta:
     }
 }
 
-/// 𝒱_b and 𝒱̇_b of the base link in its own coordinates. It moves as {s} does, and where it is free on top of that, as a link
-/// on a joint with the axes I:
+/// 𝒱_b and 𝒱̇_b of the base link in its own coordinates. A fixed base moves with {s}; a floating base moves relative to
+/// {s} like a link on a joint with the axes I:
 ///
 /// > 𝒱_b = Ad 𝒱_s + 𝒱, 𝒱̇_b = Ad 𝒱̇_s + `[ad_𝒱_b]` 𝒱 + 𝒱̇, with (𝒱, 𝒱̇) the first six velocities and accelerations
 #[cfg_attr(not(test), inline(always))]

@@ -1,4 +1,4 @@
-//! Positions as points of a manifold: how far, which way, and where from.
+//! Positions as points of a manifold: integration, differences, and neutral configurations.
 
 use crate::lie::{SE3, SO3, series};
 use crate::linalg::Vec3;
@@ -9,7 +9,8 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Where configurations are: lines and angles, SO(3) of balls, SE(3) of a floating base and of free joints, each with its place in θ and in θ̇.
+/// The configuration manifold: lines and angles, SO(3) for balls, SE(3) for a floating base and free joints, each with
+/// its indices in θ and θ̇.
 #[derive(Clone, Debug)]
 pub struct ConfigurationSpace(pub(crate) Arc<[Place]>);
 
@@ -42,7 +43,7 @@ impl ConfigurationSpace {
         &self.0
     }
 
-    /// Is it one of numbers alone, so that ⊕ is + ?
+    /// Whether it is flat, so that ⊕ is +.
     pub fn is_flat(&self) -> bool {
         self.0.iter().all(|place| place.freedom == Freedom::One)
     }
@@ -69,7 +70,7 @@ impl ConfigurationSpace {
         }
     }
 
-    /// u̇ for θ = θ₀ ⊕ u that moves with θ̇: θ̇ itself of lines, [`rate_of_logarithm`] of a twist.
+    /// u̇ for θ = θ₀ ⊕ u moving with θ̇: θ̇ itself for lines, [`rate_of_logarithm`] for a twist.
     ///
     /// # Panics
     /// When a slice is too short.
@@ -83,8 +84,9 @@ impl ConfigurationSpace {
     }
 }
 
-/// θ ← θ ⊕ θ̇h: where the velocities θ̇, kept for the time h, lead to. θ + θ̇h for joints of one axis, R e^{`[ω]`h} for a ball, T e^{`[𝒱]`h} for a floating
-/// base and a free joint; quaternions leave with length 1, and with the sign that is nearer to the one they came with.
+/// θ ← θ ⊕ θ̇h: the positions after constant velocities θ̇ for the time h. θ + θ̇h for joints of one axis, R e^{`[ω]`h}
+/// for a ball, T e^{`[𝒱]`h} for a floating base and a free joint. Resulting quaternions are unit, with the sign closer
+/// to the given one.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -95,8 +97,8 @@ pub fn integrate<S: Real, C: Scalar>(model: &Model<C>, theta: &mut [S], dtheta: 
     model.configuration_space().advance(theta, dtheta, h);
 }
 
-/// θ₁ ⊖ θ₀, n numbers: the velocities that lead from θ₀ to θ₁ in one second. θ₁ − θ₀ for joints of one axis, log(R₀⁻¹R₁) for a ball, log(T₀⁻¹T₁) for a
-/// floating base and a free joint, by the shorter way round.
+/// θ₁ ⊖ θ₀, n numbers: the constant velocities from θ₀ to θ₁ in one second. θ₁ − θ₀ for joints of one axis, log(R₀⁻¹R₁)
+/// for a ball, log(T₀⁻¹T₁) for a floating base and a free joint, by the shorter rotation.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -120,8 +122,9 @@ pub fn difference<S: Real, C: Scalar>(model: &Model<C>, theta0: &[S], theta1: &[
     }
 }
 
-/// θ ⊕ δθ ε: the positions as dual numbers that move along δθ, n numbers as velocities are. What is computed of them has beside its
-/// value its derivative in this direction. With θ of [`Dual`]s, and those of another direction, come second derivatives.
+/// θ ⊕ δθ ε: the positions as dual numbers with the direction δθ, n numbers like velocities. Results computed from them
+/// have their derivative in this direction. With θ of [`Dual`]s, which have another direction, second derivatives
+/// result.
 ///
 /// # Panics
 /// When θ is not nq long, or δθ not n.
@@ -131,7 +134,7 @@ pub fn seed_direction<S: Real, C: Scalar>(model: &Model<C>, theta: &[S], along: 
     theta
 }
 
-/// T e^{`[ξ]`}, by quaternions, so that no sign jumps and no rounding adds up.
+/// T e^{`[ξ]`}, by quaternions, without sign jumps or accumulated rounding.
 fn moved<S: Real>([w, x, y, z, px, py, pz]: [S; 7], xi: Twist<S>) -> [S; 7] {
     let R = SO3::from_quaternion(w, Vec3([x, y, z]));
     let [px, py, pz] = (Vec3([px, py, pz]) + R * (SO3::left_jacobian(xi.w) * xi.v)).0;
@@ -150,8 +153,8 @@ fn turned<S: Real>([w, x, y, z]: [S; 4], omega: Vec3<S>) -> [S; 4] {
     [s * one_over, x, y, z]
 }
 
-/// u̇ for T = T₀ e^{`[u]`} that moves with the body twist 𝒱: 𝒱 + ½`[ad_u]`𝒱 + ¹⁄₁₂`[ad_u]`²𝒱, to the third order in u, as a method of
-/// order up to five needs it (Munthe-Kaas 1999).
+/// u̇ for T = T₀ e^{`[u]`} moving with the body twist 𝒱: 𝒱 + ½`[ad_u]`𝒱 + ¹⁄₁₂`[ad_u]`²𝒱, to third order in u,
+/// sufficient for methods of order up to five (Munthe-Kaas 1999).
 pub fn rate_of_logarithm<S: Real>(u: Twist<S>, V: Twist<S>) -> Twist<S> {
     let once = u.ad() * V;
     V + once * S::from_f64(0.5) + u.ad() * once * S::from_f64(1.0 / 12.0)

@@ -1,11 +1,12 @@
-//! Products of exponentials of a serial chain, from its lists alone (Modern Robotics, sections 4.1 and 5.1). The twists need not be unit.
+//! Products of exponentials of a serial chain from its lists (Modern Robotics, sections 4.1 and 5.1). The twists need
+//! not be unit.
 
 use crate::lie::SE3;
 use crate::scalar::Real;
 use crate::spatial::Twist;
 
-/// T(θ) = e^{`[S_1]`θ₁} ⋯ e^{`[S_n]`θ_n} M (4.14): the end effector's pose, from its home M and the screws S in the space frame; as many
-/// as there are of both.
+/// T(θ) = e^{`[S_1]`θ₁} ⋯ e^{`[S_n]`θ_n} M (4.14): the end effector's pose, from its home M and the screws S in the
+/// space frame. The shorter of the two lists determines n.
 pub fn product_of_exponentials<S: Real>(M: SE3<S>, screws: &[Twist<S>], theta: &[S]) -> SE3<S> {
     screws.iter().zip(theta).rev().fold(M, |T, (&screw, &q)| SE3::exp(screw * q) * T)
 }
@@ -15,7 +16,8 @@ pub fn body_product_of_exponentials<S: Real>(M: SE3<S>, screws: &[Twist<S>], the
     screws.iter().zip(theta).fold(M, |T, (&screw, &q)| T * SE3::exp(screw * q))
 }
 
-/// The space Jacobian of these screws, column by column in place of them: J_i = Ad(e^{`[S_1]`θ₁} ⋯ e^{`[S_{i−1}]`θ_{i−1}}) S_i (5.11).
+/// The space Jacobian of these screws, which its columns overwrite: J_i = Ad(e^{`[S_1]`θ₁} ⋯ e^{`[S_{i−1}]`θ_{i−1}})
+/// S_i (5.11).
 pub fn space_jacobian_of_screws<S: Real>(screws: &mut [Twist<S>], theta: &[S]) {
     let mut T = SE3::identity();
     for (column, &q) in screws.iter_mut().zip(theta) {

@@ -6,7 +6,7 @@ use crate::model::{FrameId, Model, Workspace};
 use crate::quantity::{Call, Declaration, Dim, Kernel, Of, Quantity, Rare, THETA, output, sized};
 use crate::scalar::Scalar;
 
-/// The configuration `T_sb` of a frame {b} seen from {s}, at the positions θ.
+/// The configuration `T_sb` of a frame {b} relative to {s} at the positions θ.
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -24,12 +24,12 @@ pub fn forward_kinematics<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     base_pose(model, theta) * T
 }
 
-/// The configurations of all frames seen from {s}, in the order of [`Model::frames`].
+/// The configurations of all frames relative to {s}, in the order of [`Model::frames`].
 ///
 /// Cost O(n + frames), no allocation.
 ///
 /// # Panics
-/// When θ is not nq long, or `poses` not one for each frame.
+/// If the length of θ is not nq, or `poses` does not have one entry per frame.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, poses: &mut [SE3<S>]) {

@@ -1,11 +1,12 @@
-//! The acceleration of a frame as an accelerometer at its origin moves.
+//! The classical acceleration of a frame.
 
 use crate::model::{FrameId, Model};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, Rare, SIX, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// The classical acceleration of a frame {b}, (ω̇, p̈) in its own coordinates: its angular acceleration and that of its origin,
+/// The classical acceleration of a frame {b}, (ω̇, p̈) in its own coordinates: its angular acceleration and that of its
+/// origin,
 ///
 /// > 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇, p̈ = v̇_b + ω_b × v_b
 ///
@@ -30,8 +31,8 @@ pub fn frame_acceleration<S: Scalar + From<C>, C: Scalar>(
         if link.is_last {
             V_J = V;
         }
-        dV += J_i * link.rate(ddtheta) + J_i.ad() * V_J * link.rate(dtheta);
-        V  += J_i * link.rate(dtheta);
+        dV += J_i * ddtheta[link.j] + J_i.ad() * V_J * dtheta[link.j];
+        V  += J_i * dtheta[link.j];
         T   = T * link.transform(theta);
     }
     if let (Some(&V_0), Some(&dV_0), true) = (dtheta.first_chunk(), ddtheta.first_chunk(), model.is_floating()) {

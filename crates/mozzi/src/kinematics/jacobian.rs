@@ -47,8 +47,9 @@ pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S
     columns.iter().zip(dtheta).fold(Twist::zero(), |V, (&column, &rate)| V + column * rate)
 }
 
-/// The body Jacobian `J_b`(θ) of a frame {b}: 𝒱_b = `J_b` θ̇ in {b} coordinates (Modern Robotics 5.18). `J` takes its n
-/// columns; zero for joints that do not move the frame. A mimic joint adds ratio × its own to its source joint's column.
+/// The body Jacobian `J_b`(θ) of a frame {b}: 𝒱_b = `J_b` θ̇ in {b} coordinates (Modern Robotics 5.18). Fills the n
+/// columns of `J`; zero for joints that do not move the frame. A mimic joint adds ratio × its own column to its source
+/// joint's.
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -65,7 +66,7 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The space Jacobian `J_s`(θ) of a frame {b}: 𝒱_s = `J_s` θ̇ in {s} coordinates (Modern Robotics 5.11), by
-/// `J_s` = `[Ad_T_sb]` `J_b`. `J` takes its n columns.
+/// `J_s` = `[Ad_T_sb]` `J_b`. Fills the n columns of `J`.
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -93,7 +94,7 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
     let frame = model.frame_at::<S>(frame);
     let mut T = frame.T.inverse();                                        // T_{b,i}
     for (_, link) in model.to_base::<S>(frame.slot) {
-        J[link.j] += T.Ad() * link.A().twist() * link.ratio();                // J_i = Ad_{T_{b,i}} A_i
+        J[link.j] += T.Ad() * link.A().twist();                // J_i = Ad_{T_{b,i}} A_i
         T = T * link.transform(theta);                                    // T_{b,i−1} = T_{b,i} T_{i,i−1}
     }
     if model.is_floating() {

@@ -7,8 +7,8 @@ use crate::quantity::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, Rare, 
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j where joint j is between joint i and the frame,
-/// else 0. The derivative by a floating base's six is along its twist in its own coordinates.
+/// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j if joint j is between joint i and the frame,
+/// else 0. For a floating base the six derivatives are along its twist in its own coordinates.
 ///
 /// Cost O(n² + depth²), no allocation.
 ///
@@ -29,8 +29,8 @@ pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     });
 }
 
-/// ∂J_i/∂θ_j of the space Jacobian, at `H[i * n + j]`: `[ad_{J_j}]` J_i where joint j is between the base and joint i,
-/// else 0. The derivative by a floating base's six is along its twist in its own coordinates.
+/// ∂J_i/∂θ_j of the space Jacobian, at `H[i * n + j]`: `[ad_{J_j}]` J_i if joint j is between the base and joint i,
+/// else 0. For a floating base the six derivatives are along its twist in its own coordinates.
 ///
 /// Cost O(n² + depth²), no allocation.
 ///
@@ -64,8 +64,8 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and says whether they are axes of one ball or
-/// free joint, which all move with the link that they carry; returns `T_sb`.
+/// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and says whether they
+/// are axes of one ball or free joint, which all move with the link that they carry; returns `T_sb`.
 #[cfg_attr(not(test), inline(always))]
 fn brackets<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -83,7 +83,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
     let J = &mut workspace.V;
     let mut T = frame.T.inverse(); // T_{b,i}
     for (i, inner) in model.to_base::<S>(frame.slot) {
-        J[i] = T.Ad() * inner.A().twist() * inner.ratio();
+        J[i] = T.Ad() * inner.A().twist();
         for (k, outer) in model.to_base::<S>(frame.slot).take_while(|&(k, _)| k != i) {
             add(outer.j, inner.j, J[i].ad() * J[k], model.is_one_joint(i, k), H, n);
         }

@@ -26,8 +26,8 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
         if link.is_last {
             V_J = V;
         }
-        dJ[link.j] += J_i.ad() * V_J * link.ratio();
-        V += J_i * link.rate(dtheta);
+        dJ[link.j] += J_i.ad() * V_J;
+        V += J_i * dtheta[link.j];
         T = T * link.transform(theta);
     }
     if model.is_floating() {
@@ -71,7 +71,7 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
         T = T * link.transform(theta).inverse();
         let J_i = T.Ad() * link.A().twist();
         if link.is_last && link.is_next() {
-            V += J_i * link.rate(dtheta);
+            V += J_i * dtheta[link.j];
             // all axes of the joint, whose columns were kept
             for slot in path[at..].iter().copied() {
                 let axis = model.link::<S>(slot);
@@ -82,11 +82,11 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
                 }
             }
         } else if link.is_last {
-            dJ[link.j] += V.ad() * J_i * link.ratio();
-            V += J_i * link.rate(dtheta);
+            dJ[link.j] += V.ad() * J_i;
+            V += J_i * dtheta[link.j];
         } else {
             dJ[link.j] = J_i;
-            V += J_i * link.rate(dtheta);
+            V += J_i * dtheta[link.j];
         }
     }
 }

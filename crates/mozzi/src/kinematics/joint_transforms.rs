@@ -1,4 +1,4 @@
-//! The configuration of each moving link's parent, seen from the link (Modern Robotics 8.50).
+//! The configuration of each moving link's parent relative to the link (Modern Robotics 8.50).
 
 use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
@@ -12,8 +12,8 @@ pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>,
     for (i, link) in model.outward::<S>() { T[i] = link.transform_with(sin_cos[i], theta); }
 }
 
-/// `workspace.sin_cos[i]` of every joint's angle: all come first, for they do not wait for one another, as the recursions that
-/// follow do.
+/// `workspace.sin_cos[i]` of every joint's angle: all come first, for they do not wait for one another, as the
+/// recursions that follow do.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn joint_sines<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {

@@ -14,6 +14,6 @@ pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
     let Workspace { T, V, .. } = workspace;
     V[0] = base_twist(model, theta, dtheta, V_s);
     for (i, link) in model.outward::<S>() {
-        V[i] = T[i].Ad() * V[link.parent] + link.A() * link.rate(dtheta);
+        V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j];
     }
 }

@@ -1,4 +1,4 @@
-//! Where frames are and how they move.
+//! Poses, velocities and Jacobians of frames.
 
 mod base;
 mod configuration;

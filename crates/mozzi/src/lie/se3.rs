@@ -6,7 +6,7 @@ use crate::linalg::{Mat3, Vec3};
 use crate::scalar::{Real, Scalar};
 use core::ops::Mul;
 
-/// T = (R, p): `T_sb` is the configuration of frame {b} seen from frame {s}.
+/// T = (R, p): `T_sb` is the configuration of frame {b} relative to frame {s}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct SE3<S = f64> {
@@ -67,7 +67,7 @@ impl<S: Scalar> SE3<S> {
     }
 }
 
-/// The matrix given for a configuration is none.
+/// Error: the matrix is not a configuration in SE(3).
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidConfiguration {
     /// Its upper left 3 × 3 block.
@@ -82,7 +82,7 @@ impl SE3<f64> {
     /// From a 4 × 4 matrix, as rows.
     ///
     /// # Errors
-    /// When the rotation part is no rotation to 10⁻¹², or the last row is not (0, 0, 0, 1).
+    /// If the upper left block is not a rotation to 10⁻¹², or the last row is not (0, 0, 0, 1).
     pub fn from_matrix(T: [[f64; 4]; 4]) -> Result<Self, InvalidConfiguration> {
         if T[3] != [0.0, 0.0, 0.0, 1.0] {
             return Err(InvalidConfiguration::LastRow(T[3]));
@@ -100,8 +100,8 @@ impl<S: Real> SE3<S> {
         SE3 { R: SO3::exp(xi.w), p: SO3::left_jacobian(xi.w) * xi.v }
     }
 
-    /// The unit quaternion (w, x, y, z) of the orientation, w ≥ 0, and the origin (x, y, z): how a floating base's configuration stands
-    /// among the positions.
+    /// The unit quaternion (w, x, y, z) of the orientation, w ≥ 0, and the origin (x, y, z): the format of a floating
+    /// base's configuration in θ.
     pub fn to_pose(self) -> [S; 7] {
         let ((w, Vec3([x, y, z])), [px, py, pz]) = (self.R.quaternion(), self.p.0);
         [w, x, y, z, px, py, pz]

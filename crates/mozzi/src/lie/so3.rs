@@ -10,7 +10,7 @@ use core::ops::Mul;
 #[repr(transparent)]
 pub struct SO3<S = f64>(pub(crate) Mat3<S>);
 
-/// The matrix given for a rotation is none.
+/// Error: the matrix is not a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "not a rotation matrix: RᵀR differs from I by up to {deviation:.3e} (expected at most {tolerance:.0e}) and det R = {determinant:.6} (expected 1)"
@@ -18,7 +18,7 @@ pub struct SO3<S = f64>(pub(crate) Mat3<S>);
 pub struct InvalidRotation {
     /// The largest entry of |RᵀR − I|.
     pub deviation: f64,
-    /// What would have been accepted.
+    /// The tolerance.
     pub tolerance: f64,
     /// det R.
     pub determinant: f64,
@@ -97,11 +97,11 @@ impl SO3<f64> {
         }
     }
 
-    /// The rotation nearest to a matrix in the Frobenius norm (its polar factor), and how far it is: the largest entry
-    /// of |R − B|. For matrices whose digits were cut.
+    /// The rotation nearest to a matrix B in the Frobenius norm (its polar factor), and the largest entry of |R − B|.
+    /// For matrices with truncated digits.
     ///
     /// # Errors
-    /// When det B is not near 1 (in ½ … 2), so that no rotation can have been meant.
+    /// If det B is not in ½ … 2.
     pub fn nearest(B: Mat3) -> Result<(Self, f64), InvalidRotation> {
         let determinant = B.determinant();
         if !(0.5..=2.0).contains(&determinant) {
@@ -120,14 +120,14 @@ impl SO3<f64> {
 }
 
 impl<S: Real> SO3<S> {
-    /// e^{`[ω]`}: the turn by ‖ω‖ radians about ω (Rodrigues; Modern Robotics 3.51).
+    /// e^{`[ω]`}: the rotation by ‖ω‖ radians about ω (Rodrigues; Modern Robotics 3.51).
     pub fn exp(w: Vec3<S>) -> Self {
         let (z, W) = (w.dot(w), Mat3::hat(w));
         SO3(Mat3::identity() + W * series::sinc(z) + W * W * series::cosc(z))
     }
 
-    /// ω with e^{`[ω]`} = R and ‖ω‖ ≤ π, by way of the unit quaternion: accurate at every angle. At a half turn either
-    /// sign of ω is right.
+    /// ω with e^{`[ω]`} = R and ‖ω‖ ≤ π, computed from the unit quaternion: accurate at every angle. At a half turn
+    /// both signs of ω are valid.
     pub fn log(self) -> Vec3<S> {
         let (s, v) = self.quaternion();
         v * series::angle_over_sine(v.dot(v), s)

@@ -84,12 +84,12 @@ impl<S: Scalar> Twist<S> {
         Twist { w: Mat3::from_rows([row(0), row(1), row(2)]).vee(), v: Vec3([m[0][3], m[1][3], m[2][3]]) }
     }
 
-    /// √(‖ω‖² + ‖v‖²): a size for tests and tolerances; it mixes units.
+    /// √(‖ω‖² + ‖v‖²), for tests and tolerances; it mixes units.
     pub fn norm(self) -> S {
         (self.w.dot(self.w) + self.v.dot(self.v)).sqrt()
     }
 
-    /// The six unit twists: turns about x, y, z, then slides along them.
+    /// The six unit twists: rotations about x, y, z, then translations along them.
     #[inline(always)]
     pub fn axes() -> [Self; 6] {
         let entry = |one| if one { S::one() } else { S::zero() };

@@ -52,7 +52,7 @@ impl<S: Scalar> Wrench<S> {
         Wrench { m: self.f.cross_add(p, self.m), f: self.f }
     }
 
-    /// √(‖m‖² + ‖f‖²): a size for tests and tolerances; it mixes units.
+    /// √(‖m‖² + ‖f‖²), for tests and tolerances; it mixes units.
     pub fn norm(self) -> S {
         (self.m.dot(self.m) + self.f.dot(self.f)).sqrt()
     }

@@ -4,7 +4,7 @@ pub(crate) use super::pattern::Pattern;
 use crate::scalar::Scalar;
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
-/// `pivots` take D too: whoever answers a user checks that they are positive.
+/// `pivots` take D, too: the caller checks that they are positive.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]) {
     let n = pattern.len();
@@ -45,7 +45,8 @@ pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     }
 }
 
-/// Overwrites two right sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column are relatives.
+/// Overwrites two right sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column are
+/// relatives.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S]; 2]) {
     let n = pattern.len();
@@ -64,8 +65,8 @@ pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S
     }
 }
 
-/// Every step of [`solve`], up to the sign, on W columns of each from c on: a step waits for the one before it, so that several columns
-/// take no longer than one. Two rows on a path have the same ancestors: they go together.
+/// Every step of [`solve`], up to the sign, on W columns of each from c on: a step waits for the one before it, so that
+/// several columns take no longer than one. Two rows on a path have the same ancestors: they go together.
 #[cfg_attr(not(test), inline(always))]
 fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize, B: &mut [&mut [S]; 2]) {
     let mut k = pattern.end[c..c + W].iter().fold(0, |end, &e| end.max(e));
@@ -185,8 +186,8 @@ fn add<const W: usize, S: Scalar>(mut y: [S; W], a: S, x: [S; W]) -> [S; W] {
     y
 }
 
-/// Overwrites L and D with M⁻¹, both triangles; above the diagonal may stand any number. In LM⁻¹ = D⁻¹L⁻ᵀ the right side is upper
-/// triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
+/// Overwrites L and D with M⁻¹, both triangles; above the diagonal may stand any number. In LM⁻¹ = D⁻¹L⁻ᵀ the right
+/// side is upper triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]) {
     match pattern.len() {
@@ -225,8 +226,8 @@ fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut 
     }
 }
 
-/// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of the last row
-/// first eliminated, for the caller to check.
+/// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of
+/// the last row first eliminated, for the caller to check.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], [S; 6]) {
     let mut pivots = [S::zero(); 6];

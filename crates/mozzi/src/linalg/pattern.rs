@@ -1,4 +1,4 @@
-//! Which entries of M and of its factors are not 0.
+//! The sparsity pattern of M and of its factors.
 
 use alloc::collections::BTreeSet;
 use alloc::vec;
@@ -14,12 +14,22 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// From the number of the base's own rows, which couple with all, and from each moving link's parent slot and row, base to
-    /// tips. In a plain tree the ancestors are the tree's; a mimic joint couples its source joint's row with another path, and
-    /// eliminating that row couples both paths.
+    /// From the number of the base's own rows, which couple with all, and from each moving link's parent slot and row,
+    /// base to tips. In a plain tree the ancestors are the tree's; a mimic joint couples its source joint's row with
+    /// another path, and eliminating that row couples both paths.
     pub fn new(base: usize, n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
-        let coupled = n < base + links.len();
-        let links: Vec<(usize, usize)> = links.collect();
+        Self::coupled(base, n, links, core::iter::empty::<[usize; 0]>())
+    }
+
+    /// The same where further rows are coupled all with each other, list by list.
+    pub fn coupled<L: IntoIterator<Item = usize>>(
+        base: usize,
+        n: usize,
+        links: impl ExactSizeIterator<Item = (usize, usize)>,
+        together: impl Iterator<Item = L>,
+    ) -> Self {
+        let (links, together): (Vec<_>, Vec<L>) = (links.collect(), together.collect());
+        let coupled = n < base + links.len() || !together.is_empty();
         let mut parent = vec![usize::MAX; n];
         for j in 1..base {
             parent[j] = j - 1;
@@ -46,6 +56,12 @@ impl Pattern {
                 slot = next;
             }
         }
+        for list in together {
+            let list: Vec<usize> = list.into_iter().collect();
+            for (at, &j) in list.iter().enumerate() {
+                list[..at].iter().for_each(|&k| _ = rows[j.max(k)].insert(j.min(k)));
+            }
+        }
         for k in (base..n).rev() {
             if let Some(last) = rows[k].pop_last() {
                 parent[k] = last;
@@ -65,7 +81,7 @@ impl Pattern {
         Pattern { parent, end }
     }
 
-    /// Does k follow its parent?
+    /// Whether k directly follows its parent.
     #[inline(always)]
     pub(super) fn is_next(&self, k: usize) -> bool {
         self.parent.get(k).is_some_and(|i| i.wrapping_add(1) == k && k > 0)
@@ -77,7 +93,8 @@ impl Pattern {
         self.parent.len()
     }
 
-    /// k's ancestors, nearest (largest) first. A row of n numbers can be indexed by them without a further look at its length.
+    /// k's ancestors, nearest (largest) first. A row of n numbers can be indexed by them without a further look at its
+    /// length.
     #[inline(always)]
     pub fn ancestors(&self, k: usize) -> impl Iterator<Item = usize> {
         let mut i = self.parent[k];
@@ -100,5 +117,8 @@ mod tests {
         // two arms whose last joints are one: joints 0, 1 and 2, 1
         let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (0, 2), (3, 1)].into_iter());
         assert_eq!(pattern.parent, [usize::MAX, 0, 1], "joint 2 couples with 1, and 1 with 0");
+        // two arms of two joints, the last of each turning one rotor
+        let pattern = Pattern::coupled(0, 4, [(0, 0), (1, 1), (0, 2), (3, 3)].into_iter(), [[1, 3]].into_iter());
+        assert_eq!(pattern.parent, [usize::MAX, 0, 1, 2]);
     }
 }

@@ -1,23 +1,24 @@
-//! What holds the base link: nothing, or the ground.
+//! Fixed and floating bases.
 
 use super::Model;
 use crate::scalar::Scalar;
 use crate::spatial::SpatialInertia;
 
-/// How the base link is held.
+/// Whether the base link is fixed or floating.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Base {
     /// Fixed: the base link's frame is the space frame {s}.
     #[default]
     Fixed,
-    /// Free in SE(3). The first seven positions are its configuration `T_sb`, as [`SE3::to_pose`](crate::SE3::to_pose) has it: the
-    /// quaternion (w, x, y, z) and the origin (x, y, z). The first six velocities are its twist 𝒱_b = (ω, v) in the base link's
-    /// own coordinates, and the first six forces the wrench (m, f) on it, in the same.
+    /// Floating: free in SE(3). The first seven positions are its configuration `T_sb` in the format of
+    /// [`SE3::to_pose`](crate::SE3::to_pose): the quaternion (w, x, y, z) and the origin (x, y, z). The first six
+    /// velocities are its twist 𝒱_b = (ω, v), and the first six forces the wrench (m, f) on it, both in the base link's
+    /// own coordinates.
     Floating,
 }
 
 impl Base {
-    /// The number of positions that it has in θ: 0 or 7.
+    /// The number of its positions in θ: 0 or 7.
     #[inline(always)]
     pub fn positions(self) -> usize {
         match self {
@@ -26,7 +27,7 @@ impl Base {
         }
     }
 
-    /// The number of velocities that it has in θ̇: 0 or 6.
+    /// The number of its velocities in θ̇: 0 or 6.
     #[inline(always)]
     pub fn velocities(self) -> usize {
         match self {
@@ -37,7 +38,7 @@ impl Base {
 }
 
 impl<C: Scalar> Model<C> {
-    /// How the base link is held.
+    /// Whether the base link is fixed or floating.
     pub fn base(&self) -> Base {
         self.base
     }
@@ -48,7 +49,7 @@ impl<C: Scalar> Model<C> {
         self.base == Base::Floating
     }
 
-    /// 𝒢_b of the base link with all that is fixed to it, in its frame; it moves, and counts, where the base floats.
+    /// 𝒢_b of the base link and all links fixed to it, in its frame. The dynamics use it only for a floating base.
     pub fn base_inertia(&self) -> SpatialInertia<C> {
         self.base_inertia
     }

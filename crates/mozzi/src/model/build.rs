@@ -1,9 +1,9 @@
 //! From a description to the screw normal form.
 
-use super::description::{Joint, JointKind};
+use super::description::{self, Joint, JointKind};
 use super::places::names_of;
 use super::{
-    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Severity, Spring, Structure,
+    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Severity, Spring, Structure,
 };
 use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
@@ -16,11 +16,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl<C: Real + Into<f64>> Description<C> {
-    /// The model of this robot, its constants in the description's numbers; the checks see them rounded to `f64`. Joints are numbered depth first, siblings in the order of the file; a mimic joint takes no
-    /// number. Fixed links are folded into the link that carries them.
+    /// The model of this robot, its constants in the description's numbers; the checks see them rounded to `f64`.
+    /// Joints are numbered depth first, siblings in the order of the file; a mimic joint takes no number. Fixed links
+    /// are folded into the link that carries them.
     ///
     /// # Errors
-    /// [`Error::Invalid`] with all that [`check`](Description::check) calls an error.
+    /// [`Error::Invalid`] with all errors that [`check`](Description::check) finds.
     pub fn build(self) -> Result<Model<C>, Error> {
         let rounded = self.map(Into::into);
         let problems = rounded.check();
@@ -109,7 +110,9 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         }
         total
     };
-    let (springs, spring_energy) = springs(description, &moving_joints, &links);
+    let joint_places = &places[usize::from(base_name.is_some())..];
+    let rotors = rotors(description, &moving_joints, &links);
+    let (springs, spring_energy) = springs(description, &moving_joints, &links, &places);
     Model {
         base_inertia: inertias[0],
         armature: sum(|joint, ratio| ratio * ratio * joint.armature),
@@ -121,8 +124,16 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         gravity: Vec3(description.gravity),
         base: description.base,
         structure: Arc::new(Structure {
-            pattern: Pattern::new(description.base.velocities(), n, links.iter().map(|link| (link.parent, link.j))),
-            coupled: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
+            pattern: Pattern::coupled(
+                description.base.velocities(),
+                n,
+                links.iter().map(|link| (link.parent, link.j)),
+                rotors.iter().map(Rotor::joints),
+            ),
+            has_mimic_joints: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
+            free: joint_places.iter().filter(|place| place.freedom == Freedom::Free).map(|place| place.j).collect(),
+            is_deep: is_deep(&links),
+            of_one_axis: joint_places.iter().all(|place| place.freedom == Freedom::One),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
             base,
             moving_joints,
@@ -134,6 +145,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
             description: rounded,
         }),
         links,
+        rotors,
     }
 }
 
@@ -153,8 +165,9 @@ fn branches<C>(description: &Description<C>, link_index: &BTreeMap<&str, usize>)
     (joints_of, base)
 }
 
-/// Numbers the independent joints in the order of their links, and gives each mimic joint its source joint's number, ratio and
-/// offset, through chains of mimic joints. Returns the description's joint of each number, and the places of a floating base and of them.
+/// Numbers the independent joints in the order of their links, and gives each mimic joint its source joint's number,
+/// ratio and offset, through chains of mimic joints. Returns the description's joint of each number, and the places of
+/// a floating base and of them.
 fn couple<C: Real>(
     description: &Description<C>,
     moving_joints: &[usize],
@@ -180,18 +193,21 @@ fn couple<C: Real>(
         axis = if link.motion == Motion::Next { axis + 1 } else { 0 };
         let source = description.source_by(i, |name| joint_index.get(name).copied());
         (link.ratio, link.offset) = (source.ratio, source.offset);
+        link.A = link.screw.map(|x| x * source.ratio);
         (link.q, link.j) = (place_of[source.joint].q, place_of[source.joint].j + axis);
     }
     (joints, places)
 }
 
+/// See [`is_deep`].
+const DEEP: usize = 8;
 const TURN: [bool; 2] = [true, false];
 const SLIDE: [bool; 2] = [false, true];
 
 /// A link without mass, and not yet in a place of θ.
-fn massless<C: Real>(parent: usize, motion: Motion, A: JointAxis<C>, M: SE3<C>) -> Link<C> {
+fn massless<C: Real>(parent: usize, motion: Motion, screw: JointAxis<C>, M: SE3<C>) -> Link<C> {
     let (ratio, offset) = (C::one(), C::zero());
-    Link { parent, q: 0, j: 0, A, motion, is_last: true, M, G: SpatialInertia::zero(), ratio, offset }
+    Link { parent, q: 0, j: 0, screw, A: screw, motion, is_last: true, M, G: SpatialInertia::zero(), ratio, offset }
 }
 
 /// A link for each axis of a joint: the first has the joint's configuration.
@@ -207,17 +223,46 @@ fn several<C: Real>(links: &mut Vec<Link<C>>, parent: usize, motion: Motion, M: 
     }
 }
 
+/// Is the mean number of links between a link and the base above what makes the base's axes faster? Measured: see `dynamics/path.rs`.
+fn is_deep<C>(links: &[Link<C>]) -> bool {
+    let mut depths = vec![0];
+    for link in links {
+        depths.push(depths[link.parent] + 1);
+    }
+    depths.iter().sum::<usize>() > DEEP * links.len()
+}
+
+/// The rotors that several joints turn, by independent joints. What is locked does not turn them.
+fn rotors<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &[Link<C>]) -> Vec<Rotor<C>> {
+    let of = |rotor: &description::Rotor<C>| {
+        let mut J = BTreeMap::new();
+        for gear in &rotor.gears {
+            let moves = |i: &usize| description.joints[*i].name == gear.joint;
+            if let Some(link) = moving_joints.iter().position(moves).map(|k| &links[k]) {
+                *J.entry(link.j).or_insert(C::zero()) += gear.ratio * link.ratio;
+            }
+        }
+        Rotor { armature: rotor.armature, J: J.into_iter().collect() }
+    };
+    description.rotors.iter().map(of).collect()
+}
+
 /// The springs by independent joints, and their energy at θ = 0.
-fn springs<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &[Link<C>]) -> (Vec<Spring<C>>, C) {
+fn springs<C: Real>(
+    description: &Description<C>,
+    moving_joints: &[usize],
+    links: &[Link<C>],
+    places: &[Place],
+) -> (Vec<Spring<C>>, C) {
     let (mut springs, mut energy) = (BTreeMap::new(), C::zero());
-    for (link, &i) in links.iter().zip(moving_joints) {
+    for (link, &i) in links.iter().zip(moving_joints).filter(|(link, _)| link.motion != Motion::Next) {
         let Joint { stiffness, spring_reference, .. } = description.joints[i];
         if stiffness.is_identically_zero() {
             continue;
         }
         let (moment, stretch) = (link.ratio * stiffness, spring_reference - link.offset);
-        let none = Spring { q: link.q, j: link.j, stiffness: C::zero(), preload: C::zero() };
-        let spring = springs.entry(link.j).or_insert(none);
+        let place = places[places.partition_point(|place| place.j <= link.j) - 1];
+        let spring = springs.entry(place.j).or_insert(Spring { place, stiffness: C::zero(), preload: C::zero() });
         spring.stiffness += link.ratio * moment;
         spring.preload += moment * stretch;
         energy += C::from_f64(0.5) * stiffness * stretch * stretch;

@@ -1,9 +1,11 @@
-//! Is a description a robot? Everything that is wrong with it, each with its place.
+//! Validation of a description: all errors and warnings, each with its place.
 
 mod bodies;
 mod mimic;
 mod numbers;
 mod overflow;
+mod rotor;
+mod states;
 mod tree;
 mod units;
 
@@ -15,7 +17,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-/// What a problem concerns, by its place in the [`Description`].
+/// The element that a problem concerns, by its index in the [`Description`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Element {
     /// The robot itself.
@@ -26,12 +28,16 @@ pub enum Element {
     Joint(usize),
     /// `frames[i]`.
     Frame(usize),
+    /// `rotors[i]`.
+    Rotor(usize),
+    /// `states[i]`.
+    State(usize),
 }
 
-/// How bad a problem is.
+/// Severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The robot is built, and the user is told.
+    /// The robot can be built; the user should know.
     Warning,
     /// The robot is refused.
     Error,
@@ -44,11 +50,11 @@ pub struct Problem {
     pub severity: Severity,
     /// A short name for programs, such as `unknown_link`.
     pub code: &'static str,
-    /// What it concerns.
+    /// The element that it concerns.
     pub element: Element,
-    /// "link `forearm`", for readers.
+    /// The element in words, such as "link `forearm`".
     pub subject: String,
-    /// Which of its attributes, such as `parent` or `inertia`.
+    /// The attribute of the element, such as `parent` or `inertia`.
     pub attribute: &'static str,
     /// What was found, and what was expected.
     pub message: String,
@@ -60,7 +66,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// More problems of either severity are not collected.
+/// Limit on the number of problems collected of each severity.
 const MOST_PROBLEMS: usize = 1000;
 
 /// Collects problems of one description.
@@ -95,6 +101,8 @@ impl Report<'_> {
             Element::Link(i) => format!("link `{}`", d.links[i].name),
             Element::Joint(i) => format!("joint `{}`", d.joints[i].name),
             Element::Frame(i) => format!("frame `{}`", d.frames[i].name),
+            Element::Rotor(i) => format!("rotor `{}`", d.rotors[i].name),
+            Element::State(i) => format!("state `{}`", d.states[i].name),
         };
         self.problems.push(Problem { severity, code, element, subject, attribute, message });
     }
@@ -110,7 +118,12 @@ impl Report<'_> {
             if name.is_empty() {
                 self.error(element, "name", "empty_name", "is empty, expected a name".to_string());
             } else if first.contains_key(name) {
-                self.error(element, "name", "duplicate_name", format!("`{name}` is taken, expected a name of its own"));
+                self.error(
+                    element,
+                    "name",
+                    "duplicate_name",
+                    format!("`{name}` is used twice, expected a unique name"),
+                );
             } else {
                 first.insert(name, element);
             }
@@ -120,8 +133,8 @@ impl Report<'_> {
 }
 
 impl Description {
-    /// All problems, errors and warnings: names, the tree, numbers, inertias, mimic joints. Empty for a sound robot; of
-    /// robots that are wrong throughout, the first thousand of either severity. Time and memory grow as the robot does.
+    /// All errors and warnings: names, the tree, numbers, inertias, mimic joints, states. Empty for a valid robot; at
+    /// most the first thousand of each severity. Time and memory are linear in the size of the robot.
     pub fn check(&self) -> Vec<Problem> {
         let mut report = Report { description: self, problems: Vec::new(), errors: 0, warnings: 0 };
         let frames = (self.links.iter().enumerate().map(|(i, link)| (Element::Link(i), link.name.as_str())))
@@ -137,6 +150,8 @@ impl Description {
         let tree = report.tree(link);
         report.inertias(tree.as_ref());
         report.mimics(&joints);
+        report.rotors(&joints);
+        report.states(&joints);
         report.units();
         for (i, frame) in self.frames.iter().enumerate() {
             if link(&frame.link).is_none() {

@@ -1,14 +1,14 @@
 //! The structural zeros of a tree.
 
-use super::Model;
+use super::{Model, Rotor};
 use crate::scalar::Scalar;
 
 impl<C: Scalar> Model<C> {
-    /// Can the entry (i, j) of M(θ), C, ∂τ/∂θ or ∂τ/∂θ̇ be other than 0? It can where a link that velocity i moves carries one that
-    /// velocity j moves, or the other way round: where both joints are on one path from the base to a tip. A joint with its mimic joints
-    /// is on the paths of all of them; the six of a floating base are on every path. (i, j) and (j, i) are alike, (i, i) is always true.
+    /// Whether the entry (i, j) of M(θ), C, ∂τ/∂θ or ∂τ/∂θ̇ can be nonzero: if both joints are on one path from the
+    /// base to a tip. A joint with mimic joints is on the paths of all of them; joints that turn the same rotor are
+    /// coupled; the six velocities of a floating base are on every path. The pattern is symmetric, and true for i = j.
     ///
-    /// M⁻¹ and ∂θ̈ are fuller: there, two joints couple that some third couples.
+    /// M⁻¹ and ∂θ̈ have more nonzeros: two joints are also coupled through a third one.
     ///
     /// Cost O(N · depth), no allocation.
     ///
@@ -17,10 +17,17 @@ impl<C: Scalar> Model<C> {
     pub fn couples(&self, i: usize, j: usize) -> bool {
         assert!(i.max(j) < self.n(), "velocity {} of {}", i.max(j), self.n());
         let base = self.base.velocities();
-        i == j || i < base || j < base || self.carries(i, j) || self.carries(j, i)
+        let turn_one_rotor =
+            |rotor: &Rotor<C>| [i, j].into_iter().all(|j| rotor.joints().any(|of_rotor| of_rotor == j));
+        i == j
+            || i < base
+            || j < base
+            || self.carries(i, j)
+            || self.carries(j, i)
+            || self.rotors.iter().any(turn_one_rotor)
     }
 
-    /// Does some link that velocity i moves carry one that j moves?
+    /// Whether a link moved by velocity i is an ancestor of a link moved by velocity j.
     fn carries(&self, i: usize, j: usize) -> bool {
         let moved = (1..=self.links.len()).filter(|&slot| self.links[slot - 1].j == j);
         moved.into_iter().any(|slot| self.to_base::<C>(slot).any(|(_, link)| link.j == i))

@@ -1,5 +1,6 @@
-//! A robot as its file tells it: plain data, nothing computed.
+//! The content of a robot's file as plain data.
 
+pub use super::states::{BaseState, JointState, NamedState};
 use super::{Base, Freedom};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
@@ -8,35 +9,42 @@ use crate::spatial::{ScrewAxis, SpatialInertia};
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Links, joints and frames in the order of the file. [`build`](Description::build) makes a [`Model`](crate::Model) with constants of
-/// the same numbers: dual numbers give derivatives by what the file says, wide ones a reference.
+/// Links, joints and frames in the order of the file. [`build`](Description::build) makes a [`Model`](crate::Model)
+/// with constants of the same number type: dual numbers give derivatives with respect to the file's numbers, wide
+/// numbers a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description<C = f64> {
     /// The robot's name.
     pub name: String,
-    /// Rigid bodies; exactly one of them, the base, is no joint's child.
+    /// Rigid bodies; exactly one of them, the base, is not the child of a joint.
     pub links: Vec<Link<C>>,
     /// Joints between them.
     pub joints: Vec<Joint<C>>,
+    /// Rotors that several joints turn.
+    pub rotors: Vec<Rotor<C>>,
     /// Further frames.
     pub frames: Vec<NamedFrame<C>>,
-    /// The end-effector frame, where it was named.
+    /// The name of the end-effector frame, if the file has one.
     pub end_effector: Option<String>,
     /// Gravity in {s} coordinates, m/s².
     pub gravity: [C; 3],
-    /// Is the base link fixed to {s}, or free?
+    /// Whether the base link is fixed in {s} or floating.
     pub base: Base,
-    /// What a file calls that from which a floating base is freed; says nothing about a fixed one.
+    /// Names of a floating base's joint and of {s} in the file; unused for a fixed base.
     pub free_joint: FreeJoint,
+    /// Named states of the file, such as MuJoCo's keyframes.
+    pub states: Vec<NamedState>,
+    /// The name of the initial state; `None` means at rest in the neutral configuration.
+    pub start: Option<String>,
 }
 
-/// The names of a floating base's joint and of {s}, which are neither a joint nor a link of the robot: kept so that a file is written
-/// back as it was read.
+/// The names of a floating base's joint and of {s}. They are neither a joint nor a link of the robot, and are kept for
+/// round trips of files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeJoint {
-    /// `floating_base` where no file gave it a name.
+    /// `floating_base` by default.
     pub name: String,
-    /// `world` where no file gave it a name.
+    /// `world` by default.
     pub parent: String,
 }
 
@@ -71,38 +79,40 @@ pub struct Joint<C = f64> {
     pub parent: String,
     /// The link that it moves.
     pub child: String,
-    /// The child link's frame seen from the parent's when the joint is at 0.
+    /// Configuration of the child link's frame relative to the parent's at joint position 0.
     pub origin: SE3<C>,
     /// How it moves.
     pub kind: JointKind<C>,
-    /// How far, how fast, how strong.
+    /// Limits of position, velocity and effort.
     pub limits: Limits,
     /// Viscous friction d ≥ 0: N m s/rad or N s/m.
     pub damping: C,
     /// Coulomb friction μ ≥ 0: N m or N.
     pub friction: C,
-    /// Rotor inertia, seen at the joint: kg m² or kg.
+    /// Rotor inertia (armature) at the joint: kg m² or kg.
     pub armature: C,
-    /// Stiffness k ≥ 0 of a spring on the joint, which takes the force k(θ − θ₀): N m/rad or N/m. θ is not wrapped.
+    /// Stiffness k ≥ 0 of the joint's spring, with the force k(θ − θ₀): N m/rad or N/m. θ is not wrapped.
     pub stiffness: C,
-    /// θ₀, where the spring is at rest: rad or m.
+    /// Rest position θ₀ of the spring: rad or m.
     pub spring_reference: C,
-    /// The joint that it follows, if it follows one.
+    /// For a mimic joint, its source joint and the coupling.
     pub mimic: Option<Mimic<C>>,
 }
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind<C = f64> {
-    /// Not at all.
+    /// Does not move.
     Fixed,
-    /// About and along a unit screw axis, in the child link's frame: revolute, prismatic or helical.
+    /// Moves along a unit screw axis in the child link's frame: revolute, prismatic or helical.
     Screw(ScrewAxis<C>),
-    /// About a point, seen from the child link's frame. Four positions, the unit quaternion (w, x, y, z) of the rotation that takes the child from its
-    /// axes at 0; three velocities, the angular velocity of the child relative to the parent in the child's axes.
+    /// Rotates about a point, given in the child link's frame. Four positions: the unit quaternion (w, x, y, z) of the
+    /// child's rotation relative to its orientation at 0. Three velocities: the angular velocity of the child relative
+    /// to the parent, in the child's axes.
     Ball(Vec3<C>),
-    /// Not held at all. Seven positions, the child's configuration seen from where it is at 0, as of a floating base: the quaternion (w, x, y, z)
-    /// and the origin (x, y, z); six velocities, the child's twist (ω, v) relative to the parent in its own coordinates.
+    /// A free joint: six degrees of freedom, as for a floating base. Seven positions: the child's configuration
+    /// relative to its configuration at 0, as quaternion (w, x, y, z) and origin (x, y, z). Six velocities: the child's
+    /// twist (ω, v) relative to the parent, in the child's coordinates.
     Free,
 }
 
@@ -128,7 +138,7 @@ impl JointKind {
 }
 
 impl<C> JointKind<C> {
-    /// How many positions and velocities; none of a fixed joint.
+    /// The numbers of positions and velocities; `None` for a fixed joint.
     pub(crate) fn freedom(&self) -> Option<Freedom> {
         match self {
             JointKind::Fixed => None,
@@ -139,10 +149,11 @@ impl<C> JointKind<C> {
     }
 }
 
-/// Limits of a joint, each `None` where there is none. A revolute joint without position limits is continuous.
+/// Limits of a joint; `None` means unlimited. A revolute joint without position limits is continuous.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// Lowest and highest position: rad or m. Of a ball, 0 and the largest angle that it turns from 0; of a free joint none.
+    /// Lowest and highest position: rad or m. For a ball, 0 and the largest angle from 0; always `None` for a free
+    /// joint.
     pub position: Option<[f64; 2]>,
     /// rad/s or m/s.
     pub velocity: Option<f64>,
@@ -150,15 +161,37 @@ pub struct Limits {
     pub effort: Option<f64>,
 }
 
-/// θ = ratio · θ_source + offset.
+/// The coupling of a mimic joint: θ = ratio · θ_source + offset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mimic<C = f64> {
-    /// The joint that is followed.
+    /// The source joint.
     pub joint: String,
     /// The ratio.
     pub ratio: C,
     /// The offset: rad or m.
     pub offset: C,
+}
+
+/// A rotor that several one-axis joints turn, such as in a differential or on a tendon. Its rate is r = Σ ratio θ̇, its
+/// energy ½ armature r². Model a rotor that a single joint turns by that joint's armature, times the square of the
+/// ratio.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rotor<C = f64> {
+    /// Unique among rotors.
+    pub name: String,
+    /// Its inertia: kg m², or kg for linear motion.
+    pub armature: C,
+    /// The joints that turn it, with their ratios.
+    pub gears: Vec<Gear<C>>,
+}
+
+/// How a joint turns a rotor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gear<C = f64> {
+    /// The joint; mimic joints are allowed.
+    pub joint: String,
+    /// The rotor's rate over the joint's.
+    pub ratio: C,
 }
 
 /// A frame fixed to a link.
@@ -168,7 +201,7 @@ pub struct NamedFrame<C = f64> {
     pub name: String,
     /// The link.
     pub link: String,
-    /// The frame seen from the link's.
+    /// Configuration of the frame relative to the link's.
     pub T: SE3<C>,
 }
 
@@ -179,11 +212,14 @@ impl Description {
             name: name.into(),
             links: Vec::new(),
             joints: Vec::new(),
+            rotors: Vec::new(),
             frames: Vec::new(),
             end_effector: None,
             gravity: [0.0, 0.0, -9.81],
             base: Base::Fixed,
             free_joint: FreeJoint::default(),
+            states: Vec::new(),
+            start: None,
         }
     }
 
@@ -211,17 +247,18 @@ impl Description {
         self
     }
 
-    /// Adds a frame, seen from a link's.
+    /// Adds a frame with configuration `T` relative to a link's frame.
     pub fn frame(mut self, name: impl Into<String>, link: impl Into<String>, T: SE3) -> Self {
         self.frames.push(NamedFrame { name: name.into(), link: link.into(), T });
         self
     }
 }
 
-/// The independent joint that a joint follows in the end, itself where it follows none: θ = ratio · θ_source + offset.
+/// The independent joint at the end of a chain of mimic joints, or the joint itself if it is independent: θ = ratio ·
+/// θ_source + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source<C = f64> {
-    /// Its place among the joints.
+    /// Its index among the joints.
     pub joint: usize,
     /// The ratio, of the whole chain of mimic joints.
     pub ratio: C,
@@ -230,7 +267,7 @@ pub struct Source<C = f64> {
 }
 
 impl<C: Real> Description<C> {
-    /// The same robot in numbers of another type.
+    /// The same robot with another number type.
     pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Description<U> {
         let joint = |joint: &Joint<C>| Joint {
             name: joint.name.clone(),
@@ -256,6 +293,12 @@ impl<C: Real> Description<C> {
             }),
         };
         let link = |link: &Link<C>| Link { name: link.name.clone(), inertia: link.inertia.map(f) };
+        let gear = |gear: &Gear<C>| Gear { joint: gear.joint.clone(), ratio: f(gear.ratio) };
+        let rotor = |rotor: &Rotor<C>| Rotor {
+            name: rotor.name.clone(),
+            armature: f(rotor.armature),
+            gears: rotor.gears.iter().map(gear).collect(),
+        };
         let frame = |frame: &NamedFrame<C>| NamedFrame {
             name: frame.name.clone(),
             link: frame.link.clone(),
@@ -265,15 +308,18 @@ impl<C: Real> Description<C> {
             name: self.name.clone(),
             links: self.links.iter().map(link).collect(),
             joints: self.joints.iter().map(joint).collect(),
+            rotors: self.rotors.iter().map(rotor).collect(),
             frames: self.frames.iter().map(frame).collect(),
             end_effector: self.end_effector.clone(),
             gravity: self.gravity.map(f),
             base: self.base,
             free_joint: self.free_joint.clone(),
+            states: self.states.clone(),
+            start: self.start.clone(),
         }
     }
 
-    /// The source joint of the joint at this place, by its place; `find` is the place of the joint of a name.
+    /// The source joint of the joint with this index; `find` returns the index of a name.
     pub(crate) fn source_by(&self, joint: usize, find: impl Fn(&str) -> Option<usize>) -> Source<C> {
         let mut source = Source { joint, ratio: C::one(), offset: C::zero() };
         // ratio · (r θ + o) + offset
@@ -285,8 +331,9 @@ impl<C: Real> Description<C> {
         source
     }
 
-    /// The source joint of the joint of this name, by its place in [`joints`](Self::joints), through chains of mimic joints. None where there
-    /// is no such joint. Of a robot that [`check`](Self::check) passes; where mimic joints follow each other in a circle it does not end.
+    /// The source joint of the joint of this name, by its index in [`joints`](Self::joints), through chains of mimic
+    /// joints; `None` if there is no such joint. The robot must pass [`check`](Self::check): with a circle of mimic
+    /// joints this does not terminate.
     pub fn source_of(&self, name: &str) -> Option<Source<C>> {
         let find = |name: &str| self.joints.iter().position(|joint| joint.name == name);
         Some(self.source_by(find(name)?, find))

@@ -1,7 +1,7 @@
-//! New robots from old ones: payloads, locked joints, parts of a robot, further frames.
+//! Edits that return a new robot: payloads, locked joints, sub-chains, further frames.
 
-use super::description::{JointKind, NamedFrame};
-use super::{Base, Description, Error, FrameId, Model};
+use super::description::{JointKind, NamedFrame, NamedState};
+use super::{Base, Description, Error, FrameId, Model, State};
 use crate::lie::SE3;
 use crate::spatial::SpatialInertia;
 use alloc::collections::BTreeSet;
@@ -9,7 +9,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 impl Model<f64> {
-    /// The same robot carrying a body, its inertia given in a frame's coordinates.
+    /// The same robot with a payload, whose inertia is given in a frame's coordinates.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the numbers are not finite.
@@ -20,7 +20,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with a further frame, `T` seen from a frame that it has; as end effector if asked.
+    /// The same robot with a further frame at `T` relative to an existing frame, optionally as the end effector.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the name is taken.
@@ -48,20 +48,50 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with its base fixed or free.
+    /// The same robot with its base fixed or floating. Named states keep the joints' numbers; a base that was fixed is
+    /// at {s} in them, at rest.
     ///
     /// # Errors
     /// None that the model did not have before.
     pub fn with_base(&self, base: Base) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         robot.base = base;
+        if base == Base::Fixed {
+            robot.states.iter_mut().for_each(|state| state.base = None);
+        }
         robot.build()
     }
 
-    /// The same robot with joints held at these positions; their mimic joints are held where they follow to.
+    /// The same robot with a named state added, or replaced if the name exists.
     ///
     /// # Errors
-    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a ball or a free joint, or a position that is not finite.
+    /// [`Error::WrongLength`]; [`Error::Invalid`] when the numbers are not finite, or a quaternion is not of length 1.
+    pub fn with_state(&self, name: impl Into<String>, state: &State) -> Result<Model, Error> {
+        let (mut robot, named) = (self.description().clone(), self.named_state(name, state)?);
+        match robot.states.iter_mut().find(|known| known.name == named.name) {
+            Some(known) => *known = named,
+            None => robot.states.push(named),
+        }
+        robot.build()
+    }
+
+    /// The same robot with this named state as its start.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchState`].
+    pub fn with_start(&self, name: &str) -> Result<Model, Error> {
+        self.state(name)?;
+        let mut robot = self.description().clone();
+        robot.start = Some(name.to_string());
+        robot.build()
+    }
+
+    /// The same robot with joints locked at these positions, and their mimic joints with them. Named states keep the
+    /// other joints.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a ball or a free joint, or a position that is
+    /// not finite.
     pub fn with_locked_joints(&self, positions: &[(&str, f64)]) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         for &(name, position) in positions {
@@ -92,6 +122,7 @@ impl Model<f64> {
                 if let JointKind::Screw(A) = joint.kind {
                     joint.origin = joint.origin * SE3::exp(A * position);
                     (joint.kind, joint.mimic) = (JointKind::Fixed, None);
+                    robot.states.iter_mut().for_each(|state| state.retain(|kept| kept != name));
                 }
                 locked.extend(robot.joints.iter().enumerate().filter_map(|(k, joint)| {
                     let mimic = joint.mimic.as_ref().filter(|mimic| mimic.joint == name)?;
@@ -102,11 +133,13 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The part of the robot from one link, which becomes the base (fixed, unless it was a floating base before), to another: what
-    /// hangs from the links between, off the path, is left out. Gravity keeps its coordinates: give the part its own where its base is turned.
+    /// The sub-chain from one link, which becomes the base (fixed, unless it was already a floating base), to another.
+    /// Branches off the path are removed, also from named states. Gravity keeps its coordinates: set it if the new base
+    /// is rotated.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] when `to` does not hang from `from`, or a joint on the path follows one off it.
+    /// [`Error::BadArgument`] if `to` is not a descendant of `from`, or if a joint on the path is coupled to one off
+    /// the path by a mimic or a rotor.
     pub fn sub_chain(&self, from: FrameId, to: FrameId) -> Result<Model, Error> {
         let whole = self.description();
         let (from, to) = (self.link_of(from).0, self.link_of(to).0);
@@ -137,16 +170,40 @@ impl Model<f64> {
                 });
             }
         }
+        let on_path = |name: &String| joints.iter().any(|&i| whole.joints[i].name == *name);
+        let mut rotors = whole.rotors.clone();
+        rotors.retain(|rotor| rotor.gears.iter().any(|gear| on_path(&gear.joint)));
+        for rotor in &rotors {
+            if let Some(gear) = rotor.gears.iter().find(|gear| !on_path(&gear.joint)) {
+                let found = alloc::format!("`{}`, which `{}` off the path turns, too", rotor.name, gear.joint);
+                return Err(Error::BadArgument {
+                    what: "a rotor of the sub-chain",
+                    found,
+                    expected: "one that joints on the path turn alone",
+                });
+            }
+        }
         let has = |name: &String| links.iter().any(|&i| whole.links[i].name == *name);
+        let kept: BTreeSet<&str> = joints.iter().map(|&i| whole.joints[i].name.as_str()).collect();
+        let base = if from == self.structure.base { whole.base } else { Base::Fixed };
+        let part = |state: &NamedState| {
+            let mut state = state.clone();
+            state.base = state.base.filter(|_| base == Base::Floating);
+            state.retain(|name| kept.contains(name));
+            state
+        };
         Description {
             name: whole.name.clone(),
             links: links.iter().map(|&i| whole.links[i].clone()).collect(),
             joints: joints.iter().map(|&i| whole.joints[i].clone()).collect(),
+            rotors,
             frames: whole.frames.iter().filter(|frame| has(&frame.link)).cloned().collect::<Vec<_>>(),
             end_effector: Some(whole.links[to].name.clone()),
             gravity: whole.gravity,
-            base: if from == self.structure.base { whole.base } else { Base::Fixed },
+            base,
             free_joint: whole.free_joint.clone(),
+            states: whole.states.iter().map(part).collect(),
+            start: whole.start.clone(),
         }
         .build()
     }

@@ -1,4 +1,4 @@
-//! What surrounds the robot: gravity, the motion of its base, and what it pushes against.
+//! The robot's environment: gravity, the motion of its base, and applied wrenches.
 
 use super::{FrameId, Model};
 use crate::linalg::Vec3;
@@ -20,7 +20,8 @@ use alloc::vec::Vec;
 pub struct Environment<'a, S = f64> {
     /// Gravity g in {s} coordinates, m/s². A fixed base's frame is {s}.
     pub gravity: Vec3<S>,
-    /// The twist of {s} in its own coordinates: of a fixed base, or of what a floating base's configuration is seen from.
+    /// The twist of {s} in its own coordinates. A fixed base moves with {s}; a floating base's configuration is
+    /// relative to it.
     pub base_twist: Twist<S>,
     /// Its acceleration in its own coordinates, gravity not included.
     pub base_acceleration: Twist<S>,
@@ -29,13 +30,13 @@ pub struct Environment<'a, S = f64> {
 }
 
 impl<S: Scalar> Environment<'_, S> {
-    /// {s} at rest, nothing touched.
+    /// {s} at rest, no applied wrenches.
     #[inline(always)]
     pub fn with_gravity(gravity: Vec3<S>) -> Self {
         Environment { gravity, base_twist: Twist::zero(), base_acceleration: Twist::zero(), applied: &[] }
     }
 
-    /// The same in numbers of another type, its wrenches in `applied`.
+    /// The same environment with another number type, with the wrenches stored in `applied`.
     #[inline(always)]
     pub fn map<'a, U>(
         &self,
@@ -60,7 +61,7 @@ impl<S: Scalar> Environment<'_, S> {
 }
 
 impl<C: Scalar> Model<C> {
-    /// The model's own gravity, the base at rest, nothing touched.
+    /// The model's own gravity, the base at rest, no applied wrenches.
     pub fn environment<S: Scalar + From<C>>(&self) -> Environment<'static, S> {
         Environment::with_gravity(self.gravity.map(S::from))
     }

@@ -1,20 +1,20 @@
-//! What can go wrong with a robot, with the numbers.
+//! Errors, with the numbers that caused them.
 
 use super::check::{Problem, Severity};
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::Write;
 
-/// Why a model could not be built or asked.
+/// Errors of building a model and of its methods.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The description contradicts itself, or describes what mozzi cannot compute.
+    /// The description is invalid, or contains something that mozzi does not support.
     #[error("the robot `{robot}` cannot be built:{}", list(problems))]
     Invalid {
         /// The robot's name.
         robot: String,
-        /// All that was found.
+        /// All problems found.
         problems: Vec<Problem>,
     },
     /// A vector or matrix of a wrong length.
@@ -30,63 +30,71 @@ pub enum Error {
     /// No frame has this name.
     #[error("there is no frame `{name}`; this robot has {}", names(known))]
     NoSuchFrame {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The existing names.
         known: Vec<String>,
     },
     /// No joint has this name.
     #[error("there is no joint `{name}`; this robot has {}", names(known))]
     NoSuchJoint {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The existing names.
+        known: Vec<String>,
+    },
+    /// No state has this name.
+    #[error("there is no state `{name}`; this robot has {}", names(known))]
+    NoSuchState {
+        /// The requested name.
+        name: String,
+        /// The existing names.
         known: Vec<String>,
     },
     /// No quantity has this name.
     #[error("there is no quantity `{name}`; expected one of {}", all_names(known))]
     NoSuchQuantity {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The existing names.
         known: Vec<&'static str>,
     },
     /// The end effector is not obvious.
-    #[error("the end effector has to be named: this robot ends in {}", names(leaves))]
+    #[error("the end effector must be named: this robot ends in {}", names(leaves))]
     NoEndEffector {
         /// The candidates.
         leaves: Vec<String>,
     },
-    /// The mass matrix cannot be inverted: something massless can move freely.
+    /// The mass matrix cannot be inverted: a joint moves no inertia, or joints produce the same motion.
     #[error(
-        "the mass matrix is singular at joint `{joint}`: its pivot is {pivot:e}, against {diagonal:e} on the diagonal (what it moves has no \
-         inertia, or the joint's motion is that of others), at θ = {theta:?}"
+        "the mass matrix is singular at joint `{joint}`: its pivot is {pivot:e}, against {diagonal:e} on the diagonal (it moves no inertia, or \
+         other joints produce the same motion), at θ = {theta:?}"
     )]
     SingularMassMatrix {
         /// The joint.
         joint: String,
-        /// What is left of its inertia when all others are free.
+        /// Its pivot: the inertia that remains if all other joints are free.
         pivot: f64,
-        /// Its inertia when all others are locked.
+        /// Its inertia if all other joints are locked.
         diagonal: f64,
         /// The positions.
         theta: Vec<f64>,
     },
-    /// The task's directions cannot be moved independently here.
+    /// The task's directions are not independent at this state.
     #[error(
         "the task is singular at θ = {theta:?}: the singular values of its Jacobian are {singular_values:?}, the smallest below {tolerance:e}"
     )]
     SingularTask {
-        /// Of the rows asked for, largest first.
+        /// Singular values of the task's rows, largest first.
         singular_values: Vec<f64>,
         /// The bound.
         tolerance: f64,
         /// The positions.
         theta: Vec<f64>,
     },
-    /// A simulated state leaves the numbers.
+    /// The simulated state became infinite, NaN or too large.
     #[error(
-        "the simulation blew up: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of {step_size} s; \
+        "the simulation diverged: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of {step_size} s; \
          a smaller step may help"
     )]
     Diverged {
@@ -103,11 +111,43 @@ pub enum Error {
         /// Seconds.
         step_size: f64,
     },
-    /// Nothing that moves has mass.
+    /// The steps that a tolerance asks for are too small for numbers.
+    #[error(
+        "the motion is too stiff, or jumps, at t = {time} s: a tolerance of {tolerance:e} asks for steps below {step:e} s"
+    )]
+    TooStiff {
+        /// Seconds.
+        time: f64,
+        /// Seconds.
+        step: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// An implicit step has no solution that iteration finds.
+    #[error(
+        "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations; a smaller step may help"
+    )]
+    NoConvergence {
+        /// Seconds.
+        time: f64,
+        /// Seconds.
+        step: f64,
+        /// Iterations.
+        iterations: usize,
+    },
+    /// The moving links have no mass.
     #[error("the robot's total mass is {mass} kg; the centre of mass is undefined")]
     NoMass {
         /// kg.
         mass: f64,
+    },
+    /// A condition that a simulation cannot look for.
+    #[error("`{text}`{problem}")]
+    Condition {
+        /// The condition.
+        text: String,
+        /// What is wrong with it, and what was expected.
+        problem: String,
     },
     /// An argument outside its domain.
     #[error("{what} is {found}, expected {expected}")]

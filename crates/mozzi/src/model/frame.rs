@@ -5,7 +5,7 @@ use crate::lie::SE3;
 use crate::scalar::Scalar;
 use alloc::string::ToString;
 
-/// A named frame of a model, valid for this model alone.
+/// Handle of a named frame, valid for one model only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FrameId(pub(crate) usize);
 
@@ -49,10 +49,10 @@ impl<C: Scalar> Model<C> {
         if k < links { &description.links[k].name } else { &description.frames[k - links].name }
     }
 
-    /// The end-effector frame: the one that was named, or the only leaf of a serial chain.
+    /// The end-effector frame: the one set in the description, or the only leaf of a serial chain.
     ///
     /// # Errors
-    /// [`Error::NoEndEffector`] with the candidates where it has to be named.
+    /// [`Error::NoEndEffector`] with the candidates if the robot branches and no end effector is set.
     pub fn end_effector(&self) -> Result<FrameId, Error> {
         self.structure.end_effector.ok_or_else(|| Error::NoEndEffector {
             leaves: self.structure.leaves.iter().map(|&leaf| self.frame_name(leaf).to_string()).collect(),

@@ -1,6 +1,7 @@
-//! The robot: what its file says ([`Description`]), and what the kernels read ([`Model`]).
+//! The robot: the content of its file ([`Description`]), and the constants of the kernels ([`Model`]).
 
 mod base;
+mod bounds;
 mod build;
 mod check;
 mod couples;
@@ -15,8 +16,10 @@ mod pivots;
 mod places;
 mod provenance;
 mod reduced;
+mod rotor;
 mod screws;
 mod spring;
+mod states;
 mod task;
 mod traverse;
 mod variation;
@@ -31,6 +34,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 pub use base::Base;
+pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
 pub use description::Description;
 pub use environment::Environment;
@@ -41,17 +45,20 @@ pub(crate) use parameters::JOINT_PARAMETERS;
 pub use pivots::{Pivots, clearance, least_is_clear};
 pub use places::{Freedom, Place};
 pub use provenance::FoldedBody;
+pub(crate) use rotor::Rotor;
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub(crate) use spring::Spring;
+pub use states::State;
 pub use task::{Task, TaskFrame, TaskMemory};
 pub use variation::Variation;
-pub(crate) use workspace::Rates;
 pub use workspace::Workspace;
+pub(crate) use workspace::{Pair, Turned};
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
-/// fixed joints are folded away, and every frame of the file survives as a [`Frame`].
+/// fixed joints are folded away, and every frame of the file remains as a [`Frame`].
 ///
-/// The constants are of type `C`; states of any [`Scalar`] `S: From<C>` run on them. A model never changes: share it.
+/// The constants have type `C`; states can have any [`Scalar`] type `S: From<C>`. A model is immutable and can be
+/// shared.
 #[derive(Clone, Debug)]
 pub struct Model<C = f64> {
     /// Moving links, parents before children; slot i of the kernels is `links[i - 1]`, slot 0 the base.
@@ -61,6 +68,8 @@ pub struct Model<C = f64> {
     /// Rotor inertia of each of the n velocities, 0 for a floating base's; seen at the joint, mimic joints included:
     /// Σ ratio² · armature.
     pub(crate) armature: Vec<C>,
+    /// Of the rotors that several joints turn.
+    pub(crate) rotors: Vec<Rotor<C>>,
     /// Viscous friction likewise: Σ ratio² · d.
     pub(crate) damping: Vec<C>,
     /// Coulomb friction likewise: Σ |ratio| · μ.
@@ -97,28 +106,35 @@ pub(crate) struct Structure {
     pub leaves: Vec<FrameId>,
     pub pattern: Pattern,
     /// Some joint follows another.
-    pub coupled: bool,
+    pub has_mimic_joints: bool,
+    /// Of each free joint its first place in θ̇.
+    pub free: Vec<usize>,
+    /// A link has many between it and the base, on average: the composite-body pass then goes by the base's axes.
+    pub is_deep: bool,
+    /// No joint is a ball or free.
+    pub of_one_axis: bool,
 }
 
 impl<C: Scalar> Model<C> {
-    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, three for a ball, six for a free joint, after six of a
-    /// floating base.
+    /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, three for a ball, six
+    /// for a free joint, after six of a floating base.
     pub fn n(&self) -> usize {
         self.armature.len()
     }
 
-    /// The number of positions: the length of θ. n, and one more for a floating base, each ball and each free joint: a quaternion has four entries.
+    /// The number of positions: the length of θ. n, and one more for a floating base, each ball and each free joint: a
+    /// quaternion has four entries.
     pub fn nq(&self) -> usize {
         self.structure.space.0.last().map_or(0, |place| place.positions().end)
     }
 
-    /// The mass of all that moves, kg: of the moving links, and of a floating base.
+    /// The mass of the moving links and of a floating base, kg.
     pub fn mass(&self) -> C {
         let base = if self.is_floating() { self.base_inertia.mass } else { C::zero() };
         self.links.iter().fold(base, |sum, link| sum + link.G.mass)
     }
 
-    /// The number N of moving links: of joints that move, independent or not.
+    /// The number N of moving links; mimic joints count.
     pub fn moving_links(&self) -> usize {
         self.moving_slots().count()
     }
@@ -135,9 +151,15 @@ impl<C: Scalar> Model<C> {
         (1..).zip(&self.links).filter(|(_, link)| link.is_last).map(|(slot, _)| slot)
     }
 
-    /// Does some joint follow another (mimic)?
+    /// Whether the robot has mimic joints.
     pub fn has_mimic_joints(&self) -> bool {
-        self.structure.coupled
+        self.structure.has_mimic_joints
+    }
+
+    /// Whether joints are coupled by mimic joints or by rotors that several joints turn. Forward dynamics then factors
+    /// the mass matrix.
+    pub fn has_coupled_joints(&self) -> bool {
+        self.has_mimic_joints() || !self.rotors.is_empty()
     }
 
     /// Gravity in {s} coordinates, m/s².
@@ -145,7 +167,7 @@ impl<C: Scalar> Model<C> {
         self.gravity
     }
 
-    /// What the model was built from.
+    /// The description from which the model was built.
     pub fn description(&self) -> &Description {
         &self.structure.description
     }
@@ -153,12 +175,6 @@ impl<C: Scalar> Model<C> {
     /// The names of the independent joints, in the order of θ.
     pub fn joint_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.joints().map(|joint| joint.name.as_str())
-    }
-
-    /// The rotor inertia of each of the n velocities, seen at the joint, 0 for a floating base's: Σ ratio² · armature over a joint and its mimic
-    /// joints. What [`mass_matrix`](Self::mass_matrix) has on its diagonal in addition to the links. kg m² or kg.
-    pub fn armature(&self) -> &[C] {
-        &self.armature
     }
 
     /// The independent joints as described, in the order of θ: limits, damping, friction, armature, springs.
@@ -172,8 +188,8 @@ impl<C: Scalar> Model<C> {
         self.moving_slots().map(joint)
     }
 
-    /// The independent joint that each moving joint follows in the end, itself where it follows none, by its place in
-    /// [`joint_names`](Self::joint_names); in the order of [`moving_joints`](Self::moving_joints).
+    /// The source joint of each moving joint (itself if independent), by its index in
+    /// [`joint_names`](Self::joint_names), in the order of [`moving_joints`](Self::moving_joints).
     pub fn sources(&self) -> impl Iterator<Item = description::Source<C>> {
         let joint_of = |j: usize| self.places().partition_point(|place| place.j <= j) - 1;
         self.moving_slots().map(move |slot| {
@@ -195,6 +211,7 @@ impl<C: Scalar> Model<C> {
             links: self.links.iter().map(|link| link.map(f)).collect(),
             base_inertia: self.base_inertia.map(f),
             armature: list(&self.armature),
+            rotors: self.rotors.iter().map(|rotor| rotor.map(f)).collect(),
             damping: list(&self.damping),
             friction: list(&self.friction),
             springs: self.springs.iter().map(|spring| spring.map(f)).collect(),

@@ -15,21 +15,23 @@ const OF_JOINT: [&str; 5] = ["armature", "damping", "friction", "stiffness", "pr
 pub(crate) const JOINT_PARAMETERS: usize = OF_JOINT.len();
 
 impl<C: Scalar> Model<C> {
-    /// The length of π: ten for each moving link and a floating base, five for each independent joint.
+    /// The length of π: ten for each moving link and a floating base, five for each independent joint, one for each
+    /// rotor.
     pub fn parameter_count(&self) -> usize {
-        10 * self.bodies().count() + JOINT_PARAMETERS * self.places().len()
+        10 * self.bodies().count() + JOINT_PARAMETERS * self.places().len() + self.rotors.len()
     }
 
     /// π, the parameters in which τ and the energies are linear:
     ///
-    /// - of a floating base and then of each moving link, base to tips, ten numbers in the coordinates of that **link's frame in
-    ///   the file**: mass, m c, and the rotational inertia about the frame's origin, (m, m c_x, m c_y, m c_z, I_xx, I_xy,
-    ///   I_xz, I_yy, I_yz, I_zz) in kg, kg m, kg m². What is fixed to the link is counted in;
-    /// - of each independent joint its armature, damping, Coulomb friction, stiffness and preload kθ₀, those of its mimic joints counted in
-    ///   as M and f have them: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ, Σ ratio² k, Σ ratio k (θ₀ − offset). Of a ball or a free joint the first three are
-    ///   the same for each of its velocities, the last two 0.
+    /// - for a floating base and then for each moving link, base to tips, ten numbers in the coordinates of that
+    ///   **link's frame in the file**: mass, m c, and the rotational inertia about the frame's origin, (m, m c_x, m
+    ///   c_y, m c_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) in kg, kg m, kg m², including links fixed to it;
+    /// - for each independent joint its armature, damping, Coulomb friction, stiffness and preload kθ₀, including its
+    ///   mimic joints: Σ ratio² armature, Σ ratio² d, Σ |ratio| μ, Σ ratio² k, Σ ratio k (θ₀ − offset). For a ball or a
+    ///   free joint the first three apply to each velocity; the preload of a ball and the spring of a free joint are 0;
+    /// - for each rotor that several joints turn its armature.
     ///
-    /// The springs' energy at θ = 0, Σ ½k(θ₀ − offset)², is no parameter: no force depends on it.
+    /// The springs' energy at θ = 0, Σ ½k(θ₀ − offset)², is not a parameter: no force depends on it.
     ///
     /// Names: [`parameter_names`](Self::parameter_names). Their matrix: [`regressor`](crate::dynamics::regressor()).
     pub fn parameters(&self) -> Vec<C> {
@@ -38,24 +40,26 @@ impl<C: Scalar> Model<C> {
             G.congruence(self.link_frame(slot).Ad()).to_parameters()
         });
         let joints = self.places().iter().flat_map(|&Place { j, .. }| {
-            let spring = self.springs.iter().find(|spring| spring.j == j);
+            let spring = self.springs.iter().find(|spring| spring.place.j == j);
             let (stiffness, preload) =
                 spring.map_or((C::zero(), C::zero()), |spring| (spring.stiffness, spring.preload));
             [self.armature[j], self.damping[j], self.friction[j], stiffness, preload]
         });
-        bodies.chain(joints).collect()
+        bodies.chain(joints).chain(self.rotors.iter().map(|rotor| rotor.armature)).collect()
     }
 
     /// The names of [`parameters`](Self::parameters): `link.m`, `link.mcx`, …, `link.Izz`, and `joint.armature`,
-    /// `joint.damping`, `joint.friction`, `joint.stiffness`, `joint.preload`.
+    /// `joint.damping`, `joint.friction`, `joint.stiffness`, `joint.preload`, and `rotor.armature`.
     pub fn parameter_names(&self) -> Vec<String> {
         let named = |name: &str, of: &[&str]| of.iter().map(|kind| format!("{name}.{kind}")).collect::<Vec<_>>();
         let bodies = self.bodies().flat_map(|slot| named(&self.description().links[self.link_at(slot)].name, &OF_BODY));
-        bodies.chain(self.joint_names().flat_map(|joint| named(joint, &OF_JOINT))).collect()
+        let joints = self.joint_names().flat_map(|joint| named(joint, &OF_JOINT));
+        let rotors = self.description().rotors.iter().flat_map(|rotor| named(&rotor.name, &OF_JOINT[..1]));
+        bodies.chain(joints).chain(rotors).collect()
     }
 
-    /// The same robot with other parameters, of another type where it has to be: see [`parameters`](Self::parameters). Geometry, frames,
-    /// couplings and the springs' energy at θ = 0 stay.
+    /// The same robot with other [`parameters`](Self::parameters), possibly of another number type. Geometry, frames,
+    /// couplings and the springs' energy at θ = 0 do not change.
     ///
     /// # Panics
     /// When there are not [`parameter_count`](Self::parameter_count) of them.
@@ -64,6 +68,7 @@ impl<C: Scalar> Model<C> {
         assert!(found == expected, "there are {found} parameters, expected {expected}");
         let mut model = self.map(U::from);
         let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().count());
+        let (of_joints, of_rotors) = of_joints.split_at(JOINT_PARAMETERS * self.places().len());
         for (slot, parameters) in self.bodies().zip(of_bodies.as_chunks().0) {
             let G = SpatialInertia::from_parameters(*parameters).transformed(model.link_frame(slot));
             match slot.checked_sub(1) {
@@ -78,19 +83,25 @@ impl<C: Scalar> Model<C> {
                 (model.armature[j], model.damping[j], model.friction[j]) = (armature, damping, friction);
             }
             if let Some(spring) = model.spring_mut(place) {
-                (spring.stiffness, spring.preload) = (stiffness, preload);
+                spring.stiffness = stiffness;
+                if place.freedom == Freedom::One {
+                    spring.preload = preload;
+                }
             }
+        }
+        for (rotor, &armature) in model.rotors.iter_mut().zip(of_rotors) {
+            rotor.armature = armature;
         }
         model
     }
 
-    /// The spring of a joint of one axis, a new one of stiffness 0 where it has none.
-    pub(super) fn spring_mut(&mut self, &Place { freedom, q, j }: &Place) -> Option<&mut Spring<C>> {
-        if freedom != Freedom::One {
+    /// The spring of a joint, a new one of stiffness 0 where it has none; None of a free joint.
+    pub(super) fn spring_mut(&mut self, &place: &Place) -> Option<&mut Spring<C>> {
+        if place.freedom == Freedom::Free {
             return None;
         }
-        let at = self.springs.iter().position(|spring| spring.j == j).unwrap_or_else(|| {
-            self.springs.push(Spring { q, j, stiffness: C::zero(), preload: C::zero() });
+        let at = self.springs.iter().position(|spring| spring.place == place).unwrap_or_else(|| {
+            self.springs.push(Spring { place, stiffness: C::zero(), preload: C::zero() });
             self.springs.len() - 1
         });
         self.springs.get_mut(at)
@@ -141,10 +152,9 @@ mod tests {
             assert!(error.amax() < 1e-13 * link3.mass.max(1.0), "{error}");
             let total = names.iter().zip(&pi).filter(|(name, _)| name.ends_with(".m")).map(|(_, m)| m);
             assert!((total.sum::<f64>() - model.mass()).abs() < 1e-12 * model.mass());
-            assert_eq!(
-                names.last().map(String::as_str),
-                Some(&*format!("{}.preload", model.joint_names().last().expect("one")))
-            );
+            let last = model.joint_names().last().map(|joint| format!("{joint}.preload"));
+            let rotor = (!model.description().rotors.is_empty()).then(|| String::from("differential.armature"));
+            assert_eq!(names.last(), rotor.or(last).as_ref());
         }
         let body = Description::new("body").link("it", crate::testing::inertia(1)).floating().build().expect("sound");
         assert_eq!(body.parameters(), crate::testing::inertia(1).congruence(SE3::identity().Ad()).to_parameters());

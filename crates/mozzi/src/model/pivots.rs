@@ -1,14 +1,15 @@
-//! What a factorization of the mass matrix divided by, and the one rule that judges it.
+//! The pivots of a factorization of the mass matrix, and the rule that judges whether it is singular.
 
 use super::{Error, Model};
 use crate::scalar::{Float, Scalar};
 use alloc::string::ToString;
 use alloc::vec::Vec;
 
-/// The pivots of LᵀDL or of articulated bodies, one for each velocity. A pivot is a joint's inertia with the joints beyond it free.
+/// The pivots of LᵀDL or of articulated bodies, one for each velocity. A pivot is a joint's inertia with the joints
+/// beyond it free.
 ///
-/// The rule: a pivot is regular where it is above 64 ε of M_jj, the joint's inertia with the joints beyond it locked. M is
-/// computed for that only if the pivots spread widely: see [`are_clear`](Self::are_clear).
+/// The rule: a pivot is regular if it is above 64 ε M_jj, where M_jj is the joint's inertia with the joints beyond it
+/// locked. M is computed only if the quick test [`are_clear`](Self::are_clear) fails.
 #[derive(Clone, Copy, Debug)]
 pub struct Pivots<'a, S = f64>(&'a [S]);
 
@@ -18,7 +19,7 @@ impl<'a, S: Copy + Into<f64>> Pivots<'a, S> {
         Pivots(pivots)
     }
 
-    /// The quick test, without M: is every pivot far above rounding of the largest?
+    /// The quick test, without M: true if every pivot is well above rounding error of the largest.
     #[inline]
     pub fn are_clear(&self) -> bool {
         let (mut least, mut sum) = (f64::INFINITY, 0.0);
@@ -32,10 +33,11 @@ impl<'a, S: Copy + Into<f64>> Pivots<'a, S> {
 }
 
 impl Pivots<'_> {
-    /// The rule. `mass_matrix` is asked for M(θ), n × n, only if the pivots are not [clear](Self::are_clear).
+    /// Applies the rule. `mass_matrix` is called for M(θ), n × n, only if the pivots are not [clear](Self::are_clear).
     ///
     /// # Errors
-    /// [`Error::SingularMassMatrix`] naming the joint, the outermost first: what it divided by spoils those below.
+    /// [`Error::SingularMassMatrix`] with the outermost joint whose pivot fails: it spoils the pivots closer to the
+    /// base.
     pub(crate) fn check(
         &self,
         model: &Model,
@@ -57,13 +59,14 @@ impl Pivots<'_> {
     }
 }
 
-/// The quick test by the least pivot and the sum of all: least > √ε/4 · sum. No for NaN and infinity.
+/// The quick test from the smallest pivot and the sum of all: least > √ε/4 · sum. False for NaN and infinity.
 #[inline(always)]
 pub fn least_is_clear<T: Float>(least: T, sum: T) -> bool {
     clearance(least, sum, T::EPSILON) > T::zero()
 }
 
-/// least − √ε/4 · sum, positive where the pivots are clear: for each number that a register holds. ε is that of its numbers.
+/// least − √ε/4 · sum, positive if the pivots pass the quick test, for each state of a register. ε is that of the
+/// number type.
 #[inline(always)]
 pub fn clearance<S: Scalar + From<T>, T: Float>(least: S, sum: S, epsilon: T) -> S {
     least - S::from(epsilon.sqrt() * T::from_f64(0.25)) * sum

@@ -1,26 +1,27 @@
-//! Where the numbers of a joint stand in θ and in θ̇.
+//! The indices of a joint's numbers in θ and in θ̇.
 
-use super::Model;
+use super::{Model, Motion};
 use crate::lie::SE3;
 use crate::scalar::Scalar;
+use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// On what a joint moves.
+/// The manifold on which a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Freedom {
-    /// A line, or an angle: one position, its rate.
+    /// A line or an angle: one position and its rate.
     One,
-    /// SO(3): a unit quaternion (w, x, y, z), and the angular velocity in the axes of what moves.
+    /// SO(3): a unit quaternion (w, x, y, z), and the angular velocity in the moving body's axes.
     Ball,
-    /// SE(3): a unit quaternion and the origin (x, y, z), and the twist (ω, v) in the coordinates of what moves.
+    /// SE(3): a unit quaternion and the origin (x, y, z), and the twist (ω, v) in the moving body's coordinates.
     Free,
 }
 
 impl Freedom {
-    /// How many numbers of θ: 1, 4 or 7.
+    /// The number of positions: 1, 4 or 7.
     #[inline(always)]
     pub fn positions(self) -> usize {
         match self {
@@ -30,7 +31,7 @@ impl Freedom {
         }
     }
 
-    /// How many numbers of θ̇, θ̈ and τ: 1, 3 or 6.
+    /// The number of velocities, accelerations and forces: 1, 3 or 6.
     #[inline(always)]
     pub fn velocities(self) -> usize {
         match self {
@@ -41,25 +42,25 @@ impl Freedom {
     }
 }
 
-/// An independent joint's place, or a floating base's.
+/// The indices of an independent joint, or of a floating base, in θ and θ̇.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// On what it moves.
+    /// The manifold on which it moves.
     pub freedom: Freedom,
-    /// Its first number in θ.
+    /// Index of its first number in θ.
     pub q: usize,
-    /// Its first number in θ̇, θ̈ and τ.
+    /// Index of its first number in θ̇, θ̈ and τ.
     pub j: usize,
 }
 
 impl Place {
-    /// Its numbers in θ.
+    /// The range of its numbers in θ.
     #[inline(always)]
     pub fn positions(&self) -> Range<usize> {
         self.q..self.q + self.freedom.positions()
     }
 
-    /// Its numbers in θ̇, θ̈ and τ.
+    /// The range of its numbers in θ̇, θ̈ and τ.
     #[inline(always)]
     pub fn velocities(&self) -> Range<usize> {
         self.j..self.j + self.freedom.velocities()
@@ -70,25 +71,26 @@ const POSITIONS: [&str; 7] = ["qw", "qx", "qy", "qz", "x", "y", "z"];
 const VELOCITIES: [&str; 6] = ["wx", "wy", "wz", "vx", "vy", "vz"];
 
 impl<C: Scalar> Model<C> {
-    /// Where the numbers of each independent joint stand, in the order of [`joints`](Self::joints).
+    /// The indices of each independent joint's numbers, in the order of [`joints`](Self::joints).
     pub fn places(&self) -> &[Place] {
         &self.structure.space.0[usize::from(self.is_floating())..]
     }
 
-    /// The configuration of a free joint's link at 0, seen from {s}: of a joint on a fixed base.
-    pub(crate) fn home_on_base(&self, place: &Place) -> Option<SE3<C>> {
-        let first = self.links.iter().find(|link| link.j == place.j && link.parent == 0 && !self.is_floating())?;
-        Some(first.M.inverse())
+    /// The configurations at 0, seen from {s}, of the links of free joints on a fixed base, by the joint's first number
+    /// in θ̇.
+    pub(crate) fn homes_on_base(&self) -> BTreeMap<usize, SE3<C>> {
+        let on_base = self.links.iter().filter(|link| link.motion == Motion::Free && link.parent == 0);
+        on_base.filter(|_| !self.is_floating()).map(|link| (link.j, link.M.inverse())).collect()
     }
 
-    /// The names of the nq positions: a joint's own name, or of a ball `joint.qw` … `joint.qz`, of a free joint `joint.qw` … `joint.z`; of a
-    /// floating base, which comes first, `base.qw` … `base.z`.
+    /// The names of the nq positions: a joint's own name; for a ball `joint.qw` … `joint.qz`; for a free joint
+    /// `joint.qw` … `joint.z`; for a floating base, which comes first, `base.qw` … `base.z`.
     pub fn position_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.structure.names[0].iter().map(String::as_str)
     }
 
-    /// The names of the n velocities and forces: a joint's own name, or of a ball `joint.wx`, `joint.wy`, `joint.wz`, of a free joint `joint.wx` …
-    /// `joint.vz`; of a floating base `base.wx` … `base.vz`.
+    /// The names of the n velocities and forces: a joint's own name; for a ball `joint.wx`, `joint.wy`, `joint.wz`; for
+    /// a free joint `joint.wx` … `joint.vz`; for a floating base `base.wx` … `base.vz`.
     pub fn velocity_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.structure.names[1].iter().map(String::as_str)
     }

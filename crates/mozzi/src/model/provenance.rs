@@ -1,4 +1,4 @@
-//! Which links of the file make up each body that moves.
+//! The links of the file that make up each moving body.
 
 use super::Model;
 use crate::scalar::Scalar;
@@ -10,13 +10,12 @@ use alloc::vec::Vec;
 pub struct FoldedBody<'m> {
     /// The joint that moves it; none for the base.
     pub joint: Option<&'m str>,
-    /// Names and masses (kg), as described: the moving link, then those that were folded into it, in the order of the
-    /// file.
+    /// Names and masses (kg) of the moving link, then of the links folded into it, in the order of the file.
     pub links: Vec<(&'m str, f64)>,
 }
 
 impl FoldedBody<'_> {
-    /// The mass of them all, kg.
+    /// The total mass, kg.
     pub fn mass(&self) -> f64 {
         self.links.iter().map(|(_, mass)| mass).sum()
     }

@@ -1,4 +1,4 @@
-//! The same robot with fewer numbers that are not zero, for recordings of its dynamics.
+//! The same robot with fewer nonzero constants, for recordings of its dynamics.
 
 use super::{Model, Motion};
 use crate::linalg::{Sym3, Vec3};
@@ -9,13 +9,14 @@ use alloc::vec::Vec;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Model<f64> {
-    /// A model with the same τ, M, θ̈, energies, kinematics and derivatives, to rounding, for which they are less work where zeros are left
-    /// out; [`base_reaction`](crate::NewtonEuler::base_reaction) and the links' own parameters are another robot's.
+    /// A model with the same τ, M, θ̈, energies, kinematics and derivatives up to rounding, whose programs need fewer
+    /// operations. [`base_reaction`](crate::NewtonEuler::base_reaction) and the links' own parameters differ.
     ///
-    /// - What of a link does not notice that its joint turns is given to its parent (or the base): the mass, on the joint's axis, the first
-    ///   moment along it, and the same moment of inertia about all axes across it, I_yy. Left are (m c_x, m c_y), I_xx − I_yy, I_xy, I_xz,
-    ///   I_yz, I_zz (Khalil and Dombre 2002, section 9.4).
-    /// - Numbers that are rounding of 0, or in a rotation of ±1, are that: 8ε of the size of what they were computed from.
+    /// - Inertial parameters that do not depend on the joint angle are moved to the parent (or the base): the mass,
+    ///   placed on the joint's axis, the first moment along it, and I_yy about all axes perpendicular to it. (m c_x, m
+    ///   c_y), I_xx − I_yy, I_xy, I_xz, I_yz and I_zz remain (Khalil and Dombre 2002, section 9.4).
+    /// - Numbers within 8ε of 0 (or of ±1 in rotations), relative to the numbers they were computed from, are rounded
+    ///   to that value.
     ///
     /// Cost O(N).
     pub fn reduced(&self) -> Self {
@@ -29,7 +30,7 @@ impl Model<f64> {
             link.M.R.0 = R.map(|x| if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) });
             let p = link.M.p;
             link.M.p = p.map(|x| clean(x, largest(p)));
-            if link.motion == Motion::Screw && link.A.b == 0.0 {
+            if link.motion == Motion::Screw && link.screw.b == 0.0 {
                 let G = link.G;
                 let ([.., z], J) = (G.mc.0, G.I.yy);
                 let axial = SpatialInertia { mass: G.mass, mc: Vec3([0.0, 0.0, z]), I: Sym3::diagonal(J, J, 0.0) };
@@ -110,7 +111,7 @@ mod tests {
         for (link, reduced) in model.links.iter().zip(&model.reduced().links) {
             let G = reduced.G;
             let is_zero = [G.mass, G.mc.0[2], G.I.yy].map(|x| x == 0.0);
-            assert_eq!(is_zero, [link.A.b == 0.0; 3], "children give theirs, but not to one that has given all");
+            assert_eq!(is_zero, [link.screw.b == 0.0; 3], "children give theirs, but not to one that has given all");
         }
     }
 }

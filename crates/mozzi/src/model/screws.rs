@@ -10,12 +10,12 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Where the link frames of a serial chain are when all joints are at 0: n frames, then the end effector's.
+/// The home configurations of a serial chain's link frames: n frames, then the end effector's.
 #[derive(Clone, Copy, Debug)]
 pub enum HomeFrames<'a> {
-    /// M_1 … M_n, M_{n+1}, each seen from the base.
+    /// M_1 … M_n, M_{n+1}, each relative to the base.
     Base(&'a [SE3]),
-    /// M_{0,1} … M_{n,n+1}, each seen from the one before, as the Modern Robotics package has them.
+    /// M_{0,1} … M_{n,n+1}, each relative to the previous frame, as in the Modern Robotics package.
     Relative(&'a [SE3]),
 }
 
@@ -31,8 +31,8 @@ pub enum Screws<'a> {
 }
 
 impl Description {
-    /// A serial chain as the book gives it: home frames, the spatial inertia of each link in its frame, and screw axes.
-    /// Links are named `link1` …, joints `joint1` …, the base `base` and the last frame `end_effector`.
+    /// A serial chain from the book's lists: home frames, the spatial inertia of each link in its frame, and screw
+    /// axes. Links are named `link1` …, joints `joint1` …, the base `base` and the last frame `end_effector`.
     ///
     /// # Errors
     /// [`Error::WrongLength`] when the lists are not n + 1, n and n long.
@@ -81,8 +81,8 @@ impl Description {
 }
 
 impl Model {
-    /// The model of [`Description::from_screws`] at once, without judging whether such bodies can exist: for programs that make a
-    /// model of lists at every call. Names and tree are sound by construction.
+    /// The model of [`Description::from_screws`] without the check that inertias are physical, for programs that build
+    /// a model from lists at every call. Names and tree are valid by construction.
     ///
     /// # Errors
     /// [`Error::WrongLength`] as there; [`Error::BadArgument`] for numbers that are not finite.
@@ -113,9 +113,9 @@ impl Model {
     }
 }
 
-/// A model in the book's terms. Frame {i} of moving link i is at the centre of mass of the link with all that is fixed
-/// to it, oriented as the link's frame of the file; a massless link's frame is that frame itself. Lists run over the N
-/// moving links, base to tips, each at 0 of its own joint.
+/// The book's lists of a model. Frame {i} of moving link i is at the centre of mass of the link and all links fixed to
+/// it, with the axes of the link's frame in the file; a massless link's frame is that frame itself. Lists run over the
+/// N moving links, base to tips, with every joint at 0.
 #[derive(Clone, Debug)]
 pub struct ScrewLists {
     /// The joint that moves each link.
@@ -134,14 +134,14 @@ pub struct ScrewLists {
     pub A: Vec<ScrewAxis>,
     /// 𝒢_i, in frame {i}: block-diagonal.
     pub G: Vec<SpatialInertia>,
-    /// The end effector's name and home frame M_{n+1}, where the model has one.
+    /// The end effector's name and home frame M_{n+1}, if the model has one.
     pub end_effector: Option<(String, SE3)>,
-    /// B_i, in the end-effector frame; empty where the model has none.
+    /// B_i, in the end-effector frame; empty if the model has none.
     pub B: Vec<ScrewAxis>,
 }
 
 impl ScrewLists {
-    /// M_1 … M_N, and M_{n+1} where there is an end effector: of a serial chain, what [`HomeFrames::Base`] takes.
+    /// M_1 … M_N, and M_{n+1} if there is an end effector: the argument of [`HomeFrames::Base`] for a serial chain.
     pub fn home_frames(&self) -> Vec<SE3> {
         self.M.iter().copied().chain(self.end_effector.as_ref().map(|(_, M)| *M)).collect()
     }
@@ -151,7 +151,7 @@ impl Model<f64> {
     /// The book's M_i, S_i, B_i, A_i and 𝒢_i of this model.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for a robot with a ball or a free joint, which have no one screw axis.
+    /// [`Error::BadArgument`] for a robot with a ball or a free joint, which do not have a single screw axis.
     pub fn screws(&self) -> Result<ScrewLists, Error> {
         if let Some((joint, _)) = self.joints().zip(self.places()).find(|(_, place)| place.freedom != Freedom::One) {
             let found = format!("`{}`, a {} joint", joint.name, joint.kind.name());
@@ -225,6 +225,6 @@ impl<C: Real> Model<C> {
 
     /// A_i in frame {i}.
     pub(crate) fn screw_of(&self, slot: usize) -> Twist<C> {
-        self.body_frame(slot).inverse().Ad() * self.links[slot - 1].A.twist()
+        self.body_frame(slot).inverse().Ad() * self.links[slot - 1].screw.twist()
     }
 }

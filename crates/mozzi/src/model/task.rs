@@ -8,7 +8,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DMatrix;
 
-/// In whose coordinates the task's twist and wrench are.
+/// Coordinates of the task's twist and wrench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskFrame {
     /// The frame's own: 𝒱_b, with v the velocity of the frame's origin.
@@ -17,12 +17,12 @@ pub enum TaskFrame {
     Space,
 }
 
-/// What the task is: a frame, whose coordinates, and which of the six rows (ω, v), by index.
+/// A task: a frame, the coordinates, and the indices of the rows of its twist (ω, v).
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The frame that is to move.
+    /// The frame.
     pub frame: FrameId,
-    /// In whose coordinates.
+    /// The coordinates of twist and wrench.
     pub coordinates: TaskFrame,
     /// Rows of (ω_x, ω_y, ω_z, v_x, v_y, v_z), each once.
     pub rows: &'a [usize],
@@ -34,7 +34,7 @@ impl Task<'_> {
         Task { frame, coordinates, rows: &[0, 1, 2, 3, 4, 5] }
     }
 
-    /// Is the frame one of this model, and are the rows some of six, each once?
+    /// Checks that the frame belongs to this model and that the rows are distinct and below six.
     ///
     /// # Errors
     /// [`Error::BadArgument`].
@@ -53,14 +53,15 @@ impl Task<'_> {
     }
 }
 
-/// Memory of [`task_space_dynamics`](crate::task_space_dynamics) for k rows, and what it finds on its way.
+/// Memory of [`task_space_dynamics`](crate::task_space_dynamics) for k rows, and its intermediate results.
 #[derive(Clone, Debug)]
 pub struct TaskMemory<S = f64> {
     /// J, k × n by rows.
     pub J: Vec<S>,
     /// J̇θ̇, k.
     pub dJ_dtheta: Vec<S>,
-    /// What Λ⁻¹ divided by: where one is not above rounding of the others, the task is singular. Those of M are the workspace's.
+    /// The pivots of Λ⁻¹: if one is within rounding error of the others, the task is singular. The pivots of M are in
+    /// the workspace.
     pub pivots: Vec<S>,
     /// Λ⁻¹ has no zeros to use.
     pub(crate) dense: Pattern,
@@ -73,7 +74,7 @@ pub struct TaskMemory<S = f64> {
 }
 
 impl<S: Scalar> TaskMemory<S> {
-    /// For a task of this many rows.
+    /// Memory for a task of this many rows.
     pub fn new<C: Scalar>(model: &Model<C>, rows: usize) -> Self {
         let (n, o) = (model.n(), S::zero());
         TaskMemory {
@@ -99,8 +100,8 @@ impl<S: Scalar> TaskMemory<S> {
 }
 
 impl TaskMemory {
-    /// Can the rows be moved independently? The rule: the smallest singular value of J is above 10⁻¹² of the largest. They are
-    /// computed only if the pivots spread widely.
+    /// Checks that the rows are independent: the smallest singular value of J is above 10⁻¹² of the largest. Singular
+    /// values are computed only if a quick test of the pivots fails.
     ///
     /// # Errors
     /// [`Error::SingularTask`] with the singular values.

@@ -1,7 +1,7 @@
 //! A model whose parameters vary: constants that are dual numbers, their derivatives along a change of the robot.
 
 use super::description::Joint;
-use super::{Error, Model, Motion};
+use super::{Error, Freedom, JOINT_PARAMETERS, Model, Motion};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::scalar::Dual;
@@ -10,7 +10,7 @@ use alloc::format;
 use alloc::string::ToString;
 use alloc::vec;
 
-/// A change of a robot at the rate that it says, for [`Model::with_parameter_tangent`]. With ε the size of the change:
+/// A change of a robot's parameters, for [`Model::with_parameter_tangent`]. ε is the size of the change:
 #[derive(Clone, Copy, Debug)]
 pub enum Variation<'a> {
     /// π + δπ ε: of [`parameters`](Model::parameters), among them armature, damping, friction and springs; p numbers.
@@ -46,7 +46,7 @@ pub enum Variation<'a> {
         /// A revolute or helical joint.
         joint: &'a str,
     },
-    /// T e^{`[ξ]`ε}: the placement of a joint on its parent, and with it all that the joint carries.
+    /// T e^{`[ξ]`ε}: the placement of a joint on its parent, moving all links beyond it.
     Placement {
         /// A joint, moving or fixed.
         joint: &'a str,
@@ -56,8 +56,8 @@ pub enum Variation<'a> {
 }
 
 impl Model<f64> {
-    /// The same robot with dual constants, whose derivatives are along these changes, all at once. What is computed of it has
-    /// its exact derivative in this direction:
+    /// The same robot with dual constants, whose derivatives are the sum of these changes. Every result has its exact
+    /// derivative in this direction:
     ///
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};
@@ -83,7 +83,7 @@ impl Model<f64> {
     /// Cost O(N) for each change.
     ///
     /// # Errors
-    /// [`Error::NoSuchFrame`] or [`Error::NoSuchJoint`] with the names there are; [`Error::WrongLength`] of δπ;
+    /// [`Error::NoSuchFrame`] or [`Error::NoSuchJoint`] with the names that exist; [`Error::WrongLength`] for δπ;
     /// [`Error::BadArgument`] for the axis or pitch of a joint that has none.
     pub fn with_parameter_tangent(&self, changes: &[Variation]) -> Result<Model<Dual>, Error> {
         let mut model = self.map(Dual::constant);
@@ -115,10 +115,12 @@ impl Model<f64> {
                 }
                 Variation::Pitch { joint } => {
                     let slot = self.slot_of_one_axis(joint)?;
-                    if self.links[slot - 1].A.a == 0.0 {
+                    if self.links[slot - 1].screw.a == 0.0 {
                         return Err(bad_joint(joint, "prismatic", "a joint that turns"));
                     }
-                    model.links[slot - 1].A.b += seed(1.0);
+                    let link = &mut model.links[slot - 1];
+                    link.screw.b += seed(1.0);
+                    link.A.b += seed(1.0) * link.ratio;
                 }
                 Variation::Placement { joint, motion } => self.vary_placement(&mut model, joint, motion)?,
             }
@@ -134,6 +136,7 @@ impl Model<f64> {
             return Err(Error::WrongLength { what: "a rate of the parameters", found, expected });
         }
         let (of_bodies, of_joints) = rate.split_at(10 * self.bodies().count());
+        let (of_joints, of_rotors) = of_joints.split_at(JOINT_PARAMETERS * self.places().len());
         for (slot, rate) in self.bodies().zip(of_bodies.as_chunks().0) {
             let rate = SpatialInertia::from_parameters(*rate).transformed(self.link_frame(slot));
             *inertia(model, slot) += rate.map(seed);
@@ -148,8 +151,13 @@ impl Model<f64> {
             }
             if let Some(spring) = model.spring_mut(place) {
                 spring.stiffness += seed(stiffness);
-                spring.preload += seed(preload);
+                if place.freedom == Freedom::One {
+                    spring.preload += seed(preload);
+                }
             }
+        }
+        for (rotor, &armature) in model.rotors.iter_mut().zip(of_rotors) {
+            rotor.armature += seed(armature);
         }
         Ok(())
     }

@@ -1,25 +1,46 @@
 //! Memory for one evaluation.
 
 use super::Model;
-use crate::lie::SE3;
+use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
 use crate::spatial::{ArticulatedInertia, CoriolisFactor, SpatialInertia, Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// How a joint's axis A moves, for the derivatives of the dynamics.
+/// The pair (r, s) of an axis, of one of the matrices in `dynamics/composite.rs`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rates<S> {
-    /// The angular part of Ȧ, as the joint's parent carries A; what the linear one multiplies is 0.
-    pub dA: Vec3<S>,
-    /// Ä likewise.
-    pub ddA: Twist<S>,
-    /// Ȧ and once more Ȧ, as the link carries A that the joint moves.
-    pub D: Twist<S>,
+pub(crate) struct Pair<S> {
+    pub r: Twist<S>,
+    /// The angular part; what the linear one multiplies is 0.
+    pub s: Vec3<S>,
 }
 
-/// Memory for the kernels, without meaning between calls. Slot 0 is the base, slot i moving link i.
+/// What the composite-body pass asks of a link, in the base's axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turned<S> {
+    /// R_0i.
+    pub R: SO3<S>,
+    /// From the parent's origin to the link's.
+    pub p: Vec3<S>,
+    /// A, about the link's origin.
+    pub A: Twist<S>,
+    pub pairs: [Pair<S>; 2],
+}
+
+impl<S: Scalar> Turned<S> {
+    fn zero() -> Self {
+        Turned { R: SO3::identity(), p: Vec3::zero(), A: Twist::zero(), pairs: [Pair::zero(); 2] }
+    }
+}
+
+impl<S: Scalar> Pair<S> {
+    pub fn zero() -> Self {
+        Pair { r: Twist::zero(), s: Vec3::zero() }
+    }
+}
+
+/// Scratch memory for the kernels; nothing in it survives a call. Slot 0 is the base, slot i moving link i.
 #[derive(Clone, Debug)]
 pub struct Workspace<S = f64> {
     /// Sine and cosine of each joint's angle.
@@ -33,11 +54,12 @@ pub struct Workspace<S = f64> {
     /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, seen from each of its axes.
     pub(crate) carrier: Vec<[Twist<S>; 2]>,
     pub(crate) F: Vec<Wrench<S>>,
-    pub(crate) axes: Vec<Rates<S>>,
+    /// Of the matrices that are filled, the first and the second.
+    pub(crate) pairs: [Vec<Pair<S>>; 2],
+    /// Of links in the base's axes; empty unless the robot is deep.
+    pub(crate) turned: Vec<Turned<S>>,
     /// Composite inertia 𝒢ᶜ.
     pub(crate) G_c: Vec<SpatialInertia<S>>,
-    /// Its rate.
-    pub(crate) dG_c: Vec<SpatialInertia<S>>,
     /// 𝓑 of the composite bodies.
     pub(crate) B: Vec<CoriolisFactor<S>>,
     /// Articulated inertia Ĝ.
@@ -50,12 +72,12 @@ pub struct Workspace<S = f64> {
     pub(crate) pivots: Vec<S>,
     /// n zeros or a right-hand side.
     pub(crate) vector: Vec<S>,
-    /// n × n where joints follow others; else empty, and filled on demand by the caller.
+    /// n × n for robots with mimic joints; else empty, and filled on demand by the caller.
     pub(crate) matrix: Vec<S>,
 }
 
 impl<S: Scalar> Workspace<S> {
-    /// Memory for this model: O(n), and n × n more where joints follow others.
+    /// Memory for this model: O(n), and n × n more for robots with mimic joints.
     pub fn new<C: Scalar>(model: &Model<C>) -> Self {
         let (slots, n) = (model.links.len() + 1, model.n());
         let o = S::zero();
@@ -67,26 +89,26 @@ impl<S: Scalar> Workspace<S> {
             dV: vec![Twist::zero(); slots],
             carrier: vec![[Twist::zero(); 2]; slots],
             F: vec![Wrench::zero(); slots],
-            axes: vec![Rates { dA: Vec3::zero(), ddA: Twist::zero(), D: Twist::zero() }; slots],
+            pairs: [vec![Pair::zero(); slots], vec![Pair::zero(); slots]],
+            turned: if model.structure.is_deep { vec![Turned::zero(); slots] } else { Vec::new() },
             G_c: vec![SpatialInertia::zero(); slots],
-            dG_c: vec![SpatialInertia::zero(); slots],
             B: vec![CoriolisFactor { K: Mat3::zero(), f: Vec3::zero() }; slots],
             G_hat: vec![SpatialInertia::zero().into(); slots],
             U: vec![Wrench::zero(); slots],
             u: vec![o; slots],
             pivots: vec![o; n],
             vector: vec![o; n],
-            matrix: if model.has_mimic_joints() { vec![o; n * n] } else { Vec::new() },
+            matrix: if model.has_coupled_joints() { vec![o; n * n] } else { Vec::new() },
         }
     }
 
-    /// What the last forward dynamics, or its derivatives, divided by, joint by joint: see [`Pivots`](super::Pivots), which judges them. A
-    /// kernel cannot compare numbers; the methods of [`Model`] do.
+    /// The pivots of the last forward dynamics or its derivatives, one per velocity. [`Pivots`](super::Pivots) judges
+    /// them: a kernel cannot compare numbers, the methods of [`Model`] can.
     pub fn pivots(&self) -> &[S] {
         &self.pivots
     }
 
-    /// Every number NaN: what stands here must not matter.
+    /// Sets every number to NaN, to test that results do not depend on old contents.
     pub fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
         let (V, F, T) = (Twist::from_array([nan; 6]), Wrench::from_array([nan; 6]), SE3::identity().map(|_: S| nan));
@@ -98,9 +120,8 @@ impl<S: Scalar> Workspace<S> {
         self.carrier.fill([V; 2]);
         self.F.fill(F);
         self.U.fill(F);
-        self.axes.fill(Rates { dA: V.w, ddA: V, D: V });
+        self.pairs.iter_mut().for_each(|pairs| pairs.fill(Pair { r: V, s: V.w }));
         self.G_c.fill(G);
-        self.dG_c.fill(G);
         self.B.fill(CoriolisFactor { K: Mat3::zero().map(|_: S| nan), f: V.v });
         self.G_hat.fill(G.into());
         for list in [&mut self.u, &mut self.pivots, &mut self.vector, &mut self.matrix] {

@@ -7,12 +7,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl Model<f64> {
-    /// Any quantity at one state: its outputs in their order, matrices by rows. What the quantity does not use of the environment has no
-    /// effect.
+    /// Any quantity at one state: its outputs in their order, matrices by rows. Parts of the environment that the
+    /// quantity does not use have no effect.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] and [`Error::BadArgument`] naming the argument; [`Error::SingularMassMatrix`] naming the joint,
-    /// [`Error::SingularTask`].
+    /// [`Error::WrongLength`] and [`Error::BadArgument`] naming the argument; [`Error::SingularMassMatrix`] naming the
+    /// joint, [`Error::SingularTask`].
     ///
     /// # Panics
     /// On another number of inputs than its [declaration](Query::declaration) has.
@@ -63,7 +63,7 @@ impl Query<'_> {
         self.evaluate(model, inputs, environment, memory, outputs);
     }
 
-    /// Is what the quantity divided by far from rounding? Else the joint or the task that is singular, if there is one.
+    /// Checks that the pivots of the quantity are regular.
     ///
     /// # Errors
     /// [`Error::SingularMassMatrix`], [`Error::SingularTask`].
@@ -80,7 +80,8 @@ impl Query<'_> {
     }
 }
 
-/// Are the pivots of the last call of a quantity far from rounding? Where not, [`Model::compute`] says what is singular, if anything is.
+/// True if every pivot of a quantity's last call is well above rounding error. If false, [`Model::compute`] checks each
+/// pivot.
 pub(crate) fn are_clear<S: Scalar + Into<f64>>(declaration: &Declaration, memory: &Memory<S>) -> bool {
     !declaration.divides || memory.pivots().all(|pivots| Pivots::new(pivots).are_clear())
 }

@@ -1,17 +1,17 @@
 //! The list of all quantities.
 //!
-//! A [`Kernel`] is code, compiled for every kind of number. A [`Quantity`] is a declaration at the foot of its
-//! kernel's file: a name, what goes in, what comes out. [`quantities!`](crate::quantities!) lists them, once; from that list come the fast
-//! functions on `f64` ([`fast`](crate::fast)), batches, recorded programs, machine code, emitted text, `mozzi compute`, Python's
-//! methods and `docs/quantities.md`.
+//! A [`Kernel`] is code, compiled for every kind of number. A [`Quantity`] is a declaration at the foot of its kernel's
+//! file: name, inputs, outputs. [`quantities!`](crate::quantities!) lists them, once; from that list come the fast
+//! functions on `f64` ([`fast`](crate::fast)), batches, recorded programs, machine code, emitted text, `mozzi compute`,
+//! Python's methods and `docs/quantities.md`.
 //!
 //! ```
 //! use mozzi::quantities::{BodyJacobian, Query};
 //! # fn example(model: &mozzi::Model, theta: &[f64]) -> Result<(), mozzi::Error> {
 //! let tip = model.end_effector()?;
 //! let J = model.compute(Query::from(BodyJacobian).of(tip), &[theta], &model.environment())?.remove(0); // 6 × n, by rows
-//! let again = model.compute(Query::named("body-jacobian")?.of(tip), &[theta], &model.environment())?.remove(0);
-//! assert_eq!(J, again);
+//! let by_name = model.compute(Query::named("body-jacobian")?.of(tip), &[theta], &model.environment())?.remove(0);
+//! assert_eq!(J, by_name);
 //! # Ok(()) }
 //! ```
 
@@ -26,7 +26,8 @@ pub use query::Query;
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
 
-/// Every quantity there is, in the order of documentation: `quantities!(callback)` becomes `callback! { InverseDynamics … }`.
+/// Every quantity there is, in the order of documentation: `quantities!(callback)` becomes `callback! { InverseDynamics
+/// … }`.
 #[macro_export]
 macro_rules! quantities {
     ($callback:ident) => {
@@ -95,8 +96,8 @@ impl<S: Scalar + From<C> + 'static, C: Scalar + 'static> Entries<S, C> {
 }
 
 impl Query<'_> {
-    /// The quantity on any kind of number, by its kernel. Each kind of number compiles all kernels where this is called: on `f64` use
-    /// [`fast`](crate::fast) or [`Model::compute`].
+    /// The quantity on any kind of number, by its kernel. Each kind of number compiles all kernels where this is
+    /// called: on `f64` use [`fast`](crate::fast) or [`Model::compute`].
     ///
     /// # Panics
     /// On slices of a wrong number or length.

@@ -1,4 +1,4 @@
-//! Which quantity, and of what.
+//! A quantity with the frame, task or point that it refers to.
 
 use super::{LIST, place_of};
 use crate::linalg::Vec3;
@@ -8,7 +8,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// A quantity to be computed, with the frame, task or point that it is of.
+/// A quantity to compute, with the frame, task or point that it refers to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Query<'a> {
     pub(crate) index: usize,
@@ -28,7 +28,7 @@ impl<'a> Query<'a> {
         Query::at(const { place_of(Q::DECLARATION.name) })
     }
 
-    /// The quantity at this place of [`LIST`].
+    /// The quantity with this index in [`LIST`].
     pub const fn at(index: usize) -> Query<'static> {
         let (coordinates, rows) = (TaskFrame::Body, &[0, 1, 2, 3, 4, 5]);
         Query { index, subject: Subject { frame: None, coordinates, rows, point: Vec3([0.0; 3]) } }
@@ -37,7 +37,7 @@ impl<'a> Query<'a> {
     /// The quantity of this name, with `_` or `-` between its words.
     ///
     /// # Errors
-    /// [`Error::NoSuchQuantity`] with the names there are.
+    /// [`Error::NoSuchQuantity`] with the names that exist.
     pub fn named(name: &str) -> Result<Query<'static>, Error> {
         let plain = name.replace('-', "_");
         let place = LIST.iter().position(|known| known.name == plain);
@@ -45,22 +45,22 @@ impl<'a> Query<'a> {
         place.map(Query::at).ok_or_else(|| Error::NoSuchQuantity { name: String::from(name), known: known() })
     }
 
-    /// Of this frame.
+    /// Sets the frame.
     pub fn of(self, frame: FrameId) -> Self {
         Query { subject: Subject { frame: Some(frame), ..self.subject }, ..self }
     }
 
-    /// Of this task.
+    /// Sets the task.
     pub fn of_task(self, Task { frame, coordinates, rows }: Task<'a>) -> Self {
         Query { subject: Subject { frame: Some(frame), coordinates, rows, ..self.subject }, ..self }
     }
 
-    /// About this point of {s}.
+    /// Sets the reference point in {s}.
     pub fn about(self, point: Vec3) -> Self {
         Query { subject: Subject { point, ..self.subject }, ..self }
     }
 
-    /// Its place in [`LIST`].
+    /// Its index in [`LIST`].
     pub fn index(&self) -> usize {
         self.index
     }
@@ -98,10 +98,10 @@ impl<'a> Query<'a> {
         self.declaration().outputs.iter().map(move |output| output.length(model, &subject))
     }
 
-    /// Its declaration, frame, rows and mass, for this robot.
+    /// Checks that this robot has the frame, that the rows are distinct, and that it has mass if the quantity needs it.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for a frame that is missing or another model's, and rows that are not distinct; [`Error::NoMass`].
+    /// [`Error::BadArgument`] if the frame is missing or belongs to another model, or rows repeat; [`Error::NoMass`].
     pub fn check_subject(&self, model: &Model) -> Result<(), Error> {
         let Declaration { name, of, needs_mass, .. } = self.declaration();
         match (of, self.subject.frame) {
@@ -119,7 +119,8 @@ impl<'a> Query<'a> {
         }
     }
 
-    /// [`check_subject`](Self::check_subject); the lengths of the inputs, the quaternion of a floating base, the environment's frames.
+    /// Checks the [subject](Self::check_subject), the lengths of the inputs, the quaternions, and the environment's
+    /// frames.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::BadArgument`].

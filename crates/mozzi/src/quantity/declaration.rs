@@ -1,32 +1,34 @@
-//! What is said of a quantity: its name and formula, what goes in, what comes out.
+//! The declaration of a quantity: its name and formula, inputs and outputs.
 
 use super::Subject;
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
 
-/// One quantity in words and shapes. See [`Quantity`](super::Quantity).
+/// Name, formula, inputs and outputs of one quantity. See [`Quantity`](super::Quantity).
 #[derive(Clone, Copy, Debug)]
 pub struct Declaration {
-    /// The method, Python's method and the emitted function; with hyphens, the command line's word.
+    /// The name of the Rust method, Python's method and the emitted function; with hyphens, of the command line's
+    /// quantity.
     pub name: &'static str,
-    /// Its formula, and what that is.
+    /// Its formula and a description.
     pub formula: &'static str,
-    /// The numbers that it depends on, in this order.
+    /// Its inputs, in this order.
     pub inputs: &'static [Input],
-    /// What it answers, in this order; matrices by rows.
+    /// Its outputs, in this order; matrices by rows.
     pub outputs: &'static [Output],
     first_output: usize,
-    /// What else must be named.
+    /// The frame, task or point that it refers to.
     pub of: Of,
     /// The parts of the environment that it depends on.
     pub uses: Uses,
-    /// Its kernel's other inputs are zeros.
+    /// Whether its kernel's other inputs are zeros.
     pub is_at_rest: bool,
-    /// It divides by pivots: of the mass matrix, and of the task where it is of one.
+    /// Whether it divides by pivots, of the mass matrix or of the task.
     pub divides: bool,
-    /// It divides by the robot's mass.
+    /// Whether it divides by the robot's mass.
     pub needs_mass: bool,
-    /// It is the same for two robots with the same joint forces in every motion: see [`Model::reduced`]. Energies and momenta are not.
+    /// Whether it is equal for two robots with the same joint forces in every motion: see [`Model::reduced`]. False for
+    /// energies and momenta.
     pub is_of_forces: bool,
 }
 
@@ -80,7 +82,7 @@ impl Declaration {
     }
 }
 
-/// What a quantity is of, besides the robot.
+/// The frame, task or point that a quantity refers to, besides the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
     /// The robot alone.
@@ -93,12 +95,12 @@ pub enum Of {
     Point,
 }
 
-/// How many numbers an axis of an array has.
+/// The length of an array's axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dim {
-    /// As many as the robot has velocities.
+    /// n, the number of velocities.
     N,
-    /// As many as the robot has positions.
+    /// nq, the number of positions.
     Nq,
     /// [`Model::parameter_count`].
     Parameters,
@@ -106,7 +108,7 @@ pub enum Dim {
     Frames,
     /// The task's rows.
     Rows,
-    /// Always this many.
+    /// A constant.
     Is(usize),
 }
 
@@ -137,7 +139,7 @@ impl core::fmt::Display for Dim {
     }
 }
 
-/// An array that a quantity depends on.
+/// An input of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Input {
     /// Its name in every interface.
@@ -146,7 +148,7 @@ pub struct Input {
     pub symbol: &'static str,
     /// Its length.
     pub dim: Dim,
-    /// Its unit: of turning joints, then of sliding ones.
+    /// Its unit for revolute joints, then for prismatic ones.
     pub unit: &'static str,
     /// What it is.
     pub about: &'static str,
@@ -169,14 +171,14 @@ pub const CONSTANT_VECTOR: Input = input("x", "x", "any", "a constant vector");
 /// All inputs that quantities have.
 pub const INPUTS: [Input; 5] = [THETA, DTHETA, DDTHETA, TAU, CONSTANT_VECTOR];
 
-/// An array that a quantity answers.
+/// An output of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
     /// Its name in every interface.
     pub name: &'static str,
     /// Its shape; no axis for a number.
     pub dims: &'static [Dim],
-    /// Its unit, where it has one: of turning joints, then of sliding ones.
+    /// Its unit, if it has one, for revolute joints, then for prismatic ones.
     pub unit: &'static str,
 }
 
@@ -229,15 +231,15 @@ impl Uses {
     /// All of it.
     pub const ALL: Uses = Uses(15);
 
-    /// These, too.
+    /// The union of both.
     pub const fn and(self, other: Uses) -> Uses {
         Uses(self.0 | other.0)
     }
-    /// Does it contain all of the other's parts?
+    /// Whether it contains all parts of the other.
     pub const fn has(self, other: Uses) -> bool {
         self.0 & other.0 == other.0
     }
-    /// The environment with these parts alone: without gravity, at rest, touching nothing where they are not.
+    /// The environment with these parts only; the others are zero gravity, rest, and no applied wrenches.
     #[inline(always)]
     pub fn of<'a, S: Scalar>(self, environment: &Environment<'a, S>) -> Environment<'a, S> {
         let nothing = Environment::with_gravity(crate::Vec3::zero());

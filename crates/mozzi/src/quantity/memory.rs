@@ -8,8 +8,8 @@ use crate::spatial::{Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Memory without meaning between calls: the kernels' [`Workspace`], and what their results are gathered in. What a quantity
-/// needs beyond that grows at its first call; later calls allocate nothing.
+/// Scratch memory: the kernels' [`Workspace`] and buffers for their results; nothing in it survives a call. Buffers
+/// grow at a quantity's first call; later calls do not allocate.
 #[derive(Clone, Debug)]
 pub struct Memory<S = f64> {
     /// The kernels' own.
@@ -44,23 +44,23 @@ impl<S: Scalar> Memory<S> {
         }
     }
 
-    /// The next call is about this point of {s} instead of the query's: one that is no constant.
+    /// Uses this reference point of {s} in the next call instead of the query's, which is constant.
     pub fn with_point(mut self, point: Vec3<S>) -> Self {
         self.point = Some(point);
         self
     }
 
-    /// What the last call divided by: the pivots of the mass matrix, and those of a task's Λ⁻¹.
+    /// The pivots of the last call: of the mass matrix, and of a task's Λ⁻¹.
     pub fn pivots(&self) -> impl Iterator<Item = &[S]> {
         core::iter::once(&self.workspace.pivots[..]).chain(self.task.iter().map(|(_, task)| &task.pivots[..]))
     }
 
-    /// What the last task-space dynamics found on its way.
+    /// Intermediate results of the last task-space dynamics.
     pub fn task(&self) -> Option<&TaskMemory<S>> {
         self.task.as_ref().map(|(_, task)| task)
     }
 
-    /// Every number NaN: a test that results do not depend on what is here.
+    /// Sets every number to NaN, to test that results do not depend on old contents.
     pub fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
         self.workspace.fill_nan();

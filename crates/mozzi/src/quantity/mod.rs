@@ -1,4 +1,5 @@
-//! What a quantity is: a declaration at the foot of its kernel's file. The list of all is [`quantities`](crate::quantities).
+//! Quantities: each is declared at the foot of its kernel's file. The list of all is in
+//! [`quantities`](crate::quantities).
 
 mod declaration;
 mod memory;
@@ -15,19 +16,20 @@ use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
 use alloc::vec::Vec;
 
-/// A function of a robot and its state: a name, the kernel that computes it, what goes in, what comes out.
+/// A function of a robot and its state: its name, kernel, inputs and outputs.
 pub trait Quantity: Copy + Send + Sync + 'static {
-    /// What computes it.
+    /// The kernel that computes it.
     type Kernel: Kernel;
-    /// What is compiled for registers of several states: the kernel, or [`Rare`].
+    /// The code compiled for registers of several states: the kernel, or [`Rare`].
     type Registers: Kernel;
     /// Everything else.
     const DECLARATION: Declaration;
 }
 
-/// Code that computes one or several quantities on any numbers. Inlined into whatever is compiled for an instruction set.
+/// Code that computes one or several quantities on any number type. It is inlined into entry points compiled for an
+/// instruction set.
 pub trait Kernel: 'static {
-    /// There is code for registers of several states.
+    /// Whether there is code for registers of several states.
     const HAS_REGISTERS: bool = true;
 
     /// Fills the outputs.
@@ -49,7 +51,7 @@ pub const MOST_INPUTS: usize = 3;
 /// The most outputs of a kernel.
 pub const MOST_OUTPUTS: usize = 4;
 
-/// What a kernel is called with.
+/// The arguments of a kernel.
 #[derive(Debug)]
 pub struct Call<'a, S, C> {
     /// The frame, task or point.
@@ -75,8 +77,8 @@ pub(crate) type Outputs<'a, S> = [&'a mut [S]; MOST_OUTPUTS];
 /// One quantity, at one state or at as many as a number holds.
 pub(crate) type Entry<S, C> = fn(&Subject, &Model<C>, &Inputs<S>, &Environment<S>, &mut Memory<S>, &mut Outputs<S>);
 
-/// A quantity's inputs, environment and outputs, routed to its kernel: inputs that it does not have are zeros, parts of the environment that
-/// it does not use absent.
+/// A quantity's inputs, environment and outputs, routed to its kernel: inputs that it does not have are zeros, parts of
+/// the environment that it does not use absent.
 #[inline(always)]
 pub(crate) fn evaluate<Q: Quantity, S: Scalar + From<C>, C: Scalar>(
     of: &Subject,

@@ -1,14 +1,14 @@
-//! What a quantity is of, besides the robot.
+//! The frame, task or point that a quantity refers to.
 
 use crate::linalg::Vec3;
 use crate::model::{FrameId, Task, TaskFrame};
 
-/// The frame, task or point that a quantity is of.
+/// The frame, task or point that a quantity refers to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Subject<'a> {
-    /// The frame, where there is one.
+    /// The frame, if there is one.
     pub frame: Option<FrameId>,
-    /// In whose coordinates a task's twist and wrench are.
+    /// Coordinates of a task's twist and wrench.
     pub coordinates: TaskFrame,
     /// A task's rows of (ω_x, ω_y, ω_z, v_x, v_y, v_z).
     pub rows: &'a [usize],

@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `value + derivative·ε` with ε² = 0: a kernel that runs on duals returns, beside each value, its exact derivative
-/// in the direction that the inputs' derivatives give. `Dual<Dual<f64>>` gives second derivatives.
+/// `value + derivative·ε` with ε² = 0: a kernel that runs on dual numbers returns each value with its exact derivative
+/// in the direction given by the inputs' derivatives. `Dual<Dual<f64>>` gives second derivatives.
 ///
 /// ```
 /// use mozzi::scalar::{Dual, Scalar};
@@ -36,7 +36,7 @@ impl<S: Scalar> Dual<S> {
     /// Each value with its derivative.
     ///
     /// # Panics
-    /// When there are not as many of one as of the other.
+    /// If the lengths differ.
     pub fn list(values: &[S], derivatives: &[S]) -> Vec<Self> {
         assert!(values.len() == derivatives.len(), "a derivative for each value");
         values.iter().zip(derivatives).map(|(&value, &derivative)| Dual { value, derivative }).collect()
@@ -132,6 +132,7 @@ impl<S: PartialOrd> PartialOrd for Dual<S> {
 }
 
 impl<S: Scalar> Scalar for Dual<S> {
+    const DIGITS: u32 = S::DIGITS;
     fn from_f64(x: f64) -> Self {
         Dual::constant(S::from_f64(x))
     }

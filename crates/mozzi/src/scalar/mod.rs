@@ -14,9 +14,9 @@ pub use sin_cos::{Bits, Float, sin_cos};
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A real number that the kernels compute with: `f64`, `f32`, [`Dual`] (derivatives), lanes, or a recording.
+/// The number type of the kernels: `f64`, `f32`, [`Dual`] (derivatives), registers of several states, or a recording.
 ///
-/// There is deliberately no `PartialOrd`: a branch on a value means nothing for eight lanes or for a recording.
+/// There is deliberately no `PartialOrd`: a register of eight states, or a recording, cannot branch on a value.
 /// A kernel with states of type `S` takes the model's constants of type `C` by `S: From<C>`.
 pub trait Scalar:
     Copy
@@ -29,6 +29,12 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
 {
+    /// Upper bound on its binary digits; series are summed to this precision.
+    const DIGITS: u32 = 53;
+
+    /// Is it one number, and not a register of them or a recording?
+    const IS_ONE: bool = true;
+
     /// The number nearest to `x`.
     fn from_f64(x: f64) -> Self;
 
@@ -63,7 +69,7 @@ pub trait Scalar:
     }
 }
 
-/// A [`Scalar`] with an order, for what must look at a value: logarithms, checks and iterations.
+/// A [`Scalar`] with an order, for code that compares values: logarithms, checks and iterations.
 pub trait Real: Scalar + PartialOrd {
     /// From 1 to the next number.
     fn epsilon() -> Self;
@@ -76,7 +82,7 @@ pub trait Real: Scalar + PartialOrd {
         if self < Self::zero() { -self } else { self }
     }
 
-    /// Is it 0 with all that it carries, such as a derivative?
+    /// True if the value and all its derivatives are 0.
     fn is_identically_zero(self) -> bool {
         self == Self::zero()
     }

@@ -58,7 +58,8 @@ pub struct Equation<'m, I> {
 }
 
 impl<'m, I: Input> Equation<'m, I> {
-    /// At step 0. Of the options, gravity and friction belong to the equation; the rest is for [`simulate`](Self::simulate).
+    /// At step 0. Of the options, gravity and friction belong to the equation; the rest is for
+    /// [`Simulation`](super::Simulation).
     pub fn new(model: &'m Model, input: I, options: &Options) -> Self {
         Equation {
             model,

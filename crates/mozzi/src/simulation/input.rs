@@ -1,6 +1,6 @@
 //! What drives a simulated robot.
 
-use crate::dynamics::gravity_forces;
+use crate::dynamics::{add_spring_forces, gravity_forces};
 use crate::linalg::Vec3;
 use crate::model::{Error, FrameId, Freedom, Model, Workspace};
 use crate::spatial::Wrench;
@@ -97,9 +97,7 @@ impl Input for GravityCompensation<'_> {
             return Err(Error::WrongLength { what: "theta", found: theta.len(), expected: self.model.nq() });
         }
         gravity_forces(self.model, theta, self.gravity, &mut self.workspace, &mut self.g);
-        for spring in &self.model.springs {
-            self.g[spring.j] += spring.force(theta);
-        }
+        add_spring_forces(self.model, theta, &mut self.g);
         // nothing drives a floating base or a free body
         for place in self.model.places().iter().filter(|place| place.freedom != Freedom::Free) {
             place.velocities().for_each(|j| tau[j] += self.g[j]);

@@ -1,12 +1,14 @@
 //! One step of an integration: explicit Euler (Modern Robotics, section 8.5), semi-implicit Euler, Runge-Kutta.
 
 use crate::kinematics::ConfigurationSpace;
+use crate::model::Error;
 use crate::scalar::{Real, Scalar};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// How a step is taken. With θ̈ = F(t, θ, θ̇) and step h:
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// How time passes. The first three are explicit, with given steps: of those [`Motion::step`] takes one on any number,
+/// see [`explicit`](Self::explicit). With θ̈ = F(t, θ, θ̇) and step h:
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// The book's: θ\[k+1\] = θ\[k\] + θ̇\[k\]h, θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h. Order 1; a swinging robot gains energy.
     Euler,
@@ -15,6 +17,26 @@ pub enum Method {
     /// The classical one with four stages. Order 4, as long as F is smooth: kinks of a table, Coulomb friction and
     /// contacts cost order at the step in which they fall.
     RungeKutta4,
+    /// Dormand and Prince's of order 5, by steps whose estimated error is below a tolerance: absolutely for θ (rad, m),
+    /// for θ̇ relative to 1 + |θ̇|.
+    DormandPrince {
+        /// Above 0.
+        tolerance: f64,
+    },
+    /// The implicit midpoint rule in (θ, p = Mθ̇), order 2. It is symplectic: the energy's error stays bounded. Of a
+    /// floating base it keeps the momentum, too.
+    Midpoint,
+}
+
+/// A method whose step is given, and whose stages follow from each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Explicit {
+    /// [`Method::Euler`].
+    Euler,
+    /// [`Method::SemiImplicitEuler`].
+    SemiImplicitEuler,
+    /// [`Method::RungeKutta4`].
+    RungeKutta4,
 }
 
 impl Method {
@@ -22,16 +44,42 @@ impl Method {
     pub fn order(self) -> u32 {
         match self {
             Method::Euler | Method::SemiImplicitEuler => 1,
+            Method::Midpoint => 2,
             Method::RungeKutta4 => 4,
+            Method::DormandPrince { .. } => 5,
         }
     }
 
-    /// "Euler", "semi-implicit Euler" or "Runge-Kutta 4".
+    /// Are its steps found by a tolerance?
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Method::DormandPrince { .. })
+    }
+
+    /// The method where each step is a map of its own, such as for many robots at once, or for derivatives.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for a method that is adaptive or implicit.
+    pub fn explicit(self) -> Result<Explicit, Error> {
+        match self {
+            Method::Euler => Ok(Explicit::Euler),
+            Method::SemiImplicitEuler => Ok(Explicit::SemiImplicitEuler),
+            Method::RungeKutta4 => Ok(Explicit::RungeKutta4),
+            Method::DormandPrince { .. } | Method::Midpoint => Err(Error::BadArgument {
+                what: "the method",
+                found: self.name().into(),
+                expected: "Euler, semi-implicit Euler or Runge-Kutta 4",
+            }),
+        }
+    }
+
+    /// "Euler", "semi-implicit Euler", "Runge-Kutta 4", "Dormand-Prince 5(4)" or "implicit midpoint".
     pub fn name(self) -> &'static str {
         match self {
             Method::Euler => "Euler",
             Method::SemiImplicitEuler => "semi-implicit Euler",
             Method::RungeKutta4 => "Runge-Kutta 4",
+            Method::DormandPrince { .. } => "Dormand-Prince 5(4)",
+            Method::Midpoint => "implicit midpoint",
         }
     }
 }
@@ -147,24 +195,24 @@ impl<S: Real, const K: usize> Motion<S, K> {
     /// Those of F; then the motion is left between two states.
     pub fn step<E>(
         &mut self,
-        method: Method,
+        method: Explicit,
         h: f64,
         t_next: f64,
         mut F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
     ) -> Result<(), E> {
         let dt = S::from_f64(h);
         match method {
-            Method::Euler => {
+            Explicit::Euler => {
                 advance_each(&self.space, self.robots, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.dtheta, &self.ddtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
-            Method::SemiImplicitEuler => {
+            Explicit::SemiImplicitEuler => {
                 add(&mut self.dtheta, &self.ddtheta, dt);
                 advance_each(&self.space, self.robots, &mut self.theta, &self.dtheta, dt);
                 add(&mut self.integrals, &self.rates, dt);
             }
-            Method::RungeKutta4 => self.runge_kutta_4(h, t_next, &mut F)?,
+            Explicit::RungeKutta4 => self.runge_kutta_4(h, t_next, &mut F)?,
         }
         self.t = t_next;
         self.rates = F(self.t, &self.theta, &self.dtheta, &mut self.ddtheta)?;
@@ -305,13 +353,13 @@ mod tests {
             motion.step(method, 0.5, 0.5, &mut F).expect("infallible");
             [motion.theta[0], motion.dtheta[0], motion.ddtheta[0], motion.integrals[0]]
         };
-        assert_eq!(step(Method::Euler), [1.0, -0.5, -0.5, 0.5]);
-        assert_eq!(step(Method::SemiImplicitEuler), [0.75, -0.5, -0.25, 0.5]);
+        assert_eq!(step(Explicit::Euler), [1.0, -0.5, -0.5, 0.5]);
+        assert_eq!(step(Explicit::SemiImplicitEuler), [0.75, -0.5, -0.25, 0.5]);
         // stages (x, v, a): (1, 0, −1), (1, −¼, −¾), (15/16, −3/16, −11/16), (29/32, −11/32, −13/32)
         let x = 1.0 + 0.5 / 6.0 * (-2.0 / 4.0 - 2.0 * 3.0 / 16.0 - 11.0 / 32.0);
         let v = 0.5 / 6.0 * (-1.0 - 2.0 * 3.0 / 4.0 - 2.0 * 11.0 / 16.0 - 13.0 / 32.0);
         let w = 0.5 / 6.0 * (1.0 + 2.0 + 2.0 * 15.0 / 16.0 + 29.0 / 32.0);
-        assert!(difference(&step(Method::RungeKutta4), &[x, v, 0.5 - x, w]) < 1e-15);
+        assert!(difference(&step(Explicit::RungeKutta4), &[x, v, 0.5 - x, w]) < 1e-15);
     }
 
     /// One Runge-Kutta step on any number, with τ = u in every joint.
@@ -322,7 +370,7 @@ mod tests {
             Ok::<_, Infallible>([])
         };
         let mut motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, &mut F).expect("infallible");
-        motion.step(Method::RungeKutta4, 0.01, 0.01, &mut F).expect("infallible");
+        motion.step(Explicit::RungeKutta4, 0.01, 0.01, &mut F).expect("infallible");
         [motion.theta, motion.dtheta].concat()
     }
 

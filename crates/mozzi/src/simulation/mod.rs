@@ -3,39 +3,68 @@
 //! > q̇₁ = q₂,  q̇₂ = FD(q₁, q₂, τ, F),  with q₁ = θ and q₂ = θ̇
 //!
 //! [`Model::simulate`] takes a start, an [`Input`] (τ and the wrenches on the environment, by functions or tables) and
-//! [`Options`], and answers with a [`Trajectory`], its energies among it. {s} is at rest. Positions are not kept
-//! within the joints' limits. Coulomb friction acts on moving joints; sticking is not modelled, see [`Friction`].
+//! [`Options`], and answers with a [`Trajectory`], its energies among it. {s} is at rest. Coulomb friction acts on
+//! moving joints; sticking is not modelled, see [`Friction`].
+//!
+//! | [`Method`] | order | step | for |
+//! |---|---|---|---|
+//! | `Euler`, `SemiImplicitEuler`, `RungeKutta4` | 1, 1, 4 | given | the book's loop; real time |
+//! | `DormandPrince` | 5 | found | smooth motions, to a tolerance |
+//! | `Midpoint` | 2 | given | long motions: the energy's error is bounded |
+//!
+//! All of them integrate on SE(3) where the base floats, and all are steps of one loop, [`Simulation`]: it looks for
+//! [`Event`]s, zeros of functions of (t, θ, θ̇) on the polynomial between two steps, treats the joints' limits by a
+//! [`Policy`], and hands each row to a [`Recorder`], so that a long motion need not be kept in memory.
 
+mod condition;
+mod dense;
+mod dormand_prince;
+mod driven;
 mod equation;
-#[cfg(test)]
-mod free_base;
+mod events;
 mod input;
 mod method;
+mod midpoint;
 mod options;
+mod policy;
+mod recorder;
+mod run;
 mod sensitivity;
+mod state;
+mod stops;
 mod table;
 mod trajectory;
 
 #[cfg(test)]
+mod balls;
+#[cfg(test)]
+mod between;
+#[cfg(test)]
+mod free_base;
+#[cfg(test)]
 mod robots;
 
 pub use equation::{Equation, ForwardDynamics, Powers};
+pub use events::{Direction, Event, EventFunction, Occurrence};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
-pub use method::{Method, Motion};
+pub use method::{Explicit, Method, Motion};
 pub use options::{Friction, LARGEST, Options};
+pub use policy::Policy;
+pub use recorder::{Account, Recorder, Thinned, stride};
+pub use run::{Ending, Run, Simulation};
 pub use sensitivity::{EndSensitivity, StepSensitivity};
+pub use stops::Stopped;
 pub use table::{Outside, Table, TorqueTable, WrenchTable};
 pub use trajectory::{Energy, Sample, Trajectory};
 
 use crate::model::{Error, Model};
-use alloc::format;
-use core::ops::ControlFlow;
 
 impl Model<f64> {
     /// The motion from (θ(0), θ̇(0)) under an input, by N steps of δt = t_f / N.
     ///
     /// τ and the wrenches are asked for at the time and in the state of each stage of each step. A step costs one
-    /// forward dynamics (O(n)) for the Euler methods and four for Runge-Kutta 4; nothing is allocated but what is recorded.
+    /// forward dynamics (O(n)) for the Euler methods and four for Runge-Kutta 4, and allocates nothing; six for
+    /// Dormand-Prince.
     ///
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};
@@ -59,9 +88,12 @@ impl Model<f64> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
+    /// Limits that are [reported](Policy::Report) are reported by [`Simulation::run`]; here they are not looked at.
+    ///
     /// # Errors
-    /// [`Error::WrongLength`] or [`Error::BadArgument`] for a start or options that make no sense, or an input that is not
-    /// finite; [`Error::SingularMassMatrix`]; [`Error::Diverged`] where the state leaves the numbers; what the input answers.
+    /// [`Error::WrongLength`] or [`Error::BadArgument`] for a start or options that make no sense, or an
+    /// input that is not finite; [`Error::SingularMassMatrix`]; [`Error::Diverged`] if the state becomes infinite or
+    /// NaN; [`Error::TooStiff`], [`Error::NoConvergence`]; what the input answers.
     pub fn simulate(
         &self,
         theta: &[f64],
@@ -69,76 +101,10 @@ impl Model<f64> {
         input: impl Input,
         options: &Options,
     ) -> Result<Trajectory, Error> {
-        self.simulate_with_progress(theta, dtheta, input, options, |_, _| ControlFlow::Continue(()))
-    }
-
-    /// [`simulate`](Self::simulate), telling `progress(steps done, N)` at most about 100 times, the last time at the end.
-    /// `ControlFlow::Break(())` stops the simulation: the motion so far is the answer, not [`complete`](Trajectory::complete).
-    ///
-    /// # Errors
-    /// As [`simulate`](Self::simulate).
-    pub fn simulate_with_progress(
-        &self,
-        theta: &[f64],
-        dtheta: &[f64],
-        input: impl Input,
-        options: &Options,
-        progress: impl FnMut(usize, usize) -> ControlFlow<()>,
-    ) -> Result<Trajectory, Error> {
-        Equation::new(self, input, options).simulate(theta, dtheta, progress)
-    }
-}
-
-impl<I: Input> Equation<'_, I> {
-    /// [`Model::simulate_with_progress`] of this equation.
-    ///
-    /// # Errors
-    /// As [`Model::simulate`].
-    pub fn simulate(
-        mut self,
-        theta: &[f64],
-        dtheta: &[f64],
-        mut progress: impl FnMut(usize, usize) -> ControlFlow<()>,
-    ) -> Result<Trajectory, Error> {
-        let (model, options, equation) = (self.model(), self.options, &mut self);
-        model.check_lengths(theta, [("dtheta", dtheta)])?;
-        for (what, values) in [("theta", theta), ("dtheta", dtheta)] {
-            let finite = values.iter().all(|x| x.is_finite());
-            options::check(finite, what, format!("{values:?}"), "finite numbers")?;
-        }
-        options.check()?;
-
-        let steps = options.steps;
-        let mut motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
-            equation.evaluate(t, q, dq, ddq)
-        })?;
-        let mut trajectory = Trajectory::new(model);
-        trajectory.record(motion.sample(equation));
-        for k in 1..=steps {
-            equation.at_step(k, options.step());
-            motion.step(options.method, options.step(), options.time(k), |t, q, dq, ddq| {
-                equation.evaluate(t, q, dq, ddq)
-            })?;
-            trajectory.steps = k;
-            let told = k == steps || k % steps.div_ceil(100) == 0;
-            let stop = told && progress(k, steps).is_break();
-            if k % options.record_every == 0 || k == steps || stop {
-                trajectory.record(motion.sample(equation));
-            }
-            if stop {
-                break;
-            }
-        }
-        trajectory.complete = trajectory.steps == steps;
-        Ok(trajectory)
-    }
-}
-
-impl Motion<f64, 3> {
-    fn sample<'a, I: Input>(&'a self, equation: &'a mut Equation<I>) -> Sample<'a> {
-        let energy = equation.energy(&self.theta, &self.dtheta, self.integrals);
-        let Motion { t, theta, dtheta, ddtheta, .. } = self;
-        Sample { t: *t, theta, dtheta, ddtheta, tau: equation.tau(), energy }
+        let unseen = options.joint_limits == Policy::Report;
+        let joint_limits = if unseen { Policy::Ignore } else { options.joint_limits };
+        let simulation = Simulation::new(Options { joint_limits, ..*options });
+        simulation.run(self, theta, dtheta, input).map(|run| run.motion)
     }
 }
 
@@ -150,6 +116,7 @@ mod tests {
     use crate::{Description, SpatialInertia, Wrench, testing};
     use alloc::vec::Vec;
     use core::f64::consts::PI;
+    use core::ops::ControlFlow;
 
     /// T = 2π √(l/g) / agm(1, cos(θ₀/2)), exactly.
     fn period(amplitude: f64) -> f64 {
@@ -197,23 +164,19 @@ mod tests {
     }
 
     #[test]
-    fn progress_is_told_and_can_stop() {
-        let robot = pendulum(0.0, 0.0);
-        for (steps, calls) in [(1, 1), (7, 7), (100, 100), (101, 51), (100_000, 100)] {
-            let mut told = Vec::new();
-            let options = Options { record_every: steps, ..Options::new(0.1, steps) };
-            let whole = robot.simulate_with_progress(&[1.0], &[0.0], Zero, &options, |done, of| {
-                assert_eq!(of, steps);
-                told.push(done);
-                ControlFlow::Continue(())
+    fn progress_is_called_after_each_step_and_can_stop() {
+        let (robot, simulation) = (pendulum(0.0, 0.0), Simulation::new(Options::new(1.0, 1000)));
+        let run = |most: usize| {
+            let mut times = Vec::new();
+            let run = simulation.run_with_progress(&robot, &[1.0], &[0.0], Zero, |t| {
+                times.push(t);
+                if times.len() == most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
-            assert!(whole.expect("a motion").complete);
-            assert_eq!((told.len(), told.last()), (calls, Some(&steps)));
-        }
-        let stopped = robot.simulate_with_progress(&[1.0], &[0.0], Zero, &Options::new(1.0, 1000), |done, _| {
-            if done >= 300 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        let stopped = stopped.expect("a motion");
+            (run.expect("a motion").motion, times)
+        };
+        let (whole, times) = run(usize::MAX);
+        assert!(whole.complete && times == whole.t[1..]);
+        let (stopped, _) = run(300);
         assert!(!stopped.complete && stopped.steps == 300 && stopped.last().t == 0.3);
     }
 

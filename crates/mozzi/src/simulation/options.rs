@@ -1,6 +1,6 @@
 //! How to simulate.
 
-use super::Method;
+use super::{Method, Policy};
 use crate::linalg::Vec3;
 use crate::model::Error;
 use alloc::format;
@@ -16,7 +16,7 @@ pub struct Options {
     pub method: Method,
     /// t_f in seconds, at least 0; the motion starts at t = 0.
     pub duration: f64,
-    /// N, at least 1; the step is δt = t_f / N.
+    /// N, at least 1; the step is δt = t_f / N. Of an adaptive method, whose steps are its own, the δt of the rows.
     pub steps: usize,
     /// Record the start, every k-th step, and the last; 1.
     pub record_every: usize,
@@ -25,6 +25,9 @@ pub struct Options {
     pub gravity: Option<Vec3>,
     /// Coulomb friction as in the model.
     pub friction: Friction,
+    /// How to treat the joints' limits of position; they are reported. Where they are respected a joint comes to rest
+    /// there, inelastically, and is held as long as it is pressed against its stop.
+    pub joint_limits: Policy,
 }
 
 /// What is made of Coulomb friction μ. Sticking is not modelled by either: no joint is held at rest against a torque.
@@ -51,6 +54,7 @@ impl Options {
             record_every: 1,
             gravity: None,
             friction: Friction::Coulomb,
+            joint_limits: Policy::Report,
         }
     }
 
@@ -79,6 +83,11 @@ impl Options {
         if k == self.steps { self.duration } else { k as f64 * self.step() }
     }
 
+    /// Is step k recorded?
+    pub fn is_recorded(&self, k: usize) -> bool {
+        k.is_multiple_of(self.record_every) || k == self.steps
+    }
+
     /// Does it make sense?
     ///
     /// # Errors
@@ -92,6 +101,9 @@ impl Options {
         }
         if let Friction::Smooth { slip_speed } = self.friction {
             check(slip_speed > 0.0 && slip_speed.is_finite(), "slip_speed", slip_speed, "a positive, finite speed")?;
+        }
+        if let Method::DormandPrince { tolerance } = self.method {
+            check(tolerance > 0.0 && tolerance.is_finite(), "tolerance", tolerance, "a positive, finite number")?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! numbers (forward mode).
 
 use super::options::check;
-use super::{Friction, Motion, Options};
+use super::{Explicit, Friction, Motion, Options};
 use crate::dynamics::forward_dynamics;
 use crate::kinematics::{difference, seed_direction};
 use crate::model::{Environment, Error, Model, Pivots, Variation, Workspace};
@@ -64,7 +64,8 @@ impl Model<f64> {
     /// options, {s} is at rest, nothing is touched. The Euler methods' steps are those of [`simulate`](Self::simulate).
     ///
     /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] for options that make no sense; [`Error::SingularMassMatrix`].
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for options that make no sense, or a method that is not
+    /// [explicit](super::Method::explicit); [`Error::SingularMassMatrix`].
     pub fn held_step(
         &self,
         theta: &[f64],
@@ -77,7 +78,8 @@ impl Model<f64> {
         let fine = |theta: &[f64], workspace: &mut Workspace| {
             Pivots::new(workspace.pivots()).check(self, theta, || self.mass_matrix_rows(theta))
         };
-        let end = step(self, theta, dtheta, tau, options, &mut Workspace::new(self), fine)?;
+        let way = (options.method.explicit()?, options);
+        let end = step(self, theta, dtheta, tau, way, &mut Workspace::new(self), fine)?;
         Ok((end.theta, end.dtheta))
     }
 
@@ -97,6 +99,7 @@ impl Model<f64> {
         changes: &[Variation],
     ) -> Result<StepSensitivity, Error> {
         let end = self.held_step(theta, dtheta, tau, options)?;
+        let way = (options.method.explicit()?, options);
         let (n, mut workspace) = (self.n(), Workspace::<Dual>::new(self));
         let zero = vec![0.0; n];
         let unit = |j: usize| {
@@ -107,7 +110,7 @@ impl Model<f64> {
         let mut along = |of: [&[f64]; 3]| {
             let (theta, dtheta, tau) =
                 (seed_direction(self, theta, of[0]), Dual::list(dtheta, of[1]), Dual::list(tau, of[2]));
-            column(self, &theta, &dtheta, &tau, options, &mut workspace)
+            column(self, &theta, &dtheta, &tau, way, &mut workspace)
         };
         let columns = |of: &mut dyn FnMut(&[f64]) -> DVector<f64>| -> Vec<_> { (0..n).map(|j| of(&unit(j))).collect() };
         let d_theta = columns(&mut |e| along([e, &zero, &zero]));
@@ -117,7 +120,7 @@ impl Model<f64> {
         let mut P = DMatrix::zeros(2 * n, changes.len());
         for (k, &change) in changes.iter().enumerate() {
             let with_parameter_tangent = self.with_parameter_tangent(&[change])?;
-            P.set_column(k, &column(&with_parameter_tangent, &theta, &dtheta, &tau, options, &mut workspace));
+            P.set_column(k, &column(&with_parameter_tangent, &theta, &dtheta, &tau, way, &mut workspace));
         }
         let matrix = |columns: &[DVector<f64>]| DMatrix::from_fn(2 * n, columns.len(), |i, j| columns[j][i]);
         let A = matrix(&[d_theta, d_dtheta].concat());
@@ -154,13 +157,13 @@ fn column<C: Scalar>(
     theta: &[Dual],
     dtheta: &[Dual],
     tau: &[Dual],
-    options: &Options,
+    way: (Explicit, &Options),
     workspace: &mut Workspace<Dual>,
 ) -> DVector<f64>
 where
     Dual: From<C>,
 {
-    let end = step(model, theta, dtheta, tau, options, workspace, |_, _| Ok::<_, core::convert::Infallible>(()));
+    let end = step(model, theta, dtheta, tau, way, workspace, |_, _| Ok::<_, core::convert::Infallible>(()));
     let Ok(end) = end;
     let still: Vec<f64> = end.theta.iter().map(|x| x.value).collect();
     let mut way = vec![Dual::zero(); model.n()];
@@ -174,7 +177,7 @@ fn step<S: Real + From<C>, C: Scalar, E>(
     theta: &[S],
     dtheta: &[S],
     tau: &[S],
-    options: &Options,
+    (method, options): (Explicit, &Options),
     workspace: &mut Workspace<S>,
     mut check: impl FnMut(&[S], &mut Workspace<S>) -> Result<(), E>,
 ) -> Result<Motion<S>, E> {
@@ -195,7 +198,7 @@ fn step<S: Real + From<C>, C: Scalar, E>(
     };
     let h = options.step();
     let mut motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, &mut F)?;
-    motion.step(options.method, h, h, &mut F)?;
+    motion.step(method, h, h, &mut F)?;
     Ok(motion)
 }
 
@@ -292,6 +295,7 @@ mod tests {
         for model in models() {
             for method in METHODS {
                 let options = options(method, 5);
+                let way = (method.explicit().expect("explicit"), &options);
                 let [theta, dtheta, _] = state(&model, 4);
                 let tau = vec![vec![0.7; model.n()]; 5];
                 let parts = model.sensitivities(&theta, &dtheta, &tau, &options, &[]).expect("regular");
@@ -303,10 +307,10 @@ mod tests {
                 let (tau, mut workspace) = (Dual::constants(&tau[0]), Workspace::<Dual>::new(&model));
                 for _ in 1..5 {
                     let fine = |_: &[Dual], _: &mut _| Ok::<_, Error>(());
-                    let next = step(&model, &q, &dq, &tau, &options, &mut workspace, fine).expect("fine");
+                    let next = step(&model, &q, &dq, &tau, way, &mut workspace, fine).expect("fine");
                     (q, dq) = (next.theta, next.dtheta);
                 }
-                let found = column(&model, &q, &dq, &tau, &options, &mut workspace);
+                let found = column(&model, &q, &dq, &tau, way, &mut workspace);
                 let expected = whole * DVector::from_vec(along);
                 let error = (&found - &expected).amax() / expected.amax();
                 assert!(error < 1e-12, "{}: {error:e}", method.name());

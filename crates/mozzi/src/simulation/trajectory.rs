@@ -29,6 +29,11 @@ impl Energy {
     pub fn supplied(&self) -> f64 {
         self.motor_work - self.friction_loss - self.applied_work
     }
+
+    /// E − E_first − (motors − friction − environment), in joules: 0 but for the error of the integration.
+    pub fn drift_since(&self, first: &Energy) -> f64 {
+        self.total() - first.total() - self.supplied()
+    }
 }
 
 /// A simulated motion: one row for each recorded time, row-major lists.
@@ -74,7 +79,7 @@ pub struct Sample<'a> {
 }
 
 impl Trajectory {
-    /// Of this robot, without rows: for an integration of one's own, which [`record`](Self::record)s them.
+    /// Of this robot, without rows: a [`Recorder`](super::Recorder).
     pub fn new(model: &Model) -> Self {
         Trajectory {
             nq: model.nq(),
@@ -105,6 +110,33 @@ impl Trajectory {
         self.ddtheta.extend(row.ddtheta);
         self.tau.extend(row.tau);
         self.energy.push(row.energy);
+    }
+
+    /// Rows 0, k, 2k, … alone.
+    pub(super) fn keep_every(&mut self, k: usize) {
+        let (n, nq) = (self.n.max(1), self.nq.max(1));
+        let thin = |list: &mut Vec<f64>, width: usize| {
+            let mut entry = 0;
+            list.retain(|_| {
+                entry += 1;
+                ((entry - 1) / width).is_multiple_of(k)
+            });
+        };
+        thin(&mut self.t, 1);
+        thin(&mut self.theta, nq);
+        [&mut self.dtheta, &mut self.ddtheta, &mut self.tau].into_iter().for_each(|list| thin(list, n));
+        let mut row = 0;
+        self.energy.retain(|_| {
+            row += 1;
+            usize::is_multiple_of(row - 1, k)
+        });
+    }
+
+    /// No rows.
+    pub(super) fn clear(&mut self) {
+        let lists = [&mut self.t, &mut self.theta, &mut self.dtheta, &mut self.ddtheta, &mut self.tau];
+        lists.into_iter().for_each(Vec::clear);
+        self.energy.clear();
     }
 
     /// Rows.
@@ -152,7 +184,7 @@ impl Trajectory {
     /// # Panics
     /// When there is no row k.
     pub fn drift(&self, k: usize) -> f64 {
-        self.energy[k].total() - self.energy[0].total() - self.energy[k].supplied()
+        self.energy[k].drift_since(&self.energy[0])
     }
 
     /// max |drift| over the rows, in joules.

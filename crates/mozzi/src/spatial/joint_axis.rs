@@ -20,6 +20,14 @@ pub(crate) struct JointTwist<S> {
     v: S,
 }
 
+impl<S> JointAxis<S> {
+    /// Each number by f.
+    #[inline(always)]
+    pub fn map<U>(self, f: impl Fn(S) -> U) -> JointAxis<U> {
+        JointAxis { a: f(self.a), b: f(self.b) }
+    }
+}
+
 impl<S: Scalar> JointAxis<S> {
     /// (sin aq, cos aq).
     #[inline(always)]

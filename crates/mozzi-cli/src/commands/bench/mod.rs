@@ -16,7 +16,7 @@ use runs::{Data, Run, Subject};
 use std::time::Instant;
 use timing::{Report, Timing};
 
-/// Of the largest entry: a larger difference between one state and many is no rounding.
+/// Relative to the largest entry: a larger difference between one state and many is more than rounding.
 const ROUNDING: f64 = 1e-6;
 
 #[derive(Args, Debug)]
@@ -26,13 +26,13 @@ pub struct BenchArguments {
     /// States in a batch
     #[arg(long, value_name = "N", default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..))]
     states: u32,
-    /// Threads of the second table [default: one a core]
+    /// Threads of the second table [default: one per core]
     #[arg(long, value_name = "K")]
     threads: Option<usize>,
-    /// How often each is timed, in turn with the others
+    /// Number of timed rounds; quantities alternate within a round
     #[arg(long, value_name = "R", default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Only this; may be repeated [default: those that have a kernel on registers]
+    /// Only this quantity; may be repeated [default: those that have a register kernel]
     #[arg(long, value_name = "NAME", value_parser = quantity())]
     quantity: Vec<Query<'static>>,
 }
@@ -131,7 +131,7 @@ fn difference(reference: &[f64], found: &[f64]) -> f64 {
     apart.fold(0.0_f64, |m, x| if x <= m { m } else { x }) / largest
 }
 
-/// The processor's name, where the system tells it.
+/// The processor's name, if the system provides it.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

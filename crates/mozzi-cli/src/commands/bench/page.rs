@@ -38,18 +38,19 @@ pub fn page(model: &Model, report: &Report) -> String {
     let Report { processor, states, rounds, threads, timings, .. } = report;
     let mut page = Page::default();
     page.line(format!("{}: {} positions, {} velocities", model.description().name, model.nq(), model.n()));
-    page.line(format!("{processor}; {}; {threads} threads at most", sets().join(", ")));
-    page.line(format!("{states} states a batch; least / median of {rounds} rounds, all in turn"));
+    page.line(format!("{processor}; {}; at most {threads} threads", sets().join(", ")));
+    page.line(format!("{states} states per batch; least / median of {rounds} alternating rounds"));
     let time = |timing: &Timing| format!("{} / {}", digits(timing.least), digits(timing.median));
     let rate = |timing: &Timing| format!("{} / {}", digits(1e3 / timing.least), digits(1e3 / timing.median));
     let one_thread = |way: Way| way.threads == 1;
-    page.title("nanoseconds a state, on one thread").lines(&grid(timings, one_thread, time));
+    page.title("nanoseconds per state, on one thread").lines(&grid(timings, one_thread, time));
     if *threads > 1 {
-        let title = format!("millions of states a second, on {threads} threads");
+        let title = format!("millions of states per second, on {threads} threads");
         page.title(&title).lines(&grid(timings, |way| way.threads > 1, rate));
     }
     let error = |timing: &Timing| about(timing.difference);
-    page.title("largest difference from one state, of the largest entry").lines(&grid(timings, one_thread, error));
+    page.title("largest difference from one state, relative to the largest entry")
+        .lines(&grid(timings, one_thread, error));
     page.end()
 }
 

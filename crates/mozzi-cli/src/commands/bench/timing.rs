@@ -11,7 +11,7 @@ pub struct Way {
     pub threads: usize,
 }
 
-/// Nanoseconds a state, and the largest difference from one state, of the largest entry.
+/// Nanoseconds a state, and the largest difference from one state, relative to the largest entry.
 pub struct Timing {
     pub name: String,
     pub way: Way,

@@ -1,5 +1,6 @@
 //! The flags that have an effect on a quantity.
 
+use crate::inputs::STATE;
 use mozzi::quantities::{Declaration, Of, Uses};
 
 /// Their names, without `--`.
@@ -13,7 +14,9 @@ pub fn of(declaration: &Declaration) -> Vec<&'static str> {
     let wrenches: &[&str] = if declaration.uses.has(Uses::WRENCHES) { &["tip-wrench", "wrench"] } else { &[] };
     let gravity: &[&str] = if declaration.uses.has(Uses::GRAVITY) { &["gravity"] } else { &[] };
     let inputs = declaration.inputs.iter().map(|input| input.name);
-    inputs.chain([subject, wrenches, gravity].concat()).collect()
+    let is_of_state = declaration.inputs.iter().any(|input| ["theta", "dtheta"].contains(&input.name));
+    let state: &[&str] = if is_of_state { &[STATE] } else { &[] };
+    inputs.chain([subject, wrenches, gravity, state].concat()).collect()
 }
 
 /// "--theta, --frame"

@@ -1,4 +1,4 @@
-//! `mozzi compute --list`: what there is to be computed.
+//! `mozzi compute --list`: the list of quantities.
 
 use super::flags;
 use crate::quantity::hyphenated;

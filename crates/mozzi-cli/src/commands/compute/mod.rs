@@ -7,7 +7,7 @@ mod subject;
 mod table;
 
 use crate::failure::{Failure, Result};
-use crate::inputs::InputArguments;
+use crate::inputs::{InputArguments, STATE};
 use crate::json;
 use crate::numbers::array;
 use crate::quantity::{hyphenated, of_end_effector, quantity};
@@ -23,7 +23,7 @@ use table::{Job, TableArguments};
 pub struct ComputeArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// What is computed
+    /// The quantity to compute
     #[arg(index = 2, value_parser = quantity(), required_unless_present = "list")]
     quantity: Option<Query<'static>>,
     /// List all quantities: names, formulas, inputs, outputs
@@ -33,7 +33,7 @@ pub struct ComputeArguments {
     inputs: InputArguments,
     #[command(flatten)]
     task: TaskArguments,
-    /// The point of {s} that a momentum is about, m [default: the origin]
+    /// Reference point of the momentum in {s}, m [default: the origin]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     about: Option<String>,
     #[command(flatten)]
@@ -72,12 +72,13 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
 }
 
 impl ComputeArguments {
-    /// Every flag that is given must have an effect.
+    /// Checks that every given flag has an effect.
     fn check_flags(&self, query: Query) -> Result<()> {
         let used = flags::of(query.declaration());
         let tip_wrench = self.wrenches.tip.tip_wrench.is_some();
         let is_of_tip = used.contains(&"tip-wrench") && (tip_wrench || self.table.input.is_some());
         let others = [
+            (STATE, self.inputs.has(STATE)),
             ("frame", self.robot.end_effector.is_some() && !is_of_tip),
             ("task", self.task.task.is_some()),
             ("task-frame", self.task.task_frame.is_some()),
@@ -97,7 +98,7 @@ impl ComputeArguments {
         }
     }
 
-    /// The quantity, of the frame, task or point that is named.
+    /// The quantity with the given frame, task or point.
     fn subject<'q>(&self, query: Query<'static>, rows: &'q [usize], model: &Model) -> Result<Query<'q>> {
         let query = match query.declaration().of {
             Of::Task => query.of_task(Task { rows, ..Task::all(model.end_effector()?, self.task.coordinates()) }),

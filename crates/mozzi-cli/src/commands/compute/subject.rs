@@ -1,4 +1,4 @@
-//! What a quantity is of besides the robot, in words and as JSON.
+//! A quantity's frame, task or point, in words and as JSON.
 
 use crate::json;
 use crate::numbers::TWIST;
@@ -9,7 +9,7 @@ use mozzi::quantities::{Of, Query};
 use mozzi::{Model, TaskFrame};
 use serde_json::{Map, Value, json};
 
-/// The quantity's name, and what it is of.
+/// The quantity's name with its frame, task or point.
 pub fn object(query: Query, model: &Model) -> Map<String, Value> {
     let (of, subject) = (query.declaration().of, query.subject);
     let mut object = Map::from_iter([("quantity".into(), hyphenated(query.name()).into())]);

@@ -18,25 +18,26 @@ use mozzi_batch::{Batch, BatchEnvironment, Error, InstructionSet};
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 
-/// So many states are computed first, between two looks at the clock; then twice or half as many, until a piece takes about as long.
+/// So many states are computed first, between two looks at the clock; then twice or half as many, until a piece takes
+/// about as long.
 const FIRST: usize = 256;
 const PIECE: [Duration; 2] = [Duration::from_millis(40), Duration::from_millis(160)];
 
 #[derive(Args, Debug)]
 pub struct TableArguments {
-    /// States in a file instead of by flags: .npy, .npz, .arrow, .feather or .csv ("-": CSV on standard input)
+    /// Read states from a file instead of flags: .npy, .npz, .arrow, .feather or .csv ("-": CSV on standard input)
     #[arg(long = "in", value_name = "STATES")]
     pub input: Option<String>,
-    /// Where the results go, by the same endings [default: CSV on standard output, "-"]
+    /// File for the results, with the same endings [default: CSV on standard output, "-"]
     #[arg(long = "out", value_name = "RESULT", requires = "input")]
     output: Option<String>,
-    /// The numbers that are computed with, and written
+    /// Precision of the computation and of the results
     #[arg(long, default_value = "f64", value_parser = ["f64", "f32"], requires = "input")]
     precision: String,
-    /// At most as many threads [default: one a core]
+    /// Largest number of threads [default: one per core]
     #[arg(long, value_name = "K", requires = "input")]
     threads: Option<usize>,
-    /// Registers: portable, avx2 or avx512 [default: the widest that the machine has]
+    /// Instruction set: portable, avx2 or avx512 [default: the widest that the machine has]
     #[arg(long, value_name = "NAME", value_parser = instruction_set, requires = "input")]
     instruction_set: Option<InstructionSet>,
 }
@@ -59,7 +60,7 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Without `--out`, JSON has the results; with it, what was computed and where it is.
+    /// Without `--out`, JSON contains the results; with it, a summary and the file's name.
     pub fn run(&self) -> Result<String> {
         if self.table.precision == "f32" { self.run_in::<f32>() } else { self.run_in::<f64>() }
     }
@@ -68,7 +69,7 @@ impl Job<'_> {
         let &Job { file, query, model, environment, table: arguments, robot } = self;
         let output = arguments.output.as_deref();
         if robot.json && output == Some("-") {
-            return Err(Failure::wrong("--json and --out - both ask for standard output, expected one of them"));
+            return Err(Failure::wrong("--json and --out - both write to standard output, expected one of them"));
         }
         Format::of_results(output.unwrap_or("-"), query)?;
         query.check_subject(model)?; // before all states are read
@@ -137,7 +138,7 @@ impl Job<'_> {
     }
 }
 
-/// The results, and the seconds that they took: of all states, or, after Ctrl-C, of as many as the results' shapes say.
+/// The results and the computing time in seconds; after Ctrl-C, of the states computed so far.
 fn compute<T: Precision>(
     batch: &Batch<T>,
     query: Query,

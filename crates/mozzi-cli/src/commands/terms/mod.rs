@@ -21,7 +21,7 @@ pub struct TermsArguments {
     motion: MotionArguments,
     #[command(flatten)]
     task: TaskArguments,
-    /// Show the matrices of the closed form, too: 𝒜 𝒢 𝒲 ℒ [ad_𝒱] [ad_𝒜θ̇] 𝒱 𝒱̇ 𝓕
+    /// Also show the matrices of the closed form: 𝒜 𝒢 𝒲 ℒ [ad_𝒱] [ad_𝒜θ̇] 𝒱 𝒱̇ 𝓕
     #[arg(long)]
     stacked: bool,
 }

@@ -24,7 +24,7 @@ pub fn page(terms: &Terms) -> String {
     if model.is_floating() {
         let (name, nq, n) = (&model.description().name, model.nq(), model.n());
         page.line(format!(
-            "{name}, its base floating, {} joints: {nq} positions θ and {n} velocities θ̇,",
+            "{name} with a floating base, {} joints: {nq} positions θ and {n} velocities θ̇,",
             model.joint_names().len()
         ));
         page.lines(&numbered(model.velocity_names().collect()));

@@ -20,7 +20,8 @@ pub struct Terms<'m> {
     /// The tip's wrench on the environment, in the tip's frame.
     pub F_tip: Wrench,
     pub tip: Option<FrameId>,
-    /// Each quantity's outputs, in the order of the list; none of what cannot be computed, needs a task or a further vector.
+    /// Each quantity's outputs, in the order of the list; none of what cannot be computed, needs a task or a further
+    /// vector.
     pub found: Vec<Option<Vec<Vec<f64>>>>,
     pub newton_euler: NewtonEuler,
     /// None without end effector, and where the task is singular.
@@ -31,7 +32,8 @@ pub struct Terms<'m> {
 }
 
 impl<'m> Terms<'m> {
-    /// All but the task and the closed form. Why a quantity cannot be computed, such as a singular mass matrix, is a note.
+    /// All but the task and the closed form. Why a quantity cannot be computed, such as a singular mass matrix, is a
+    /// note.
     pub fn at(model: &'m Model, [theta, dtheta, ddtheta]: [Vec<f64>; 3], environment: &Environment) -> Result<Self> {
         let tip = end_effector(model);
         let tau = model.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], environment)?.remove(0);
@@ -106,10 +108,10 @@ impl<'m> Terms<'m> {
             Ok(dynamics) => self.task = Some(dynamics),
             Err(error) if is_named => return Err(error.into()),
             Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 => failure::note(&format!(
-                "Λ and η are left out: {} joints cannot move all six directions; name those that matter, such as --task vx,vz",
+                "Λ and η are omitted: {} joints cannot move in all six directions; choose some, such as --task vx,vz",
                 self.model.n()
             )),
-            Err(error) => failure::note(&format!("Λ and η are left out: {error}")),
+            Err(error) => failure::note(&format!("Λ and η are omitted: {error}")),
         }
         Ok(())
     }

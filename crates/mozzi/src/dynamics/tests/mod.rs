@@ -3,16 +3,23 @@
 mod derivatives;
 mod numbers;
 mod regressor;
+mod rotors;
 mod springs;
 
 use crate::model::{Environment, Model, Workspace};
-use crate::testing::{floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, twist, wrench};
+use crate::testing::{chain, floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, twist, wrench};
 use crate::{Dual, Scalar, dynamics as kernel};
 use nalgebra::{DMatrix, DVector};
 
 const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12, 4), (20, 0)];
 
 pub fn models() -> impl Iterator<Item = (u64, Model)> {
+    let deep = [tree(70, 20, 0), floating_tree(71, 18, 3), mixed_tree(72, 18, 2), floating_mixed_tree(73, 17, 0)];
+    let deep = (70..).zip(deep.map(|model| chain(&model)));
+    deep.chain(trees())
+}
+
+fn trees() -> impl Iterator<Item = (u64, Model)> {
     TREES.iter().enumerate().flat_map(|(k, &(links, mimics))| {
         (0..6).map(move |s| {
             let make = match s {
@@ -221,6 +228,15 @@ fn the_mass_matrix_is_the_sum_over_links_of_jacobians_and_inertias() {
     for (seed, model) in models() {
         let [theta, _, _] = state(&model, seed);
         let mut sum = DMatrix::from_diagonal(&DVector::from_column_slice(&model.armature));
+        for rotor in &model.description().rotors {
+            // its rate by each velocity, through the joints' own rates
+            let mut J = DVector::<f64>::zeros(model.n());
+            for gear in &rotor.gears {
+                let source = model.source_of(&gear.joint).expect("it moves");
+                J[model.places()[source.joint].j] += gear.ratio * source.ratio;
+            }
+            sum += &J * J.transpose() * rotor.armature;
+        }
         let base = model.is_floating().then_some((0, "link0"));
         let moving = model.moving_slots().zip(model.moving_joints().map(|joint| joint.child.as_str()));
         for (slot, name) in base.into_iter().chain(moving) {

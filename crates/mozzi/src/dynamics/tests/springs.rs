@@ -81,8 +81,54 @@ fn a_derivative_by_the_stiffness_of_a_spring_that_is_none_is_kept() {
     assert!((tau[0].derivative - (0.9 - 0.4)).abs() < 1e-15, "{tau:?}");
 }
 
+/// A body on a ball with a spring, and nothing else.
+fn sprung_ball() -> Model {
+    let joint =
+        Joint { stiffness: 3.0, ..Joint::new("hip", "base", "body", SE3::identity(), JointKind::Ball(Vec3::zero())) };
+    Description::new("ball")
+        .with_gravity([0.0; 3])
+        .link("base", SpatialInertia::zero())
+        .link("body", SpatialInertia { mass: 1.0, mc: Vec3::zero(), I: crate::Sym3::diagonal(0.2, 0.3, 0.4) })
+        .joint(joint)
+        .build()
+        .expect("sound")
+}
+
+#[test]
+fn a_balls_spring_turns_it_back_the_shorter_way() {
+    let model = sprung_ball();
+    for (angle, torque) in [(0.0, 0.0), (0.5, 1.5), (3.0, 9.0), (4.0, 3.0 * (4.0 - core::f64::consts::TAU))] {
+        let (s, c) = (0.5_f64 * angle).sin_cos();
+        let theta = [c, 0.0, 0.6 * s, 0.8 * s];
+        let f = model.spring_forces(&theta).expect("lengths");
+        for (k, axis) in [0.0, 0.6, 0.8].into_iter().enumerate() {
+            assert!((f[k] - torque * axis).abs() < 1e-14, "{angle}: {f}");
+        }
+        let energy = model.potential_energy(&theta).expect("lengths");
+        assert!((energy - torque * torque / 6.0).abs() < 1e-14, "{angle}: {energy}");
+    }
+}
+
+#[test]
+fn energy_goes_to_and_fro_between_a_ball_and_its_spring() {
+    let model = sprung_ball();
+    let (theta, dtheta) = ([0.9, 0.3, -0.1, 0.3], [0.4, 0.2, -0.5]);
+    let length = theta.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
+    let options = Options { method: Method::RungeKutta4, ..Options::new(5.0, 5000) };
+    let motion = model.simulate(&theta.map(|x| x / length), &dtheta, Zero, &options).expect("a motion");
+    assert!(motion.largest_drift() < 1e-11, "{}", motion.largest_drift());
+}
+
 #[test]
 fn wrong_springs_are_errors_by_name() {
+    let mut robot = sprung_ball().description().clone();
+    robot.joints[0].spring_reference = 0.1;
+    let text = robot.clone().build().expect_err("no angle").to_string();
+    assert!(text.contains("joint `hip`: spring reference: is 0.1 of a ball, expected 0"), "{text}");
+    (robot.joints[0].kind, robot.joints[0].spring_reference) = (JointKind::Free, 0.0);
+    let text = robot.build().expect_err("no such spring").to_string();
+    assert!(text.contains("joint `hip`: stiffness: is 3 of a free joint, expected 0"), "{text}");
+
     let message = |stiffness: f64, spring_reference: f64| {
         let mut robot = springs().description().clone();
         (robot.joints[0].stiffness, robot.joints[0].spring_reference) = (stiffness, spring_reference);

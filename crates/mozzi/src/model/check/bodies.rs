@@ -2,11 +2,11 @@
 //!
 //! What a joint moves is not one link but the rigid body of all links that are fixed to each other, so an inertia is
 //! judged by its body. A link whose inertia breaks the triangle inequality is computed as given, with a warning: the
-//! kinetic energy is still positive. A link with a negative principal moment is an error where its body has one too, for
-//! then some motion has a negative kinetic energy and forward dynamics means nothing; where the body is sound, the link
-//! is part of a sum that is right, and gets a warning. Of the published robots in `example-robot-data`, five links have
-//! a negative moment beyond rounding: two antennas of TIAGo, −4·10⁻⁸ kg m² on a base of 28 kg (loaded, with a warning),
-//! and trunk and hips of one Romeo, −2·10⁻² and −3·10⁻³ kg m² (refused).
+//! kinetic energy is still positive. A link with a negative principal moment is an error where its body has one too,
+//! for then some motion has a negative kinetic energy and forward dynamics means nothing; where the body is sound, the
+//! link is part of a sum that is right, and gets a warning. Of the published robots in `example-robot-data`, five links
+//! have a negative moment beyond rounding: two antennas of TIAGo, −4·10⁻⁸ kg m² on a base of 28 kg (loaded, with a
+//! warning), and trunk and hips of one Romeo, −2·10⁻² and −3·10⁻³ kg m² (refused).
 
 use super::tree::Tree;
 use super::{Element, Report, Severity, numbers::is_finite};
@@ -50,11 +50,11 @@ impl Report<'_> {
             } else if is_indefinite(&body.inertia.verdict()) {
                 let with = match body.links {
                     1 => "",
-                    _ => "; the body that it is part of has a negative moment too",
+                    _ => "; the body that it is part of has a negative moment, too",
                 };
                 self.error(element, "inertia", "indefinite_inertia", format!("{verdict}{with}"));
             } else {
-                let message = format!("{verdict}; the body that it is part of is sound");
+                let message = format!("{verdict}; the body that it is part of is positive definite");
                 self.add(Severity::Warning, element, "inertia", "unphysical_inertia", message);
             }
         }
@@ -108,7 +108,7 @@ impl Report<'_> {
             let (G, V) = (body.inertia, A.twist());
             if V.dot(G * V) <= 1e-14 * (G.I.trace().abs() + G.mass) {
                 let message =
-                    format!("joint `{}` moves it, but there is no inertia: forward dynamics has no answer", joint.name);
+                    format!("joint `{}` moves it, but it has no inertia: forward dynamics is undefined", joint.name);
                 self.add(Severity::Warning, Element::Link(i), "mass", "massless_leaf", message);
             }
         }

@@ -33,7 +33,7 @@ impl Report<'_> {
                 continue;
             };
             if joint.kind == JointKind::Fixed {
-                let message = format!("follows `{}`, but is fixed: it does not move", mimic.joint);
+                let message = format!("follows `{}`, but is a fixed joint, which does not move", mimic.joint);
                 self.add(Severity::Warning, element, "mimic", "fixed_mimic", message);
             } else if d.joints[k].kind == JointKind::Fixed {
                 self.error(
@@ -52,7 +52,10 @@ impl Report<'_> {
                 let message = if k == i {
                     format!("follows itself, `{}`, expected another joint", mimic.joint)
                 } else {
-                    format!("following `{}` leads back in a circle, expected a joint that follows none", mimic.joint)
+                    format!(
+                        "following `{}` leads back in a circle, expected an independent joint at the end",
+                        mimic.joint
+                    )
                 };
                 self.error(element, "mimic", "circular_mimic", message);
             } else if let Some(message) = contradiction(joint, mimic, &d.joints[k]) {
@@ -94,6 +97,9 @@ fn contradiction(joint: &Joint, mimic: &Mimic, source: &Joint) -> Option<String>
     let (x, y) = (mimic.ratio * a + mimic.offset, mimic.ratio * b + mimic.offset);
     let (x, y) = (x.min(y), x.max(y));
     (y < low || high < x).then(|| {
-        format!("moves from {x} to {y} as `{}` moves within its limits, but its own are {low} and {high}", mimic.joint)
+        format!(
+            "moves from {x} to {y} as `{}` moves within its limits, but its own limits are {low} and {high}",
+            mimic.joint
+        )
     })
 }

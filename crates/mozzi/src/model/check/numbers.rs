@@ -24,8 +24,7 @@ impl Report<'_> {
         for (i, link) in d.links.iter().enumerate() {
             let (mass, element) = (link.inertia.mass, Element::Link(i));
             if !is_finite(&link.inertia) {
-                let message =
-                    "is not finite, computed from mass, centre of mass and moments: one of them is not, or too large";
+                let message = "is not finite: mass, centre of mass or a moment is infinite, NaN or too large";
                 self.error(element, "inertia", "not_finite", message.to_string());
             } else if mass < 0.0 {
                 self.error(element, "mass", "negative_mass", format!("is {mass} kg, expected at least 0"));
@@ -46,13 +45,19 @@ impl Report<'_> {
                     format!("is a ball at {:?}, expected finite numbers", center.0),
                 );
             }
-            if matches!(joint.kind, JointKind::Ball(_) | JointKind::Free) && joint.stiffness != 0.0 {
+            if joint.kind == JointKind::Free && joint.stiffness != 0.0 {
                 let message = format!(
-                    "is {} of a {} joint, expected 0: springs of joints of one axis alone are computed",
-                    joint.stiffness,
-                    joint.kind.name()
+                    "is {} of a free joint, expected 0: springs of free joints are not supported",
+                    joint.stiffness
                 );
                 self.error(element, "stiffness", "unsupported_spring", message);
+            }
+            if matches!(joint.kind, JointKind::Ball(_)) && joint.spring_reference != 0.0 {
+                let message = format!(
+                    "is {} of a ball, expected 0: its spring is at rest where its positions are (1, 0, 0, 0)",
+                    joint.spring_reference
+                );
+                self.error(element, "spring reference", "unsupported_spring", message);
             }
             for (attribute, x) in [
                 ("damping", joint.damping),
@@ -81,17 +86,16 @@ impl Report<'_> {
                     element,
                     "limits",
                     "reversed_limits",
-                    format!("go from {low} to {high}, expected the lower first"),
+                    format!("go from {low} to {high}, expected the lower bound first"),
                 );
             }
             match (joint.kind, joint.limits.position) {
                 (JointKind::Ball(_), Some([low, high])) if !(low == 0.0 && high >= 0.0) => {
-                    let message =
-                        format!("go from {low} to {high}, expected 0 and the largest angle that a ball turns");
+                    let message = format!("go from {low} to {high}, expected 0 and the ball's largest angle");
                     self.error(element, "limits", "reversed_limits", message);
                 }
                 (JointKind::Free, Some([low, high])) => {
-                    let message = format!("go from {low} to {high}, expected none of a free joint");
+                    let message = format!("go from {low} to {high}, expected none for a free joint");
                     self.error(element, "limits", "reversed_limits", message);
                 }
                 _ => {}

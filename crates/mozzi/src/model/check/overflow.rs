@@ -49,13 +49,17 @@ impl Report<'_> {
                 ratios *= 1.0 + mimic.ratio * mimic.ratio;
             }
         }
+        for (i, rotor) in d.rotors.iter().enumerate() {
+            see(&[rotor.armature], Element::Rotor(i), "armature");
+            rotor.gears.iter().for_each(|gear| see(&[gear.ratio], Element::Rotor(i), "ratio"));
+        }
         for (i, frame) in d.frames.iter().enumerate() {
             see(&frame.T.p.0, Element::Frame(i), "T");
         }
         let (size, element, attribute) = largest;
         if self.errors == 0 && !(size <= LARGE && ratios <= LARGE_RATIO) && !is_finite(&normal_form(d, d.clone())) {
             let message = format!(
-                "holds a number of the size {}: what is computed with it is beyond the range of double precision",
+                "holds a number of the size {}: results computed with it exceed the range of double precision",
                 Rounded(size)
             );
             self.error(element, attribute, "too_large_number", message);

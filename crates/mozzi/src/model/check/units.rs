@@ -1,9 +1,9 @@
-//! Numbers that betray another unit: grams, millimetres, degrees. All are warnings; the robot is computed as given.
+//! Numbers that suggest another unit: grams, millimetres, degrees. All are warnings; the numbers are used as given.
 //!
 //! Bounds are such that no sound robot meets them. On the 1985 links and 2075 joints of the robots in
-//! `example-robot-data`, the heaviest link has 116 kg, the largest radius of gyration is 4 m (a placeholder), the longest
-//! way from a joint to the next 0.9 m, and the widest bounds of a revolute joint that mean something ±10 rad. Of these
-//! rules only [`massless`](Report::massless) speaks there, of the two feet of one robot, and rightly.
+//! `example-robot-data`, the heaviest link has 116 kg, the largest radius of gyration is 4 m (a placeholder), the
+//! longest way from a joint to the next 0.9 m, and the widest bounds of a revolute joint that mean something ±10 rad.
+//! Of these rules only [`massless`](Report::massless) speaks there, of the two feet of one robot, and rightly.
 
 use super::{Element, Report, Severity, numbers::is_finite};
 use crate::model::description::JointKind;

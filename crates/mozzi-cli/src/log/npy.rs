@@ -1,0 +1,41 @@
+//! NumPy's .npy, row by row: one array, its columns as of CSV.
+
+use super::Rows;
+use super::row::{names, values};
+use crate::tables::npy::header;
+use mozzi::Model;
+use mozzi::simulation::Sample;
+use std::fs::File;
+use std::io::{BufWriter, Result, Seek, SeekFrom, Write};
+
+pub struct Npy {
+    to: BufWriter<File>,
+    columns: usize,
+    expected: usize,
+    rows: usize,
+}
+
+impl Npy {
+    /// The header says as many rows as are expected; it is written anew if there are others.
+    pub fn new(to: File, model: &Model, expected: usize) -> Result<Self> {
+        let columns = names(model).len();
+        let mut to = BufWriter::new(to);
+        to.write_all(&header::<f64>(&[expected, columns]))?;
+        Ok(Npy { to, columns, expected, rows: 0 })
+    }
+}
+
+impl Rows for Npy {
+    fn row(&mut self, row: &Sample) -> Result<()> {
+        self.rows += 1;
+        values(row).try_for_each(|x| self.to.write_all(&x.to_le_bytes()))
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<()> {
+        if self.rows != self.expected {
+            self.to.seek(SeekFrom::Start(0))?;
+            self.to.write_all(&header::<f64>(&[self.rows, self.columns]))?;
+        }
+        self.to.flush()
+    }
+}

@@ -1,0 +1,82 @@
+//! NumPy's .npz, row by row: arrays by name, (N,) and (N, n). Each array waits in a file of its own, next to the
+//! archive, for the others to end.
+
+use super::Rows;
+use super::row::{groups, values};
+use crate::tables::npy::header;
+use crate::tables::npz::stored;
+use mozzi::Model;
+use mozzi::simulation::Sample;
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Result, Seek, SeekFrom, Write, copy};
+use std::path::{Path, PathBuf};
+use zip::ZipWriter;
+
+pub struct Npz {
+    to: File,
+    parts: Vec<Part>,
+    rows: usize,
+}
+
+/// One array.
+struct Part {
+    name: &'static str,
+    columns: usize,
+    is_vector: bool,
+    path: PathBuf,
+    numbers: BufWriter<File>,
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.path); // it may be gone
+    }
+}
+
+impl Npz {
+    /// Into this file, which has this name.
+    pub fn new(to: File, name: &str, model: &Model) -> Result<Self> {
+        let part = |group: super::row::Group| {
+            let path = Path::new(name).with_extension(format!("npz.{}.{}", std::process::id(), group.name));
+            let file = File::options().read(true).write(true).create_new(true).open(&path)?;
+            // where the system allows it, the file has no name any more, and is gone however the program ends
+            let _ = std::fs::remove_file(&path);
+            let (columns, is_vector) = (group.columns.len(), group.is_vector);
+            Ok(Part { name: group.name, columns, is_vector, path, numbers: BufWriter::new(file) })
+        };
+        Ok(Npz { to, parts: groups(model).into_iter().map(part).collect::<Result<_>>()?, rows: 0 })
+    }
+}
+
+impl Rows for Npz {
+    fn row(&mut self, row: &Sample) -> Result<()> {
+        self.rows += 1;
+        let mut numbers = values(row);
+        for part in &mut self.parts {
+            for x in numbers.by_ref().take(part.columns) {
+                part.numbers.write_all(&x.to_le_bytes())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<()> {
+        let Npz { to, parts, rows } = *self;
+        let mut archive = ZipWriter::new(BufWriter::new(to));
+        for mut part in parts {
+            archive.start_file(format!("{}.npy", part.name), stored())?;
+            let shape = if part.is_vector { vec![rows, part.columns] } else { vec![rows] };
+            archive.write_all(&header::<f64>(&shape))?;
+            part.numbers.flush()?;
+            let numbers = part.numbers.get_mut();
+            numbers.seek(SeekFrom::Start(0))?;
+            let written = copy(&mut BufReader::new(numbers), &mut archive)?;
+            let expected = (8 * rows * part.columns) as u64;
+            if written != expected {
+                let what = format!("{} has {written} bytes, expected {expected}", part.path.display());
+                return Err(std::io::Error::other(what));
+            }
+        }
+        archive.finish()?.flush()
+    }
+}

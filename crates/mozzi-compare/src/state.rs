@@ -1,0 +1,67 @@
+//! A random state.
+
+use mozzi::model::description::Joint;
+use mozzi::random::Random;
+use mozzi::{Description, Freedom, Model, SE3, SO3, Vec3};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// Of the robot in which mimic joints move on their own; here they are where they follow to. A floating base is at rest at {s}.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub theta: Vec<f64>,
+    pub dtheta: Vec<f64>,
+    pub ddtheta: Vec<f64>,
+}
+
+impl State {
+    /// All joints at 0, at rest.
+    pub fn home(freed: &Model) -> Self {
+        let rest = vec![0.0; freed.n()];
+        State { theta: freed.neutral_configuration(), dtheta: rest.clone(), ddtheta: rest }
+    }
+
+    /// Within the limits, so that no library adds the force of an end stop; rates about 1.
+    pub fn random(robot: &Description, freed: &Model, random: &mut Random) -> Self {
+        let mut state = State::home(freed);
+        let mut values: BTreeMap<&str, [f64; 3]> = BTreeMap::new();
+        for (joint, place) in freed.joints().zip(freed.places()) {
+            if place.freedom == Freedom::One {
+                values.insert(&joint.name, of_one_axis(joint, random));
+                continue;
+            }
+            state.theta[place.positions()].copy_from_slice(&pose(joint, random)[..place.freedom.positions()]);
+            let n = place.freedom.velocities();
+            state.dtheta[place.velocities()].copy_from_slice(&random.vector(n, 1.0));
+            state.ddtheta[place.velocities()].copy_from_slice(&random.vector(n, 2.0));
+        }
+        for (joint, place) in freed.joints().zip(freed.places()).filter(|(_, place)| place.freedom == Freedom::One) {
+            let Some(followed) = robot.source_of(&joint.name) else { continue };
+            let [theta, dtheta, ddtheta] =
+                values.get(robot.joints[followed.joint].name.as_str()).copied().unwrap_or_default();
+            state.theta[place.q] = followed.ratio * theta + followed.offset;
+            (state.dtheta[place.j], state.ddtheta[place.j]) = (followed.ratio * dtheta, followed.ratio * ddtheta);
+        }
+        state
+    }
+}
+
+/// Limits that exclude 0 by far are kept to.
+fn of_one_axis(joint: &Joint, random: &mut Random) -> [f64; 3] {
+    let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
+    let [low, high] = joint.limits.position.unwrap_or([-reach, reach]);
+    let (low, high) = if low > reach || high < -reach { (low, high) } else { (low.max(-reach), high.min(reach)) };
+    [low + (high - low) * within(random), random.next(), 2.0 * random.next()]
+}
+
+/// Of a ball or a free joint: turned by an angle within the limit, the origin within 1 m.
+fn pose(joint: &Joint, random: &mut Random) -> [f64; 7] {
+    let most = joint.limits.position.map_or(PI, |[_, high]| high.min(PI));
+    let (w, p) = (Vec3(random.array()), Vec3(random.array()));
+    SE3 { R: SO3::exp(w * (most * within(random) / w.norm())), p }.to_pose()
+}
+
+/// Half a per mille off the ends of 0 … 1.
+fn within(random: &mut Random) -> f64 {
+    0.0005 + 0.999 * (0.5 + 0.5 * random.next())
+}

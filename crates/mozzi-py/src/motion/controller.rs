@@ -1,0 +1,344 @@
+//! `mozzi.controllers.Controller` and its kinds.
+
+use super::limits::one_or_each;
+use super::reference::{PyReference, SharedReference};
+use super::states::States;
+use crate::array::{shown, wrong_shape};
+use crate::failure::{of_motion, of_state};
+use crate::model::PyModel;
+use crate::numpy::Fresh;
+use mozzi::simulation::Input;
+use mozzi::{FrameId, Model};
+use mozzi_motion::Error;
+use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
+use pyo3::prelude::*;
+
+/// A controller: the motors' τ that make a robot follow a reference (Modern Robotics, chapter 11): a `PdGravity`, a
+/// `ComputedTorque`, a `TaskSpace` or an `Impedance`. Called as `controller(t, theta, dtheta)`; `Model.simulate` takes
+/// it as `torque`. Its model may be wrong about the robot that is simulated.
+///
+/// The errors are e = θ_d ⊖ θ and ė = θ̇_d − θ̇; of a frame X_e = log(T⁻¹T_d) and 𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱, in its
+/// own coordinates.
+#[pyclass(frozen, subclass, name = "Controller", module = "mozzi.controllers")]
+pub struct PyController {
+    model: Py<PyModel>,
+    reference: Py<PyReference>,
+    law: ControlLaw,
+}
+
+#[derive(Clone)]
+enum ControlLaw {
+    PdGravity(Gains),
+    ComputedTorque(Gains),
+    TaskSpace { frame: FrameId, law: Law, posture: Gains },
+}
+
+impl PyController {
+    fn checked(model: Py<PyModel>, reference: Py<PyReference>, law: ControlLaw) -> PyResult<Self> {
+        let (found, expected) = (reference.get().model().nq(), model.get().robot().model.nq());
+        if found != expected {
+            let expected = format!("{}: of the same robot", shown(&[expected]));
+            return Err(wrong_shape("the reference's theta", &[found], expected));
+        }
+        let controller = PyController { model, reference, law };
+        controller.motors()?;
+        Ok(controller)
+    }
+
+    fn robot(&self) -> &Model {
+        &self.model.get().robot().model
+    }
+
+    /// As an input of a simulation, with memory of its own.
+    ///
+    /// # Errors
+    /// `ValueError` for gains, frames or robots that do not fit.
+    pub fn motors(&self) -> PyResult<Box<dyn Input + '_>> {
+        self.law(self.reference.get().reference()?).map_err(of_motion)
+    }
+
+    fn law<'a>(&'a self, reference: SharedReference<'a>) -> Result<Box<dyn Input + 'a>, Error> {
+        let model = self.robot();
+        Ok(match self.law.clone() {
+            ControlLaw::PdGravity(gains) => Box::new(PdGravity::new(model, reference, gains)?),
+            ControlLaw::ComputedTorque(gains) => Box::new(ComputedTorque::new(model, reference, gains)?),
+            ControlLaw::TaskSpace { frame, law, posture } => {
+                Box::new(TaskSpace::new(model, reference, frame, law, posture)?)
+            }
+        })
+    }
+}
+
+#[pymethods]
+impl PyController {
+    /// The motors' τ at one state or at many.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, shape (...)
+    ///     s.
+    /// theta : array_like, shape (..., nq)
+    ///     Positions: rad or m.
+    /// dtheta : array_like, shape (..., n)
+    ///     Velocities: rad/s or m/s.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (..., n)
+    ///     τ: N m or N.
+    ///
+    /// Raises
+    /// ------
+    /// SingularError
+    ///     If a task is singular at a state.
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        t: &Bound<'py, PyAny>,
+        theta: &Bound<'py, PyAny>,
+        dtheta: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let states = States::new(self.model.get(), t, theta, dtheta)?;
+        let (mut motors, n) = (self.motors()?, self.robot().n());
+        let mut tau = Fresh::<f64>::new(py, &[&states.leading[..], &[n]].concat())?;
+        for (index, ((t, theta, dtheta), tau)) in
+            states.rows()?.zip(tau.numbers().chunks_exact_mut(n.max(1))).enumerate()
+        {
+            motors.torque(t, theta, dtheta, tau).map_err(|error| of_state(error, index, &states.leading))?;
+        }
+        Ok(tau.into_array())
+    }
+
+    /// The robot as the controller believes it to be.
+    #[getter]
+    fn model(&self, py: Python<'_>) -> Py<PyModel> {
+        self.model.clone_ref(py)
+    }
+
+    /// What is followed.
+    #[getter]
+    fn reference(&self, py: Python<'_>) -> Py<PyReference> {
+        self.reference.clone_ref(py)
+    }
+}
+
+/// K_p and K_d of each velocity, from numbers for all or for each.
+fn gains(model: &Py<PyModel>, [p, d]: [(&'static str, &Bound<'_, PyAny>); 2]) -> PyResult<Gains> {
+    let n = model.get().robot().model.n();
+    Ok(Gains { p: one_or_each(p.0, p.1, n)?, d: one_or_each(d.0, d.1, n)? })
+}
+
+/// One number for all six rows of a twist, or one for each.
+fn six(name: &'static str, given: &Bound<'_, PyAny>) -> PyResult<[f64; 6]> {
+    let list = one_or_each(name, given, 6)?;
+    Ok(std::array::from_fn(|row| list[row]))
+}
+
+/// PD control with gravity compensation, τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė (Modern Robotics, section 11.4.2).
+///
+/// It brings the robot to rest where the reference rests, and lags behind a moving one. A floating base and a free
+/// joint have no motors.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The robot as the controller believes it to be.
+/// reference : Reference
+///     What is followed.
+/// p, d : array_like, shape (n,) or ()
+///     K_p, N m/rad or N/m, and K_d, N m s/rad or N s/m, of each velocity, or one for all: not negative.
+///
+/// Examples
+/// --------
+/// >>> import mozzi
+/// >>> from mozzi.controllers import PdGravity
+/// >>> from mozzi.trajectories import Hold
+/// >>> pendulum = mozzi.models.double_pendulum()
+/// >>> control = PdGravity(pendulum, Hold(pendulum, [1.0, 0.5]), p=5.0, d=1.0)
+/// >>> motion = pendulum.simulate([0.0, 0.0], [0.0, 0.0], 8.0, 1000, torque=control)
+/// >>> bool(abs(motion.theta[-1] - [1.0, 0.5]).max() < 1e-3)
+/// True
+#[pyclass(frozen, extends = PyController, name = "PdGravity", module = "mozzi.controllers")]
+pub struct PyPdGravity;
+
+#[pymethods]
+impl PyPdGravity {
+    #[new]
+    #[pyo3(signature = (model, reference, *, p, d))]
+    fn new(
+        model: Py<PyModel>,
+        reference: Py<PyReference>,
+        p: &Bound<'_, PyAny>,
+        d: &Bound<'_, PyAny>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let law = ControlLaw::PdGravity(gains(&model, [("p", p), ("d", d)])?);
+        Ok(PyClassInitializer::from(PyController::checked(model, reference, law)?).add_subclass(PyPdGravity))
+    }
+}
+
+/// Computed torque, τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇) (Modern Robotics 11.37), by one inverse
+/// dynamics.
+///
+/// Of a robot that is as modelled ë + K_d ė + K_p e = 0: critically damped with K_p = ω², K_d = 2ω. For robots with a
+/// fixed base.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The robot as the controller believes it to be.
+/// reference : Reference
+///     What is followed.
+/// p, d : array_like, shape (n,) or ()
+///     K_p, 1/s², and K_d, 1/s, of each velocity, or one for all: not negative.
+///
+/// Examples
+/// --------
+/// >>> import mozzi
+/// >>> from mozzi.controllers import ComputedTorque, tracking_error
+/// >>> from mozzi.trajectories import Line, Profile, Timed
+/// >>> arm = mozzi.models.two_link_planar()
+/// >>> motion = Timed(Line(arm, [0.0, 0.0], [1.0, -1.5]), Profile.quintic(1.0))
+/// >>> followed = arm.simulate([0.0, 0.0], [0.0, 0.0], 1.0, 200, torque=ComputedTorque(arm, motion, p=400.0, d=40.0))
+/// >>> bool(tracking_error(followed, motion).worst < 1e-6)
+/// True
+#[pyclass(frozen, extends = PyController, name = "ComputedTorque", module = "mozzi.controllers")]
+pub struct PyComputedTorque;
+
+#[pymethods]
+impl PyComputedTorque {
+    #[new]
+    #[pyo3(signature = (model, reference, *, p, d))]
+    fn new(
+        model: Py<PyModel>,
+        reference: Py<PyReference>,
+        p: &Bound<'_, PyAny>,
+        d: &Bound<'_, PyAny>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let law = ControlLaw::ComputedTorque(gains(&model, [("p", p), ("d", d)])?);
+        Ok(PyClassInitializer::from(PyController::checked(model, reference, law)?).add_subclass(PyComputedTorque))
+    }
+}
+
+/// Task-space control of a frame, τ = Jᵀ(Λ(a + K_d 𝒱_e + K_p X_e) + η) (Modern Robotics, section 11.4.3).
+///
+/// Of a robot that is as modelled 𝒱̇_e + K_d 𝒱_e + K_p X_e = 0. The frame follows where the reference of the joints
+/// leads it; the motion that the frame leaves free, of robots with more than six joints, follows the reference by the
+/// gains of the posture.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The robot as the controller believes it to be, with a fixed base.
+/// reference : Reference
+///     A motion of the joints.
+/// frame : str, optional
+///     Default: the end effector.
+/// p, d : array_like, shape (6,) or ()
+///     K_p, 1/s², and K_d, 1/s, of each row of (ω, v) in the frame's coordinates, or one for all: not negative.
+/// posture_p, posture_d : array_like, shape (n,) or (), optional
+///     The posture's K_p, 1/s², and K_d, 1/s. Default: 100 and 20, critically damped.
+///
+/// Examples
+/// --------
+/// >>> import mozzi
+/// >>> from mozzi.controllers import TaskSpace
+/// >>> from mozzi.trajectories import Hold
+/// >>> ur5, theta = mozzi.models.ur5(), [0.0, -1.2, 1.5, 0.3, 1.1, 0.0]
+/// >>> control = TaskSpace(ur5, Hold(ur5, theta), p=400.0, d=40.0)
+/// >>> bool(abs(control(0.0, theta, [0.0] * 6) - ur5.gravity_forces(theta)).max() < 1e-9)
+/// True
+#[pyclass(frozen, extends = PyController, name = "TaskSpace", module = "mozzi.controllers")]
+pub struct PyTaskSpace;
+
+#[pymethods]
+impl PyTaskSpace {
+    #[new]
+    #[pyo3(signature = (model, reference, frame=None, *, p, d, posture_p=None, posture_d=None))]
+    #[allow(clippy::too_many_arguments)] // Python's
+    fn new(
+        model: Py<PyModel>,
+        reference: Py<PyReference>,
+        frame: Option<&str>,
+        p: &Bound<'_, PyAny>,
+        d: &Bound<'_, PyAny>,
+        posture_p: Option<&Bound<'_, PyAny>>,
+        posture_d: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let law = Law::Acceleration { p: six("p", p)?, d: six("d", d)? };
+        let law = task(&model, frame, law, [posture_p, posture_d])?;
+        Ok(PyClassInitializer::from(PyController::checked(model, reference, law)?).add_subclass(PyTaskSpace))
+    }
+}
+
+/// A law for a frame, with the posture's K_p and K_d.
+fn task(
+    model: &Py<PyModel>,
+    frame: Option<&str>,
+    law: Law,
+    [p, d]: [Option<&Bound<'_, PyAny>>; 2],
+) -> PyResult<ControlLaw> {
+    let n = model.get().robot().model.n();
+    let mut posture = Gains::critical(n, POSTURE);
+    for (name, place, given) in [("posture_p", &mut posture.p, p), ("posture_d", &mut posture.d, d)] {
+        if let Some(given) = given {
+            *place = one_or_each(name, given, n)?;
+        }
+    }
+    Ok(ControlLaw::TaskSpace { frame: model.get().frame(frame)?, law, posture })
+}
+
+/// ω of a posture that nobody gave gains for, rad/s.
+const POSTURE: f64 = 10.0;
+
+/// Impedance control of a frame, τ = Jᵀ(Λa + η + B𝒱_e + KX_e) (Modern Robotics, section 11.7; Hogan 1985).
+///
+/// The frame yields as a spring and a damper do, with the robot's own inertia: Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, the wrench that
+/// it applies to the environment. The motion that the frame leaves free follows the reference by the gains of the
+/// posture.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The robot as the controller believes it to be, with a fixed base.
+/// reference : Reference
+///     A motion of the joints.
+/// frame : str, optional
+///     Default: the end effector.
+/// stiffness, damping : array_like, shape (6,) or ()
+///     K, N m/rad and N/m, and B, N m s/rad and N s/m, of each row of (ω, v) in the frame's coordinates, or one for
+///     all: not negative.
+/// posture_p, posture_d : array_like, shape (n,) or (), optional
+///     The posture's K_p, 1/s², and K_d, 1/s. Default: 100 and 20, critically damped.
+///
+/// Examples
+/// --------
+/// >>> import mozzi
+/// >>> from mozzi.controllers import Impedance
+/// >>> from mozzi.trajectories import Hold
+/// >>> ur5, theta = mozzi.models.ur5(), [0.0, -1.2, 1.5, 0.3, 1.1, 0.0]
+/// >>> K, B = [20, 20, 20, 1000, 1000, 1000], [1.5, 1.5, 1.5, 90, 90, 90]
+/// >>> control = Impedance(ur5, Hold(ur5, theta), stiffness=K, damping=B)
+/// >>> bool(abs(control(0.0, theta, [0.0] * 6) - ur5.gravity_forces(theta)).max() < 1e-9)
+/// True
+#[pyclass(frozen, extends = PyController, name = "Impedance", module = "mozzi.controllers")]
+pub struct PyImpedance;
+
+#[pymethods]
+impl PyImpedance {
+    #[new]
+    #[pyo3(signature = (model, reference, frame=None, *, stiffness, damping, posture_p=None, posture_d=None))]
+    #[allow(clippy::too_many_arguments)] // Python's
+    fn new(
+        model: Py<PyModel>,
+        reference: Py<PyReference>,
+        frame: Option<&str>,
+        stiffness: &Bound<'_, PyAny>,
+        damping: &Bound<'_, PyAny>,
+        posture_p: Option<&Bound<'_, PyAny>>,
+        posture_d: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let law = Law::Impedance { stiffness: six("stiffness", stiffness)?, damping: six("damping", damping)? };
+        let law = task(&model, frame, law, [posture_p, posture_d])?;
+        Ok(PyClassInitializer::from(PyController::checked(model, reference, law)?).add_subclass(PyImpedance))
+    }
+}

@@ -1,0 +1,100 @@
+//! `mozzi.trajectories.Profile`.
+
+use super::instants::Instants;
+use crate::failure::of_motion;
+use crate::results::named;
+use mozzi_motion::Error;
+use mozzi_motion::trajectories::{Profile, Progress};
+use pyo3::prelude::*;
+
+/// A time scaling s(t), from s = 0 at t = 0 to s = 1 at the end: how a path is run through (Modern Robotics, section
+/// 9.2.2).
+///
+/// Made by `linear`, `cubic`, `quintic`, `trapezoidal`, `trapezoidal_in`, and by `Path.time_optimal` and
+/// `Path.stretched`.
+///
+/// Examples
+/// --------
+/// >>> from mozzi.trajectories import Profile
+/// >>> profile = Profile.cubic(2.0)
+/// >>> profile.at(1.0)
+/// Progress(s=0.5, ds=0.75, dds=0.0)
+/// >>> profile.at([0.0, 0.5, 2.0]).s
+/// array([0.     , 0.15625, 1.     ])
+#[pyclass(frozen, eq, name = "Profile", module = "mozzi.trajectories")]
+#[derive(PartialEq)]
+pub struct PyProfile(pub Profile);
+
+fn made(profile: Result<Profile, Error>) -> PyResult<PyProfile> {
+    profile.map(PyProfile).map_err(of_motion)
+}
+
+#[pymethods]
+impl PyProfile {
+    /// s = t/T: starts and stops at once. For paths that are functions of time already. `duration` is T, s.
+    #[staticmethod]
+    fn linear(duration: f64) -> PyResult<Self> {
+        made(Profile::linear(duration))
+    }
+
+    /// s = 3(t/T)² − 2(t/T)³, at rest at both ends. `duration` is T, s. Largest ṡ 1.5/T, largest |s̈| 6/T².
+    #[staticmethod]
+    fn cubic(duration: f64) -> PyResult<Self> {
+        made(Profile::cubic(duration))
+    }
+
+    /// s = 10(t/T)³ − 15(t/T)⁴ + 6(t/T)⁵, with s̈ = 0 at both ends, too. `duration` is T, s. Largest ṡ 1.875/T, largest
+    /// |s̈| 10/(√3 T²).
+    #[staticmethod]
+    fn quintic(duration: f64) -> PyResult<Self> {
+        made(Profile::quintic(duration))
+    }
+
+    /// Constant acceleration s̈ up to the speed ṡ, constant speed, then constant deceleration; a triangle if the speed
+    /// is not reached. `speed` in 1/s, `acceleration` in 1/s².
+    #[staticmethod]
+    fn trapezoidal(speed: f64, acceleration: f64) -> PyResult<Self> {
+        made(Profile::trapezoidal(speed, acceleration))
+    }
+
+    /// A trapezoid of this duration, s, that accelerates for this part of it and decelerates for as long: 0 < part ≤
+    /// 0.5.
+    #[staticmethod]
+    fn trapezoidal_in(duration: f64, part: f64) -> PyResult<Self> {
+        made(Profile::trapezoidal_in(duration, part))
+    }
+
+    /// The same profile in another duration, s: ṡ changes by the ratio of the durations, s̈ by its square.
+    fn in_time(&self, duration: f64) -> PyResult<Self> {
+        made(self.0.in_time(duration))
+    }
+
+    /// s, ṡ and s̈ at one time or at many.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : array_like, shape (...)
+    ///     s. Before 0 and after the end s is 0 and 1, at rest.
+    ///
+    /// Returns
+    /// -------
+    /// Progress
+    ///     A named tuple: `s`, `ds`, 1/s, and `dds`, 1/s², each a float or an array of shape (...).
+    fn at<'py>(&self, py: Python<'py>, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let progress = |t: f64| {
+            let Progress { s, ds, dds } = self.0.at(t);
+            [s, ds, dds]
+        };
+        named(py, "Progress", Instants::seconds(t)?.numbers(py, progress)?)
+    }
+
+    /// T, s.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.0.duration()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mozzi.trajectories.Profile of {} s>", mozzi_text::scalar(self.0.duration()))
+    }
+}

@@ -1,0 +1,101 @@
+//! What a simulation looks for: events, as functions of Python or conditions in words, and what came of them.
+
+use crate::failure::of_model;
+use crate::model::array;
+use crate::results::named;
+use mozzi::Model;
+use mozzi::simulation::{Event, Occurrence, Stopped};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+use std::cell::RefCell;
+
+/// `until` and `events`: each a condition, a function, or a list of them.
+pub struct Watched<'a, 'py> {
+    pub until: Option<&'a Bound<'py, PyAny>>,
+    pub events: Option<&'a Bound<'py, PyAny>>,
+}
+
+impl<'py> Watched<'_, 'py> {
+    pub fn is_empty(&self) -> bool {
+        self.until.is_none() && self.events.is_none()
+    }
+
+    /// What a function raises is kept.
+    pub fn events<'e>(&self, model: &'e Model, raised: &'e RefCell<Option<PyErr>>) -> PyResult<Vec<Event<'e>>>
+    where
+        'py: 'e,
+    {
+        let mut events = Vec::new();
+        for (name, given, stop) in [("until", self.until, true), ("events", self.events, false)] {
+            let Some(given) = given else { continue };
+            let one = given.is_callable() || given.is_instance_of::<PyString>();
+            let list = if one { vec![given.clone()] } else { given.try_iter()?.collect::<PyResult<_>>()? };
+            for each in list {
+                let these = event(name, each, model, raised)?;
+                events.extend(these.into_iter().map(|event| Event { stop, ..event }));
+            }
+        }
+        Ok(events)
+    }
+}
+
+fn event<'e, 'py: 'e>(
+    name: &str,
+    given: Bound<'py, PyAny>,
+    model: &'e Model,
+    raised: &'e RefCell<Option<PyErr>>,
+) -> PyResult<Vec<Event<'e>>> {
+    if given.is_instance_of::<PyString>() {
+        return Event::condition(model, &given.extract::<String>()?).map_err(of_model);
+    }
+    if !given.is_callable() {
+        let found = given.get_type().name()?;
+        let expected = "a function of (t, theta, dtheta), a condition such as 'elbow > 1.2', or a list of them";
+        return Err(PyTypeError::new_err(format!("{name} has an entry of type {found}, expected {expected}")));
+    }
+    let called = given.getattr("__name__").and_then(|name| name.extract::<String>()).unwrap_or_else(|_| name.into());
+    let function = move |t: f64, theta: &[f64], dtheta: &[f64]| {
+        let py = given.py();
+        let list = |x: &[f64]| array(py, &[x.len()], x.iter().copied());
+        let call = || given.call1((t, list(theta)?, list(dtheta)?))?.extract::<f64>();
+        call().unwrap_or_else(|error| {
+            raised.borrow_mut().get_or_insert(error);
+            f64::NAN
+        })
+    };
+    Ok(vec![Event::new(called, function)])
+}
+
+/// A list of `Occurrence`s.
+pub fn happened<'py>(py: Python<'py>, events: Vec<Occurrence>) -> PyResult<Bound<'py, PyAny>> {
+    let each = |event: Occurrence| {
+        let list = |x: Vec<f64>| array(py, &[x.len()], x);
+        let fields = vec![
+            event.name.into_pyobject(py)?.into_any(),
+            event.t.into_pyobject(py)?.into_any(),
+            list(event.theta)?,
+            list(event.dtheta)?,
+            event.stop.into_pyobject(py)?.to_owned().into_any(),
+        ];
+        named(py, "Occurrence", fields)
+    };
+    let all = events.into_iter().map(each).collect::<PyResult<Vec<_>>>()?;
+    all.into_pyobject(py)
+}
+
+/// A list of `LimitReached`.
+pub fn stopped<'py>(py: Python<'py>, stops: Vec<Stopped>) -> PyResult<Bound<'py, PyAny>> {
+    let each = |stop: Stopped| {
+        let fields = vec![
+            stop.joint.into_pyobject(py)?.into_any(),
+            stop.limit.into_pyobject(py)?.into_any(),
+            stop.first.into_pyobject(py)?.into_any(),
+            stop.beyond.into_pyobject(py)?.into_any(),
+            stop.times.into_pyobject(py)?.into_any(),
+        ];
+        named(py, "LimitReached", fields)
+    };
+    let all = stops.into_iter().map(each).collect::<PyResult<Vec<_>>>()?;
+    all.into_pyobject(py)
+}

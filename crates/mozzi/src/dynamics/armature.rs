@@ -1,0 +1,94 @@
+//! The rotors' inertia: on the diagonal of M for a joint's own, a JᵀJ for a rotor that several joints turn, and the velocity product of a free joint's.
+//!
+//! A joint's armature a adds ½ a‖θ̇‖² to the kinetic energy, θ̇ being all its velocities. Of one axis and of a ball it gives the force a θ̈ alone. A free
+//! joint's velocities are a twist (ω, v) in the axes of a link that turns: there, the linear part gives a(v̇ + ω × v).
+
+use crate::linalg::Vec3;
+use crate::model::Model;
+use crate::scalar::Scalar;
+
+/// Adds the rotors' part of M θ̈, what is not on the diagonal.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_rotor_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], tau: &mut [S]) {
+    for rotor in &model.rotors {
+        rotor.add(S::from(rotor.armature) * rotor.rate(ddtheta), tau, 1);
+    }
+}
+
+/// M = 0 but for all armature: the diagonal, and a JᵀJ.
+#[cfg_attr(not(test), inline(always))]
+pub(crate) fn set_armature<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, M: &mut [S]) {
+    let n = model.n();
+    M.fill(S::zero());
+    for (j, &armature) in model.armature.iter().enumerate() {
+        M[j * n + j] = S::from(armature);
+    }
+    for rotor in &model.rotors {
+        for &(j, entry) in &rotor.J {
+            rotor.add(S::from(rotor.armature) * S::from(entry), &mut M[j * n..][..n], 1);
+        }
+    }
+}
+
+/// θ̇ᵀ armature θ̇: twice the rotors' kinetic energy.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn rotor_energy<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S]) -> S {
+    let mut twice = S::zero();
+    for (&armature, &rate) in model.armature.iter().zip(dtheta) {
+        twice += S::from(armature) * rate * rate;
+    }
+    for rotor in &model.rotors {
+        let rate = rotor.rate(dtheta);
+        twice += S::from(rotor.armature) * rate * rate;
+    }
+    twice
+}
+
+/// Adds a ω × v to the linear rows of each free joint.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_velocity_products<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], tau: &mut [S]) {
+    for &j in &model.structure.free {
+        let (w, v) = of_free_joint(dtheta, j);
+        let a = S::from(model.armature[j]);
+        for (k, x) in w.cross(v).0.into_iter().enumerate() {
+            tau[j + 3 + k] = a.mul_add(x, tau[j + 3 + k]);
+        }
+    }
+}
+
+/// Adds ∂(a ω × v)/∂θ̇ to ∂τ/∂θ̇.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_velocity_product_rates<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], X: &mut [S]) {
+    for &j in &model.structure.free {
+        let (w, v) = of_free_joint(dtheta, j);
+        let a = S::from(model.armature[j]);
+        add_cross(model.n(), X, [j + 3, j], v * -a);
+        add_cross(model.n(), X, [j + 3, j + 3], w * a);
+    }
+}
+
+/// Adds to C what gives a ω × v, and is skew-symmetric since the armature's part of M is constant: a`[ω]` in the linear block.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_coriolis_blocks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], X: &mut [S]) {
+    for &j in &model.structure.free {
+        let (w, _) = of_free_joint(dtheta, j);
+        add_cross(model.n(), X, [j + 3, j + 3], w * S::from(model.armature[j]));
+    }
+}
+
+/// (ω, v) of the free joint with its first velocity at j.
+#[inline(always)]
+pub(super) fn of_free_joint<S: Scalar>(dtheta: &[S], j: usize) -> (Vec3<S>, Vec3<S>) {
+    let of = |first: usize| Vec3(core::array::from_fn(|k| dtheta[first + k]));
+    (of(j), of(j + 3))
+}
+
+/// Adds `[x]` to the block of X whose first entry is at (row, column).
+#[inline(always)]
+fn add_cross<S: Scalar>(n: usize, X: &mut [S], [row, column]: [usize; 2], x: Vec3<S>) {
+    for (r, entries) in crate::linalg::Mat3::hat(x).rows().into_iter().enumerate() {
+        for (c, entry) in entries.into_iter().enumerate() {
+            X[(row + r) * n + column + c] += entry;
+        }
+    }
+}

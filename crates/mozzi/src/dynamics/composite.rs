@@ -1,0 +1,280 @@
+//! Composite rigid bodies: the one pass behind M, C, ∂τ and ∂θ̈ (Walker and Orin 1982; Featherstone 2008, section 6.2; Echeandia and Wensing 2021;
+//! Singh, Russell and Wensing 2022).
+//!
+//! Each of these n × n matrices is the same form in two bodies' worth of numbers, with another pair of twists (r, s) for each axis:
+//!
+//! > X_ij = A_iᵀ (𝒢ᶜ r_j + 𝓑ᶜ s_j) for i and j on one path from the base to a tip, else 0
+//!
+//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the inertia of all that its link carries, 𝓑ᶜ the sum of
+//! 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
+//!
+//! | X | r | s |
+//! |---|---|---|
+//! | M | A | 0 |
+//! | C | `[ad_𝒱]` A, 𝒱 of the joint's link | ½ A |
+//! | ∂τ/∂θ̇ | D | A |
+//! | ∂τ/∂θ | Ä | Ȧ |
+//!
+//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has a term more where j is beyond i. A mimic joint's axis is taken times its ratio, and its
+//! entries are added to its source joint's.
+//!
+//! Bodies are in each link's own frame, whose z is the joint's axis: in one frame for all, the moment of inertia of a slender link about its own joint
+//! becomes a difference of large numbers. How a wrench goes from a link to the base is [`Path`]'s.
+
+use super::armature::set_armature;
+use super::path::{BaseAxes, LinkFrames, Path, turn};
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Model, Pair, Workspace};
+use crate::scalar::Scalar;
+use crate::spatial::{CoriolisFactor, SpatialInertia, Twist, Wrench};
+
+/// The pairs (r, s) of the six axes e of a floating base, in its coordinates: r_e = `[ad_X]` e + `[ad_Y][ad_Y]` e and s_e = σ e + `[ad_Y]` e.
+#[derive(Clone, Copy)]
+pub(super) struct BaseRates<S> {
+    pub X: Twist<S>,
+    /// None where it is 0.
+    pub Y: Option<Twist<S>>,
+    pub sigma: S,
+}
+
+impl<S: Scalar> BaseRates<S> {
+    /// (r_e, s_e).
+    #[inline(always)]
+    fn of(&self, e: Twist<S>) -> Pair<S> {
+        let (r, s) = (self.X.ad() * e, e.w * self.sigma);
+        match self.Y {
+            None => Pair { r, s },
+            Some(Y) => {
+                let Ye = Y.ad() * e;
+                Pair { r: r + Y.ad() * Ye, s: s + Ye.w }
+            }
+        }
+    }
+
+    /// The six numbers r_eᵀ F + s_eᵀ m.
+    #[inline(always)]
+    fn dot(&self, F: Wrench<S>, m: Vec3<S>) -> Wrench<S> {
+        let row = self.X.ad().transpose() * F + Wrench { m: m * self.sigma, f: Vec3::zero() };
+        match self.Y {
+            None => row,
+            Some(Y) => row + Y.ad().transpose() * (Y.ad().transpose() * F + Wrench { m, f: Vec3::zero() }),
+        }
+    }
+}
+
+/// A matrix to fill: its pairs stand in `workspace.pairs` at the same place.
+pub(super) struct Filled<'x, S> {
+    pub X: &'x mut [S],
+    pub base: BaseRates<S>,
+}
+
+/// What the pass does besides.
+#[derive(Clone, Copy)]
+pub(super) struct Does {
+    /// 𝓑, too, becomes that of composite bodies; 𝒢 does always.
+    pub adds_factors: bool,
+    /// And so do the wrenches 𝓕, and 𝒢ᶜA is kept in `workspace.U`.
+    pub adds_wrenches: bool,
+    /// They are composite already, of a pass before.
+    pub is_composite: bool,
+    /// The first matrix is ∂τ/∂θ, which has the term of wrenches that are carried past axes.
+    pub first_is_by_theta: bool,
+}
+
+/// Fills K matrices, and M, which then holds the rotors' inertia. The workspace holds T_{i,i−1}(θ), and of each link 𝒢, the pairs, 𝓑 and 𝓕, as far as
+/// the matrices take them.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip] // one equation a line
+pub(super) fn composite_pass<const K: usize, S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, workspace: &mut Workspace<S>, mut matrices: [Filled<S>; K], mut M: Option<&mut [S]>, does: Does,
+) {
+    for matrix in &mut matrices {
+        check_size(model, matrix.X);
+        matrix.X.fill(S::zero());
+    }
+    if let Some(M) = &mut M {
+        check_size(model, M);
+        set_armature(model, M);
+    }
+    let slots = model.links.len() + 1;
+    let Workspace { T, F, U, pairs: [first, second], turned, G_c, B, .. } = workspace;
+    let bodies = Bodies { T: &T[..slots], F: &mut F[..slots], U: &mut U[..slots], G: &mut G_c[..slots], B: &mut B[..slots] };
+    let (T, pairs) = (&T[..slots], [&first[..slots], &second[..slots]]);
+    if S::IS_ONE && model.structure.is_deep {
+        turn::<K, S, C>(model, T, pairs, &mut turned[..slots]);
+        fill(model, BaseAxes(&turned[..slots]), pairs, bodies, &mut matrices, &mut M, does);
+    } else {
+        fill(model, LinkFrames { T, pairs }, pairs, bodies, &mut matrices, &mut M, does);
+    }
+
+    // a floating base: the axes e
+    if model.is_floating() {
+        let n = model.n();
+        for (r, e) in Twist::axes().into_iter().enumerate() {
+            for q in 0..K {
+                let of_e = matrices[q].base.of(e);
+                set_column(matrices[q].X, n, r, G_c[0] * of_e.r + B[0] * of_e.s);
+            }
+            if let Some(M) = &mut M {
+                set_column(M, n, r, G_c[0] * e);
+            }
+        }
+    }
+}
+
+/// Of each link, and then of all that it carries.
+struct Bodies<'w, S> {
+    T: &'w [SE3<S>],
+    F: &'w mut [Wrench<S>],
+    U: &'w mut [Wrench<S>],
+    G: &'w mut [SpatialInertia<S>],
+    B: &'w mut [CoriolisFactor<S>],
+}
+
+/// The entries of the joints, and the rows and columns of a floating base at them.
+#[inline(always)]
+#[rustfmt::skip] // one equation a line
+fn fill<const K: usize, S: Scalar + From<C>, C: Scalar, P: Path<S>>(
+    model: &Model<C>, path: P, pairs: [&[Pair<S>]; 2], bodies: Bodies<S>,
+    matrices: &mut [Filled<S>; K], M: &mut Option<&mut [S]>, does: Does,
+) {
+    let Bodies { T, F, U, G: G_c, B } = bodies;
+    let n = model.n();
+    for (i, link) in model.inward::<S>() {
+        let (j, A, G_i, B_i) = (link.j, link.A(), G_c[i], B[i]);
+        let mut GA  = G_i * A;                                               // row j, and column j of M
+        let mut BtA = B_i.transpose_mul(A);                                  // a moment
+        let mut columns = [Wrench::zero(); K];
+        for q in 0..K {
+            columns[q] = G_i * pairs[q][i].r + B_i * pairs[q][i].s;
+        }
+        if does.first_is_by_theta && K > 0 {
+            columns[0] -= A.ad_transpose(F[i]);                               // 𝓕ᶜ is carried past the axes below
+            if link.is_next() {
+                carried_together(model, i, T, A.ad_transpose(F[i]), matrices[0].X);
+            }
+        }
+        if does.adds_wrenches {
+            U[i] = GA;
+        }
+        for q in 0..K {
+            matrices[q].X[j * n + j] += A * columns[q];
+        }
+        if let Some(M) = M {
+            M[j * n + j] += A * GA;
+        }
+        (GA, BtA) = (path.taken(i, GA), path.taken_moment(i, BtA));
+        for q in 0..K {
+            columns[q] = path.taken(i, columns[q]);
+        }
+        let mut above = i;
+        for (k, below) in model.to_base::<S>(link.parent) {
+            (GA, BtA) = (path.carried(above, GA), path.carried_moment(above, BtA));
+            for q in 0..K {
+                columns[q] = path.carried(above, columns[q]);
+            }
+            above = k;
+            let (ij, ji) = (below.j * n + j, j * n + below.j);
+            for q in 0..K {
+                let Pair { r, s } = path.pair(q, k);
+                matrices[q].X[ij] += path.force(k, &below, columns[q]);
+                matrices[q].X[ji] += r.dot(GA) + s.dot(BtA);
+            }
+            if let Some(M) = M {
+                let entry = path.force(k, &below, GA);
+                M[ij] += entry;
+                M[ji] += entry;
+            }
+        }
+        if model.is_floating() {
+            (GA, BtA) = (path.carried(above, GA), path.carried_moment(above, BtA));
+            for q in 0..K {
+                let row = matrices[q].base.dot(GA, BtA);
+                add_cross(matrices[q].X, n, j, path.carried(above, columns[q]), row);
+            }
+            if let Some(M) = M {
+                add_cross(M, n, j, GA, GA);
+            }
+        }
+        if !does.is_composite && (link.parent > 0 || model.is_floating()) {
+            let (p, Ad) = (link.parent, T[i].Ad());
+            G_c[p] = G_i.congruence_add(Ad, G_c[p]);
+            if does.adds_factors {
+                B[p] += B_i.congruence(Ad);
+            }
+            if does.adds_wrenches {
+                F[p] = Ad.transpose().mul_add(F[i], F[p]);
+            }
+        }
+    }
+}
+
+/// Adds to r of the axes of a joint, whose last is i, that its link moves them: `[ad_𝒱]` A, 𝒱 seen from each axis.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, i: usize, T: &[SE3<S>], V: Twist<S>, pairs: &mut [Pair<S>],
+) {
+    let (mut k, mut V) = (i, V);
+    loop {
+        let link = model.link::<S>(k);
+        pairs[k].r += (V.ad() * link.A()).twist();
+        if !link.is_next() {
+            break;
+        }
+        (k, V) = (link.parent, T[k].inverse().Ad() * V);
+    }
+}
+
+/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W = `[ad_A]`ᵀ𝓕ᶜ. They move together.
+#[cfg_attr(not(test), inline(always))]
+#[rustfmt::skip]
+fn carried_together<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, i: usize, T: &[SE3<S>], W: Wrench<S>, d_theta: &mut [S],
+) {
+    let (n, j, mut above, mut W) = (model.n(), model.links[i - 1].j, i, W);
+    for (k, below) in model.to_base::<S>(model.links[i - 1].parent) {
+        W = T[above].Ad().transpose() * W;
+        d_theta[below.j * n + j] += below.A() * W;
+        if !below.is_next() {
+            break;
+        }
+        above = k;
+    }
+}
+
+#[inline(always)]
+#[track_caller]
+fn check_size<S: Scalar, C: Scalar>(model: &Model<C>, X: &[S]) {
+    let n = model.n();
+    assert!(X.len() == n * n, "a matrix has {} entries, expected n² = {}", X.len(), n * n);
+}
+
+/// Column j and row j at a floating base's six.
+#[cfg_attr(not(test), inline(always))]
+fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
+    for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
+        X[r * n + j] += column;
+        X[j * n + r] += row;
+    }
+}
+
+/// A column of a floating base's 6 × 6 block.
+#[cfg_attr(not(test), inline(always))]
+fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
+    for (s, entry) in column.to_array().into_iter().enumerate() {
+        X[s * n + r] = entry;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{chain, tree};
+
+    #[test]
+    fn a_long_chain_is_deep_and_a_tree_of_as_many_links_is_not() {
+        let tree = tree(70, 20, 0);
+        assert!(chain(&tree).structure.is_deep && !tree.structure.is_deep);
+    }
+}

@@ -1,0 +1,44 @@
+//! Rotors that several joints turn.
+
+use crate::scalar::Scalar;
+use alloc::vec::Vec;
+
+/// A rotor whose rate is a constant combination of velocities, J θ̇: it adds a JᵀJ to M. Mimic joints are counted in as M has them, by their
+/// source joints.
+#[derive(Clone, Debug)]
+pub(crate) struct Rotor<C> {
+    /// a.
+    pub armature: C,
+    /// J: places among the velocities, in order, and the entries there.
+    pub J: Vec<(usize, C)>,
+}
+
+impl<C: Scalar> Rotor<C> {
+    /// J θ̇, or J θ̈.
+    #[inline(always)]
+    pub fn rate<S: Scalar + From<C>>(&self, dtheta: &[S]) -> S {
+        let mut sum = S::zero();
+        for &(j, entry) in &self.J {
+            sum = S::from(entry).mul_add(dtheta[j], sum);
+        }
+        sum
+    }
+
+    /// Adds x Jᵀ to a force, or to a column of numbers `stride` apart.
+    #[inline(always)]
+    pub fn add<S: Scalar + From<C>>(&self, x: S, tau: &mut [S], stride: usize) {
+        for &(j, entry) in &self.J {
+            let tau = &mut tau[j * stride];
+            *tau = S::from(entry).mul_add(x, *tau);
+        }
+    }
+
+    /// The velocities that turn it.
+    pub fn joints(&self) -> impl Iterator<Item = usize> {
+        self.J.iter().map(|&(j, _)| j)
+    }
+
+    pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Rotor<U> {
+        Rotor { armature: f(self.armature), J: self.J.iter().map(|&(j, entry)| (j, f(entry))).collect() }
+    }
+}

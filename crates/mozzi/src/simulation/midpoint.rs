@@ -1,0 +1,148 @@
+//! The implicit midpoint rule in (θ, p = Mθ̇).
+//!
+//! > θ_m = θ[k] ⊕ ½hv,  M(θ_m)v = p[k] + ½h ṗ(θ_m, v),  θ[k+1] = θ[k] ⊕ hv,  p[k+1] = p[k] + hṗ
+//!
+//! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. The rule is symplectic in (θ, p), so that the energy's error stays bounded; in
+//! (θ, θ̇) it would not be, because M depends on θ. On SE(3), and on SO(3) of a ball, with p_b the rows of p there and F those of ṗ less `[ad_v]`ᵀp_b, it is the
+//! variational integrator of the Lagrangian at the midpoint (Bou-Rabee and Marsden 2009), which keeps momentum exactly:
+//!
+//! > P = p_b[k] + h`[Ad_e^{−½hv}]`ᵀF,  p_b(θ_m, v) = Σ (`[ad_hv]`ᵀ)ʲP/(j+1)! − ½h Σ (−½`[ad_hv]`ᵀ)ʲF/(j+1)!,  p_b[k+1] = `[Ad_e^{hv}]`ᵀP
+
+use super::driven::Driven;
+use super::state::State;
+use crate::dynamics::mass_matrix_rate;
+use crate::kinematics::integrate;
+use crate::lie::SE3;
+use crate::model::{Error, Freedom, Model, Place, Workspace};
+use crate::spatial::{Twist, Wrench};
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// v is found by iteration, to rounding; more than this many means that the step is too long.
+const ITERATIONS: usize = 60;
+
+#[derive(Clone, Debug)]
+pub(super) struct Midpoint {
+    /// p at the end of the last step, and whose.
+    momentum: Option<(f64, DVector<f64>)>,
+    workspace: Workspace,
+    dM: Vec<f64>,
+    ddtheta: Vec<f64>,
+}
+
+impl Midpoint {
+    pub fn new(model: &Model) -> Self {
+        let n = model.n();
+        Midpoint { momentum: None, workspace: Workspace::new(model), dM: vec![0.0; n * n], ddtheta: vec![0.0; n] }
+    }
+
+    /// The state was changed from outside: its p is Mθ̇.
+    pub fn restart(&mut self) {
+        self.momentum = None;
+    }
+
+    /// A step of h seconds, which ends at a time.
+    pub fn step(&mut self, from: &State, h: f64, end: f64, driven: &mut Driven) -> Result<State, Error> {
+        let (model, n) = (driven.model, from.dtheta.len());
+        let (middle, half) = (from.t + 0.5 * h, 0.5 * h);
+        let p = match self.momentum.take() {
+            Some((t, p)) if t == from.t => p,
+            _ => driven.mass(&from.theta) * DVector::from_column_slice(&from.dtheta),
+        };
+        let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
+        let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
+        let curved = || model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One);
+        let (mut powers, mut M, mut after) = ([0.0; 3], DMatrix::zeros(0, 0), DVector::zeros(n));
+        for _ in 0..ITERATIONS {
+            theta.copy_from_slice(&from.theta);
+            integrate(model, &mut theta, v.as_slice(), half);
+            powers = driven.evaluate(middle, &theta, v.as_slice(), &mut self.ddtheta)?;
+            mass_matrix_rate(model, &theta, v.as_slice(), &mut self.workspace, &mut self.dM);
+            M = driven.mass(&theta);
+            let factors = driven.factored(&theta)?;
+            let dM = DMatrix::from_row_slice(n, n, &self.dM); // symmetric
+            let rate = &M * DVector::from_column_slice(&self.ddtheta) + dM * &v; // ṗ
+            let mut momentum = &p + &rate * half;
+            let Mv = &M * &v;
+            for place in curved() {
+                let of_place = |x: &DVector<f64>| padded(x, place);
+                let found = on_the_group(of_place(&p), of_place(&rate), of_place(&Mv), of_place(&v), h);
+                let k = place.velocities().len();
+                momentum.rows_mut(place.j, k).copy_from_slice(&found.middle[..k]);
+                after.rows_mut(place.j, k).copy_from_slice(&found.end[..k]);
+            }
+            let mut next = factors.solve(&momentum);
+            if !driven.held.is_empty() {
+                driven.bring_to_rest(&factors, next.as_mut_slice());
+            }
+            let change = (&next - &v).amax() / (1.0 + next.amax());
+            v = next;
+            if done || change == 0.0 {
+                done = true;
+                break;
+            }
+            // near rounding once more, and no more
+            done = change < 1e-14 || (change < 1e-11 && change >= last);
+            last = change;
+        }
+        if !done {
+            return Err(Error::NoConvergence { time: from.t, step: h, iterations: ITERATIONS });
+        }
+        let mut p = M * &v * 2.0 - p;
+        for place in curved() {
+            p.as_mut_slice()[place.velocities()].copy_from_slice(&after.as_slice()[place.velocities()]);
+        }
+        let mut to = State { t: end, ..from.clone() };
+        to.theta.copy_from_slice(&from.theta);
+        integrate(model, &mut to.theta, v.as_slice(), h);
+        (0..3).for_each(|k| to.works[k] += h * powers[k]);
+        let factors = driven.factored(&to.theta)?;
+        to.dtheta.copy_from_slice(factors.solve(&p).as_slice());
+        if driven.held.is_empty() {
+            self.momentum = Some((to.t, p));
+        } else {
+            driven.bring_to_rest(&factors, &mut to.dtheta);
+        }
+        driven.complete(&mut to)?;
+        Ok(to)
+    }
+}
+
+/// The rows of a place as (ω, v) or (m, f): a ball's are followed by zeros.
+fn padded(x: &DVector<f64>, place: &Place) -> [f64; 6] {
+    core::array::from_fn(|k| if k < place.velocities().len() { x[place.j + k] } else { 0.0 })
+}
+
+/// The momentum of a floating base, a free joint or a ball at the midpoint and at the end of a step.
+struct GroupMomentum {
+    middle: [f64; 6],
+    end: [f64; 6],
+}
+
+/// From p at the step's start, ṗ and Mv at its middle.
+fn on_the_group(p: [f64; 6], rate: [f64; 6], Mv: [f64; 6], v: [f64; 6], h: f64) -> GroupMomentum {
+    let V = Twist::from_array(v);
+    let F = Wrench::from_array(rate) - V.ad().transpose() * Wrench::from_array(Mv);
+    let way = V * h;
+    let half_way_back = SE3::exp(way * -0.5).Ad().transpose();
+    let P = Wrench::from_array(p) + half_way_back * F * h;
+    GroupMomentum {
+        middle: (series(way, P) - series(way * -0.5, F) * (0.5 * h)).to_array(),
+        end: (SE3::exp(way).Ad().transpose() * P).to_array(),
+    }
+}
+
+/// Σ (`[ad_X]`ᵀ)ʲF/(j+1)!, to rounding.
+fn series(X: Twist, F: Wrench) -> Wrench {
+    let (mut sum, mut term) = (F, F);
+    for j in 1..40 {
+        term = X.ad().transpose() * term * (1.0 / (j as f64 + 1.0));
+        let next = sum + term;
+        if next == sum {
+            break;
+        }
+        sum = next;
+    }
+    sum
+}

@@ -1,0 +1,160 @@
+//! The ends of the joints' ways.
+
+use super::Policy;
+use super::dense::Dense;
+use super::driven::Driven;
+use super::events::{Direction, first_zero};
+use super::options::check;
+use super::state::State;
+use crate::model::{Bounds, Error, Freedom, Model};
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// A joint that came to the end of its way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stopped {
+    /// The joint.
+    pub joint: String,
+    /// Its limit, rad or m.
+    pub limit: f64,
+    /// When it first came there, s.
+    pub first: f64,
+    /// How far beyond it was at most, rad or m: 0 where limits are respected.
+    pub beyond: f64,
+    /// How often it came there.
+    pub times: usize,
+}
+
+/// What is known of the joints' limits along a motion.
+pub(super) struct Stops {
+    policy: Policy,
+    bounds: Bounds,
+    names: Vec<String>,
+    /// Lower and upper, joint by joint.
+    noted: Vec<[Option<Stopped>; 2]>,
+    /// Is the joint beyond it now?
+    beyond: Vec<[bool; 2]>,
+}
+
+impl Stops {
+    pub fn new(model: &Model, policy: Policy, start: &[f64]) -> Result<Self, Error> {
+        let bounds = Bounds::of(model);
+        let names: Vec<String> = model.joint_names().map(ToString::to_string).collect();
+        for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(&names) {
+            let q = bounds.value(start, k);
+            let is_ball = bounds.places[k].freedom == Freedom::Ball && high.is_finite();
+            check(
+                policy != Policy::Respect || !is_ball,
+                "limits to respect",
+                format!("that of `{name}`, a ball, which may turn by {high} rad"),
+                "limits of joints of one axis; those of balls are only reported",
+            )?;
+            let fine = policy != Policy::Respect || (low..=high).contains(&q);
+            check(
+                fine,
+                "the start",
+                format!("{q} of joint `{name}`, beyond its limits {low} … {high}"),
+                "joints within their limits, which are respected",
+            )?;
+        }
+        Ok(Stops {
+            policy,
+            noted: vec![[None, None]; names.len()],
+            beyond: vec![[false; 2]; names.len()],
+            bounds,
+            names,
+        })
+    }
+
+    /// In the order of time.
+    pub fn noted(self) -> Vec<Stopped> {
+        let mut all: Vec<Stopped> = self.noted.into_iter().flatten().flatten().collect();
+        all.sort_by(|a, b| a.first.total_cmp(&b.first));
+        all
+    }
+
+    pub fn are_respected(&self) -> bool {
+        self.policy == Policy::Respect
+    }
+
+    /// How far joint k is beyond its lower (0) or upper (1) bound.
+    fn excess(&self, theta: &[f64], k: usize, side: usize) -> f64 {
+        let ([low, high], q) = (self.bounds.joints[k], self.bounds.value(theta, k));
+        if side == 0 { low - q } else { q - high }
+    }
+
+    fn sides(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let bounds = self.bounds.joints.clone();
+        (0..bounds.len()).flat_map(|k| [(k, 0), (k, 1)]).filter(move |&(k, side)| bounds[k][side].is_finite())
+    }
+
+    fn note(&mut self, t: f64, k: usize, side: usize, beyond: f64, again: bool) {
+        let (joint, limit) = (self.names[k].clone(), self.bounds.joints[k][side]);
+        let first = Stopped { joint, limit, first: t, beyond, times: 0 };
+        let note = self.noted[k][side].get_or_insert(first);
+        note.beyond = note.beyond.max(beyond);
+        note.times += usize::from(again);
+    }
+
+    /// Notes joints beyond their limits; states come in the order of time.
+    pub fn report_at(&mut self, t: f64, theta: &[f64]) {
+        if self.policy != Policy::Report {
+            return;
+        }
+        for k in 0..self.bounds.joints.len() {
+            for side in [0, 1] {
+                let excess = self.excess(theta, k, side);
+                if excess > 0.0 {
+                    let again = !self.beyond[k][side];
+                    self.note(t, k, side, excess, again);
+                }
+                self.beyond[k][side] = excess > 0.0;
+            }
+        }
+    }
+
+    /// The first time within the step at which a joint that is not held reaches a stop, until a time.
+    pub fn first_impact(
+        &self,
+        model: &Model,
+        dense: &Dense,
+        until: f64,
+        held: &[(usize, f64)],
+    ) -> Option<(f64, usize, usize)> {
+        let free = self.sides().filter(|&(k, _)| !held.iter().any(|&(j, _)| j == self.bounds.places[k].j));
+        let impacts = free.filter_map(|(k, side)| {
+            let found = first_zero(model, dense, until, Direction::Rising, |state| self.excess(&state.theta, k, side));
+            found.map(|t| (t, k, side))
+        });
+        impacts.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The time within the step, after its beginning, from which a stop would have to pull; by halves.
+    pub fn first_release(&self, dense: &Dense, until: &State, driven: &mut Driven) -> Result<Option<f64>, Error> {
+        if driven.pull(until)? <= 0.0 {
+            return Ok(None);
+        }
+        let (mut a, mut b) = (dense.t, until.t);
+        while b - a > 1e-14 * b.max(1e-3) && (a + b) * 0.5 > a && (a + b) * 0.5 < b {
+            let middle = 0.5 * (a + b);
+            *(if driven.pull(&dense.at(driven.model, middle))? > 0.0 { &mut b } else { &mut a }) = middle;
+        }
+        Ok(Some(b))
+    }
+
+    /// The joint comes to rest there, without a rebound, and all that rests against stops with it; what the impact takes is friction's.
+    pub fn impact(&mut self, state: &mut State, k: usize, side: usize, driven: &mut Driven) -> Result<(), Error> {
+        self.note(state.t, k, side, 0.0, true);
+        state.theta[self.bounds.places[k].q] = self.bounds.joints[k][side];
+        let before = driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
+        driven.held.push((self.bounds.places[k].j, if side == 0 { -1.0 } else { 1.0 }));
+        let M = driven.factored(&state.theta)?;
+        driven.let_go(&M, &state.dtheta.clone());
+        driven.bring_to_rest(&M, &mut state.dtheta);
+        state.works[1] += before - driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
+        driven.complete(state)?;
+        driven.release(state)
+    }
+}
