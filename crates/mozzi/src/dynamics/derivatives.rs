@@ -32,9 +32,9 @@
 //!
 //! The axes of one ball or free joint are carried together: for two of them, j is never beyond i.
 
-use super::composite::{BaseRates, Does, Filled, add_moved_by_link, composite_pass};
+use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, composite_pass};
 use crate::kinematics::{base_motion, base_pose};
-use crate::model::{Environment, Model, Pair, Workspace};
+use crate::model::{ByRates, ByTheta, Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
@@ -52,14 +52,14 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     by_rates: Option<[&mut [S]; 2]>,
 ) {
     outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
-    let does = Does { adds_factors: true, adds_wrenches: true, is_composite: false, first_is_by_theta: true };
+    let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: false, is_composite: false };
     let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
-    let by_theta = Filled { X: d_theta, base: by_theta };
+    let by_theta = Some(Filled { X: d_theta, base: by_theta });
     match by_rates {
-        None => composite_pass(model, workspace, [by_theta], None, does),
+        None => composite_pass(model, workspace, Matrices { by_theta, by_rates: None, M: None }, does),
         Some([d_dtheta, M]) => {
-            let both = [by_theta, Filled { X: d_dtheta, base: by_dtheta }];
-            composite_pass(model, workspace, both, Some(M), does);
+            let by_rates = Some(Filled { X: &mut *d_dtheta, base: by_dtheta });
+            composite_pass(model, workspace, Matrices { by_theta, by_rates, M: Some(M) }, does);
             add_damping(model, d_dtheta);
         }
     }
@@ -125,9 +125,9 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, pairs: [by_theta, by_dtheta], G_c, B, .. } = workspace;
+    let Workspace { T, V, dV, F, carrier, by_theta, by_rates, G_c, B, .. } = workspace;
     let (T, V, dV, F) = (&T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
-    let (by_theta, by_dtheta) = (&mut by_theta[..slots], &mut by_dtheta[..slots]);
+    let (by_theta, by_rates) = (&mut by_theta[..slots], &mut by_rates[..slots]);
     let (G_c, B) = (&mut G_c[..slots], &mut B[..slots]);
     for (i, link) in model.outward::<S>() {
         let link = link.among::<ONE_AXIS>();
@@ -141,15 +141,15 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
             carrier[i] = [V_c, dV_c];
         }
         let A    = link.A();
-        let dA   = (V_c.ad() * A).twist();
+        let dA   = (V_c.ad() * A).rate();
         let ddA  = V_c.ad() * dA + dV_c.ad() * A;
         let V_i  = V_p + link.A() * dtheta[link.j];
         let dV_i = dA.mul_add(dtheta[j], dV_p) + link.A() * ddtheta[link.j];
         let D    = if link.has_one_axis() { dA + dA } else { dA };
         (V[i], dV[i]) = (V_i, dV_i);
-        (by_theta[i], by_dtheta[i]) = (Pair { r: ddA, s: dA.w }, Pair { r: D, s: A.twist().w });
+        (by_theta[i], by_rates[i]) = (ByTheta { r: ddA, s: dA.w }, ByRates { r: D, s: A.a });
         if !link.has_one_axis() && link.is_last {
-            add_moved_by_link(model, i, T, V_i, by_dtheta);
+            add_moved_by_link(model, i, T, V_i, by_rates);
         }
         let G = link.G();
         let P = G * V_i;
@@ -163,7 +163,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
-    let Workspace { T, dV, F, U, carrier, pairs: [by_theta, _], G_c, .. } = workspace;
+    let Workspace { T, dV, F, U, carrier, by_theta, G_c, .. } = workspace;
     dV[0] = match ddtheta.first_chunk() {
         Some(&dV) if model.is_floating() => Twist::from_array(dV),
         _ => Twist::zero(),
