@@ -60,8 +60,11 @@ def look(browser, job):
     page.keyboard.press("d")
     found["themes"].append(page.evaluate(dark))
     page.evaluate("mozzi.show('axes', true)")
-    page.wait_for_timeout(100)
-    found["painted"] = page.evaluate(PAINTED)
+    for _ in range(600):  # a busy machine paints late
+        found["painted"] = page.evaluate(PAINTED)
+        if found["painted"] > 20:
+            break
+        page.wait_for_timeout(100)
     found["width"] = page.evaluate("document.documentElement.scrollWidth")
     if job.get("times"):
         found["scrubbed"] = scrub(page)
