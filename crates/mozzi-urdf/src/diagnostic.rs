@@ -1,8 +1,9 @@
 //! A diagnostic: message, place, severity, remedy.
 
+use crate::consequence::{Consequence, consequence};
 use crate::dialect::Dialect;
 use crate::explain::remedy;
-use crate::finding::Finding;
+use crate::finding::{Finding, Topic};
 use crate::source::{Position, Source};
 use mozzi::model::Severity;
 use std::fmt;
@@ -18,15 +19,16 @@ pub struct Diagnostic {
     position: Position,
     span: Range<usize>,
     help: Option<String>,
+    topic: Option<Topic>,
     source: Source,
 }
 
 impl Diagnostic {
     pub(crate) fn new(finding: Finding, position: Position, source: Source, dialect: Dialect) -> Self {
-        let Finding { severity, code, span, message, help } = finding;
+        let Finding { severity, code, span, message, help, topic } = finding;
         let code = format!("{}{code}", dialect.prefix());
         let help = help.or_else(|| remedy(&code).map(str::to_string));
-        Diagnostic { severity, code, message, position, span, help, source }
+        Diagnostic { severity, code, message, position, span, help, topic, source }
     }
 
     /// Error (the file is refused) or warning (it is loaded).
@@ -37,6 +39,18 @@ impl Diagnostic {
     /// The code, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::explain).
     pub fn code(&self) -> &str {
         &self.code
+    }
+
+    /// What it means for the results.
+    pub fn consequence(&self) -> Consequence {
+        match self.topic {
+            Some(_) => Consequence::Unused,
+            None => consequence(&self.code),
+        }
+    }
+
+    pub(crate) fn topic(&self) -> Option<Topic> {
+        self.topic
     }
 
     /// The element, what was found there, and what was expected.

@@ -29,7 +29,8 @@ pub enum LoadError {
     Refused {
         /// Its name.
         file: String,
-        /// Errors and warnings in the order of the file; at most a thousand of each.
+        /// Errors in the order of the file, then warnings by consequence, then what is not used;
+        /// at most a thousand errors and a thousand others.
         diagnostics: Vec<Diagnostic>,
         /// Whether reading stopped after a thousand errors.
         is_cut: bool,
@@ -39,7 +40,8 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// Errors and warnings, in the order of the file; empty where no file was read.
+    /// Errors in the order of the file, then warnings by consequence, then what is not used; empty if no file
+    /// was read.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match self {
             LoadError::Refused { diagnostics, .. } => diagnostics,

@@ -1,5 +1,6 @@
 //! The report for people: the line of the file, a mark under the value, and how to mend it.
 
+use crate::consequence::Consequence;
 use crate::diagnostic::Diagnostic;
 use crate::error::{LoadError, PRINTED};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents};
@@ -48,7 +49,9 @@ impl LoadError {
     /// The rendered report: warnings, then errors, each with its place.
     pub fn pretty(&self, style: Style) -> String {
         let mut text = String::new();
-        let warnings = self.diagnostics().iter().filter(|diagnostic| diagnostic.severity() == Severity::Warning);
+        let is_warning =
+            |found: &&Diagnostic| found.severity() == Severity::Warning && found.consequence() != Consequence::Unused;
+        let warnings = self.diagnostics().iter().filter(is_warning);
         for diagnostic in warnings.take(PRINTED).chain(self.errors().take(PRINTED)) {
             text.push_str(&diagnostic.pretty(style));
         }

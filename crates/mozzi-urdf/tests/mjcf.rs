@@ -41,7 +41,7 @@ fn what_is_switched_off_is_off() {
                 <worldbody><body><joint name='a' damping='1' stiffness='2' frictionloss='3'/><joint name='b'/><geom size='1'/>\
                 </body></worldbody><equality><joint joint1='a' joint2='b'/></equality></mujoco>";
     let robot = model(text);
-    assert_eq!(robot.warnings.len(), 1, "{:?}", robot.warnings);
+    assert_eq!((robot.warnings.len(), robot.unused.len()), (0, 1));
     assert_eq!(robot.description.gravity, [0.0; 3]);
     let a = &robot.description.joints[0];
     assert_eq!((a.damping, a.friction, a.stiffness, &a.mimic), (0.0, 0.0, 0.0, &None));
@@ -137,7 +137,7 @@ fn included_files_stand_where_they_are_named() {
     assert_eq!(names, ["world", "a", "b", "c", "d"]);
     assert_eq!(robot.description.links[2].inertia.mass, 2.0);
     assert!(robot.description.joints.iter().all(|joint| joint.kind == JointKind::Fixed));
-    let [light] = robot.warnings.as_slice() else { panic!("{:?}", robot.warnings) };
+    let [light] = robot.unused.as_slice() else { panic!("{:?}", robot.unused) };
     assert!(light.file().ends_with("geom.xml") && light.line() == 1 && light.column() == 32, "{light}");
     assert!(open(&folder.join("main.xml").to_string_lossy()).is_ok());
 }

@@ -6,7 +6,7 @@ use crate::robot::PolicyArguments;
 use crate::robot_json;
 use clap::{Args, ValueEnum};
 use mozzi::Model;
-use mozzi_urdf::{Diagnostic, Severity};
+use mozzi_urdf::{Consequence, Diagnostic, Severity};
 use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
@@ -37,7 +37,7 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
     let answer = arguments.policy.open(name);
     if arguments.json || arguments.format == Format::Json {
         return match answer {
-            Ok(loaded) => Ok(lines(&loaded.warnings)),
+            Ok(loaded) => Ok(lines(&loaded.warnings) + &lines(&loaded.unused)),
             Err(error) if error.diagnostics().is_empty() => {
                 Err(Failure::Answered(placeless(name, "error", None, &error.to_string())))
             }
@@ -46,6 +46,7 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
     }
     let loaded = answer?;
     loaded.warnings.iter().for_each(failure::say);
+    mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
     let count = loaded.warnings.len();
     sound(name, count, &loaded.build()?)
 }
@@ -86,6 +87,7 @@ fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
 fn lines(diagnostics: &[Diagnostic]) -> String {
     let line = |found: &Diagnostic| {
         let severity = match found.severity() {
+            _ if found.consequence() == Consequence::Unused => "note",
             Severity::Error => "error",
             Severity::Warning => "warning",
         };

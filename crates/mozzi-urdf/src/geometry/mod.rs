@@ -14,6 +14,7 @@ use crate::error::LoadError;
 use crate::finding::Findings;
 use crate::pages::Pages;
 use crate::source::Source;
+use crate::version::Version;
 use crate::{bytes, embedded, file_bytes, syntax};
 use std::path::Path;
 
@@ -44,6 +45,7 @@ pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
 pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
+    let source = syntax::mended(source, Dialect::Urdf, &mut Findings::default()); // the model's reader reports it
     let mut shapes = Vec::new();
     if Dialect::of(&source.text) == Dialect::Urdf && source.text.trim_start().starts_with('<') {
         match syntax::parse(&source, Dialect::Urdf) {
@@ -51,7 +53,9 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
             Ok(document) => {
                 let mut cx = Context::new(findings, Dialect::Urdf);
                 if let Some(root) = Pages::single(&source, document).root("robot") {
+                    cx.version = Version::read(&root, &mut cx);
                     shapes = read::robot(&root, &mut cx);
+                    cx.report_repeated();
                 }
                 findings = cx.findings;
             }

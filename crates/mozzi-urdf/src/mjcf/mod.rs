@@ -26,12 +26,14 @@
 //!   as in MuJoCo. Numbers of mimic joints are checked against their source joints', and not kept.
 //!
 //! # What is not read
-//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces or limits, spatial
-//!   tendons with an armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
+//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces, spatial tendons with an
+//!   armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
 //!   shells.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
-//! - Listed in warnings with the codes `ignored_element` and `ignored_attribute`, once per kind, accepted by the strict
-//!   policy: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies, settings of MuJoCo's
+//! - Loaded with a warning that nothing of the dynamics is lost: limits of tendons, reversed limits, an `<inertial>`
+//!   without moments, which is a point mass.
+//! - Counted ([`Loaded::unused`](crate::Loaded)), once per kind, with the codes `ignored_element` and
+//!   `ignored_attribute`: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies, settings of MuJoCo's
 //!   solver, appearance.
 //!
 //! Every element and attribute of MuJoCo's schema is in one of these classes; a test checks all of them.
@@ -82,11 +84,6 @@ use tree::Tree;
 /// Whether the first element of this text is that of an MJCF model.
 pub fn is_mjcf(text: &str) -> bool {
     Dialect::of(text) == Dialect::Mjcf
-}
-
-/// Whether this is the code of a warning about valid MJCF content that is ignored. The strict policy accepts it.
-pub(crate) fn is_list(code: &str) -> bool {
-    matches!(code, "mozzi::mjcf::ignored_attribute" | "mozzi::mjcf::ignored_element" | "mozzi::mjcf::renamed_site")
 }
 
 /// State shared by the readers of a model.
@@ -150,6 +147,7 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     let keys = Key::read(of("keyframe"), cx);
     model.ignored.sections(&sections);
     model.ignored.tell(cx);
+    cx.report_repeated();
     if cx.findings.is_full() {
         return None;
     }
