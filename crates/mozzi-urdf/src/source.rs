@@ -10,6 +10,8 @@ pub(crate) struct Source {
     pub text: Arc<str>,
     /// The place of its first byte among all texts of a robot.
     pub base: usize,
+    /// Whether diagnostics may show lines of it.
+    pub is_shown: bool,
 }
 
 /// A place in a text, both counted from 1, columns in characters.
@@ -21,12 +23,17 @@ pub(crate) struct Position {
 
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
-        Source { name: name.into(), text: text.into(), base: 0 }
+        Source { name: name.into(), text: text.into(), base: 0, is_shown: true }
     }
 
     /// The same, after other texts.
     pub fn at(self, base: usize) -> Self {
         Source { base, ..self }
+    }
+
+    /// A model names it, but it may be any file of this machine: its lines are not for whoever reads the diagnostics.
+    pub fn hidden(self) -> Self {
+        Source { is_shown: false, ..self }
     }
 
     /// A place of this text among all.
