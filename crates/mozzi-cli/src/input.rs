@@ -75,7 +75,12 @@ pub fn cannot(file: &str, error: &dyn std::fmt::Display) -> Failure {
 
 /// A whole text of at most so many bytes.
 pub fn text(file: &str, most: usize) -> Result<String> {
-    String::from_utf8(bytes(file, most)?).map_err(|error| {
+    to_text(file, bytes(file, most)?)
+}
+
+/// The text of a file's bytes.
+pub fn to_text(file: &str, bytes: Vec<u8>) -> Result<String> {
+    String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         cannot(file, &format!("byte {} is not UTF-8 text", at + 1))
     })

@@ -10,15 +10,16 @@ use std::fmt;
 const MOST_BYTES: usize = 256 << 20;
 
 pub fn read(file: &str) -> Result<Value> {
-    let wrong = |why: String| Failure::wrong(format!("{file}: {why}"));
+    let wrong = |why: String| Failure::wrong(format!("{}: {why}", input::name(file)));
     let text = match file {
-        "-" => String::from_utf8_lossy(input::robot_text().map_err(|error| input::cannot(file, &error))?).into_owned(),
+        "-" => input::to_text(file, input::robot_text().map_err(|error| input::cannot(file, &error))?.to_vec())?,
         file => input::text(file, MOST_BYTES)?,
     };
-    let Once(value) = serde_json::from_str(&text).map_err(|error| match error.is_data() {
-        true => wrong(error.to_string()),
-        false => wrong(format!("is not valid JSON: {error}")),
-    })?;
+    let Once(value) =
+        serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| match error.is_data() {
+            true => wrong(error.to_string()),
+            false => wrong(format!("is not valid JSON: {error}")),
+        })?;
     Ok(value)
 }
 

@@ -64,7 +64,8 @@ pub fn is_json(name_or_path: &str) -> bool {
 
 pub fn read(file: &str) -> Result<Description> {
     let value = json_file::read(file)?;
-    description(&At { value: &value, place: String::new() }).map_err(|why| Failure::wrong(format!("{file}: {why}")))
+    description(&At { value: &value, place: String::new() })
+        .map_err(|why| Failure::wrong(format!("{}: {why}", input::name(file))))
 }
 
 type Read<T> = std::result::Result<T, String>;
