@@ -1,17 +1,25 @@
 //! A file of JSON, in which no name is given twice: the last one would win in silence.
 
 use crate::failure::{Failure, Result};
+use crate::input;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::fmt;
 
+/// A larger file is refused.
+const MOST_BYTES: usize = 256 << 20;
+
 pub fn read(file: &str) -> Result<Value> {
-    let wrong = |why: String| Failure::wrong(format!("{file}: {why}"));
-    let text = std::fs::read_to_string(file).map_err(|error| wrong(format!("cannot be read: {error}")))?;
-    let Once(value) = serde_json::from_str(&text).map_err(|error| match error.is_data() {
-        true => wrong(error.to_string()),
-        false => wrong(format!("is not valid JSON: {error}")),
-    })?;
+    let wrong = |why: String| Failure::wrong(format!("{}: {why}", input::name(file)));
+    let text = match file {
+        "-" => input::to_text(file, input::robot_text().map_err(|error| input::cannot(file, &error))?.to_vec())?,
+        file => input::text(file, MOST_BYTES)?,
+    };
+    let Once(value) =
+        serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| match error.is_data() {
+            true => wrong(error.to_string()),
+            false => wrong(format!("is not valid JSON: {error}")),
+        })?;
     Ok(value)
 }
 

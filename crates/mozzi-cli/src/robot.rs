@@ -2,12 +2,13 @@
 
 use crate::failure::{self, Failure, Result};
 use crate::numbers::array;
-use crate::robot_json;
+use crate::{input, robot_json};
 use clap::Args;
 use mozzi::model::Problem;
 use mozzi::quantities::INPUTS;
 use mozzi::{Description, FrameId, Model};
 use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Severity};
+use std::path::Path;
 
 /// Of warnings that do not change the motion so many are printed; `mozzi check` prints all.
 const WARNINGS: usize = 3;
@@ -33,14 +34,22 @@ impl PolicyArguments {
         self.floating
     }
 
-    /// An embedded robot by its name, or a file.
+    /// A file, standard input for `-`, or an embedded robot by its name.
     pub fn open(&self, name_or_path: &str) -> std::result::Result<Loaded, LoadError> {
         let policy = match (self.strict, self.lenient) {
             (true, _) => Policy::Strict,
             (_, true) => Policy::Lenient,
             _ => Policy::Default,
         };
-        let loaded = mozzi_urdf::open_with(name_or_path, policy)?;
+        let loaded = if name_or_path == "-" {
+            let cannot = |source| LoadError::File { path: input::name(name_or_path).into(), source };
+            mozzi_urdf::parse_with(input::name(name_or_path), input::robot_text().map_err(cannot)?, policy)?
+        } else {
+            mozzi_urdf::open_with(name_or_path, policy)?
+        };
+        if mozzi_urdf::embedded::text(name_or_path).is_some_and(|_| Path::new(name_or_path).is_file()) {
+            failure::note(&format!("`{name_or_path}` is a file here and an embedded robot; the file is read"));
+        }
         Ok(Loaded { description: self.freed(loaded.description), ..loaded })
     }
 
@@ -94,7 +103,7 @@ fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence,
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: anymal, double_pendulum, furuta_pendulum,
+    /// A file (URDF, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal, double_pendulum, furuta_pendulum,
     /// panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches

@@ -3,7 +3,7 @@
 mod states;
 
 use crate::failure::{Failure, Result};
-use crate::{json, json_file};
+use crate::{input, json, json_file};
 use mozzi::model::description::{FreeJoint, Gear, Joint, JointKind, Limits, Mimic, NamedFrame, Rotor};
 use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia, Vec3};
 use serde_json::{Value, json};
@@ -53,14 +53,19 @@ pub fn write(model: &Model) -> String {
     }))
 }
 
-/// Is this file one that [`write`] made, by its name?
+/// Is this file one that [`write`] made, by its name? Standard input is if it is an object.
 pub fn is_json(name_or_path: &str) -> bool {
+    if name_or_path == "-" {
+        let text = input::robot_text().unwrap_or_default();
+        return text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text).trim_ascii_start().starts_with(b"{");
+    }
     std::path::Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json")
 }
 
 pub fn read(file: &str) -> Result<Description> {
     let value = json_file::read(file)?;
-    description(&At { value: &value, place: String::new() }).map_err(|why| Failure::wrong(format!("{file}: {why}")))
+    description(&At { value: &value, place: String::new() })
+        .map_err(|why| Failure::wrong(format!("{}: {why}", input::name(file))))
 }
 
 type Read<T> = std::result::Result<T, String>;

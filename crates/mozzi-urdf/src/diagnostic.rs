@@ -5,6 +5,7 @@ use crate::dialect::Dialect;
 use crate::explain::remedy;
 use crate::finding::{Finding, Topic};
 use crate::source::{Position, Source};
+use crate::visible::visible;
 use mozzi::model::Severity;
 use std::fmt;
 use std::ops::Range;
@@ -83,14 +84,14 @@ impl Diagnostic {
         self.help.as_deref()
     }
 
-    /// The text that the span covers.
+    /// The text that the span covers; empty in an included file that is no model.
     pub fn excerpt(&self) -> &str {
-        &self.source.text[self.span.clone()]
+        if self.source.is_shown { &self.source.text[self.span.clone()] } else { "" }
     }
 
-    /// The whole text, for excerpts.
-    pub(crate) fn text(&self) -> &str {
-        &self.source.text
+    /// The whole text, for excerpts, unless there shall be none.
+    pub(crate) fn text(&self) -> Option<&str> {
+        self.source.is_shown.then_some(&self.source.text)
     }
 
     pub(crate) fn into_error(self) -> Self {
@@ -108,7 +109,8 @@ impl fmt::Display for Diagnostic {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        write!(f, "{}:{}:{}: {severity}: {}", self.file(), self.line(), self.column(), self.message)
+        let (file, message) = (visible(self.file()), visible(&self.message));
+        write!(f, "{file}:{}:{}: {severity}: {message}", self.line(), self.column())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::embedded;
+use crate::visible::visible;
 use mozzi::model::Severity;
 use std::fmt;
 use std::path::PathBuf;
@@ -60,6 +61,10 @@ impl LoadError {
 
     /// "robot.urdf is refused: 3 errors"
     pub(crate) fn headline(&self) -> String {
+        visible(&self.sentence())
+    }
+
+    fn sentence(&self) -> String {
         match self {
             LoadError::File { path, source } => format!("{} cannot be read: {source}", path.display()),
             LoadError::NoSuchRobot { name } => {

@@ -82,6 +82,7 @@ mod source;
 mod spelling;
 mod syntax;
 mod version;
+mod visible;
 mod vocabulary;
 mod write;
 mod xacro;
@@ -92,6 +93,7 @@ pub use error::LoadError;
 pub use explain::{codes, explain, nearest_code, remedy};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
+pub use visible::visible;
 pub use write::{NotUrdf, write};
 
 use context::Context;
@@ -227,7 +229,7 @@ pub fn model(path: impl AsRef<Path>) -> Result<Model, LoadError> {
     load(path)?.build()
 }
 
-/// A robot by the name of one that mozzi brings along (see [`embedded`]), or by its file's path.
+/// A robot by its file's path, or else by the name of one that mozzi brings along (see [`embedded`]).
 ///
 /// # Errors
 /// As [`load`]; [`LoadError::NoSuchRobot`] when there is neither.
@@ -240,7 +242,7 @@ pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
 /// # Errors
 /// As there; under [`Policy::Strict`] warnings too.
 pub fn open_with(name_or_path: &str, policy: Policy) -> Result<Loaded, LoadError> {
-    match embedded::text(name_or_path) {
+    match embedded::unless_file(name_or_path) {
         Some(text) => parse_with(&format!("{name_or_path}.urdf"), text, policy),
         None if Path::new(name_or_path).exists() => load_with(name_or_path, policy),
         None => Err(LoadError::NoSuchRobot { name: name_or_path.to_string() }),

@@ -15,6 +15,8 @@ pub(crate) struct Source {
     original: Option<Arc<str>>,
     /// Where something was inserted into the text of the file, and its length.
     inserted: (usize, usize),
+    /// Whether diagnostics may show lines of it.
+    pub is_shown: bool,
 }
 
 /// A place in a text, both counted from 1, columns in characters.
@@ -26,7 +28,7 @@ pub(crate) struct Position {
 
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
-        Source { name: name.into(), text: text.into(), base: 0, original: None, inserted: (0, 0) }
+        Source { name: name.into(), text: text.into(), base: 0, original: None, inserted: (0, 0), is_shown: true }
     }
 
     /// The same file, parsed as a text whose places are the same.
@@ -65,6 +67,11 @@ impl Source {
     /// The same, after other texts.
     pub fn at(self, base: usize) -> Self {
         Source { base, ..self }
+    }
+
+    /// A model names it, but it may be any file of this machine: its lines are not for whoever reads the diagnostics.
+    pub fn hidden(self) -> Self {
+        Source { is_shown: false, ..self }
     }
 
     /// A place of this text among all.

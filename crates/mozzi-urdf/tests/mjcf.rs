@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::description::JointKind;
-use mozzi_urdf::{LoadError, Loaded, load, open, parse};
+use mozzi_urdf::{LoadError, Loaded, Style, load, open, parse};
 use std::path::{Path, PathBuf};
 
 fn model(text: &str) -> Loaded {
@@ -193,4 +193,28 @@ fn wrong_includes() {
         main_of(&folder).unwrap_err(),
         "./main.xml is refused: 1 error\n./parts/a.xml:2:1: error: byte 4 of the file is 0xff, which is not UTF-8"
     );
+}
+
+#[test]
+fn an_include_shows_no_lines_of_other_files() {
+    let main = "<mujoco>\n<include file='secret'/></mujoco>";
+    let secrets: [&[u8]; 5] = [
+        b"root:x:0:0:hunter2:/root:/bin/sh\nalice:x:1000:hunter2\n",
+        b"<config>\n  <password>hunter2</password>\n</config>",
+        b"<config user='hunter2'>\n  <joint name='hunter2' <</config>",
+        b"key = hunter2\n<!-- hunter2 -->\n<login password='hunter2'/>",
+        b"hunter2 \xff hunter2",
+    ];
+    for secret in secrets {
+        let folder = folder("secret", &[("main.xml", main)]);
+        std::fs::write(folder.join("secret"), secret).unwrap();
+        let error = load(folder.join("main.xml")).unwrap_err();
+        let found = format!("{error}\n{}", error.pretty(Style::Unicode));
+        assert!(!found.contains("hunter2") && found.contains("secret:"), "{found}");
+        assert!(error.diagnostics().iter().all(|d| !d.excerpt().contains("hunter2")), "{found}");
+    }
+    // of a model they are shown
+    let part = "<mujocoinclude>\n<worldbody><bodi/></worldbody></mujocoinclude>";
+    let folder = folder("own", &[("main.xml", main), ("secret", part)]);
+    assert!(load(folder.join("main.xml")).unwrap_err().pretty(Style::Unicode).contains("<worldbody><bodi/>"));
 }

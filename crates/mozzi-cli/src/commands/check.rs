@@ -3,7 +3,7 @@
 use super::info;
 use crate::failure::{self, Failure, Result};
 use crate::robot::PolicyArguments;
-use crate::robot_json;
+use crate::{input, robot_json};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_urdf::{Consequence, Diagnostic, Severity};
@@ -30,7 +30,7 @@ enum Format {
 }
 
 pub fn run(arguments: &CheckArguments) -> Result<String> {
-    let name = &arguments.model;
+    let name = arguments.model.as_str();
     if robot_json::is_json(name) {
         return json_robot(arguments);
     }
@@ -48,14 +48,14 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
     loaded.warnings.iter().for_each(failure::say);
     mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
     let count = loaded.warnings.len();
-    sound(name, count, &loaded.build()?)
+    sound(input::name(name), count, &loaded.build()?)
 }
 
 /// A robot of JSON: the same checks, each problem by its element, as there is no text to point at.
 fn json_robot(arguments: &CheckArguments) -> Result<String> {
-    let name = &arguments.model;
+    let name = input::name(&arguments.model);
     let is_lines = arguments.json || arguments.format == Format::Json;
-    let robot = match robot_json::read(name) {
+    let robot = match robot_json::read(&arguments.model) {
         Err(Failure::Wrong(why)) if is_lines => return Err(Failure::Answered(placeless(name, "error", None, &why))),
         other => other?,
     };

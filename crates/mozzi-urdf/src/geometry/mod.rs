@@ -1,10 +1,12 @@
 //! What a URDF says of its links' looks: `<visual>` and `<collision>`, which say nothing about the dynamics.
 
 mod files;
+mod mesh;
 mod read;
 mod shape;
 
 pub use files::{NotLocated, locate};
+pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 
 use crate::context::Context;
@@ -32,7 +34,7 @@ pub struct Geometry {
 /// # Errors
 /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
 pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
-    if let Some(text) = embedded::text(name_or_path) {
+    if let Some(text) = embedded::unless_file(name_or_path) {
         return Ok(parse(&format!("{name_or_path}.urdf"), text));
     }
     if !Path::new(name_or_path).exists() {
