@@ -124,3 +124,62 @@ fn info_tells_what_was_folded_into_what() {
     assert!(wrist["links"].as_array().expect("links").iter().any(|link| link == "panda_hand"), "{wrist}");
     assert!(text(&["info", "panda"]).contains("+ panda_hand"));
 }
+
+const JSON: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/robots/two_joints.json");
+
+#[test]
+fn all_unknown_keys_of_json_are_reported() {
+    let text = std::fs::read_to_string(JSON).expect("a file").replace("gravity", "gravitty").replace("effort", "efort");
+    let (code, message) = complaint(&["info", &file(&folder("json_unknown"), "bad.json", &text)]);
+    assert!(code == 1 && message.matches("error: ").count() == 6, "{message}");
+    assert!(message.contains("gravitty") && message.matches("did you mean `effort`?").count() == 2, "{message}");
+}
+
+#[test]
+fn keys_of_json_are_known_and_complete() {
+    let folder = folder("json_keys");
+    let good = std::fs::read_to_string(JSON).expect("a file");
+    text(&["info", &file(&folder, "bom.json", &format!("\u{feff}{good}"))]);
+    for (from, to, words) in [
+        (
+            "\"friction\": 25",
+            "\"frition\": 25",
+            ":17:38: `frition` is not an entry of joints[0], did you mean `friction`?",
+        ),
+        (", \"friction\": 25", "", ":14:5: `friction` is missing in joints[0]"),
+        ("\"A\": [0, 0, 1, 0, 0, 0], ", "", ":14:5: `A` is missing in joints[0]; null is the axis of a fixed joint"),
+        (
+            "\"A\": [0, 0, 1, 0, 0, 0]",
+            "\"A\": [0, 0, 1, 0, 0, 0],\n\"free\": true",
+            ":17:1: joints[0] has several of A, ball and free",
+        ),
+        ("\"G\"", "\"g\"", ":7:23: `g` is not an entry of links[0], did you mean `G`?"),
+        ("\"ratio\": 2, ", "", ":22:7: `ratio` is missing in joints[1].mimic"),
+        ("\"gravity\"", "\"gravitty\"", ":4:3: `gravitty` is not an entry of the robot, did you mean `gravity`?"),
+        (
+            "\"fixed\",",
+            "\"fixed\", \"free_joint\": {\"name\": \"f\", \"parent\": \"w\"},",
+            ":3:20: free_joint is given, but the base is fixed",
+        ),
+        ("\"damping\": 0.5", "\"damping\": 0.5, \"damping\": 0.6", "`damping` is given twice"),
+        (
+            "\"frames\": []",
+            "\"frames\": [{\"name\": \"tip\", \"link\": \"b\", \"t\": 1}]",
+            ":25:43: `t` is not an entry of frames[0], did you mean `T`?",
+        ),
+        ("\"frames\": []", "\"lists\": {\"SS\": []}", ":25:13: `SS` is not an entry of lists"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let path = file(&folder, "bad.json", &good.replacen(from, to, 1));
+        let (code, message) = complaint(&["info", &path]);
+        assert!(code == 1 && message.contains("bad.json:") && message.contains(words), "{words} in {message}");
+        let output = common::mozzi(&["check", &path, "--json"]);
+        assert_eq!(output.status.code(), Some(1));
+        for line in String::from_utf8(output.stdout).expect("text").lines() {
+            let error: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            let (row, column) = (&error["line"], &error["column"]);
+            let place = format!("bad.json:{row}:{column}: {}", error["message"].as_str().expect("text"));
+            assert!(message.contains(&place), "{place} in {message}");
+        }
+    }
+}

@@ -80,6 +80,7 @@ pub use error::LoadError;
 pub use explain::{codes, explain, nearest_code, remedy};
 pub use mozzi::model::Severity;
 pub use pretty::Style;
+pub use spelling::did_you_mean;
 pub use write::{NotUrdf, write};
 
 use context::Context;

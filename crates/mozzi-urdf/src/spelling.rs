@@ -22,8 +22,8 @@ pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k st
     known.into_iter().find(is_longer).map(|known| format!("did you mean `{known}`?"))
 }
 
-/// "did you mean `x`?"
-pub(crate) fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+/// "did you mean `x`?", where x is the known word nearest to an unknown one, if it is near enough to have been meant.
+pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(word, known).map(|word| format!("did you mean `{word}`?"))
 }
 
