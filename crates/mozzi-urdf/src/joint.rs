@@ -69,10 +69,10 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
             (screw, limit::read(kind, children.get("limit"), &element, &mut place, cx))
         }
     };
-    let [damping, friction, stiffness, spring_reference] = read_dynamics(&children, &mut place, cx);
+    let [damping, friction, stiffness, spring_reference, armature] = read_dynamics(&children, &mut place, cx);
     let is_several = matches!(kind, Some("planar" | "floating"));
     if let Some(kind @ ("planar" | "floating")) = kind {
-        let is_rough = [damping, friction, stiffness].iter().any(|x| *x != 0.0);
+        let is_rough = [damping, friction, stiffness, armature].iter().any(|x| *x != 0.0);
         several_freedoms(kind, &children, is_rough, &element, cx);
     }
     if let Some(value) = element.attribute("type") {
@@ -90,7 +90,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         limits,
         damping: if is_several { 0.0 } else { damping },
         friction: if is_several { 0.0 } else { friction },
-        armature: 0.0,
+        armature: if is_several { 0.0 } else { armature },
         stiffness: if is_several { 0.0 } else { stiffness },
         spring_reference: if is_several { 0.0 } else { spring_reference },
         mimic: children.get("mimic").and_then(|mimic| read_mimic(mimic, &mut place, cx)),
@@ -161,9 +161,9 @@ fn read_end(name: &'static str, element: &Element, children: &Children, place: &
     place.note(name, value)
 }
 
-/// Damping, friction, and a spring by the names that SDF has for it: URDF itself has no springs.
-fn read_dynamics(children: &Children, place: &mut Place, cx: &mut Context) -> [f64; 4] {
-    let Some(dynamics) = children.get("dynamics") else { return [0.0; 4] };
+/// Damping, friction, and two extensions: a spring by SDF's names, the armature by MJCF's.
+fn read_dynamics(children: &Children, place: &mut Place, cx: &mut Context) -> [f64; 5] {
+    let Some(dynamics) = children.get("dynamics") else { return [0.0; 5] };
     dynamics.check_attributes(&DYNAMICS, cx);
     dynamics.check_children(&DYNAMICS, cx);
     let names = [
@@ -171,6 +171,7 @@ fn read_dynamics(children: &Children, place: &mut Place, cx: &mut Context) -> [f
         ("friction", "friction"),
         ("spring_stiffness", "stiffness"),
         ("spring_reference", "spring reference"),
+        ("armature", "armature"),
     ];
     names.map(|(name, check)| {
         if let Some(value) = dynamics.attribute(name) {
