@@ -121,6 +121,7 @@ impl Drawing {
             Form::Box { size } => ("box", size.to_vec(), None),
             Form::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None),
             Form::Capsule { radius, length } => ("capsule", vec![*radius, *length], None),
+            Form::Ellipsoid { radii } => ("ellipsoid", radii.to_vec(), None),
             Form::Sphere { radius } => ("sphere", vec![*radius], None),
             Form::Mesh { file, scale } => {
                 ("mesh", scale.to_vec(), self.meshes.iter().position(|mesh| mesh.address == *file))

@@ -56,9 +56,9 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     let is_drake = element.written_name() == "drake:joint";
     let kind = read_type(&element, is_drake, cx);
     let (axis, limit) = (children.get("axis"), children.get("limit"));
-    let [damping, friction, stiffness, spring_reference] = match (kind, is_drake) {
+    let [damping, friction, stiffness, spring_reference, armature] = match (kind, is_drake) {
         (Some("planar"), true) => read_dynamics(&children, &["friction"], &mut place, cx),
-        _ => read_dynamics(&children, &DYNAMICS_READ, &mut place, cx),
+        _ => read_dynamics(&children, &DYNAMICS_READ.map(|(name, _)| name), &mut place, cx),
     };
     // what a joint that does not move has of these means nothing
     let (mut freedoms, mut screw, mut limits) = (Freedoms::OneOrNone, None, Limits::default());
@@ -92,7 +92,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     // one damping of all axes is that of Drake's balls and universal joints
     let is_damped = matches!(kind, Some("ball" | "universal"));
     if let Some(kind) = kind.filter(|_| is_several) {
-        let is_rough = [if is_damped { 0.0 } else { damping }, friction, stiffness].iter().any(|x| *x != 0.0);
+        let is_rough = [if is_damped { 0.0 } else { damping }, friction, stiffness, armature].iter().any(|x| *x != 0.0);
         several_freedoms(kind, &children, is_rough, &element, cx);
     }
     if let Some(value) = element.attribute("type") {
@@ -111,7 +111,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         limits,
         damping: if is_several && !is_damped { 0.0 } else { damping },
         friction: if is_several { 0.0 } else { friction },
-        armature: 0.0,
+        armature: if is_several { 0.0 } else { armature },
         stiffness: if is_several { 0.0 } else { stiffness },
         spring_reference: if is_several { 0.0 } else { spring_reference },
         mimic: children.get("mimic").and_then(|mimic| read_mimic(mimic, &mut place, cx)),
@@ -195,17 +195,21 @@ fn read_end(name: &'static str, element: &Element, children: &Children, place: &
 }
 
 /// The attributes of `<dynamics>`, and how checks call them.
-const DYNAMICS_READ: [&str; 4] = ["damping", "friction", "spring_stiffness", "spring_reference"];
+const DYNAMICS_READ: [(&str, &str); 5] = [
+    ("damping", "damping"),
+    ("friction", "friction"),
+    ("spring_stiffness", "stiffness"),
+    ("spring_reference", "spring reference"),
+    ("armature", "armature"),
+];
 
-/// Damping, friction, and a spring by the names that SDF has for it: URDF itself has no springs. Only the attributes in
-/// `read` are read as single numbers.
-fn read_dynamics(children: &Children, read: &[&str], place: &mut Place, cx: &mut Context) -> [f64; 4] {
-    let Some(dynamics) = children.get("dynamics") else { return [0.0; 4] };
+/// Damping, friction, and two extensions: a spring by SDF's names, the armature by MJCF's. Only the attributes in `read` are
+/// read as single numbers.
+fn read_dynamics(children: &Children, read: &[&str], place: &mut Place, cx: &mut Context) -> [f64; 5] {
+    let Some(dynamics) = children.get("dynamics") else { return [0.0; 5] };
     dynamics.check_attributes(&DYNAMICS, cx);
     dynamics.check_children(&DYNAMICS, cx);
-    let checks = ["damping", "friction", "stiffness", "spring reference"];
-    core::array::from_fn(|i| {
-        let (name, check) = (DYNAMICS_READ[i], checks[i]);
+    DYNAMICS_READ.map(|(name, check)| {
         let Some(value) = dynamics.attribute(name).filter(|_| read.contains(&name)) else { return 0.0 };
         let number = dynamics.vector::<1>(name, &value, cx).map_or(0.0, |[x]| x);
         place.set(check, value.span);

@@ -55,11 +55,13 @@ mod context;
 mod diagnostic;
 mod dialect;
 mod drake;
+mod edit;
 mod element;
 pub mod embedded;
 mod error;
 mod explain;
 mod extension;
+mod expressible;
 mod finding;
 mod floating;
 pub mod geometry;
@@ -89,10 +91,13 @@ mod xacro;
 
 pub use consequence::{Consequence, consequence, unused};
 pub use diagnostic::Diagnostic;
+pub use edit::{EditError, edit};
 pub use error::LoadError;
 pub use explain::{codes, explain, nearest_code, remedy};
+pub use expressible::expressible;
 pub use mozzi::model::Severity;
 pub use pretty::Style;
+pub use spelling::did_you_mean;
 pub use visible::visible;
 pub use write::{NotUrdf, write};
 

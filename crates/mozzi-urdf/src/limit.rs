@@ -17,6 +17,10 @@ use crate::version::Version;
 use crate::vocabulary::LIMIT;
 use mozzi::model::description::Limits;
 
+/// How a limit that does not exist is written: urdfdom refuses a moving joint's <limit> without `effort` and `velocity`,
+/// reads a missing bound as 0, and reads no infinity.
+pub(crate) const UNLIMITED: f64 = f64::MAX;
+
 /// The limits of a joint that moves.
 pub(crate) fn read(
     kind: &str,
@@ -53,7 +57,7 @@ pub(crate) fn read(
     let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"].map(&mut number);
     if kind == "continuous" {
         continuous(limit, joint, [lower.1, upper.1], cx);
-        return Limits { position: None, velocity: velocity.1, effort: effort.1 };
+        return bounded(None, velocity.1, effort.1);
     }
     let mut missing = |name: &str, help: &str| {
         if is_misspelled {
@@ -92,7 +96,17 @@ pub(crate) fn read(
         }
     }
     let position = position.filter(|bounds| in_order(*bounds, limit, cx));
-    Limits { position, velocity: velocity.1, effort: effort.1 }
+    bounded(position, velocity.1, effort.1)
+}
+
+/// Without the limits that are [`UNLIMITED`].
+fn bounded(position: Option<[f64; 2]>, velocity: Option<f64>, effort: Option<f64>) -> Limits {
+    let exists = |limit: &f64| *limit != UNLIMITED;
+    Limits {
+        position: position.filter(|bounds| *bounds != [-UNLIMITED, UNLIMITED]),
+        velocity: velocity.filter(exists),
+        effort: effort.filter(exists),
+    }
 }
 
 /// Whether the lower bound is not above the upper one; the reverse is reported.

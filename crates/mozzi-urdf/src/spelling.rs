@@ -34,8 +34,8 @@ pub(crate) fn meant(word: &str) -> String {
     format!("did you mean `{word}`?")
 }
 
-/// The same of the nearest known word.
-pub(crate) fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+/// The same of the known word nearest to an unknown one, if it is near enough to have been meant.
+pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(word, known).map(meant)
 }
 

@@ -48,7 +48,7 @@ pub(crate) const LIMIT: Vocabulary = Vocabulary {
     ..NOTHING
 };
 pub(crate) const DYNAMICS: Vocabulary =
-    Vocabulary { attributes: &["damping", "friction", "spring_stiffness", "spring_reference"], ..NOTHING };
+    Vocabulary { attributes: &["damping", "friction", "spring_stiffness", "spring_reference", "armature"], ..NOTHING };
 pub(crate) const MIMIC: Vocabulary = Vocabulary { attributes: &["joint", "multiplier", "offset"], ..NOTHING };
 
 /// The types of joints that mozzi computes.

@@ -2,6 +2,7 @@
 
 use super::info;
 use crate::failure::{self, Failure, Result};
+use crate::json_file::Misplaced;
 use crate::robot::PolicyArguments;
 use crate::{input, robot_json};
 use clap::{Args, ValueEnum};
@@ -56,7 +57,9 @@ fn json_robot(arguments: &CheckArguments) -> Result<String> {
     let name = input::name(&arguments.model);
     let is_lines = arguments.json || arguments.format == Format::Json;
     let robot = match robot_json::read(&arguments.model) {
-        Err(Failure::Wrong(why)) if is_lines => return Err(Failure::Answered(placeless(name, "error", None, &why))),
+        Err(errors) if is_lines => {
+            return Err(Failure::Answered(errors.iter().map(|error| misplaced(name, error)).collect()));
+        }
         other => other?,
     };
     let (errors, warnings) = arguments.policy.problems(&robot);
@@ -114,6 +117,15 @@ fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> S
         "line": null,
         "column": null,
         "help": code.and_then(mozzi_urdf::remedy),
+    }))
+}
+
+/// The text of JSON itself is wrong.
+fn misplaced(name: &str, error: &Misplaced) -> String {
+    let (row, column) = error.position.unzip();
+    line(json!({
+        "severity": "error", "code": null, "message": error.message,
+        "file": name, "line": row, "column": column, "help": null,
     }))
 }
 

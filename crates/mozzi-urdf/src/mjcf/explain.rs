@@ -47,7 +47,7 @@ pub(crate) const CODES: [Entry; 41] = [
         "add the force beyond the limit to the joint torques, if the motion reaches it"),
     ("ignored_mesh",
         "A body that does not move has a mesh of unknown mass. It does not affect the dynamics; its mass is taken \
-         as 0.",
+         as 0. For the page: a mesh that has no file, because the model gives its vertices, is not drawn.",
         "no action is needed, unless you need the total mass"),
     ("include",
         "An included file cannot be read. Files are searched in the folder of the main file, also if an included \

@@ -57,6 +57,7 @@ mod orientation;
 mod rotor;
 #[cfg(test)]
 mod schema;
+mod shapes;
 mod spring;
 mod tree;
 mod vocabulary;
@@ -67,7 +68,8 @@ pub use explain::codes;
 use crate::context::Context;
 use crate::dialect::Dialect;
 use crate::element::Element;
-use crate::finding::Finding;
+use crate::finding::{Finding, Findings};
+use crate::geometry::Shape;
 use crate::pages::Pages;
 use crate::places::Places;
 use crate::source::Source;
@@ -78,6 +80,7 @@ use ignored::Ignored;
 use keyframe::Key;
 use mozzi::Description;
 use option::Options;
+use shapes::Shapes;
 use std::path::Path;
 use tree::Tree;
 
@@ -93,6 +96,15 @@ pub(crate) struct Model<'a> {
     pub classes: Classes<'a>,
     pub ignored: Ignored,
     pub tree: Tree,
+    /// If they are asked for.
+    pub shapes: Option<Shapes>,
+}
+
+/// What a caller wants of a model.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Dynamics,
+    Shapes,
 }
 
 /// From texts to a description. Included files are added to the sources.
@@ -101,6 +113,22 @@ pub(crate) fn read(
     folder: Option<&Path>,
     cx: &mut Context,
 ) -> Option<(Description, Places)> {
+    let (description, places, _) = read_pages(sources, folder, Wanted::Dynamics, cx)?;
+    Some((description, places))
+}
+
+/// From texts to shapes, with the findings about them alone; none if the model is refused.
+pub(crate) fn shapes(sources: &mut Vec<Source>, folder: Option<&Path>) -> (Vec<Shape>, Context) {
+    let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
+    match read_pages(sources, folder, Wanted::Shapes, &mut cx) {
+        Some((description, _, Some(shapes))) => shapes.named(&description.links),
+        _ => (Vec::new(), Context::default()),
+    }
+}
+
+type Read = (Description, Places, Option<Shapes>);
+
+fn read_pages(sources: &mut Vec<Source>, folder: Option<&Path>, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     let includes = include::gather(sources, folder, cx)?;
     let mut pages = Vec::new();
     for source in sources.iter() {
@@ -113,10 +141,10 @@ pub(crate) fn read(
         }
     }
     let pages = Pages::new(pages, includes);
-    read_model(&pages.root("mujoco")?, cx)
+    read_model(&pages.root("mujoco")?, wanted, cx)
 }
 
-fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)> {
+fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
             format!("the root element is <{}>, expected <mujoco>", crate::vocabulary::shown(root.written_name()));
@@ -136,7 +164,9 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
         classes: Classes::read(of("default"), cx),
         ignored: Ignored::default(),
         tree: Tree::new(root),
+        shapes: None,
     };
+    model.shapes = (wanted == Wanted::Shapes).then(|| Shapes::new(&sections, &model.classes));
     model.options = Options::read(of("option"), &mut model.ignored, cx);
     for worldbody in of("worldbody") {
         model.world(worldbody, cx);
@@ -157,5 +187,5 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     let (mut description, mut places) = model.tree.describe(name, model.options.gravity, cx);
     spring::tune(&mut description, &tunings, cx);
     keyframe::add(keys, &slots, &mut description, &mut places, cx);
-    Some((description, places))
+    Some((description, places, model.shapes))
 }
