@@ -140,8 +140,9 @@ fn links_permissions_and_devices_stay() {
 fn a_large_page_announces_its_size() {
     let folder = folder("large_page");
     let mut table = String::from("t,theta_1,theta_2,dtheta_1,dtheta_2,ddtheta_1,ddtheta_2,tau_1,tau_2\n");
-    for row in 0..320_000 {
-        table.push_str(&format!("{row},0,1,2,3,4,5,6,7\n"));
+    for row in 0..400_000 {
+        let x = (f64::from(row) * 0.1).sin();
+        table.push_str(&format!("{row},{x},{x},{x},{x},{x},{x},{x},{x}\n"));
     }
     let motion = file(&folder, "long.csv", &table);
     let page = folder.join("long.html");
@@ -150,7 +151,7 @@ fn a_large_page_announces_its_size() {
     let announced = said(&["--page-rows", "all"]);
     let size = std::fs::metadata(&page).expect("written").len();
     assert!(size > 20_000_000, "{size}");
-    let expected = format!("note: page: 320000 of 320000 rows, {:.1} MB: ", size as f64 / 1e6);
+    let expected = format!("note: page: 400000 of 400000 rows, {:.1} MB: ", size as f64 / 1e6);
     assert!(announced.contains(&expected) && announced.contains("--page-rows"), "{announced}");
     assert!(!said(&[]).contains("note: page"));
 }

@@ -49,6 +49,18 @@ impl Finding {
         self
     }
 
+    /// Without words of the text, for a file whose content is not to be shown. What is said of an `<include>` and of an
+    /// encoding has none.
+    fn without_content(self) -> Self {
+        let says_nothing = ["include", "repeated_include", "too_large", "not_utf8", "empty"];
+        if says_nothing.contains(&self.code) {
+            return self;
+        }
+        let message = "this included file has content that MJCF does not define here; it is not shown".to_string();
+        let help = "if it is a part of the model, make <mujocoinclude> its root: then the content is shown";
+        Finding { message, help: Some(help.to_string()), ..self }
+    }
+
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
         self.help = help;
         self
@@ -117,6 +129,7 @@ impl Findings {
             let file = source.file();
             let mut walker = Walker::new(&file.text);
             while let Some(mut finding) = kept.next_if(|finding| finding.span.start < end) {
+                finding = if source.is_shown { finding } else { finding.without_content() };
                 let local = |place: usize| place.saturating_sub(source.base);
                 let span = source.in_file(local(finding.span.start)..local(finding.span.end));
                 finding.span = file.clamp(span);

@@ -171,11 +171,11 @@ fn wrong_includes() {
             "<x><include file='https://x.org/a.xml'/></x>",
             "./parts/a.xml:1:19: error: include: `https://x.org/a.xml` is not on this machine, expected a file",
         ),
-        ("syntax", "<x>\n<body", "./parts/a.xml:2:1: error: the file ends inside a tag that opens here"),
+        ("syntax", "<mujoco>\n<body", "./parts/a.xml:2:1: error: the file ends inside a tag that opens here"),
         ("empty", "", "./parts/a.xml:1:1: error: the file is empty, expected a <mujoco>"),
         (
             "content",
-            "<x>\n <worldbody><bodi/></worldbody></x>",
+            "<mujoco>\n <worldbody><bodi/></worldbody></mujoco>",
             "./parts/a.xml:2:14: error: worldbody: has an element <bodi>, which MJCF does not define here",
         ),
     ];
@@ -198,12 +198,13 @@ fn wrong_includes() {
 #[test]
 fn an_include_shows_no_lines_of_other_files() {
     let main = "<mujoco>\n<include file='secret'/></mujoco>";
-    let secrets: [&[u8]; 5] = [
+    let secrets: [&[u8]; 6] = [
         b"root:x:0:0:hunter2:/root:/bin/sh\nalice:x:1000:hunter2\n",
         b"<config>\n  <password>hunter2</password>\n</config>",
         b"<config user='hunter2'>\n  <joint name='hunter2' <</config>",
         b"key = hunter2\n<!-- hunter2 -->\n<login password='hunter2'/>",
         b"hunter2 \xff hunter2",
+        b"<x>\n<worldbody><body name='hunter2'><joint type='hunter2' axis='hunter2'/></body></worldbody></x>",
     ];
     for secret in secrets {
         let folder = folder("secret", &[("main.xml", main)]);
