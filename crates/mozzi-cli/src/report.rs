@@ -53,7 +53,7 @@ impl Display for Rows {
 enum Which {
     /// Those that are meant to be seen; of a link without any, those that collide
     Visual,
-    /// Those that collide: mostly smaller
+    /// Those that collide, mostly smaller; of a link without any, its visual boxes, cylinders and balls
     Collision,
     /// None
     None,

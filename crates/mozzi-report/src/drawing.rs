@@ -6,6 +6,7 @@ use flate2::{Compression, write::GzEncoder};
 use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry, locate, parse};
 use mozzi_urdf::{LoadError, visible};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,7 @@ pub enum Meshes {
     /// Those that are meant to be seen; of a link without any, those that collide.
     #[default]
     Visual,
-    /// Those that collide: mostly smaller.
+    /// Those that collide, mostly smaller; of a link without any, its visual boxes, cylinders and balls.
     Collision,
     /// None: boxes, cylinders and balls alone, and a skeleton.
     None,
@@ -132,11 +133,16 @@ impl Drawing {
 
 /// The shapes that are drawn.
 fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
-    let looks: Vec<String> =
-        shapes.iter().filter(|shape| shape.purpose == Purpose::Visual).map(|shape| shape.link.clone()).collect();
+    let links = |purpose| -> BTreeSet<String> {
+        shapes.iter().filter(|shape| shape.purpose == purpose).map(|shape| shape.link.clone()).collect()
+    };
+    let (looks, contacts) = (links(Purpose::Visual), links(Purpose::Collision));
     let is_chosen = |shape: &Shape| match (meshes, shape.purpose) {
         (Meshes::None, _) if matches!(shape.form, Form::Mesh { .. }) => false,
-        (Meshes::Collision, purpose) => purpose == Purpose::Collision,
+        (Meshes::Collision, Purpose::Visual) => {
+            !contacts.contains(&shape.link) && !matches!(shape.form, Form::Mesh { .. })
+        }
+        (Meshes::Collision, Purpose::Collision) => true,
         (_, Purpose::Visual) => true,
         (_, Purpose::Collision) => !looks.contains(&shape.link),
     };

@@ -74,6 +74,11 @@ fn a_locked_joint_is_fixed_with_its_mimic_joints() {
     assert_eq!(new[3], "    <origin xyz=\"0.25 0.0 0.0\"/>", "{new:?}");
     assert!(!text.contains("<mimic"));
     assert_describes(&text, &robot, &[0.3]);
+    // an attribute that is missing is added after the others
+    let plain = ARM.replace(" rpy=\"0.0 0 0\"", "");
+    let (text, new, _) = edited(&plain, robot.description());
+    assert!(new[1].starts_with("    <origin xyz=\"0.2 0 0\" rpy=\"0.0 0.5"), "{new:?}");
+    assert_describes(&text, &robot, &[0.3]);
 }
 
 #[test]

@@ -78,7 +78,7 @@ impl<'a> Editor<'a> {
                 self.replacements.push((start..found.range().end, String::new()));
             }
             (None, Some(value)) => {
-                let after = tag.node.attributes().last().map(|attribute| attribute.range().end);
+                let after = tag.node.attributes().next_back().map(|attribute| attribute.range().end);
                 let at = after.unwrap_or(tag.node.range().start + 1 + tag.name().len());
                 self.replacements.push((at..at, format!(" {name}=\"{value}\"")));
             }
@@ -116,7 +116,7 @@ impl<'a> Editor<'a> {
             return self.open(parent, elements);
         }
         let break_line = self.line_before_child(parent);
-        let last = parent.node.children().filter(|node| node.is_element() || node.is_comment()).last();
+        let last = parent.node.children().rfind(|node| node.is_element() || node.is_comment());
         let at = last.map_or_else(|| parent.inside(), |node| node.range().end);
         self.replacements.push((at..at, elements.iter().map(|element| format!("{break_line}{element}")).collect()));
     }
