@@ -16,12 +16,12 @@ const CHUNK: usize = 1 << 16;
 
 /// The header of a file, or of an archive's array; `place` is its name in messages.
 pub fn header(place: &dyn Display, from: &mut dyn Read) -> Result<Header> {
-    Header::read(from).map_err(|what| Failure::wrong(format!("{place} is not a .npy file that can be read: {what}")))
+    Header::read(from).map_err(|what| Failure::wrong(format!("{place} is not a .npy file: {what}")))
 }
 
 /// The numbers behind a header, by rows; nothing may follow them. `length` is what is there, where that is known.
 pub fn numbers(place: &dyn Display, header: &Header, length: Option<u64>, from: &mut dyn Read) -> Result<Vec<f64>> {
-    let wrong = |what: &str| Failure::wrong(format!("{place} is not a .npy file that can be read: {what}"));
+    let wrong = |what: &str| Failure::wrong(format!("{place} is not a .npy file: {what}"));
     let other = |found: &dyn Display| {
         let shape = tuple(&header.shape);
         wrong(&format!("there are {found} bytes of numbers, expected those of shape {shape}"))
