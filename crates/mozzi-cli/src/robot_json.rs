@@ -4,8 +4,8 @@ mod entry;
 mod keys;
 mod states;
 
-use crate::{input, json};
 use crate::json_file::{JsonFile, Misplaced};
+use crate::{input, json};
 use entry::{At, Read};
 use mozzi::model::description::{FreeJoint, Gear, Joint, JointKind, Limits, Mimic, NamedFrame, Rotor};
 use mozzi::{Base, Description, Model, ScrewAxis, SpatialInertia, Vec3};
