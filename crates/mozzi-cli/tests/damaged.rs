@@ -179,7 +179,7 @@ fn devices_without_end_end() {
     assert!(refused(&["plot", "energy", "ur5", "/dev/zero", "--out", "no.svg"]).contains("line 1 holds a zero byte"));
     assert!(refused(&["info", "/dev/zero"]).contains("/dev/zero"));
     let controller = ["simulate", "ur5", "--controller", "/dev/zero"];
-    assert!(refused(&controller).contains("/dev/zero cannot be read: it has more than"));
+    assert!(refused(&controller).contains("/dev/zero: cannot be read: it has more than"));
     // a row without end, and rows without end
     let script = "yes 1,2,3,4 | tr -d '\\n' | \"$0\" compute two_link_planar inverse-dynamics --in -";
     let output = Command::new("sh").args(["-c", script, env!("CARGO_BIN_EXE_mozzi")]).output().expect("it runs");
