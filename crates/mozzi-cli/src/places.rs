@@ -1,7 +1,7 @@
 //! Which column of a table is what, by its name.
 //!
-//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry, from 1,
-//! or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z
+//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry, from
+//! 1, or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z
 //! f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a floating
 //! base's wrench may be left out alone, and are then 0: no motor drives it.
 

@@ -103,8 +103,8 @@ fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence,
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A file (URDF, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal, double_pendulum, furuta_pendulum,
-    /// panda, two_link_planar, ur5
+    /// A file (URDF, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
+    /// double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
     #[arg(long, value_name = "FRAME", visible_alias = "frame")]

@@ -24,8 +24,8 @@ const FORCES: [(&str, &str); 5] = [
     ("drake:controller_gains", "is a controller of the joint"),
 ];
 
-/// Prefixes of attributes and elements that say nothing about motion: XML's own, and those of sensors and controllers in
-/// URDFs of Gazebo's first versions.
+/// Prefixes of attributes and elements that say nothing about motion: XML's own, and those of sensors and controllers
+/// in URDFs of Gazebo's first versions.
 const HARMLESS: [&str; 5] = ["xml", "xsi", "sensor", "controller", "interface"];
 
 /// Reports an element with a prefix, unless it is read elsewhere or does not matter.

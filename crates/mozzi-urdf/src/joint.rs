@@ -203,8 +203,8 @@ const DYNAMICS_READ: [(&str, &str); 5] = [
     ("armature", "armature"),
 ];
 
-/// Damping, friction, and two extensions: a spring by SDF's names, the armature by MJCF's. Only the attributes in `read` are
-/// read as single numbers.
+/// Damping, friction, and two extensions: a spring by SDF's names, the armature by MJCF's. Only the attributes in
+/// `read` are read as single numbers.
 fn read_dynamics(children: &Children, read: &[&str], place: &mut Place, cx: &mut Context) -> [f64; 5] {
     let Some(dynamics) = children.get("dynamics") else { return [0.0; 5] };
     dynamics.check_attributes(&DYNAMICS, cx);

@@ -9,14 +9,15 @@
 //! joint of a joint that does not exist, for negative moments of inertia, and for having no links.
 //!
 //! - A `floating` joint at the root is a floating base ([`mozzi::Base`]); the empty link that carries it is the space
-//!   frame, not a link of the robot. Any other `floating` joint is a free joint of the tree. A `planar` joint `j` becomes
-//!   the prismatic joints `j.x` and `j.y` and the revolute joint `j.theta` about its axis, with massless links between: x
-//!   is along the joint frame's x-axis projected onto the plane (its y-axis if |axis_x| > 0.9), y along axis × x.
-//! - Versions 1.0, 1.1 and 1.2 of URDF are read as by urdfdom 6: `quat_xyzw` of an origin from 1.1 on, and with a warning
-//!   that it is ignored before.
-//! - Drake's words: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint (`screw`), or, if
-//!   `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator are
-//!   the armature ratio² × inertia. Its other forces and ties are warnings that name them.
+//!   frame, not a link of the robot. Any other `floating` joint is a free joint of the tree. A `planar` joint `j`
+//!   becomes the prismatic joints `j.x` and `j.y` and the revolute joint `j.theta` about its axis, with massless links
+//!   between: x is along the joint frame's x-axis projected onto the plane (its y-axis if |axis_x| > 0.9), y along axis
+//!   × x.
+//! - Versions 1.0, 1.1 and 1.2 of URDF are read as by urdfdom 6: `quat_xyzw` of an origin from 1.1 on, and with a
+//!   warning that it is ignored before.
+//! - Drake's words: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint (`screw`), or,
+//!   if `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator
+//!   are the armature ratio² × inertia. Its other forces and ties are warnings that name them.
 //! - Probable misspellings of URDF elements and attributes are errors, unless the right word is there as well. Known
 //!   extensions (gazebo, transmission, ros2_control) are skipped, except for what changes the motion, such as a link
 //!   without gravity. Other unknown words, of any namespace, give one warning per kind.

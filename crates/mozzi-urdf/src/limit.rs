@@ -17,8 +17,8 @@ use crate::version::Version;
 use crate::vocabulary::LIMIT;
 use mozzi::model::description::Limits;
 
-/// How a limit that does not exist is written: urdfdom refuses a moving joint's <limit> without `effort` and `velocity`,
-/// reads a missing bound as 0, and reads no infinity.
+/// How a limit that does not exist is written: urdfdom refuses a moving joint's <limit> without `effort` and
+/// `velocity`, reads a missing bound as 0, and reads no infinity.
 pub(crate) const UNLIMITED: f64 = f64::MAX;
 
 /// The limits of a joint that moves.

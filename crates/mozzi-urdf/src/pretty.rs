@@ -69,8 +69,8 @@ impl LoadError {
 /// A diagnostic as the report sees it.
 struct View<'d> {
     diagnostic: &'d Diagnostic,
-    /// The part of the text that is shown, where it begins in the file, its first line from 0, and what is marked in it:
-    /// places as if the file before it were as it is, and the part as it is shown.
+    /// The part of the text that is shown, where it begins in the file, its first line from 0, and what is marked in
+    /// it: places as if the file before it were as it is, and the part as it is shown.
     shown: String,
     start: usize,
     first_line: usize,

@@ -1,9 +1,9 @@
 //! A joint of several axes as joints of one freedom, one after the other, with massless links between.
 //!
-//! A planar joint: the child slides in the plane normal to the axis, by x, then y, and turns about the normal, by theta: in the
-//! axes of the joint at 0 its frame is at x x̂ + y ŷ, turned by theta about n. Along x̂ is the joint frame's x-axis, projected
-//! onto the plane; where the normal is nearly along that (|n_x| > 0.9), its y-axis. ŷ = n × x̂. With the axis `0 0 1` these are
-//! the frame's own x and y.
+//! A planar joint: the child slides in the plane normal to the axis, by x, then y, and turns about the normal, by
+//! theta: in the axes of the joint at 0 its frame is at x x̂ + y ŷ, turned by theta about n. Along x̂ is the joint
+//! frame's x-axis, projected onto the plane; where the normal is nearly along that (|n_x| > 0.9), its y-axis. ŷ = n ×
+//! x̂. With the axis `0 0 1` these are the frame's own x and y.
 //!
 //! A universal joint turns about x, by rx, then about the y-axis that has turned along, by ry.
 

@@ -52,7 +52,8 @@ pub struct SimulateArguments {
     /// Smooth Coulomb friction: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
     #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
     slip_speed: Option<String>,
-    /// Compute forward dynamics by machine code generated for this robot: equal up to rounding, two to three times as fast
+    /// Compute forward dynamics by machine code generated for this robot: equal up to rounding, two to three times as
+    /// fast
     #[arg(long)]
     compiled: bool,
     /// Record every K-th step
@@ -61,8 +62,9 @@ pub struct SimulateArguments {
     /// Allow a motion of more than 1e9 steps or 16 GB
     #[arg(long)]
     allow_large: bool,
-    /// Write the motion to a file, row by row; its ending chooses the format: .csv ("-": standard output), .npy, .npz, .arrow,
-    /// .feather; .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and works
+    /// Write the motion to a file, row by row; its ending chooses the format: .csv ("-": standard output), .npy, .npz,
+    /// .arrow, .feather; .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and
+    /// works
     #[arg(long, value_name = "FILE")]
     out: Option<String>,
     /// Write the motion as one HTML file that needs no network: the robot in 3-D, and plots

@@ -127,7 +127,8 @@ impl std::error::Error for EmitError {}
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let model = mozzi_urdf::open("ur5")?.build()?;
 /// let files = emit(&model, &[GravityForces.into()], Arguments::default(), Language::C, Precision::F32)?;
-/// assert!(files[0].name == "ur5.h" && files[0].text.contains("void ur5_gravity_forces(const float theta[6], float g[6]);"));
+/// let declared = "void ur5_gravity_forces(const float theta[6], float g[6]);";
+/// assert!(files[0].name == "ur5.h" && files[0].text.contains(declared));
 /// assert!(files[1].name == "ur5.c");
 /// # Ok(()) }
 /// ```

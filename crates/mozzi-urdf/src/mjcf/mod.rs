@@ -26,15 +26,15 @@
 //!   as in MuJoCo. Numbers of mimic joints are checked against their source joints', and not kept.
 //!
 //! # What is not read
-//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces, spatial tendons with an
-//!   armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
+//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces, spatial tendons with
+//!   an armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
 //!   shells.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //! - Loaded with a warning that nothing of the dynamics is lost: limits of tendons, reversed limits, an `<inertial>`
 //!   without moments, which is a point mass.
 //! - Counted ([`Loaded::unused`](crate::Loaded)), once per kind, with the codes `ignored_element` and
-//!   `ignored_attribute`: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies, settings of MuJoCo's
-//!   solver, appearance.
+//!   `ignored_attribute`: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies,
+//!   settings of MuJoCo's solver, appearance.
 //!
 //! Every element and attribute of MuJoCo's schema is in one of these classes; a test checks all of them.
 mod attributes;

@@ -1,4 +1,5 @@
-//! −M⁻¹X by articulated bodies, for robots of long limbs (Featherstone 2008, section 7.3): O(n) a column, where the factors of M take O(n · depth).
+//! −M⁻¹X by articulated bodies, for robots of long limbs (Featherstone 2008, section 7.3): O(n) a column, where the
+//! factors of M take O(n · depth).
 //!
 //! The factors of forward dynamics are those of M: with what a joint feels once all joints beyond it are free,
 //!
@@ -16,8 +17,8 @@ use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
 
-/// Of W columns at a link what its joint's row holds, and P or a, angular first. A step waits for the one before it, so that several columns take no longer
-/// than one.
+/// Of W columns at a link what its joint's row holds, and P or a, angular first. A step waits for the one before it, so
+/// that several columns take no longer than one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtLink<S> {
     x: [S; W],
@@ -30,8 +31,8 @@ impl<S: Scalar> AtLink<S> {
     }
 }
 
-/// Overwrites X and Y, n × n by rows, with −M⁻¹X and −M⁻¹Y, and `inverse` with M⁻¹. The workspace holds the factors of forward dynamics, and of links R, p and A
-/// in the base's axes.
+/// Overwrites X and Y, n × n by rows, with −M⁻¹X and −M⁻¹Y, and `inverse` with M⁻¹. The workspace holds the factors of
+/// forward dynamics, and of links R, p and A in the base's axes.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn solve_columns<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -71,8 +72,8 @@ struct Factors<'w, S> {
 }
 
 impl<S: Scalar> Factors<'_, S> {
-    /// W columns from c on of three matrices, which do not wait for each other. Each has its first row, and the outermost link, that are not 0; rows before the
-    /// first are not written.
+    /// W columns from c on of three matrices, which do not wait for each other. Each has its first row, and the
+    /// outermost link, that are not 0; rows before the first are not written.
     #[inline(always)]
     fn solve<C: Scalar>(
         &self,

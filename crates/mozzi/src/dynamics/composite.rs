@@ -1,12 +1,12 @@
-//! Composite rigid bodies: the one pass behind M, C, ∂τ and ∂θ̈ (Walker and Orin 1982; Featherstone 2008, section 6.2; Echeandia and Wensing 2021;
-//! Singh, Russell and Wensing 2022).
+//! Composite rigid bodies: the one pass behind M, C, ∂τ and ∂θ̈ (Walker and Orin 1982; Featherstone 2008, section 6.2;
+//! Echeandia and Wensing 2021; Singh, Russell and Wensing 2022).
 //!
 //! Each of these n × n matrices is the same form, with another pair of twists (r, s) for each axis:
 //!
 //! > X_ij = A_iᵀ (𝒢ᶜ r_j + 𝓑ᶜ s_j) for i and j on one path from the base to a tip, else 0
 //!
-//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the inertia of all that its link carries, 𝓑ᶜ the sum of
-//! 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
+//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the inertia of all that its link carries,
+//! 𝓑ᶜ the sum of 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
 //!
 //! | X | r | s |
 //! |---|---|---|
@@ -15,11 +15,12 @@
 //! | ∂τ/∂θ̇ | D | A |
 //! | ∂τ/∂θ | Ä | Ȧ |
 //!
-//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has a term more where j is beyond i. A mimic joint's axis is taken times its ratio, and its
-//! entries are added to its source joint's.
+//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has a term more where j is beyond i. A mimic joint's axis is
+//! taken times its ratio, and its entries are added to its source joint's.
 //!
-//! Bodies are in each link's own frame, whose z is the joint's axis: in one frame for all, the moment of inertia of a slender link about its own joint
-//! becomes a difference of large numbers. How a wrench goes from a link to the base is [`Path`]'s.
+//! Bodies are in each link's own frame, whose z is the joint's axis: in one frame for all, the moment of inertia of a
+//! slender link about its own joint becomes a difference of large numbers. How a wrench goes from a link to the base is
+//! [`Path`]'s.
 
 use super::armature::set_armature;
 use super::path::{BaseAxes, LinkFrames, Pairs, Path, turn};
@@ -29,7 +30,8 @@ use crate::model::{ByRates, Model, Row, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, SpatialInertia, Twist, Wrench};
 
-/// The pairs (r, s) of the six axes e of a floating base, in its coordinates: r_e = `[ad_X]` e + `[ad_Y][ad_Y]` e and s_e = σ e + `[ad_Y]` e.
+/// The pairs (r, s) of the six axes e of a floating base, in its coordinates: r_e = `[ad_X]` e + `[ad_Y][ad_Y]` e and
+/// s_e = σ e + `[ad_Y]` e.
 #[derive(Clone, Copy)]
 pub(super) struct BaseRates<S> {
     pub X: Twist<S>,
@@ -92,7 +94,8 @@ pub(super) struct Does {
     pub is_composite: bool,
 }
 
-/// Fills the matrices. The workspace holds T_{i,i−1}(θ), and of each link 𝒢, the pairs, 𝓑 and 𝓕, as far as the matrices take them.
+/// Fills the matrices. The workspace holds T_{i,i−1}(θ), and of each link 𝒢, the pairs, 𝓑 and 𝓕, as far as the matrices
+/// take them.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
 pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
@@ -265,7 +268,8 @@ pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W = `[ad_A]`ᵀ𝓕ᶜ. They move together.
+/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W =
+/// `[ad_A]`ᵀ𝓕ᶜ. They move together.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn carried_together<S: Scalar + From<C>, C: Scalar>(

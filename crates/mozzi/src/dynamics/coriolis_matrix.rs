@@ -14,9 +14,9 @@ use crate::spatial::{AxisRate, CoriolisFactor, Twist};
 /// > C = Σ_k J_kᵀ (𝒢_k J̇_k + ½ (𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 + H(𝒢𝒱)) J_k), H(m, f) = `[[−[m], −[f]], [−[f], 0]]`
 ///
 /// With J̇_k = Ad `[ad_𝒱_i]` A_i − `[ad_𝒱_k]` Ad A_i, what stands before Ad A_i is ½ (𝒢̇ + H(𝒢𝒱)): the rate of the
-/// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too, but
-/// Ṁ − 2C is not skew for it.) A floating base's velocities are no coordinates' rates and have no Christoffel symbols; the same
-/// formula gives a C with the same two properties for it.
+/// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too,
+/// but Ṁ − 2C is not skew for it.) A floating base's velocities are no coordinates' rates and have no Christoffel
+/// symbols; the same formula gives a C with the same two properties for it.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -61,8 +61,8 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     add_coriolis_blocks(model, dtheta, C);
 }
 
-/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is left out: in C + Cᵀ
-/// what it adds would cancel, up to rounding.
+/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is
+/// left out: in C + Cᵀ what it adds would cancel, up to rounding.
 ///
 /// Cost O(n · depth), no allocation.
 ///

@@ -17,15 +17,17 @@ use crate::quantity::{
 };
 use crate::scalar::Scalar;
 
-/// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n × n, row-major: row i is
-/// θ̈_i's, and columns are as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
+/// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n
+/// × n, row-major: row i is θ̈_i's, and columns are as of
+/// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
-/// θ̈ is by M, which the derivatives need as well; of robots of long limbs by articulated bodies, whose factors solve for all columns. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
+/// θ̈ is by M, which the derivatives need as well; of robots of long limbs by articulated bodies, whose factors solve
+/// for all columns. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
 ///
 /// > ∂θ̈/∂θ = −M⁻¹ ∂τ/∂θ, ∂θ̈/∂θ̇ = −M⁻¹ ∂τ/∂θ̇, ∂θ̈/∂τ = M⁻¹, all at this θ̈
 ///
-/// Where M is singular the results are not finite or meaningless: the methods of [`Model`] look at the pivots and answer with an
-/// error.
+/// Where M is singular the results are not finite or meaningless: the methods of [`Model`] look at the pivots and
+/// answer with an error.
 ///
 /// Cost O(n² · depth), of robots of long limbs O(n²), no allocation.
 ///

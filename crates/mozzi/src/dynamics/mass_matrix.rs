@@ -6,11 +6,12 @@ use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
-/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ of each rotor that several joints turn. kg m², kg m or kg.
+/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ of each rotor
+/// that several joints turn. kg m², kg m or kg.
 ///
 /// Each link's composite inertia 𝒢ᶜ holds all that hangs from it. Accelerating joint i alone needs the wrench 𝒢ᶜA at
-/// link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their block is the
-/// whole robot's composite inertia.
+/// link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their
+/// block is the whole robot's composite inertia.
 ///
 /// Cost O(n · depth), no allocation.
 ///

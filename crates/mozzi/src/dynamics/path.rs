@@ -1,9 +1,10 @@
 //! The way of a wrench from a link to the base, in one of two kinds of coordinates.
 //!
-//! In each link's own frame an axis is along z, and of a wrench little is multiplied, but it is turned at every step. In the base's axes, about each
-//! link's own origin, a step is a shift, but an axis is a general twist, and every link is turned once. Links that follow each other are then taken
-//! together, about the origin of the last, the nearest to where the wrench comes from. Composite bodies stay in the links' own frames
-//! either way, where they keep their digits.
+//! In each link's own frame an axis is along z, and of a wrench little is multiplied, but it is turned at every step.
+//! In the base's axes, about each link's own origin, a step is a shift, but an axis is a general twist, and every link
+//! is turned once. Links that follow each other are then taken together, about the origin of the last, the nearest to
+//! where the wrench comes from. Composite bodies stay in the links' own frames either way, where they keep their
+//! digits.
 
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;

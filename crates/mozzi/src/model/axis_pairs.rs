@@ -1,5 +1,5 @@
-//! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame: of s the angular part, what its linear
-//! one multiplies being 0. The axis is along z; a rate of it has no part along z.
+//! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame: of s the
+//! angular part, what its linear one multiplies being 0. The axis is along z; a rate of it has no part along z.
 
 use crate::lie::SO3;
 use crate::linalg::Vec3;

@@ -204,7 +204,8 @@ fn couple<C: Real>(
     (joints, places)
 }
 
-/// Mean numbers of links between a link and the base above which the base's axes are faster, and articulated bodies; measured, see `docs/performance-log.md`.
+/// Mean numbers of links between a link and the base above which the base's axes are faster, and articulated bodies;
+/// measured, see `docs/performance-log.md`.
 const DEEP: usize = 8;
 const VERY_DEEP: usize = 10;
 const TURN: [bool; 2] = [true, false];

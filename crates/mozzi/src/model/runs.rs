@@ -54,7 +54,8 @@ impl Runs {
     }
 }
 
-/// The axes of a run and their pairs in the base's axes, about the origin of its last link: of each link one number in each list.
+/// The axes of a run and their pairs in the base's axes, about the origin of its last link: of each link one number in
+/// each list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<S> {
     A: [[S; W]; 6],
