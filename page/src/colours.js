@@ -1,5 +1,5 @@
-// One colour for each series, told apart on light and on dark ground: hues of equal lightness, spread by the golden
-// angle from the ninth on.
+// One colour for each series, told apart on light and on dark ground: hues of equal lightness, spread by the golden angle from the
+// ninth on.
 
 const FEW = ["#3b7dd8", "#e07b39", "#2f9e6e", "#c9486a", "#8a63d2", "#b8962e", "#1f9bb0", "#d264b6"];
 

@@ -1,12 +1,12 @@
-// Which curves stand in which plot: joints of one axis by their units, the parts of a ball, a free joint and a floating
-// base each on its own, energies.
+// Which curves stand in which plot: joints of one axis by their units, the parts of a ball, a free joint and a floating base each on its
+// own, energies.
 
 import { hasQuaternion, positionsOf, slides, velocitiesOf } from "./joints.js";
 
 const COLOURS = ["#e5484d", "#30a46c", "#3e7bfa", "#8a63d2"];
 
-// What a motion knows of its joints: its title and units, turning and sliding; and the parts of a joint of several
-// numbers, each { title, unit, from, to } among them.
+// What a motion knows of its joints: its title and units, turning and sliding; and the parts of a joint of several numbers, each { title,
+// unit, from, to } among them.
 const QUANTITIES = [
   { key: "theta", title: "θ", units: ["rad", "m"], parts: [["quaternion", "", 0, 4], ["p", "m", 4, 7]] },
   { key: "dtheta", title: "θ̇", units: ["rad/s", "m/s"], parts: [["ω", "rad/s, in its own axes", 0, 3], ["v", "m/s, in its own axes", 3, 6]] },

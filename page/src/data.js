@@ -1,5 +1,5 @@
-// The data that mozzi writes into the page: `robot`, `meshes` and `motion`, see crates/mozzi-report. Numbers of a
-// motion are 32-bit floats, base64, its times 64-bit ones; meshes are gzipped.
+// The data that mozzi writes into the page: `robot`, `meshes` and `motion`, see crates/mozzi-report. Numbers of a motion are 32-bit
+// floats, base64, its times 64-bit ones; meshes are gzipped.
 
 import { hasQuaternion, normalized } from "./joints.js";
 import { dot, fromRows, identity } from "./lie.js";
@@ -21,8 +21,8 @@ function floats(base64, size = 4) {
   return Float64Array.from({ length: raw.length / size }, (_, k) => at(k));
 }
 
-// Body 0 is the base; `moving` are the bodies that a joint moves, each with its place `at` among all, `allJoints` the
-// independent joints. A floating base stands first in both.
+// Body 0 is the base; `moving` are the bodies that a joint moves, each with its place `at` among all, `allJoints` the independent joints. A
+// floating base stands first in both.
 export function readRobot(raw) {
   const isFloating = raw.base === "floating";
   const base = isFloating ? [{ name: "base", kind: "free", parent: -1, at: 0, M: identity(), q: 0, j: 0 }] : [];

@@ -1,6 +1,5 @@
-// What the page has to know of a robot at a state, in the coordinates of {s}: there bodies and axes add up without
-// being carried from frame to frame. The numbers come from mozzi (joints' screws, inertias); page/test holds these
-// formulas to mozzi's.
+// What the page has to know of a robot at a state, in the coordinates of {s}: there bodies and axes add up without being carried
+// from frame to frame. The numbers come from mozzi (joints' screws, inertias); page/test holds these formulas to mozzi's.
 
 import { displacement, screws } from "./joints.js";
 import {
@@ -18,8 +17,7 @@ export function poses(robot, theta) {
   return T;
 }
 
-// The state's motions: of each velocity that moves a body directly, { body, j, S }, with S = Ad_T A times a mimic
-// joint's ratio.
+// The state's motions: of each velocity that moves a body directly, { body, j, S }, with S = Ad_T A times a mimic joint's ratio.
 export function axes(robot, T) {
   return robot.moving.flatMap((body) => screws(body).map((A, k) => ({ body: body.at, j: body.j + k, S: adjoint(T[body.at], A) })));
 }
@@ -85,8 +83,8 @@ export function twists(robot, T, dtheta) {
   return V;
 }
 
-// The wrench that each joint transmits to its body, in {s}, and on the base: F_i = Σ 𝒢V̇ − ad_Vᵀ𝒢V + F over all that it
-// carries, gravity as an upward acceleration of the base. `tip` is what the end effector applies, in its own frame.
+// The wrench that each joint transmits to its body, in {s}, and on the base: F_i = Σ 𝒢V̇ − ad_Vᵀ𝒢V + F over all that it carries,
+// gravity as an upward acceleration of the base. `tip` is what the end effector applies, in its own frame.
 export function wrenches(robot, T, dtheta, ddtheta, tip) {
   const V = twists(robot, T, dtheta);
   const upward = [0, 0, 0, ...scaled(robot.gravity, -1)];

@@ -41,8 +41,7 @@ export const linesOf = (body) => (body.kind === "free" ? [] : screws({ ...body, 
 // Where the joint acts on its body, in the body's frame.
 export const pointOf = (body) => body.center ?? linesOf(body)[0]?.point ?? [0, 0, 0];
 
-// Numbers that a slider can set: an angle or a length; of a ball and a free joint the rotation vector, of a free one
-// also the origin.
+// Numbers that a slider can set: an angle or a length; of a ball and a free joint the rotation vector, of a free one also the origin.
 export const coordinates = {
   names: (joint) => (hasQuaternion(joint) ? ["rx", "ry", "rz", "x", "y", "z"].slice(0, velocitiesOf(joint)).map((part) => `${joint.name}.${part}`) : [joint.name]),
   isLength: (joint, k) => slides(joint) || k > 2,

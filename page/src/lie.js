@@ -52,8 +52,7 @@ export const fromQuaternion = ([qw, qx, qy, qz, ...p]) => {
   };
 };
 
-// The unit quaternion (w, x, y, z) of a rotation vector, and back; both signs of a quaternion are one rotation, of at
-// most π.
+// The unit quaternion (w, x, y, z) of a rotation vector, and back; both signs of a quaternion are one rotation, of at most π.
 export const quaternionOf = (r) => {
   const angle = norm(r);
   return [Math.cos(angle / 2), ...scaled(r, angle > 1e-9 ? Math.sin(angle / 2) / angle : 0.5)];

@@ -1,5 +1,4 @@
-// M(θ) as a picture: the sign is the hue, the cube root of the size the strength, so that small entries are seen beside
-// large ones.
+// M(θ) as a picture: the sign is the hue, the cube root of the size the strength, so that small entries are seen beside large ones.
 
 import { short } from "./plots.js";
 import { colour } from "./theme.js";

@@ -1,5 +1,4 @@
-// What the buttons show over the robot: screw axes, frames, centres of mass, twists, wrenches, ellipsoids, the end
-// effector's path.
+// What the buttons show over the robot: screw axes, frames, centres of mass, twists, wrenches, ellipsoids, the end effector's path.
 
 import * as THREE from "three";
 import { centerOfMass, linearGram, poses, twists, wrenches } from "./dynamics.js";
@@ -8,8 +7,7 @@ import { linesOf, pointOf } from "./joints.js";
 import { KINDS } from "./kinds.js";
 import { Arrow, Ellipsoid, massMark, triad } from "./marks.js";
 
-// A velocity of 1 m/s by ‖θ̇‖ = 1 is drawn a quarter of a metre long; forces so that both ellipsoids are of the robot's
-// size.
+// A velocity of 1 m/s by ‖θ̇‖ = 1 is drawn a quarter of a metre long; forces so that both ellipsoids are of the robot's size.
 const DRAWN = 0.25;
 
 const center = ([m, x, y, z]) => (m > 0 ? [x / m, y / m, z / m] : [0, 0, 0]);

@@ -1,5 +1,4 @@
-// The picture: camera, light, ground, and a group for each body, placed by its pose. Drawn when something changed, not
-// otherwise.
+// The picture: camera, light, ground, and a group for each body, placed by its pose. Drawn when something changed, not otherwise.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";

@@ -1,5 +1,4 @@
-// The geometry of the robot's file: boxes, cylinders, spheres, capsules, ellipsoids, and meshes where the file was at
-// hand.
+// The geometry of the robot's file: boxes, cylinders, spheres, capsules, ellipsoids, and meshes where the file was at hand.
 
 import * as THREE from "three";
 import { ColladaLoader } from "three/addons/loaders/ColladaLoader.js";
