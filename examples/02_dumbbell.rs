@@ -1,7 +1,7 @@
 //! Rotational inertias of solids (Modern Robotics, exercises 8.1 and 8.2).
 //!
-//! **Exercise 8.1.** About the centre of a homogeneous solid of mass m, I_xx = ∫ρ(y² + z²)dV = m(⟨y²⟩ + ⟨z²⟩), where ⟨x²⟩
-//! is the mean of x² over the solid. Cut it into slabs across x, of area a(x): ⟨x²⟩ = ∫x²a dx / ∫a dx.
+//! **Exercise 8.1.** About the centre of a homogeneous solid of mass m, I_xx = ∫ρ(y² + z²)dV = m(⟨y²⟩ + ⟨z²⟩), where
+//! ⟨x²⟩ is the mean of x² over the solid. Cut it into slabs across x, of area a(x): ⟨x²⟩ = ∫x²a dx / ∫a dx.
 //!
 //! > box with edges e:            a constant            ⟨x²⟩ = e_x²/12
 //! > cylinder (r, l) along z:     a ∝ √(r² − x²)        ⟨x²⟩ = ⟨y²⟩ = r²/4, ⟨z²⟩ = l²/12
@@ -10,8 +10,8 @@
 //! hence the book's table: I_xx = m(h² + l²)/12 of a box, m(3r² + l²)/12 and m r²/2 of a cylinder, m(b² + c²)/5 of an
 //! ellipsoid.
 //!
-//! **Exercise 8.2.** A dumbbell of cast iron, 7500 kg/m³: two balls of ⌀ 20 cm on a bar of ⌀ 4 cm, 20 cm long; {b} at the
-//! centre, z along the bar. The balls' centres are d = 10 + 10 cm from it; by Steiner's theorem
+//! **Exercise 8.2.** A dumbbell of cast iron, 7500 kg/m³: two balls of ⌀ 20 cm on a bar of ⌀ 4 cm, 20 cm long; {b} at
+//! the centre, z along the bar. The balls' centres are d = 10 + 10 cm from it; by Steiner's theorem
 //!
 //! > I_xx = I_yy = m_c(3r² + l²)/12 + 2(2m_sR²/5 + m_sd²),  I_zz = m_cr²/2 + 2 · 2m_sR²/5
 //!

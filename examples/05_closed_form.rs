@@ -1,7 +1,7 @@
 //! The dynamics in closed form (Modern Robotics, section 8.4): the stacked matrices of the UR5.
 //!
-//! The recursion of Newton and Euler, all links at once, is a system of linear equations. With 𝒜 and 𝒢 constant and block
-//! diagonal, and 𝒲(θ) holding [Ad_{T_{i,i−1}}] below the diagonal (base at rest):
+//! The recursion of Newton and Euler, all links at once, is a system of linear equations. With 𝒜 and 𝒢 constant and
+//! block diagonal, and 𝒲(θ) holding [Ad_{T_{i,i−1}}] below the diagonal (base at rest):
 //!
 //! > 𝒱 = 𝒲𝒱 + 𝒜θ̇,  𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇]𝒲𝒱 + 𝒱̇_base,  𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip,  τ = 𝒜ᵀ𝓕
 //!

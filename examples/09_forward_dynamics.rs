@@ -2,11 +2,11 @@
 //!
 //! > M(θ)θ̈ = τ − h(θ, θ̇) − JᵀF_tip
 //!
-//! 1. The book's: h by one call of inverse dynamics with θ̈ = 0, column i of M by a call with θ̈ = e_i and nothing else;
-//!    then a general solver. O(n³).
+//! 1. The book's: h by one call of inverse dynamics with θ̈ = 0, column i of M by a call with θ̈ = e_i and nothing
+//!    else; then a general solver. O(n³).
 //! 2. Composite rigid bodies for M, and its factors M = LᵀDL along the tree. O(n · depth²) at most.
-//! 3. Articulated bodies: what each link, with all that hangs from it free to move, would feel like to a push. O(n), and
-//!    what `forward_dynamics` does.
+//! 3. Articulated bodies: what each link, with all that hangs from it free to move, would feel like to a push. O(n),
+//!    and what `forward_dynamics` does.
 //!
 //! With θ̈, inverse dynamics gives τ back. (Where joints follow others articulated bodies do not do, and
 //! `forward_dynamics` goes the second way.)

@@ -1,13 +1,13 @@
 //! A quadruped falls onto its feet: ANYmal, its base floating, and the books of its momentum.
 //!
-//! The base's configuration T_sb stands first among the positions, its twist 𝒱_b first among the velocities, the wrench on it
-//! first among the forces; nothing drives it, so those six are 0. What changes the momentum of all that moves is what comes from
-//! outside, gravity at the centre of mass and the ground at the feet:
+//! The base's configuration T_sb stands first among the positions, its twist 𝒱_b first among the velocities, the wrench
+//! on it first among the forces; nothing drives it, so those six are 0. What changes the momentum of all that moves is
+//! what comes from outside, gravity at the centre of mass and the ground at the feet:
 //!
 //! > ḣ = (0, m g) + Σ F_ground, about the centre of mass, whatever the twelve motors do
 //!
-//! h is Σ [Ad]ᵀ𝒢𝒱 over the links. The balance is drawn twice: ḣ at each time against the forces at that time, and h(t) − h(0)
-//! against the forces added up over the time.
+//! h is Σ [Ad]ᵀ𝒢𝒱 over the links. The balance is drawn twice: ḣ at each time against the forces at that time, and h(t)
+//! − h(0) against the forces added up over the time.
 
 use mozzi::simulation::{Input, Options};
 use mozzi::{FrameId, Model, Vec3, Wrench};

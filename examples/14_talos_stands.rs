@@ -1,13 +1,13 @@
 //! A humanoid stands on two feet: the joints' torques for given wrenches at the soles.
 //!
-//! With a floating base τ = M θ̈ + c + g + JᵀF has six rows more than there are motors. At rest g + JᵀF must be 0 in these six: the
-//! wrenches at the soles carry the weight. There are twelve numbers for six equations; here the smallest that do it are taken
-//! (least squares). Then the other rows are the motors' torques. The proof is forward dynamics: with those torques and those
-//! wrenches, nothing moves.
+//! With a floating base τ = M θ̈ + c + g + JᵀF has six rows more than there are motors. At rest g + JᵀF must be 0 in
+//! these six: the wrenches at the soles carry the weight. There are twelve numbers for six equations; here the smallest
+//! that do it are taken (least squares). Then the other rows are the motors' torques. The proof is forward dynamics:
+//! with those torques and those wrenches, nothing moves.
 //!
 //! Talos is not among the robots that mozzi brings along: `pip install example-robot-data`, then give the file
-//! `cmeel.prefix/share/example-robot-data/robots/talos_data/robots/talos_reduced.urdf` of its folder, or name the folder of robots
-//! in the variable MOZZI_ROBOTS.
+//! `cmeel.prefix/share/example-robot-data/robots/talos_data/robots/talos_reduced.urdf` of its folder, or name the
+//! folder of robots in the variable MOZZI_ROBOTS.
 
 use mozzi::nalgebra::DMatrix;
 use mozzi::{Environment, Wrench};

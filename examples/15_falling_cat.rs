@@ -1,8 +1,9 @@
 //! The falling cat: an arm adrift in space turns its base by moving, though its angular momentum stays 0.
 //!
-//! With A(θ) the matrix of the momentum h = A θ̇ and its base columns apart, h = A_b 𝒱_b + A_j θ̇_j = 0 gives the base's twist for any
-//! motion of the joints: 𝒱_b = −A_b⁻¹ A_j θ̇_j. A closed loop of the joints, there and back to the same posture, leaves the base
-//! turned, by an angle that depends on the loop and not on the time it takes; run backwards, it turns it back.
+//! With A(θ) the matrix of the momentum h = A θ̇ and its base columns apart, h = A_b 𝒱_b + A_j θ̇_j = 0 gives the
+//! base's twist for any motion of the joints: 𝒱_b = −A_b⁻¹ A_j θ̇_j. A closed loop of the joints, there and back to the
+//! same posture, leaves the base turned, by an angle that depends on the loop and not on the time it takes; run
+//! backwards, it turns it back.
 //!
 //! The same by forces: motors that make the joints follow the loop, no wrench on the base, forward dynamics.
 
@@ -17,7 +18,8 @@ use std::f64::consts::TAU;
 const POSE: [f64; 6] = [0.0, -1.2, 0.9, 0.3, 0.4, 0.0];
 const RADIUS: f64 = 1.4;
 
-/// Joint positions, rates and accelerations at the phase s ∈ [0, 1], which passes in one second, starting and ending at rest.
+/// Joint positions, rates and accelerations at the phase s ∈ [0, 1], which passes in one second, starting and ending at
+/// rest.
 fn on_the_loop(t: f64) -> [[f64; 6]; 3] {
     // s = t − sin(2πt)/2π, so that ṡ = s̈ = 0 at both ends
     let (s, ds, dds) = (t - (TAU * t).sin() / TAU, 1.0 - (TAU * t).cos(), TAU * (TAU * t).sin());
@@ -85,7 +87,8 @@ fn by_momentum(arm: &Model, steps: usize, backwards: bool) -> Result<SE3, Box<dy
     Ok(SE3::from_pose(*theta.first_chunk().ok_or("a base")?))
 }
 
-/// The same by motors: with the joints' accelerations given, the base's rows of M θ̈ + h = 0 give the base's, the others the torques.
+/// The same by motors: with the joints' accelerations given, the base's rows of M θ̈ + h = 0 give the base's, the
+/// others the torques.
 fn by_forces(arm: &Model) -> Result<SE3, Box<dyn Error>> {
     let motors = torque(|t, theta, dtheta, tau| {
         let [q, dq, ddq] = on_the_loop(t);

@@ -1,8 +1,8 @@
 //! Swing-up of the Furuta pendulum by iLQR: one motor, at the arm; the rod hangs at the start and stands at the end.
 //!
-//! The iterative linear-quadratic regulator (Li and Todorov 2004) takes a motion x[k], u[k] and the derivatives A = ∂x[k+1]/∂x[k]
-//! and B = ∂x[k+1]/∂u[k] along it, here exact for the Runge-Kutta steps that are taken. With v and V the slope and curvature of
-//! the cost of all that follows, and the cost ½ Σ xᵀWx + ½ Σ R u²,
+//! The iterative linear-quadratic regulator (Li and Todorov 2004) takes a motion x[k], u[k] and the derivatives A =
+//! ∂x[k+1]/∂x[k] and B = ∂x[k+1]/∂u[k] along it, here exact for the Runge-Kutta steps that are taken. With v and V the
+//! slope and curvature of the cost of all that follows, and the cost ½ Σ xᵀWx + ½ Σ R u²,
 //!
 //! > Q_u = Ru + Bᵀv, Q_uu = R + BᵀVB, Q_ux = BᵀVA, δu = −Q_uu⁻¹ (Q_u + Q_ux δx)
 //!

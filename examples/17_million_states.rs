@@ -1,7 +1,8 @@
-//! A million inverse dynamics of the UR5: one row a state, as NumPy would have it, on the machine's widest registers and all cores.
+//! A million inverse dynamics of the UR5: one row a state, as NumPy would have it, on the machine's widest registers
+//! and all cores.
 //!
-//! `cargo run --release -p mozzi-examples --example 17_million_states` takes a million; a number behind `--` that many. Without
-//! optimisation it takes a thousand.
+//! `cargo run --release -p mozzi-examples --example 17_million_states` takes a million; a number behind `--` that many.
+//! Without optimisation it takes a thousand.
 
 use mozzi::Environment;
 use mozzi::quantities::InverseDynamics;

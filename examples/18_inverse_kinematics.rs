@@ -1,12 +1,12 @@
 //! Inverse kinematics (Modern Robotics, chapter 6): where do the joints have to be, so that the hand is there?
 //!
-//! With e = log(T⁻¹T_d) the body twist that leads from the hand's pose to the goal in one second, J_b δ = e is Newton and Raphson's
-//! step. Near singular positions δ has no bound; Levenberg and Marquardt's is the minimum of
+//! With e = log(T⁻¹T_d) the body twist that leads from the hand's pose to the goal in one second, J_b δ = e is Newton
+//! and Raphson's step. Near singular positions δ has no bound; Levenberg and Marquardt's is the minimum of
 //!
 //! > ‖J_b δ − e‖² + λ‖δ‖²,  δ = Jᵀ(JJᵀ + λI)⁻¹e
 //!
-//! Here it is done by hand on the UR5 first, then by the library, which adds limits, starts and, for the Panda's seventh joint, a
-//! secondary goal: of all positions with the hand at its goal, the one nearest to a posture.
+//! Here it is done by hand on the UR5 first, then by the library, which adds limits, starts and, for the Panda's
+//! seventh joint, a secondary goal: of all positions with the hand at its goal, the one nearest to a posture.
 
 use mozzi::nalgebra::DVector;
 use mozzi::{Model, SE3, body_jacobian, forward_kinematics};

@@ -2,12 +2,13 @@
 //!
 //! > θ̇ = θ′ṡ,  θ̈ = θ″ṡ² + θ′s̈,  τ = M(θ)θ′ s̈ + (M(θ)θ″ + c(θ, θ′)) ṡ² + g(θ)
 //!
-//! so that along a path every limit is linear in s̈ and ṡ². First the fastest swing of a pendulum against its closed solution: the motor
-//! gives all it has, forwards to a place and backwards from there,
+//! so that along a path every limit is linear in s̈ and ṡ². First the fastest swing of a pendulum against its closed
+//! solution: the motor gives all it has, forwards to a place and backwards from there,
 //!
 //! > ½Iθ̇² = τθ + mgl(cos θ − 1) up to where it meets ½Iθ̇² = τ(θ₁ − θ) + mgl(cos θ − cos θ₁).
 //!
-//! Then the UR5: a path through points, run through by four profiles under the same limits; and its tool along a straight line.
+//! Then the UR5: a path through points, run through by four profiles under the same limits; and its tool along a
+//! straight line.
 
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};

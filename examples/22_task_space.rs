@@ -2,7 +2,8 @@
 //!
 //! > τ = Jᵀ(Λ(a + K_d 𝒱_e + K_p X_e) + η),  X_e = log(T⁻¹T_d),  𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱
 //!
-//! with a the acceleration at which 𝒱̇_e = 0. The Panda's seventh joint keeps its posture in the null space of the task.
+//! with a the acceleration at which 𝒱̇_e = 0. The Panda's seventh joint keeps its posture in the null space of the
+//! task.
 
 use mozzi_examples::tracking::{Arm, both_loads};
 use mozzi_motion::controllers::{Gains, Law, TaskSpace};

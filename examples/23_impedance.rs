@@ -2,8 +2,8 @@
 //!
 //! > τ = Jᵀ(Λa + η + B𝒱_e + KX_e),  so that Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕,
 //!
-//! the wrench that it applies to its surroundings. Nothing is measured but the joints. First a motion is followed; then the tool is held
-//! against a wall that takes 15 N, and yields by KX_e = 𝓕.
+//! the wrench that it applies to its surroundings. Nothing is measured but the joints. First a motion is followed; then
+//! the tool is held against a wall that takes 15 N, and yields by KX_e = 𝓕.
 
 use mozzi::simulation::{Options, applied};
 use mozzi::{Vec3, Wrench};

@@ -1,7 +1,8 @@
 //! Keyframes of a model in MJCF: a stone above a table and an arm, from the states that the file names.
 //!
-//! MuJoCo starts at `qpos0`, where the file draws the bodies, even if there is a keyframe `home`; so does mozzi. A keyframe is a
-//! state by name: its `qpos` and `qvel` come as θ and θ̇, the stone's quaternion first and its velocity in its own axes.
+//! MuJoCo starts at `qpos0`, where the file draws the bodies, even if there is a keyframe `home`; so does mozzi. A
+//! keyframe is a state by name: its `qpos` and `qvel` come as θ and θ̇, the stone's quaternion first and its velocity
+//! in its own axes.
 
 use mozzi::model::State;
 use mozzi::simulation::{Options, Zero};

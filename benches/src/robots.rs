@@ -102,8 +102,9 @@ fn body(random: &mut Random) -> SpatialInertia {
     SpatialInertia::new(2.0 + random.next(), Vec3(random.array()) * 0.1, moments)
 }
 
-/// The same robot as every library gets it: fixed links merged into what carries them, joint k between a link of the base's or
-/// of another joint's number and link `k`, no friction, no armature, no limits, and the standard's gravity, which dynibo has built in.
+/// The same robot as every library gets it: fixed links merged into what carries them, joint k between a link of the
+/// base's or of another joint's number and link `k`, no friction, no armature, no limits, and the standard's gravity,
+/// which dynibo has built in.
 ///
 /// # Panics
 /// On joints beside their links' origins, which most libraries have no words for.

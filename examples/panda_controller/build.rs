@@ -11,7 +11,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     write(Path::new(&std::env::var_os("OUT_DIR").ok_or("cargo sets OUT_DIR")?))
 }
 
-/// `panda.rs`, `panda.c` and `panda.h` for the controller; `panda_loaded.*`, the arm with a load that the controller knows nothing of.
+/// `panda.rs`, `panda.c` and `panda.h` for the controller; `panda_loaded.*`, the arm with a load that the controller
+/// knows nothing of.
 pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     let arm = mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.04)])?;
     let load = Solid::Sphere { radius: 0.04 }.inertia(0.5);

@@ -6,7 +6,8 @@ pub mod tracking;
 
 use nalgebra::DMatrix;
 
-/// Panics unless two lists of numbers agree to a tolerance, relative to the largest number expected; says how well they do.
+/// Panics unless two lists of numbers agree to a tolerance, relative to the largest number expected; says how well they
+/// do.
 pub fn agree<'a>(
     what: &str,
     found: impl IntoIterator<Item = &'a f64>,

@@ -1,5 +1,5 @@
-//! What the examples of controllers share: two arms, a motion for each, and how well it is followed, with the load that the controller knows
-//! of and with one that it does not.
+//! What the examples of controllers share: two arms, a motion for each, and how well it is followed, with the load that
+//! the controller knows of and with one that it does not.
 
 use crate::chart::{Curve, chart};
 use mozzi::simulation::{Input, Options};

@@ -1,4 +1,5 @@
-//! Every quantity in every way, and other libraries, against numbers of 31 and 71 digits: the program of `mozzi-accuracy`.
+//! Every quantity in every way, and other libraries, against numbers of 31 and 71 digits: the program of
+//! `mozzi-accuracy`.
 
 use crate::command;
 use crate::oracles;

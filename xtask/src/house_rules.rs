@@ -5,7 +5,8 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Where `unsafe` may stand: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's methods. A file that starts so.
+/// Where `unsafe` may stand: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's methods. A
+/// file that starts so.
 const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi/src/fast",
     "crates/mozzi-batch/src/number",
@@ -15,6 +16,8 @@ const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi-py/src/methods/attach",
 ];
 
+/// Characters in a line.
+const WIDE: usize = 120;
 /// Files longer than this should be split.
 const LONG: usize = 400;
 
@@ -33,6 +36,10 @@ pub fn check(workspace: &Workspace) -> Outcome {
             println!("warning: {name}: {} lines, more than {LONG}", source.lines().count());
             long += 1;
         }
+        for line in long_comments(&source) {
+            println!("{name}:{line}: a comment of more than {WIDE} characters in a line: wrap it");
+            broken += 1;
+        }
         if !is_library_code(&name) {
             continue;
         }
@@ -46,6 +53,14 @@ pub fn check(workspace: &Workspace) -> Outcome {
         0 => Outcome::Passed(note),
         _ => Outcome::Failed(format!("{broken} places break a rule; {note}")),
     }
+}
+
+/// The lines of comments that are too long, tables left out; those of code are formatted by rustfmt.
+fn long_comments(source: &str) -> impl Iterator<Item = usize> {
+    let is_table = |line: &str| line.trim_start().trim_start_matches(['/', '!']).trim_start().starts_with('|');
+    let is_long =
+        move |line: &str| line.trim_start().starts_with("//") && line.chars().count() > WIDE && !is_table(line);
+    source.lines().enumerate().filter(move |(_, line)| is_long(line)).map(|(index, _)| index + 1)
 }
 
 /// `crates/*/src`, without files that are tests as a whole.
@@ -97,7 +112,14 @@ fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{broken_rules, is_library_code};
+    use super::{broken_rules, is_library_code, long_comments};
+
+    #[test]
+    fn long_comments_are_found_and_long_texts_are_not() {
+        let long = "x".repeat(120);
+        let source = format!("// {}\n    /// {long}\nlet a = \"{long}\";\n", "x".repeat(117));
+        assert_eq!(long_comments(&source).collect::<Vec<_>>(), [2]);
+    }
 
     #[test]
     fn each_rule_finds_its_line() {

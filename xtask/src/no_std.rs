@@ -1,7 +1,7 @@
 //! Is the library `no_std`? A `#![no_std]` static library with its own panic handler is built on it, for this machine.
 //!
-//! The crate is `xtask/no_std_check`. It has a panic handler, as `std` has one: if anything pulled `std` in, the compiler
-//! would refuse the second. It is built for the host: no bare-metal target is checked.
+//! The crate is `xtask/no_std_check`. It has a panic handler, as `std` has one: if anything pulled `std` in, the
+//! compiler would refuse the second. It is built for the host: no bare-metal target is checked.
 
 use crate::command;
 use crate::report::Outcome;

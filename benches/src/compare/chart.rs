@@ -1,4 +1,5 @@
-//! The ratios as a picture: for each robot a panel, for each quantity a row, for each library a mark at its time over mozzi's.
+//! The ratios as a picture: for each robot a panel, for each quantity a row, for each library a mark at its time over
+//! mozzi's.
 
 use crate::race::Table;
 use std::fmt::Write;

@@ -25,7 +25,8 @@ impl Width {
     }
 }
 
-/// Floating-point operations a nanosecond, a fused multiply-add being two; none where the processor has no such instructions.
+/// Floating-point operations a nanosecond, a fused multiply-add being two; none where the processor has no such
+/// instructions.
 pub fn measure(width: Width) -> Option<f64> {
     #[cfg(target_arch = "x86_64")]
     {

@@ -100,7 +100,8 @@ impl Peer {
         unsafe { text(function::<Text>(&self.library, name)?()) }.ok_or_else(|| format!("{name}: no text"))
     }
 
-    /// The robot, which [`merged`](mozzi_benches::robots::merged) made, at the same states; none if the library cannot hold it.
+    /// The robot, which [`merged`](mozzi_benches::robots::merged) made, at the same states; none if the library cannot
+    /// hold it.
     pub fn robot<'a>(&'a self, name: &str, model: &'a Model, states: &'a States) -> Result<Option<Robot<'a>>, String> {
         let (description, library) = (model.description(), &self.library);
         let convention = Convention::named(&self.text("peer_convention")?, model)?;
@@ -111,7 +112,8 @@ impl Peer {
         let c_text = |text: &str| CString::new(text).map_err(|error| format!("{name}: {error}"));
         let (c_name, urdf) = (c_text(name)?, c_text(&urdf(description)?)?);
         let rows = bodies(description);
-        // SAFETY: the types are those of peer.hpp; every pointer is to as many numbers as it reads there, and texts end.
+        // SAFETY: the types are those of peer.hpp; every pointer is to as many numbers as it reads there, and texts
+        // end.
         unsafe {
             let (make, set) =
                 (function::<NewRobot>(library, "peer_robot")?, function::<SetStates>(library, "peer_states")?);
@@ -136,7 +138,8 @@ impl Robot<'_> {
     pub fn simulate(&mut self, algorithm: usize, method: Method, [theta, dtheta]: [&mut [f64]; 2]) -> Option<()> {
         assert!(theta.len() == self.model.n() && dtheta.len() == self.model.n() && algorithm < self.algorithms.len());
         let is_runge_kutta = (method == Method::RungeKutta4).into();
-        // SAFETY: the type is that of peer.hpp; the robot is alive, the algorithm one of its own, and both arrays are of n numbers.
+        // SAFETY: the type is that of peer.hpp; the robot is alive, the algorithm one of its own, and both arrays are
+        // of n numbers.
         unsafe {
             let simulate = function::<Simulate>(self.library, "peer_simulate").ok()?;
             let (theta, dtheta) = (theta.as_mut_ptr(), dtheta.as_mut_ptr());

@@ -11,12 +11,12 @@ use mozzi::quantities::Query;
 use mozzi_benches::States;
 use std::time::{Duration, Instant};
 
-/// Further apart than this, over the largest entry, two libraries do not compute the same. The longest chain needs it: its M
-/// is so badly conditioned that accelerations keep ten digits.
+/// Further apart than this, over the largest entry, two libraries do not compute the same. The longest chain needs it:
+/// its M is so badly conditioned that accelerations keep ten digits.
 pub const LARGEST_DIFFERENCE: f64 = 1e-8;
 
-/// What ran before leaves its own caches and branch history, and the units of wide registers asleep: these wake for the first hundreds of
-/// microseconds of their use, during which they are several times slower.
+/// What ran before leaves its own caches and branch history, and the units of wide registers asleep: these wake for the
+/// first hundreds of microseconds of their use, during which they are several times slower.
 const WARMING: Duration = Duration::from_micros(500);
 
 /// The times of one algorithm, in nanoseconds for one evaluation.

@@ -1,4 +1,5 @@
-//! A second of a fixed arm, its motors braking, step after step: each step waits for the one before, other than where states are known.
+//! A second of a fixed arm, its motors braking, step after step: each step waits for the one before, other than where
+//! states are known.
 
 use crate::contestant::Contestant;
 use crate::peer::Peer;

@@ -17,7 +17,8 @@ pub struct Errors {
     whole: Vec<f32>,
     /// Of each state: the largest error of an entry over the entry's own unit; entries that are 0 do not count.
     entries: Vec<f32>,
-    /// Of each state, where the formula's terms are known: the largest error of an output over ε times the output's largest term.
+    /// Of each state, where the formula's terms are known: the largest error of an output over ε times the output's
+    /// largest term.
     terms: Vec<f32>,
 }
 

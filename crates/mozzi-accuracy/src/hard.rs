@@ -12,7 +12,8 @@ impl Text {
         Text(format!("<robot name=\"{name}\"><link name=\"base\"/>"))
     }
 
-    /// A link on a joint about `axis`, at `xyz` of its parent's frame, turned by `rpy`: a body of this mass whose size is `length`.
+    /// A link on a joint about `axis`, at `xyz` of its parent's frame, turned by `rpy`: a body of this mass whose size
+    /// is `length`.
     #[rustfmt::skip]
     #[allow(clippy::too_many_arguments)] // what a link and its joint are
     fn link(&mut self, name: &str, parent: &str, axis: &str, xyz: &str, rpy: &str, mass: f64, length: f64) {

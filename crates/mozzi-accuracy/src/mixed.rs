@@ -1,4 +1,5 @@
-//! A tree of hinges, a slide, a ball and a free joint, with springs, rotors, one of them turned by two joints, and a mimic joint.
+//! A tree of hinges, a slide, a ball and a free joint, with springs, rotors, one of them turned by two joints, and a
+//! mimic joint.
 
 use crate::robot::Robot;
 use crate::states::Kind;

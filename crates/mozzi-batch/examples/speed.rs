@@ -1,5 +1,6 @@
-//! Machine code beside `mozzi::fast` at one state and the kernels at many, and beside the emitted C by `gcc -O3 -march=native -std=gnu99`
-//! where there is a gcc, in one interleaved run on one thread: the least of many rounds, in nanoseconds a state.
+//! Machine code beside `mozzi::fast` at one state and the kernels at many, and beside the emitted C by
+//! `gcc -O3 -march=native -std=gnu99` where there is a gcc, in one interleaved run on one thread: the least of many
+//! rounds, in nanoseconds a state.
 //!
 //! `cargo run --release -p mozzi-batch --example speed [ROBOT …]`
 

@@ -95,8 +95,8 @@ impl<T: crate::Number> Chunk<'_, T> {
         }
     }
 
-    /// A state that the quick tests do not pass, at one state and in `f64`: the error that names the joint or the task, if there is one.
-    /// With `replace`, its outputs are those of that computation.
+    /// A state that the quick tests do not pass, at one state and in `f64`: the error that names the joint or the task,
+    /// if there is one. With `replace`, its outputs are those of that computation.
     #[cold]
     #[inline(never)]
     pub fn recheck(

@@ -1,4 +1,5 @@
-//! From rows to registers and back. A register holds one column of WIDTH states; the user's table has a state's numbers side by side.
+//! From rows to registers and back. A register holds one column of WIDTH states; the user's table has a state's numbers
+//! side by side.
 
 use crate::lanes::{Lane, MOST};
 use mozzi::Scalar;
@@ -9,21 +10,22 @@ pub enum Layout {
     /// State by state: row-major (N, columns), as NumPy and torch have it.
     #[default]
     Rows,
-    /// In blocks of as many states as a register holds ([`Batch::lanes`](crate::Batch::lanes)), in each column by column:
-    /// (N / lanes, columns, lanes). No transposition; the last block is full, its further states whatever they are.
+    /// In blocks of as many states as a register holds ([`Batch::lanes`](crate::Batch::lanes)), in each column by
+    /// column: (N / lanes, columns, lanes). No transposition; the last block is full, its further states whatever they
+    /// are.
     Blocks,
 }
 
-/// Where a number of a state stands in a table of `width` numbers a state, in blocks of `lanes`; rows are blocks of one.
-/// `lanes` is a power of two: shifts, since a division takes as long as a register's arithmetic for a whole link.
+/// Where a number of a state stands in a table of `width` numbers a state, in blocks of `lanes`; rows are blocks of
+/// one. `lanes` is a power of two: shifts, since a division takes as long as a register's arithmetic for a whole link.
 #[inline(always)]
 pub(crate) fn place(state: usize, column: usize, width: usize, lanes: usize) -> usize {
     let places = lanes.trailing_zeros();
     (((state >> places) * width + column) << places) + (state & (lanes - 1))
 }
 
-/// A square of WIDTH registers, its rows and columns exchanged: each of log₂ WIDTH perfect shuffles turns the address of a number
-/// (row bits, column bits) by one place.
+/// A square of WIDTH registers, its rows and columns exchanged: each of log₂ WIDTH perfect shuffles turns the address
+/// of a number (row bits, column bits) by one place.
 #[inline(always)]
 fn transpose<L: Lane>(mut square: [L; MOST]) -> [L; MOST] {
     let mut size = 1;
@@ -39,8 +41,8 @@ fn transpose<L: Lane>(mut square: [L; MOST]) -> [L; MOST] {
     square
 }
 
-/// The registers of a slice, at most WIDTH; further ones are 0. Every index is a constant once the loop is unrolled, so that a square stays in
-/// registers: a copy of as many as there are would make it memory.
+/// The registers of a slice, at most WIDTH; further ones are 0. Every index is a constant once the loop is unrolled, so
+/// that a square stays in registers: a copy of as many as there are would make it memory.
 #[inline(always)]
 fn take<L: Lane>(part: &[L]) -> [L; MOST] {
     let mut square = [L::zero(); MOST];
@@ -66,8 +68,9 @@ fn put<L: Lane>(square: [L; MOST], part: &mut [L]) {
     }
 }
 
-/// `columns[c]` is column c of the `rows` ≤ WIDTH states from `first` on, in a table of `columns.len()` numbers a state; a block's
-/// remainder repeats its last state. A row is read a register at a time, past its end into the next, whose numbers are dropped.
+/// `columns[c]` is column c of the `rows` ≤ WIDTH states from `first` on, in a table of `columns.len()` numbers a
+/// state; a block's remainder repeats its last state. A row is read a register at a time, past its end into the next,
+/// whose numbers are dropped.
 #[inline(always)]
 pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize, columns: &mut [L]) {
     let width = columns.len();
@@ -87,8 +90,8 @@ pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize,
     }
 }
 
-/// The inverse of [`read_rows`]. What a register writes past a row's end is overwritten by what follows: the last columns come
-/// first, and rows in their order.
+/// The inverse of [`read_rows`]. What a register writes past a row's end is overwritten by what follows: the last
+/// columns come first, and rows in their order.
 #[inline(always)]
 pub(crate) fn write_rows<L: Lane>(table: &mut [L::Number], first: usize, rows: usize, columns: &[L]) {
     let width = columns.len();

@@ -8,8 +8,8 @@ use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quant
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest,
-/// touching nothing. Results are the model's to rounding, errors the same. What was not asked for, or has no machine
-/// code here (see [`engine`](Self::engine)), the kernels compute.
+/// touching nothing. Results are equal to the model's up to rounding; errors are the same. Quantities that were not
+/// compiled, or cannot be (see [`engine`](Self::engine)), are computed by the kernels.
 ///
 /// It is constant and belongs to no thread: share it. Clones share the code.
 #[derive(Clone, Debug)]

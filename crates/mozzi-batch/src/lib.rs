@@ -1,4 +1,5 @@
-//! The dynamics of many states at once: [`mozzi`]'s kernels, unchanged, on registers that hold one number of 4 to 16 states, and on all cores.
+//! The dynamics of many states at once: [`mozzi`]'s kernels, unchanged, on registers that hold one number of 4 to 16
+//! states, and on all cores.
 //!
 //! ```
 //! use mozzi::quantities::InverseDynamics;
@@ -19,11 +20,11 @@
 //! # Ok::<(), mozzi_batch::Error>(())
 //! ```
 //!
-//! Results agree with those at one state to rounding, on [`InstructionSet::Portable`] bit for bit; they do not depend on the number of threads.
-//! A NaN or an infinity in a state gives NaN in that state's results and in no other's.
+//! Results agree with those at one state to rounding, on [`InstructionSet::Portable`] bit for bit; they do not depend
+//! on the number of threads. A NaN or an infinity in a state gives NaN in that state's results and in no other's.
 //!
-//! Without optimisation the kernels of derivatives take more stack than the 2 MB of a thread: `opt-level = 1` for this package in
-//! `[profile.dev.package]`, or the variable `RUST_MIN_STACK=16777216`.
+//! Without optimisation the kernels of derivatives take more stack than the 2 MB of a thread: `opt-level = 1` for this
+//! package in `[profile.dev.package]`, or the variable `RUST_MIN_STACK=16777216`.
 
 mod batch;
 mod chunk;

@@ -1,4 +1,5 @@
-//! The numbers that batches are of, with their registers; and the entries: the one place where code is compiled for an instruction set.
+//! The numbers that batches are of, with their registers; and the entries: the one place where code is compiled for an
+//! instruction set.
 //!
 //! Everything here is for `f64` or for `f32`, not for any number, so that kernels are compiled in this crate alone.
 
@@ -43,8 +44,8 @@ pub trait Entries: Sized {
         Self: Number;
 }
 
-/// What is compiled for one kind of registers: a program's run, and each kernel, in a table in the order of the list. Quantities that share
-/// a kernel share its function.
+/// What is compiled for one kind of registers: a program's run, and each kernel, in a table in the order of the list.
+/// Quantities that share a kernel share its function.
 macro_rules! entries {
     ($name:ident, $T:ty, $L:ty, [$($features:literal)?]; $($Q:ident)*) => {
         mod $name {

@@ -1,4 +1,5 @@
-//! Memory that calls leave behind for those that follow: for a few states it would take longer to make than they take to compute.
+//! Memory that calls leave behind for those that follow: for a few states it would take longer to make than they take
+//! to compute.
 
 use std::any::Any;
 use std::fmt;

@@ -6,7 +6,8 @@ use mozzi::quantities::{Query, Uses};
 use mozzi::{Environment, Error, FrameId, Model, Vec3, Wrench};
 use mozzi_codegen::Arguments;
 
-/// What is computed. Its tables are the quantity's inputs, then those of the environment: parameters, gravity, wrenches.
+/// What is computed. Its tables are the quantity's inputs, then those of the environment: parameters, gravity,
+/// wrenches.
 pub struct Request<'a, T> {
     pub query: Query<'a>,
     pub model: &'a Model,
@@ -47,8 +48,9 @@ impl<'a, T: Number> Request<'a, T> {
         is_alike && at_rest && its.gravity == own.gravity && its.applied.is_empty()
     }
 
-    /// What a program must leave open to compute this, with `frames` as memory; and the numbers that are the same for all states, in the
-    /// order in which the program takes them. None of them where the robot's own environment is asked for.
+    /// What a program must leave open to compute this, with `frames` as memory; and the numbers that are the same for
+    /// all states, in the order in which the program takes them. None of them where the robot's own environment is
+    /// asked for.
     pub fn arguments<'f>(&self, frames: &'f mut Vec<FrameId>) -> Arguments<'f> {
         let own = self.model.environment::<f64>();
         let environment = &self.environment;
@@ -66,7 +68,8 @@ impl<'a, T: Number> Request<'a, T> {
         }
     }
 
-    /// The numbers of a program's inputs that are the same in all states, each with its place among the inputs after the state.
+    /// The numbers of a program's inputs that are the same in all states, each with its place among the inputs after
+    /// the state.
     pub fn constants(&self, arguments: &Arguments) -> Vec<Option<Vec<f64>>> {
         let environment = &self.environment;
         let mut all = Vec::new();

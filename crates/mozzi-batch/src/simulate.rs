@@ -16,9 +16,9 @@ impl<T: Number> Batch<T> {
     /// that fit the cache. See [`mozzi::simulation`].
     ///
     /// # Errors
-    /// A table has the wrong length, the method is not [explicit](Method::explicit), or a state fails (the error carries its
-    /// index): its mass matrix is singular, or it became infinite or NaN. Neighbouring states are computed before the error
-    /// is returned.
+    /// A table has the wrong length, the method is not [explicit](Method::explicit), or a state fails (the error
+    /// carries its index): its mass matrix is singular, or it became infinite or NaN. Neighbouring states are computed
+    /// before the error is returned.
     #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
     pub fn simulate(
         &self,

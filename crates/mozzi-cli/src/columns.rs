@@ -1,10 +1,11 @@
 //! CSV output with all digits, so that round trips are exact.
 
-use crate::failure::{Failure, Result};
-use crate::interrupt::Writing;
+use crate::failure::Result;
+use crate::output::Output;
 use crate::progress::Progress;
 use mozzi::Model;
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::Write;
 
 /// The columns of a group: by number, `tau_1` … `tau_n`; where the base floats, by name, for then the joints' numbers
 /// in θ are others than in θ̇.
@@ -58,6 +59,5 @@ impl Columns {
 
 /// Writes a text, or bytes, to a file.
 pub fn save(file: &str, content: impl AsRef<[u8]>) -> Result<()> {
-    let _writing = Writing::to(file);
-    std::fs::write(file, content).map_err(|error| Failure::wrong(format!("{file} cannot be written: {error}")))
+    Output::create(file)?.write(|to| to.write_all(content.as_ref()))
 }

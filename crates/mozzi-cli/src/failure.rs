@@ -1,5 +1,6 @@
 //! Why a command has no result.
 
+use crate::terminal;
 use mozzi_urdf::{Diagnostic, LoadError, Style};
 use std::io::{IsTerminal, Write};
 
@@ -27,7 +28,7 @@ impl Failure {
         match self {
             Failure::Wrong(sentence) => write(&format!("error: {sentence}\n")),
             Failure::Load(error) if error.diagnostics().is_empty() => write(&format!("error: {error}\n")),
-            Failure::Load(error) => write(&(error.pretty(style()) + "\n")),
+            Failure::Load(error) => write_styled(&(error.pretty(style()) + "\n")),
             Failure::Answered(_) | Failure::Stopped(_) => {}
         }
     }
@@ -35,12 +36,17 @@ impl Failure {
 
 /// Writes to standard error, ignoring errors if it is closed.
 pub fn write(text: &str) {
+    write_styled(&terminal::message(text));
+}
+
+/// The same with colours, of a text in which nothing else controls the terminal.
+fn write_styled(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// A diagnostic with its place in the file, on standard error.
 pub fn say(diagnostic: &Diagnostic) {
-    write(&diagnostic.pretty(style()));
+    write_styled(&diagnostic.pretty(style()));
 }
 
 /// Uses colours if standard error is a terminal and NO_COLOR is not set (see no-color.org).

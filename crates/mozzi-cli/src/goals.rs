@@ -1,7 +1,7 @@
 //! Where the end effector is to be: by flags, or tables of poses in CSV files with columns x y z of the origin and qw
 //! qx qy qz of the orientation, in {s}.
 
-use crate::csv::csv_failure;
+use crate::csv::{self, csv_failure};
 use crate::failure::{Failure, Result};
 use crate::numbers::{array, number};
 use clap::Args;
@@ -49,25 +49,18 @@ impl GoalArguments {
 
 /// Poses and the line of each in the file.
 pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
-    let cannot = |error: std::io::Error| Failure::wrong(format!("{file} cannot be read: {error}"));
-    let input: Box<dyn std::io::Read> = match file {
-        "-" => Box::new(std::io::stdin().lock()),
-        path => Box::new(std::fs::File::open(path).map_err(cannot)?),
-    };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
-    let header = reader.headers().map_err(|error| csv_failure(file, &error))?.clone();
+    let (mut reader, header) = csv::open(file)?;
     let mut places = [0; 7];
     for (place, name) in places.iter_mut().zip(COLUMNS) {
-        *place = header.iter().position(|cell| cell.trim_start_matches('\u{feff}') == name).ok_or_else(|| {
+        *place = header.iter().position(|cell| cell == name).ok_or_else(|| {
             Failure::wrong(format!("{file}:1: column `{name}` is missing, expected the columns {}", COLUMNS.join(" ")))
         })?;
     }
-    if let Some(unknown) = header.iter().position(|cell| !COLUMNS.contains(&cell.trim_start_matches('\u{feff}'))) {
-        let expected = COLUMNS.join(" ");
+    if let Some(unknown) = header.iter().position(|cell| !COLUMNS.contains(&cell.as_str())) {
+        let (expected, found) = (COLUMNS.join(" "), &header[unknown]);
         return Err(Failure::wrong(format!(
-            "{file}:1: column {} is called `{}`, expected {expected}",
-            unknown + 1,
-            &header[unknown]
+            "{file}:1: column {} is called `{found}`, expected {expected}",
+            unknown + 1
         )));
     }
     let mut poses = Vec::new();

@@ -10,8 +10,15 @@ pub const EXIT_CODE: u8 = 130;
 
 static LISTENING: Once = Once::new();
 static ASKED: AtomicBool = AtomicBool::new(false);
+static AT_ONCE: AtomicBool = AtomicBool::new(false);
 /// The file that is being written.
-static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+static UNFINISHED: Mutex<Option<Unfinished>> = Mutex::new(None);
+
+struct Unfinished {
+    file: String,
+    /// Where it is until it is whole; none of a pipe or a device.
+    part: Option<PathBuf>,
+}
 
 /// Makes Ctrl-C set a flag instead of ending the program, for commands that check whether it [`asked`].
 pub fn listen() {
@@ -22,18 +29,25 @@ pub fn listen() {
     });
 }
 
+/// Makes the next Ctrl-C end the program: there are no results to keep.
+pub fn end_at_once() {
+    listen();
+    AT_ONCE.store(true, Ordering::Relaxed);
+}
+
 /// Whether Ctrl-C was pressed.
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// Marks a file as being written: Ctrl-C lets it finish, a second one removes it, so that no truncated file remains.
+/// Marks a file as being written: Ctrl-C lets it finish, a second one abandons it, so that no truncated file remains.
 pub struct Writing;
 
 impl Writing {
-    pub fn to(file: &str) -> Self {
+    /// To this file; until it is whole, to another.
+    pub fn to(file: &str, part: Option<&Path>) -> Self {
         listen();
-        *unfinished() = Some(PathBuf::from(file));
+        *unfinished() = Some(Unfinished { file: file.to_string(), part: part.map(Path::to_path_buf) });
         Writing
     }
 }
@@ -44,33 +58,30 @@ impl Drop for Writing {
     }
 }
 
-fn unfinished() -> MutexGuard<'static, Option<PathBuf>> {
+fn unfinished() -> MutexGuard<'static, Option<Unfinished>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn answer() {
-    let again = ASKED.swap(true, Ordering::Relaxed);
+    let again = ASKED.swap(true, Ordering::Relaxed) || AT_ONCE.load(Ordering::Relaxed);
     let file = unfinished(); // held, so that it is not finished meanwhile
     match (&*file, again) {
         (None, false) => {}
         (None, true) => std::process::exit(i32::from(EXIT_CODE)),
-        (Some(file), false) => {
-            failure::note(&format!("finishing {}; press Ctrl-C again to abandon it", file.display()));
+        (Some(Unfinished { file, .. }), false) => {
+            failure::note(&format!("finishing {file}; press Ctrl-C again to abandon it"));
         }
-        (Some(file), true) => {
-            give_up(file);
+        (Some(unfinished), true) => {
+            give_up(unfinished);
             std::process::exit(i32::from(EXIT_CODE));
         }
     }
 }
 
-/// Files alone: a pipe or a device is not ours to remove.
-fn give_up(file: &Path) {
-    let name = file.display();
-    let is_file = std::fs::metadata(file).is_ok_and(|found| found.is_file());
-    failure::note(&match is_file.then(|| std::fs::remove_file(file)) {
-        Some(Ok(())) => format!("{name} was not finished and has been removed"),
-        Some(Err(error)) => format!("{name} was not finished and cannot be removed: {error}"),
-        None => format!("{name} is incomplete"),
+fn give_up(Unfinished { file, part }: &Unfinished) {
+    failure::note(&match part.as_ref().map(std::fs::remove_file) {
+        Some(Ok(())) => format!("{file} was not finished and is as it was before"),
+        Some(Err(error)) => format!("{file} was not finished; a part of it cannot be removed: {error}"),
+        None => format!("{file} is incomplete"),
     });
 }

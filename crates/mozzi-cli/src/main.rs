@@ -8,6 +8,7 @@ mod controller;
 mod csv;
 mod failure;
 mod goals;
+mod input;
 mod inputs;
 mod interrupt;
 mod json;
@@ -15,6 +16,8 @@ mod json_file;
 mod log;
 mod motors;
 mod numbers;
+mod output;
+mod places;
 mod progress;
 mod quantity;
 mod report;
@@ -25,6 +28,8 @@ mod state;
 mod table;
 mod tables;
 mod task;
+mod terminal;
+mod workload;
 
 use clap::{Parser, Subcommand};
 use commands::{check, compute, convert, explain, info, screws, simulate, terms, tour};
@@ -36,7 +41,7 @@ use std::process::ExitCode;
 /// Dynamics of open-chain robots, in the notation of Lynch & Park, Modern Robotics, chapter 8.
 ///
 /// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, MuJoCo's MJCF, or JSON of
-/// `mozzi convert`) or the name of an embedded robot.
+/// `mozzi convert`), - for standard input, or the name of an embedded robot.
 #[derive(Parser, Debug)]
 #[command(version, after_help = EXAMPLES, after_long_help = EXAMPLES, max_term_width = 104)]
 struct Arguments {
@@ -90,6 +95,7 @@ Examples:
   mozzi check my_robot.urdf                             what is wrong with a file
   mozzi check my_robot.urdf --format json               the same, one JSON object per line
   mozzi explain zero_axis                               what a diagnostic's code means
+  xacro my_robot.xacro | mozzi info -                   a robot from standard input
   mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; mozzi reads this file
   mozzi compare my_robot.urdf                           compared with Pinocchio and MuJoCo: what differs, and why
   mozzi terms my_robot.urdf --lenient                   repairs inertias; --strict: warnings are errors
@@ -126,6 +132,8 @@ CSV files have a header and one row for each state; columns in any order:
                                         floating base: theta_base.qw qx qy qz x y z, and
                                         dtheta_base.wx wy wz vx vy vz, likewise ddtheta_, tau_
   m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in the tip's frame
+Columns of .arrow, .feather, .parquet and structured .npy files have the same names; .npz has
+arrays t (N,), theta (N, nq), dtheta (N, n), …
 Missing groups dtheta, ddtheta and wrench are 0, and so are the six entries of a floating
 base in tau. Every subcommand reads the files that another writes.";
 
@@ -146,7 +154,7 @@ Examples:
 An event is the moment a condition becomes true: the zero of the polynomial between two steps, as exact as the method.
 Conditions that are true for less than a quarter of a step may be missed.
 
-CSV files are described in `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; --follow reads what `mozzi trajectory` writes.
+Tables are described in `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; --follow reads what `mozzi trajectory` writes.
 
 A controller is a JSON object; gains are one number for all, or lists:
   {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + k(θ − θ₀) + p e + d ė; N m/rad, N m s/rad
@@ -169,19 +177,29 @@ A flag that has no effect on the quantity is an error.
 
 Files with N states:
   .npy             one array (N, columns): the quantity's inputs in order, such as theta | dtheta | ddtheta,
-                   then the tip's wrench m_x m_y m_z f_x f_y f_z if there are six more columns
+                   then the tip's wrench m_x m_y m_z f_x f_y f_z if there are six more columns; or a
+                   structured array (N,) with names as in CSV, such as `mozzi simulate` writes
   .npz             arrays theta (N, nq), dtheta, ddtheta, tau, x (N, n), wrench (N, 6) of the tip; also
                    gravity (N, 3), parameters (N, p) and wrench_FRAME (N, 6), different in each state
   .arrow .feather  Arrow's IPC file (pandas.to_feather, polars.write_ipc) with columns as in CSV
   .csv             columns theta_1 …, see below
-Numbers are float64 or float32. Wrenches given by flags are the same in all states.
+  .parquet         columns as in CSV, if built with this feature and not compressed
+Numbers are float64, float32 or integers. Wrenches given by flags are the same in all states.
 Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
   .npy             one array; .npz: one array per output, by name
   .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
 NaN in a state gives NaN in the results of that state only.";
 
 fn main() -> ExitCode {
-    let answer = run(&Arguments::parse());
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() && std::env::args_os().any(|word| is_odd(&word.to_string_lossy())) => {
+            failure::write(&error.render().to_string()); // without colours
+            return ExitCode::from(2);
+        }
+        Err(error) => error.exit(),
+    };
+    let answer = run(&arguments);
     let (text, code) = match answer {
         Ok(text) => (text, ExitCode::SUCCESS),
         Err(failure) => {
@@ -194,7 +212,7 @@ fn main() -> ExitCode {
         }
     };
     let mut output = std::io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+    match output.write_all(terminal::result(&text).as_bytes()).and_then(|()| output.flush()) {
         Ok(()) => code,
         // the reader has closed the pipe
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => code,
@@ -203,6 +221,11 @@ fn main() -> ExitCode {
             ExitCode::from(1)
         }
     }
+}
+
+/// Would a terminal obey it, or be flooded by it?
+fn is_odd(word: &str) -> bool {
+    terminal::message(word) != word
 }
 
 fn run(arguments: &Arguments) -> Result<String> {

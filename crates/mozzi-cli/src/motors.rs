@@ -1,10 +1,10 @@
 //! What drives a simulated robot: the flags of `mozzi simulate` as inputs.
 
 use crate::controller::Controller;
-use crate::csv;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{WRENCH, array};
 use crate::robot::RobotArguments;
+use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
 use clap::{Args, ValueEnum};
 use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
@@ -14,13 +14,13 @@ use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
-    /// Motor torques: zero, gravity-compensation, or a CSV file with columns t, tau_1, … (interpolated linearly); added
+    /// Motor torques: zero, gravity-compensation, or a table with columns t, tau_1, … (interpolated linearly); added
     /// to a controller's
     #[arg(long, value_name = "FILE|zero|gravity-compensation", default_value = "zero")]
     pub torque: String,
-    /// Reference for the controller: a CSV file with columns t, theta_1, … and optionally dtheta_, ddtheta_; with a
+    /// Reference for the controller: a table with columns t, theta_1, … and optionally dtheta_, ddtheta_; with a
     /// floating base only the joints are followed, and the base's columns may be missing
-    #[arg(long, value_name = "FILE.csv", requires = "controller")]
+    #[arg(long, value_name = "FILE", requires = "controller")]
     pub follow: Option<String>,
     /// A controller in a JSON file; without --follow it holds the initial positions
     #[arg(long, value_name = "FILE.json")]
@@ -28,7 +28,7 @@ pub struct MotorArguments {
     /// How to treat the motors' effort limits
     #[arg(long, value_name = "WHAT", default_value = "report")]
     pub effort_limits: Limit,
-    /// Wrench that the tip applies to the environment, in its frame, moment first: a CSV file with columns t, m_x, …
+    /// Wrench that the tip applies to the environment, in its frame, moment first: a table with columns t, m_x, …
     /// f_z, or six numbers
     #[arg(long, value_name = "FILE|mx,my,mz,fx,fy,fz", allow_hyphen_values = true)]
     pub tip_wrench: Option<String>,
@@ -73,7 +73,7 @@ impl MotorArguments {
     pub fn followed(&self, model: &Model) -> Result<Option<Followed>> {
         let Some(file) = &self.follow else { return Ok(None) };
         let fixed = model.with_base(Base::Fixed)?;
-        let (samples, is_of_joints) = csv::read_joints(file, model, &fixed)?;
+        let (samples, is_of_joints) = table_file::read_joints(file, model, &fixed)?;
         let times = samples.times()?;
         check_times(&samples, times)?;
         let theta = samples.need("theta", model)?;
@@ -121,7 +121,7 @@ impl MotorArguments {
             "zero" => Box::new(Zero),
             "gravity-compensation" => Box::new(GravityCompensation::new(model)),
             file => {
-                let samples = csv::read(file, model)?;
+                let samples = table_file::read(file, model)?;
                 let values = samples.need("tau", model)?.to_vec();
                 Box::new(TorqueTable(self.table(&samples, values, end)?))
             }
@@ -139,7 +139,7 @@ impl MotorArguments {
             let F = Wrench::from_array(array("--tip-wrench", text, WRENCH)?);
             return Ok(Box::new(simulation::applied(tip, move |_, _, _| F)));
         }
-        let samples = csv::read(text, model)?;
+        let samples = table_file::read(text, model)?;
         let values = samples.need("wrench", model)?.to_vec();
         Ok(Box::new(WrenchTable(tip, self.table(&samples, values, end)?)))
     }

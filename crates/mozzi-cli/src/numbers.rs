@@ -1,12 +1,13 @@
 //! Numbers from the command line.
 
 use crate::failure::{Failure, Result};
+use crate::terminal::excerpt;
 use std::fmt::Display;
 
 /// A finite number; `place` is its source in messages: "--step", "table.csv:3: column 2 (`tau_1`)".
 pub fn number(place: impl Display, text: &str) -> Result<f64> {
     let text = text.trim();
-    let wrong = |expected| Err(Failure::wrong(format!("{place} is `{text}`, expected {expected}")));
+    let wrong = |expected| Err(Failure::wrong(format!("{place} is `{}`, expected {expected}", excerpt(text))));
     match text.replace('−', "-").parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
         Ok(_) => wrong("a finite number"),

@@ -1,8 +1,9 @@
 //! A robot and its motion as a page.
 
 use crate::columns::save;
-use crate::csv;
 use crate::failure::{self, Failure, Result};
+use crate::input;
+use crate::tables::read as table_file;
 use clap::{Args, ValueEnum};
 use mozzi::simulation::Input;
 use mozzi::{Model, Trajectory, Wrench};
@@ -12,6 +13,9 @@ use std::str::FromStr;
 
 /// More are counted: the page lists them.
 const NOTES: usize = 3;
+
+/// A larger page is announced, in bytes.
+const LARGE: usize = 20_000_000;
 
 #[derive(Args, Debug)]
 pub struct PageArguments {
@@ -49,7 +53,7 @@ impl Display for Rows {
 enum Which {
     /// Those that are meant to be seen; of a link without any, those that collide
     Visual,
-    /// Those that collide: mostly smaller
+    /// Those that collide, mostly smaller; of a link without any, its visual boxes, cylinders and balls
     Collision,
     /// None
     None,
@@ -71,7 +75,12 @@ impl PageArguments {
             Which::Collision => Meshes::Collision,
             Which::None => Meshes::None,
         };
-        let drawing = Drawing::of_file(name_or_path, meshes)?;
+        let drawing = if name_or_path == "-" {
+            let text = input::robot_text().map_err(|error| input::cannot(name_or_path, &error))?;
+            Drawing::of_text(input::name(name_or_path), text, meshes)
+        } else {
+            Drawing::of_file(name_or_path, meshes)?
+        };
         drawing.notes.iter().take(NOTES).for_each(|note| failure::note(note));
         if drawing.notes.len() > NOTES {
             failure::note(&format!(
@@ -81,6 +90,11 @@ impl PageArguments {
         }
         let page = mozzi_report::html(model, &drawing, motion).map_err(|error| Failure::wrong(error.to_string()))?;
         let size = format!("page: {}{:.1} MB", rows.unwrap_or_default(), page.len() as f64 / 1e6);
+        if page.len() > LARGE {
+            failure::note(&format!(
+                "{size}: browsers need seconds to open it; --meshes and --page-rows make it smaller"
+            ));
+        }
         Ok((page, size))
     }
 
@@ -112,7 +126,7 @@ pub fn simulated(title: String, motion: &Trajectory, mut wrench: impl Input) -> 
 
 /// A table's motion; energies follow from it.
 pub fn read(file: &str, model: &Model) -> Result<Motion> {
-    let mut samples = csv::read(file, model)?;
+    let mut samples = table_file::read(file, model)?;
     let (t, theta) = (samples.times()?.to_vec(), samples.need("theta", model)?.to_vec());
     let mut take = |name| samples.tables.remove(name);
     let motion = Motion {

@@ -2,14 +2,15 @@
 
 use crate::failure::{self, Failure, Result};
 use crate::numbers::array;
-use crate::robot_json;
+use crate::{input, robot_json};
 use clap::Args;
 use mozzi::model::Problem;
 use mozzi::quantities::INPUTS;
 use mozzi::{Description, FrameId, Model};
-use mozzi_urdf::{LoadError, Loaded, Policy, Severity};
+use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Severity};
+use std::path::Path;
 
-/// Further warnings are counted only; `mozzi check` shows them.
+/// Of warnings that do not change the motion so many are printed; `mozzi check` prints all.
 const WARNINGS: usize = 3;
 
 /// How the robot's file is read.
@@ -33,14 +34,22 @@ impl PolicyArguments {
         self.floating
     }
 
-    /// An embedded robot by its name, or a file.
+    /// A file, standard input for `-`, or an embedded robot by its name.
     pub fn open(&self, name_or_path: &str) -> std::result::Result<Loaded, LoadError> {
         let policy = match (self.strict, self.lenient) {
             (true, _) => Policy::Strict,
             (_, true) => Policy::Lenient,
             _ => Policy::Default,
         };
-        let loaded = mozzi_urdf::open_with(name_or_path, policy)?;
+        let loaded = if name_or_path == "-" {
+            let cannot = |source| LoadError::File { path: input::name(name_or_path).into(), source };
+            mozzi_urdf::parse_with(input::name(name_or_path), input::robot_text().map_err(cannot)?, policy)?
+        } else {
+            mozzi_urdf::open_with(name_or_path, policy)?
+        };
+        if mozzi_urdf::embedded::text(name_or_path).is_some_and(|_| Path::new(name_or_path).is_file()) {
+            failure::note(&format!("`{name_or_path}` is a file here and an embedded robot; the file is read"));
+        }
         Ok(Loaded { description: self.freed(loaded.description), ..loaded })
     }
 
@@ -48,17 +57,13 @@ impl PolicyArguments {
         if self.floating { robot.floating() } else { robot }
     }
 
-    /// As [`open`](Self::open), and prints each repair and some of the warnings.
+    /// As [`open`](Self::open), and prints every warning that changes the motion, some of the others, and the number of
+    /// attributes and elements that are not used.
     fn load(&self, name_or_path: &str) -> Result<Loaded> {
         let loaded = self.open(name_or_path)?;
-        let (repairs, warnings): (Vec<_>, Vec<_>) =
-            loaded.warnings.iter().partition(|warning| warning.code().contains("::repaired_"));
-        let said = repairs.iter().chain(warnings.iter().take(WARNINGS));
-        said.for_each(|warning| failure::write(&format!("{warning}\n")));
-        if warnings.len() > WARNINGS {
-            let count = loaded.warnings.len();
-            failure::note(&format!("{count} warnings in total; `mozzi check {name_or_path}` shows them"));
-        }
+        let code = |warning: &Diagnostic| mozzi_urdf::consequence(warning.code());
+        print(name_or_path, &loaded.warnings, code, |warning| format!("{warning}\n"));
+        mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
         Ok(loaded)
     }
 
@@ -72,12 +77,8 @@ impl PolicyArguments {
         if self.strict && !errors.is_empty() {
             return Err(Failure::wrong(format!("{name_or_path} is refused: {}", errors[0])));
         }
-        for problem in warnings.iter().take(WARNINGS) {
-            failure::write(&format!("{name_or_path}: warning: {problem}\n"));
-        }
-        if warnings.len() > WARNINGS {
-            failure::note(&format!("{} warnings in total; `mozzi check {name_or_path}` shows them", warnings.len()));
-        }
+        let code = |problem: &Problem| mozzi_urdf::consequence(problem.code);
+        print(name_or_path, &warnings, code, |problem| format!("{name_or_path}: warning: {problem}\n"));
         Ok(robot.build()?)
     }
 
@@ -85,14 +86,25 @@ impl PolicyArguments {
     /// file was written.
     pub fn problems(&self, robot: &Description) -> (Vec<Problem>, Vec<Problem>) {
         let is_error = |problem: &Problem| self.strict || problem.severity == Severity::Error;
-        robot.check().into_iter().partition(is_error)
+        let (errors, mut warnings): (Vec<_>, Vec<_>) = robot.check().into_iter().partition(is_error);
+        warnings.sort_by_key(|problem| mozzi_urdf::consequence(problem.code));
+        (errors, warnings)
+    }
+}
+
+/// Prints warnings, which are in the order of their consequence.
+fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence, text: impl Fn(&T) -> String) {
+    let motion = warnings.iter().filter(|warning| consequence(warning) == Consequence::Motion).count();
+    warnings.iter().take(motion + WARNINGS).for_each(|warning| failure::write(&text(warning)));
+    if warnings.len() > motion + WARNINGS {
+        failure::note(&format!("{} warnings in total; `mozzi check {name}` shows them", warnings.len()));
     }
 }
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A file (URDF, MJCF, or JSON of `mozzi convert`), or an embedded robot: anymal, double_pendulum, furuta_pendulum,
-    /// panda, two_link_planar, ur5
+    /// A file (URDF, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
+    /// double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
     #[arg(long, value_name = "FRAME", visible_alias = "frame")]

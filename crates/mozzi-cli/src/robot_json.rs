@@ -1,11 +1,14 @@
 //! A robot as JSON: its links and joints, which are read back, and the book's lists, which follow from them.
 
+mod entry;
+mod keys;
 mod states;
 
-use crate::failure::{Failure, Result};
-use crate::{json, json_file};
+use crate::json_file::{JsonFile, Misplaced};
+use crate::{input, json};
+use entry::{At, Read};
 use mozzi::model::description::{FreeJoint, Gear, Joint, JointKind, Limits, Mimic, NamedFrame, Rotor};
-use mozzi::{Base, Description, Model, SE3, ScrewAxis, SpatialInertia, Vec3};
+use mozzi::{Base, Description, Model, ScrewAxis, SpatialInertia, Vec3};
 use serde_json::{Value, json};
 
 pub fn write(model: &Model) -> String {
@@ -53,78 +56,28 @@ pub fn write(model: &Model) -> String {
     }))
 }
 
-/// Is this file one that [`write`] made, by its name?
+/// Is this file one that [`write`] made, by its name? Standard input is if it is an object.
 pub fn is_json(name_or_path: &str) -> bool {
+    if name_or_path == "-" {
+        let text = input::robot_text().unwrap_or_default();
+        return text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text).trim_ascii_start().starts_with(b"{");
+    }
     std::path::Path::new(name_or_path).extension().is_some_and(|suffix| suffix == "json")
 }
 
-pub fn read(file: &str) -> Result<Description> {
-    let value = json_file::read(file)?;
-    description(&At { value: &value, place: String::new() }).map_err(|why| Failure::wrong(format!("{file}: {why}")))
-}
-
-type Read<T> = std::result::Result<T, String>;
-
-/// A value and its place.
-struct At<'v> {
-    value: &'v Value,
-    place: String,
-}
-
-impl<'v> At<'v> {
-    fn get(&self, key: &str) -> At<'v> {
-        let dot = if self.place.is_empty() { "" } else { "." };
-        At { value: self.value.get(key).unwrap_or(&Value::Null), place: format!("{}{dot}{key}", self.place) }
-    }
-
-    fn wrong<T>(&self, expected: impl std::fmt::Display) -> Read<T> {
-        let found: String = self.value.to_string().chars().take(60).collect();
-        Err(format!("{} is {found}, expected {expected}", self.place))
-    }
-
-    fn text(&self) -> Read<String> {
-        self.value.as_str().map_or_else(|| self.wrong("a text"), |text| Ok(text.to_string()))
-    }
-
-    fn number(&self) -> Read<f64> {
-        self.value.as_f64().map_or_else(|| self.wrong("a number"), Ok)
-    }
-
-    fn list(&self) -> Read<Vec<At<'v>>> {
-        let entry = |(k, value)| At { value, place: format!("{}[{k}]", self.place) };
-        self.value
-            .as_array()
-            .map_or_else(|| self.wrong("a list"), |all| Ok(all.iter().enumerate().map(entry).collect()))
-    }
-
-    fn numbers(&self) -> Read<Vec<f64>> {
-        self.list()?.iter().map(At::number).collect()
-    }
-
-    fn vector<const N: usize>(&self) -> Read<[f64; N]> {
-        self.numbers()?.try_into().or_else(|_| self.wrong(format_args!("{N} numbers")))
-    }
-
-    fn matrix<const N: usize>(&self) -> Read<[[f64; N]; N]> {
-        let all: Vec<[f64; N]> = self.list()?.iter().map(At::vector).collect::<Read<_>>()?;
-        all.try_into().or_else(|_| self.wrong(format_args!("{N} rows")))
-    }
-
-    fn pose(&self) -> Read<SE3> {
-        SE3::from_matrix(self.matrix()?).or_else(|why| self.wrong(format_args!("a configuration: {why}")))
-    }
-
-    /// Nothing where there is null or no such key.
-    fn some<T>(&self, read: impl Fn(&Self) -> Read<T>) -> Read<Option<T>> {
-        if self.value.is_null() { Ok(None) } else { read(self).map(Some) }
-    }
+/// # Errors
+/// All unknown and missing keys, else the first other error.
+pub fn read(file: &str) -> Result<Description, Vec<Misplaced>> {
+    let file = JsonFile::read(file).map_err(|error| vec![error])?;
+    let (root, mut errors) = (At::root(&file), Vec::new());
+    keys::ROBOT.check(&root, &mut errors);
+    if errors.is_empty() { description(&root).map_err(|error| vec![error]) } else { Err(errors) }
 }
 
 fn description(at: &At) -> Read<Description> {
     let mut robot = Description::new(at.get("robot").text()?).with_gravity(at.get("gravity").vector()?);
-    robot.base = at.get("base").some(base)?.unwrap_or_default(); // files of before had fixed bases only
-    let free_joint = |at: &At| Ok(FreeJoint { name: at.get("name").text()?, parent: at.get("parent").text()? });
-    robot.free_joint = at.get("free_joint").some(free_joint)?.unwrap_or_default();
+    robot.base = at.get("base").some(base)?.unwrap_or_default();
+    robot.free_joint = free_joint(&at.get("free_joint"), robot.base)?;
     robot.end_effector = at.get("end_effector").some(At::text)?;
     for link in at.get("links").list()? {
         let at = link.get("G");
@@ -134,20 +87,39 @@ fn description(at: &At) -> Read<Description> {
     for entry in at.get("joints").list()? {
         robot = robot.joint(joint(&entry)?);
     }
-    for rotor in at.get("rotors").some(At::list)?.unwrap_or_default() {
-        let gear = |at: &At| Ok(Gear { joint: at.get("joint").text()?, ratio: at.get("ratio").number()? });
-        let gears = rotor.get("gears").list()?.iter().map(gear).collect::<Read<_>>()?;
-        robot.rotors.push(Rotor { name: rotor.get("name").text()?, armature: rotor.get("armature").number()?, gears });
-    }
-    for frame in at.get("frames").some(At::list)?.unwrap_or_default() {
-        let (name, link) = (frame.get("name").text()?, frame.get("link").text()?);
-        robot.frames.push(NamedFrame { name, link, T: frame.get("T").pose()? });
-    }
-    let all = at.get("states").some(At::list)?.unwrap_or_default(); // files of before had none
-    robot.states = all.iter().map(states::read).collect::<Read<_>>()?;
+    robot.rotors = all(&at.get("rotors"), rotor)?;
+    robot.frames = all(&at.get("frames"), frame)?;
+    robot.states = all(&at.get("states"), states::read)?;
     robot.start = at.get("start").some(At::text)?;
     lists_agree(&at.get("lists"), &robot)?;
     Ok(robot)
+}
+
+/// The entries of a list that may be missing.
+fn all<T>(at: &At, read: impl Fn(&At) -> Read<T>) -> Read<Vec<T>> {
+    at.some(At::list)?.unwrap_or_default().iter().map(read).collect()
+}
+
+fn free_joint(at: &At, base: Base) -> Read<FreeJoint> {
+    let read = |at: &At| {
+        if base == Base::Fixed {
+            return at.error(
+                "free_joint is given, but the base is fixed; expected \"base\": \"floating\", or no free_joint",
+            );
+        }
+        Ok(FreeJoint { name: at.get("name").text()?, parent: at.get("parent").text()? })
+    };
+    Ok(at.some(read)?.unwrap_or_default())
+}
+
+fn rotor(at: &At) -> Read<Rotor> {
+    let gear = |at: &At| Ok(Gear { joint: at.get("joint").text()?, ratio: at.get("ratio").number()? });
+    let gears = at.get("gears").list()?.iter().map(gear).collect::<Read<_>>()?;
+    Ok(Rotor { name: at.get("name").text()?, armature: at.get("armature").number()?, gears })
+}
+
+fn frame(at: &At) -> Read<NamedFrame> {
+    Ok(NamedFrame { name: at.get("name").text()?, link: at.get("link").text()?, T: at.get("T").pose()? })
 }
 
 fn base(at: &At) -> Read<Base> {
@@ -158,18 +130,24 @@ fn base(at: &At) -> Read<Base> {
     }
 }
 
-/// By its axis A, its centre `ball`, or `free`; fixed where there is none of them.
+/// By its axis A, its centre `ball`, or `free`; fixed if all of them are null or false.
 fn kind(at: &At) -> Read<JointKind> {
     let axis =
         |at: &At| ScrewAxis::from_array(at.vector()?).or_else(|why| at.wrong(format_args!("a screw axis: {why}")));
-    let is_free = |at: &At| at.value.as_bool().map_or_else(|| at.wrong("true or false"), Ok);
+    let keys = ["A", "ball", "free"];
+    if keys.iter().all(|key| at.value.get(key).is_none()) {
+        return at.error(format_args!("`A` is missing in {}; null is the axis of a fixed joint", at.name()));
+    }
     let axis = at.get("A").some(axis)?.map(JointKind::Screw);
     let ball = at.get("ball").some(At::vector)?.map(|center| JointKind::Ball(Vec3(center)));
-    let free = at.get("free").some(is_free)?.and_then(|is_free| is_free.then_some(JointKind::Free));
-    let mut kinds = [axis, ball, free].into_iter().flatten();
-    match (kinds.next(), kinds.next()) {
-        (kind, None) => Ok(kind.unwrap_or(JointKind::Fixed)),
-        _ => Err(format!("{} has several of A, ball and free, expected one of them", at.place)),
+    let free = at.get("free").some(At::is_true)?.and_then(|is_free| is_free.then_some(JointKind::Free));
+    let kinds = [axis, ball, free];
+    let mut given = keys.iter().zip(kinds).filter_map(|(key, kind)| Some((*key, kind?)));
+    match (given.next(), given.next()) {
+        (kind, None) => Ok(kind.map_or(JointKind::Fixed, |(_, kind)| kind)),
+        (_, Some((second, _))) => {
+            at.get(second).error(format_args!("{} has several of A, ball and free, expected one of them", at.name()))
+        }
     }
 }
 
@@ -178,7 +156,7 @@ fn joint(at: &At) -> Read<Joint> {
         let (ratio, offset) = (at.get("ratio").number()?, at.get("offset").number()?);
         Ok(Mimic { joint: at.get("joint").text()?, ratio, offset })
     };
-    let size = |key: &str| Read::Ok(at.get(key).some(At::number)?.unwrap_or(0.0));
+    let size = |key| Read::Ok(at.get(key).some(At::number)?.unwrap_or(0.0));
     Ok(Joint {
         name: at.get("name").text()?,
         parent: at.get("parent").text()?,
@@ -199,17 +177,24 @@ fn joint(at: &At) -> Read<Joint> {
     })
 }
 
-/// The lists follow from the links and joints. One that was edited would be ignored in silence, so it is refused.
+/// The lists follow from the links and joints. One that was edited would be ignored silently, so it is refused.
 fn lists_agree(at: &At, robot: &Description) -> Read<()> {
     if at.value.is_null() {
         return Ok(());
     }
-    let model = robot.clone().build().map_err(|error| error.to_string())?;
-    let expected = json::screws(&model.screws().map_err(|error| error.to_string())?);
-    for key in ["joints", "links", "parents", "M", "M_relative", "S", "A", "B", "G", "end_effector"] {
+    let Ok(model) = robot.clone().build() else { return Ok(()) }; // whoever builds the robot reports why
+    let expected = json::screws(&model.screws().or_else(|error| at.error(error))?);
+    let lists: Vec<&str> = expected.as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
+    if let Some(error) = at.unknown(&lists).into_iter().next() {
+        return Err(error);
+    }
+    for key in lists {
         let found = at.get(key);
         if !found.value.is_null() && !alike(found.value, &expected[key]) {
-            return Err(format!("{} disagrees with links and joints; change those, or remove `lists`", found.place));
+            return found.error(format_args!(
+                "{} disagrees with links and joints; change those, or remove `lists`",
+                found.name()
+            ));
         }
     }
     Ok(())

@@ -1,11 +1,26 @@
-//! One page over HTTP, on 127.0.0.1 alone.
+//! One page over HTTP, on 127.0.0.1 alone. Each connection has a thread and deadlines, so that none holds up another.
 
-use std::io::{BufRead, BufReader, Read, Result, Write};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
-use std::time::Duration;
+use crate::interrupt;
+use std::io::{ErrorKind, Read, Result, Write};
+use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
 
-/// A request is one line and some headers; a longer one is none that a browser sends here.
-const LONGEST_REQUEST: u64 = 64 << 10;
+/// Longest head of a request, bytes; a browser sends a tenth of it.
+const LONGEST_HEAD: usize = 16 << 10;
+/// Time in which the head arrives.
+const FOR_HEAD: Duration = Duration::from_secs(5);
+/// Time in which a piece of the answer is taken, and all of it.
+const FOR_PIECE: Duration = Duration::from_secs(10);
+const FOR_ANSWER: Duration = Duration::from_secs(600);
+const PIECE: usize = 1 << 16;
+/// Time and bytes for what a visitor still sends after the answer.
+const FOR_REST: Duration = Duration::from_secs(1);
+const LONGEST_REST: usize = 8 << 20;
+/// Connections at the same time; further ones wait.
+const MOST: usize = 256;
+const PAUSE: Duration = Duration::from_millis(20);
 
 pub struct Server(TcpListener);
 
@@ -19,78 +34,227 @@ impl Server {
         self.0.local_addr()
     }
 
-    /// Answers until the program is ended. A visitor who leaves early ends nothing.
-    pub fn run(&self, page: &str) -> Result<()> {
-        let port = self.address()?.port();
+    /// Answers until Ctrl-C ends the program. No visitor ends it.
+    pub fn run(&self, page: String) -> Result<()> {
+        interrupt::end_at_once();
+        let (port, page) = (self.address()?.port(), Arc::<str>::from(page));
         loop {
-            let (stream, _) = self.0.accept()?;
-            let _ = answer(stream, port, page);
+            let accepted = match Arc::strong_count(&page) <= MOST {
+                true => self.0.accept().ok(),
+                false => None,
+            };
+            let page = Arc::clone(&page);
+            let started = accepted.map(|(stream, _)| {
+                thread::Builder::new().stack_size(1 << 18).spawn(move || drop(visit(&stream, port, &page)))
+            });
+            if !matches!(started, Some(Ok(_))) {
+                thread::sleep(PAUSE); // too many connections, or the system has no room for one
+            }
         }
     }
 }
 
-fn answer(mut stream: TcpStream, port: u16, page: &str) -> Result<()> {
-    stream.set_read_timeout(Some(Duration::from_secs(5)))?;
-    let mut lines = BufReader::new((&stream).take(LONGEST_REQUEST)).lines();
-    let request = lines.next().transpose()?.unwrap_or_default();
-    let mut host = String::new();
-    for line in lines {
-        let line = line?;
-        if line.is_empty() {
-            break;
+/// One request and its answer.
+fn visit(stream: &TcpStream, port: u16, page: &str) -> Result<()> {
+    let head = match head(stream)? {
+        Head::Whole(head) => head,
+        Head::Late => return answer(stream, "408 Request Timeout", "text/plain", Some("the request took too long")),
+        Head::Long => {
+            answer(stream, "431 Request Header Fields Too Large", "text/plain", Some("the request is too long"))?;
+            return rest(stream);
         }
-        if let Some((name, value)) = line.split_once(':')
-            && name.eq_ignore_ascii_case("host")
-        {
-            host = value.trim().to_string();
-        }
-    }
+    };
+    let head = String::from_utf8_lossy(&head);
+    let mut lines = head.lines();
+    let mut words = lines.next().unwrap_or_default().split(' ');
+    let hosts: Vec<&str> = lines
+        .filter_map(|line| line.split_once(':'))
+        .filter(|(name, _)| name.eq_ignore_ascii_case("host"))
+        .map(|(_, value)| value.trim())
+        .collect();
     // a page from elsewhere whose name was made to mean 127.0.0.1 says that name here
-    let is_us = [format!("127.0.0.1:{port}"), format!("localhost:{port}")].contains(&host);
-    let mut words = request.split(' ');
-    let (status, body) = match (is_us, words.next(), words.next()) {
+    let is_us = matches!(hosts[..], [host] if is_here(host, port));
+    let method = words.next();
+    let (status, body) = match (is_us, method, words.next()) {
         (false, ..) => ("403 Forbidden", "this page is for 127.0.0.1"),
         (_, Some("GET" | "HEAD"), Some("/")) => ("200 OK", page),
         (_, Some("GET" | "HEAD"), _) => ("404 Not Found", "the only page is /"),
         _ => ("405 Method Not Allowed", "only GET and HEAD are allowed"),
     };
     let kind = if status == "200 OK" { "text/html" } else { "text/plain" };
-    write!(
-        stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
-         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
-        body.len()
-    )?;
-    if !request.starts_with("HEAD") {
-        stream.write_all(body.as_bytes())?;
+    if method == Some("HEAD") {
+        start(stream, status, kind, body.len())?;
+    } else {
+        answer(stream, status, kind, Some(body))?;
+    }
+    rest(stream)
+}
+
+fn is_here(host: &str, port: u16) -> bool {
+    let names = ["127.0.0.1", "localhost"];
+    let is = |name: &str| host.eq_ignore_ascii_case(name);
+    names.iter().any(|name| is(&format!("{name}:{port}")) || port == 80 && is(name))
+}
+
+enum Head {
+    Whole(Vec<u8>),
+    Late,
+    Long,
+}
+
+/// The request up to its empty line.
+fn head(mut stream: &TcpStream) -> Result<Head> {
+    let end = Instant::now() + FOR_HEAD;
+    let (mut head, mut piece) = (Vec::new(), [0; 4096]);
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Ok(Head::Late);
+        }
+        stream.set_read_timeout(Some(left))?;
+        let count = match stream.read(&mut piece) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => count,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => return Ok(Head::Late),
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        let begin = head.len().saturating_sub(3); // the empty line may have begun
+        head.extend_from_slice(&piece[..count]);
+        let is_end = |at: usize| head[at..].starts_with(b"\r\n\r\n") || head[at..].starts_with(b"\n\n");
+        if let Some(at) = (begin..head.len()).find(|&at| is_end(at)) {
+            head.truncate(at);
+        } else if head.len() <= LONGEST_HEAD {
+            continue;
+        }
+        return Ok(if head.len() > LONGEST_HEAD { Head::Long } else { Head::Whole(head) });
+    }
+}
+
+fn start(mut stream: &TcpStream, status: &str, kind: &str, length: usize) -> Result<()> {
+    stream.set_write_timeout(Some(FOR_PIECE))?;
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {length}\r\nCache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())
+}
+
+fn answer(mut stream: &TcpStream, status: &str, kind: &str, body: Option<&str>) -> Result<()> {
+    let (end, body) = (Instant::now() + FOR_ANSWER, body.unwrap_or_default());
+    start(stream, status, kind, body.len())?;
+    for piece in body.as_bytes().chunks(PIECE) {
+        if Instant::now() > end {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        stream.write_all(piece)?;
     }
     stream.flush()
+}
+
+/// Reads what still comes, for a while: closed before, the system would drop the answer.
+fn rest(mut stream: &TcpStream) -> Result<()> {
+    stream.shutdown(Shutdown::Write)?;
+    let end = Instant::now() + FOR_REST;
+    let (mut piece, mut read) = ([0; 4096], 0);
+    while read < LONGEST_REST {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            break;
+        }
+        stream.set_read_timeout(Some(left))?;
+        match stream.read(&mut piece)? {
+            0 => break,
+            count => read += count,
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn it_answers_this_machine_and_its_own_name_only() {
+    fn serve(page: &str) -> SocketAddr {
         let server = Server::new(0).expect("a free port");
         let address = server.address().expect("an address");
         assert!(address.ip().is_loopback());
-        std::thread::spawn(move || server.run("<p>page</p>"));
-        let ask = |request: &str| {
-            let mut stream = TcpStream::connect(address).expect("connected");
-            stream.write_all(request.as_bytes()).expect("sent");
-            let mut text = String::new();
-            stream.read_to_string(&mut text).expect("text");
-            text
-        };
-        let get = |path: &str, host: &str| ask(&format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n"));
+        let page = page.to_string();
+        thread::spawn(move || server.run(page));
+        address
+    }
+
+    fn ask(address: SocketAddr, request: &[u8]) -> String {
+        let mut stream = TcpStream::connect(address).expect("connected");
+        stream.write_all(request).expect("sent");
+        let mut text = String::new();
+        stream.read_to_string(&mut text).expect("text");
+        text
+    }
+
+    fn get(address: SocketAddr, path: &str, host: &str) -> String {
+        ask(address, format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n").as_bytes())
+    }
+
+    #[test]
+    fn it_answers_this_machine_and_its_own_name_only() {
+        let address = serve("<p>page</p>");
+        let port = address.port();
+        for us in [format!("127.0.0.1:{port}"), format!("localhost:{port}"), format!("LocalHost:{port}")] {
+            let page = get(address, "/", &us);
+            assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.ends_with("\r\n\r\n<p>page</p>"), "{page}");
+        }
+        let us = format!("127.0.0.1:{port}");
+        assert!(get(address, "/favicon.ico", &us).starts_with("HTTP/1.1 404"));
+        for other in ["evil.example:80", "127.0.0.1", &format!("{us}\r\nHost: evil.example")] {
+            assert!(get(address, "/", other).starts_with("HTTP/1.1 403"), "{other}");
+        }
+        let of = |method: &str| ask(address, format!("{method} / HTTP/1.1\r\nhOsT:{us}\r\n\r\n").as_bytes());
+        assert!(of("POST").starts_with("HTTP/1.1 405"));
+        assert!(of("HEAD").ends_with("Content-Length: 11\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n"));
+    }
+
+    #[test]
+    fn slow_and_silent_visitors_hold_up_nobody() {
+        let page = "p".repeat(20 << 20);
+        let address = serve(&page);
         let us = format!("127.0.0.1:{}", address.port());
-        let page = get("/", &us);
-        assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.ends_with("\r\n\r\n<p>page</p>"), "{page}");
-        assert!(get("/favicon.ico", &us).starts_with("HTTP/1.1 404"));
-        assert!(get("/", "evil.example:80").starts_with("HTTP/1.1 403"));
-        assert!(ask(&format!("POST / HTTP/1.1\r\nHost: {us}\r\n\r\n")).starts_with("HTTP/1.1 405"));
-        assert!(ask(&format!("HEAD / HTTP/1.1\r\nHost: {us}\r\n\r\n")).ends_with("\r\n\r\n"));
+        let request = format!("GET / HTTP/1.1\r\nHost: {us}\r\n\r\n");
+        let silent: Vec<_> = (0..100).map(|_| TcpStream::connect(address).expect("connected")).collect();
+        // takes none of the page
+        let mut stuck = TcpStream::connect(address).expect("connected");
+        stuck.write_all(request.as_bytes()).expect("sent");
+        // sends a letter at a time
+        let mut slow = TcpStream::connect(address).expect("connected");
+        let dripping = thread::spawn(move || {
+            let begin = Instant::now();
+            let mut text = String::new();
+            while slow.write_all(b"G").is_ok() && begin.elapsed() < 2 * FOR_HEAD {
+                thread::sleep(Duration::from_millis(100));
+                slow.set_read_timeout(Some(Duration::from_millis(1))).expect("set");
+                if slow.read_to_string(&mut text).is_ok() || !text.is_empty() {
+                    break;
+                }
+            }
+            (text, begin.elapsed())
+        });
+        let begin = Instant::now();
+        let found = get(address, "/", &us);
+        assert!(found.ends_with(&page[..1000]) && found.len() > page.len(), "{} bytes", found.len());
+        assert!(begin.elapsed() < FOR_HEAD, "{:?}", begin.elapsed());
+        drop(silent);
+        let (said, took) = dripping.join().expect("no panic");
+        assert!(said.starts_with("HTTP/1.1 408") && took < 2 * FOR_HEAD, "{said} after {took:?}");
+    }
+
+    #[test]
+    fn a_long_head_is_refused() {
+        let address = serve("page");
+        let start = format!("GET / HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nX-Long: ", address.port());
+        for length in [LONGEST_HEAD, 1 << 20] {
+            let said = ask(address, format!("{start}{}\r\n\r\n", "x".repeat(length)).as_bytes());
+            assert!(said.starts_with("HTTP/1.1 431"), "{said}");
+        }
+        assert!(ask(address, format!("{start}{}\r\n\r\n", "x".repeat(8000)).as_bytes()).starts_with("HTTP/1.1 200"));
     }
 }

@@ -24,8 +24,8 @@ impl<'a> Quantity<'a> {
     }
 }
 
-/// Lines of quantities below the joints' numbers; where the base floats, columns beside the names of their entries, for then
-/// positions are more than velocities.
+/// Lines of quantities below the joints' numbers; where the base floats, columns beside the names of their entries, for
+/// then positions are more than velocities.
 pub fn quantities(model: &Model, list: &[Quantity], common: bool) -> Vec<String> {
     if model.configuration_space().is_flat() {
         return by_number(list, common);

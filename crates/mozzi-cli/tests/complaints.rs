@@ -111,6 +111,30 @@ fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
 }
 
 #[test]
+fn what_changes_the_motion_is_always_said_and_looks_are_counted() {
+    let folder = folder("motion_first");
+    let bodies: String = (0..4)
+        .map(|i| format!("<body><joint range='9 -9' axis='{} 0 1'/><inertial mass='1' diaginertia='1 1 3'/>", i % 2))
+        .collect();
+    let model = format!(
+        "<mujoco><option density='1'/><worldbody><light/><geom size='1' rgba='1 0 0 1'/><body gravcomp='1'>\
+         <joint damping='1 0 2' stiffness='1 0 2'/><geom size='1'/>{bodies}{}</body></worldbody></mujoco>",
+        "</body>".repeat(4)
+    );
+    let model = file(&folder, "arm.xml", &model);
+    let said = String::from_utf8_lossy(&mozzi(&["info", &model]).stderr).to_string();
+    for force in ["damping: is `1 0 2`", "stiffness: is `1 0 2`", "gravcomp: is `1`", "density: is `1`"] {
+        assert!(said.contains(force), "{force}: {said}");
+    }
+    assert_eq!(said.matches("warning: ").count(), 4 + 3, "{said}");
+    assert!(said.contains("12 warnings in total"), "{said}");
+    assert!(said.contains("note: 1 attribute and 1 element of looks and contact are not used"), "{said}");
+    let lines = common::text(&["check", &model, "--json"]);
+    let severities: Vec<bool> = lines.lines().map(|line| line.contains(r#""severity":"note""#)).collect();
+    assert_eq!(severities, [vec![false; 12], vec![true; 2]].concat(), "{lines}");
+}
+
+#[test]
 fn wrong_numbers() {
     wrong(&["terms", "ur5", "--theta", "1,2,3"], &["--theta has 3 entries, expected 6", "elbow_joint"]);
     wrong(&["terms", "ur5", "--theta", "0,0,abc,0,0,0"], &["--theta: entry 3 is `abc`, expected a number"]);

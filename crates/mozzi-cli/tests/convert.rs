@@ -76,8 +76,9 @@ fn mjcf_is_read_by_every_command() {
         (Some(3.0), Some(0.0))
     );
     text(&["convert", robot, &path("springs.py")]);
-    let (code, message) = complaint(&["convert", robot, &path("springs.urdf")]);
-    assert!(code == 1 && message.contains("armature 0.01; .json can express all of it"), "{message}");
+    let output = common::mozzi(&["convert", robot, &path("springs.urdf")]);
+    let said = String::from_utf8(output.stderr).expect("text");
+    assert!(output.status.success() && said.contains("springs.urdf: warning: `armature` of `"), "{said}");
     let at = ["--theta", "0.3,0.1", "--dtheta", "1,2"];
     for (command, quantity) in
         [("terms", None), ("compute", Some("inverse-dynamics")), ("compute", Some("forward-dynamics"))]
@@ -123,4 +124,130 @@ fn info_tells_what_was_folded_into_what() {
     assert_eq!(wrist["links"][0], "panda_link7");
     assert!(wrist["links"].as_array().expect("links").iter().any(|link| link == "panda_hand"), "{wrist}");
     assert!(text(&["info", "panda"]).contains("+ panda_hand"));
+}
+
+const JSON: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/robots/two_joints.json");
+
+#[test]
+fn all_unknown_keys_of_json_are_reported() {
+    let text = std::fs::read_to_string(JSON).expect("a file").replace("gravity", "gravitty").replace("effort", "efort");
+    let (code, message) = complaint(&["info", &file(&folder("json_unknown"), "bad.json", &text)]);
+    assert!(code == 1 && message.matches("error: ").count() == 6, "{message}");
+    assert!(message.contains("gravitty") && message.matches("did you mean `effort`?").count() == 2, "{message}");
+}
+
+#[test]
+fn keys_of_json_are_known_and_complete() {
+    let folder = folder("json_keys");
+    let good = std::fs::read_to_string(JSON).expect("a file");
+    text(&["info", &file(&folder, "bom.json", &format!("\u{feff}{good}"))]);
+    for (from, to, words) in [
+        (
+            "\"friction\": 25",
+            "\"frition\": 25",
+            ":17:38: `frition` is not an entry of joints[0], did you mean `friction`?",
+        ),
+        (", \"friction\": 25", "", ":14:5: `friction` is missing in joints[0]"),
+        ("\"A\": [0, 0, 1, 0, 0, 0], ", "", ":14:5: `A` is missing in joints[0]; null is the axis of a fixed joint"),
+        (
+            "\"A\": [0, 0, 1, 0, 0, 0]",
+            "\"A\": [0, 0, 1, 0, 0, 0],\n\"free\": true",
+            ":17:1: joints[0] has several of A, ball and free",
+        ),
+        ("\"G\"", "\"g\"", ":7:23: `g` is not an entry of links[0], did you mean `G`?"),
+        ("\"ratio\": 2, ", "", ":22:7: `ratio` is missing in joints[1].mimic"),
+        ("\"gravity\"", "\"gravitty\"", ":4:3: `gravitty` is not an entry of the robot, did you mean `gravity`?"),
+        (
+            "\"fixed\",",
+            "\"fixed\", \"free_joint\": {\"name\": \"f\", \"parent\": \"w\"},",
+            ":3:20: free_joint is given, but the base is fixed",
+        ),
+        ("\"damping\": 0.5", "\"damping\": 0.5, \"damping\": 0.6", "`damping` is given twice"),
+        (
+            "\"frames\": []",
+            "\"frames\": [{\"name\": \"tip\", \"link\": \"b\", \"t\": 1}]",
+            ":25:43: `t` is not an entry of frames[0], did you mean `T`?",
+        ),
+        ("\"frames\": []", "\"lists\": {\"SS\": []}", ":25:13: `SS` is not an entry of lists"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let path = file(&folder, "bad.json", &good.replacen(from, to, 1));
+        let (code, message) = complaint(&["info", &path]);
+        assert!(code == 1 && message.contains("bad.json:") && message.contains(words), "{words} in {message}");
+        let output = common::mozzi(&["check", &path, "--json"]);
+        assert_eq!(output.status.code(), Some(1));
+        for line in String::from_utf8(output.stdout).expect("text").lines() {
+            let error: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            let (row, column) = (&error["line"], &error["column"]);
+            let place = format!("bad.json:{row}:{column}: {}", error["message"].as_str().expect("text"));
+            assert!(message.contains(&place), "{place} in {message}");
+        }
+    }
+}
+
+const ARM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-urdf/tests/convert/arm.urdf");
+
+#[test]
+fn from_urdf_to_urdf_the_text_stays() {
+    let folder = folder("in_place");
+    let arm = file(&folder, "arm.urdf", &std::fs::read_to_string(ARM).expect("a file"));
+    let read = |file: &str| std::fs::read_to_string(file).expect("a file");
+    let out = folder.join("out.urdf").to_str().expect("text").to_string();
+    text(&["convert", &arm, &out]);
+    assert_eq!(read(&out), read(&arm));
+    text(&["convert", &arm, &out, "--payload", "lower=0.5,0,0,0.1", "--lock", "elbow=-0.5"]);
+    let (found, before) = (read(&out), read(&arm));
+    let changed = before.lines().filter(|line| !found.lines().any(|other| other == *line)).count();
+    assert_eq!(changed, 5, "an inertial, two types, an origin, a mimic: {found}");
+    assert!(found.contains("<tool:holder for=\"finger\"/>") && found.contains("<!-- measured on 2024-05-01 -->"));
+    assert_eq!(json(&["info", &out])["n"], 1);
+    let number = "--inertia=upper=3,0,0,0,0.1,0,0,0.1,0,0.1";
+    text(&["convert", &arm, &out, number]);
+    assert!(read(&out).contains("<mass value=\"3.0\"/>"));
+    let says = |arguments: &[&str], words: &str| {
+        let (code, message) = complaint(&[&["convert", &arm], arguments].concat());
+        assert!(code == 1 && message.contains(words), "{words} in {message}");
+        assert_eq!(read(&arm), before);
+    };
+    says(&[&arm], "OUT is the file IN");
+    let spelled = folder.join("../in_place/arm.urdf").to_str().expect("text").to_string();
+    says(&[&spelled, "--lock", "elbow=0"], "--in-place overwrites it");
+    says(&[&out, "--lock", "elbow"], "--lock is `elbow`, expected JOINT=POSITION");
+    says(&[&out, "--payload", "lower=1,2"], "--payload lower has 2 entries, expected m, m and c");
+    says(&[&out, "--payload", "lower=-1"], "the mass is -1 kg, expected at least 0");
+    says(&[&out, "--inertia", "hand=1,0,0,0,1,0,0,1,0,1"], "there is no link `hand`");
+    text(&["convert", &arm, &arm, "--in-place", "--lock", "elbow=0"]);
+    assert_eq!(json(&["info", &arm])["n"], 1);
+}
+
+#[test]
+fn a_urdf_from_mjcf_is_complete() {
+    let folder = folder("from_mjcf");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-urdf/tests/convert/offset.xml");
+    let out = folder.join("offset.urdf").to_str().expect("text").to_string();
+    let said = |arguments: &[&str]| {
+        let output = common::mozzi(&[&["convert", model, &out], arguments].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let words = said(&[]);
+    assert!(words.contains("offset.urdf: warning: `armature` of `shoulder` is an extension of <dynamics>"), "{words}");
+    let at = |robot: &str| rows(&json(&["terms", robot, "--theta", "0.2,-0.3,0.1"])["mass_matrix"]).concat();
+    assert_close(&at(&out), &at(model), 1e-14);
+    let found = std::fs::read_to_string(&out).expect("a file");
+    assert_eq!(found.matches("<limit ").count(), found.matches(" effort=").count());
+    assert!(found.contains("<link name=\"tip\"/>") && found.contains("<joint name=\"tip_joint\" type=\"fixed\">"));
+    let words = said(&["--leave-out", "armature"]);
+    assert!(words.contains("omits the armature of `shoulder`: M differs"), "{words}");
+    assert!(!std::fs::read_to_string(&out).expect("a file").contains("armature"));
+    let moon = file(
+        &folder,
+        "moon.xml",
+        &std::fs::read_to_string(model)
+            .expect("a file")
+            .replace("<worldbody>", "<option gravity=\"0 0 -1.62\"/><worldbody>"),
+    );
+    let (code, message) = complaint(&["convert", &moon, &out]);
+    assert!(code == 1 && message.contains("gravity") && message.contains("--leave-out"), "{message}");
+    text(&["convert", &moon, &out, "--leave-out", "gravity"]);
 }

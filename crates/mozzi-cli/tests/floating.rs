@@ -157,7 +157,7 @@ fn files_carry_the_base() {
         let mut robot = robot.clone();
         match base {
             Some(base) => robot["base"] = base.into(),
-            None => drop(robot.as_object_mut().expect("an object").remove("base")),
+            None => robot.as_object_mut().expect("an object").retain(|key, _| key != "base" && key != "free_joint"),
         }
         file(&folder, "edited.json", &robot.to_string())
     };

@@ -1,4 +1,5 @@
-//! Ctrl-C in what takes long, and progress on a terminal and nowhere else. Where the program is too fast to be interrupted, a test says so.
+//! Ctrl-C in what takes long, and progress on a terminal and nowhere else. Where the program is too fast to be
+//! interrupted, a test says so.
 #![cfg(unix)]
 
 mod common;

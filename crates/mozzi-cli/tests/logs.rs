@@ -46,14 +46,13 @@ fn every_format_holds_the_motion() {
     let header: Vec<&str> = csv.lines().next().expect("a header").split(',').collect();
     let table: Vec<Vec<f64>> =
         csv.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
-    assert_eq!(rows(&found[".npy"]), table);
     for name in ["t", "kinetic_energy", "applied_work"] {
         assert_eq!(numbers(&found[".npz"][name]), numbers(&motion[name]), "{name}");
     }
     for name in ["theta", "dtheta", "ddtheta", "tau"] {
         assert_eq!(rows(&found[".npz"][name]), rows(&motion[name]), "{name}");
     }
-    for format in [".arrow", ".parquet"].into_iter().filter(|format| found.get(format).is_some()) {
+    for format in [".npy", ".arrow", ".parquet"].into_iter().filter(|format| found.get(format).is_some()) {
         for (c, name) in header.iter().enumerate() {
             let column: Vec<f64> = table.iter().map(|row| row[c]).collect();
             assert_eq!(numbers(&found[format][name]), column, "{format} {name}");
@@ -169,7 +168,8 @@ fn rows_are_those_of_the_motion_whoever_ends_it() {
     text(&[&motion[..], &["--out", &file]].concat());
     let bytes = std::fs::read(&file).expect("written");
     let header = String::from_utf8_lossy(&bytes[10..bytes.len() - 8 * table.len() * table[0].len()]).into_owned();
-    assert!(header.contains(&format!("'shape': ({}, {})", table.len(), table[0].len())), "{header}");
+    assert!(header.contains(&format!("'shape': ({},)", table.len())), "{header}");
+    assert!(header.starts_with("{'descr': [('t', '<f8'), ('theta_1', '<f8'), "), "{header}");
     let numbers = bytes[10 + header.len()..].chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().expect("eight")));
     assert!(numbers.eq(table.concat()));
     // what fails leaves no file

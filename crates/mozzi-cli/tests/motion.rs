@@ -203,14 +203,21 @@ fn wrong_motions() {
         (r#"{"controller": 3}"#, "controller: is 3, expected one of `pd-gravity`"),
         (
             r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "no.urdf"}"#,
-            "bad.json: model: `no.urdf` is neither a file",
+            "bad.json:1:46: model: `no.urdf` is neither a file",
         ),
         (
             r#"{"controller": "task-space", "frame": "no", "p": 1, "d": 1, "posture_p": 1, "posture_d": 1}"#,
-            "bad.json: frame: there is no frame `no`",
+            "bad.json:1:30: frame: there is no frame `no`",
         ),
         (r#"{"controller": "pd-gravity", "p": 1}"#, "`d` is missing"),
-        (r#"{"controller": "pd-gravity", "p": 1, "d": 1, "i": 1}"#, "`i` is not an entry of `pd-gravity`"),
+        (
+            r#"{"controller": "pd-gravity", "p": 1, "d": 1, "i": 1}"#,
+            "bad.json:1:46: `i` is not an entry of `pd-gravity`",
+        ),
+        (
+            "{\"controller\": \"pd-gravity\", \"p\": 1,\n \"D\": 1}",
+            "bad.json:2:2: `D` is not an entry of `pd-gravity`, did",
+        ),
         (r#"{"controller": "pd-gravity", "p": [1, 2], "d": 1}"#, "expected a number, or a list of 6"),
         (r#"{"controller": "pd-gravity", "p": -1, "d": 1}"#, "K_p"),
         (r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "panda"}"#, "8 velocities, expected 6"),

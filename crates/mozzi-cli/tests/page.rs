@@ -62,7 +62,8 @@ fn assert_near(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     assert!(apart < tolerance * size, "{what}: {found:?} and {expected:?} differ by {apart:e}");
 }
 
-/// A state of the page is the one of mozzi at the same positions: poses, M, and twists and wrenches where rates are given.
+/// A state of the page is the one of mozzi at the same positions: poses, M, and twists and wrenches where rates are
+/// given.
 fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f64]; 2]>) {
     assert_near("theta", &numbers(&found["theta"]), theta, SINGLE);
     let poses = model.frame_poses(theta).expect("poses");
@@ -189,7 +190,8 @@ fn the_page_shows_what_mozzi_computes() {
         posed[place.positions()].iter_mut().skip(4).for_each(|x| *x = 0.3 - 0.2 * k as f64);
     }
 
-    // a table that changes the sign of a ball's quaternion from row to row: between them it turns on, 0.2 rad about x a row
+    // a table that changes the sign of a ball's quaternion from row to row: between them it turns on, 0.2 rad about x a
+    // row
     let shoulder = balls.places()[1].q;
     let turned = |half: f64, sign: f64| {
         let mut theta: Vec<f64> = balls.neutral_configuration();

@@ -103,7 +103,8 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
         let zero = Traced::from(0.0);
         let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
         let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        // without parameters on the model's own numbers, so that each is recorded where it is used first: what the machine code's speed hangs on
+        // without parameters on the model's own numbers, so that each is recorded where it is used first: what the
+        // machine code's speed hangs on
         match parameters {
             Some(parameters) => {
                 let model = model.with_parameters(parameters);

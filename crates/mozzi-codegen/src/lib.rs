@@ -1,10 +1,10 @@
 //! A robot's dynamics as a straight-line program, and the program as machine code.
 //!
-//! - [`record_quantity`] a program: `mozzi`'s own kernel, run once on the scalar [`Traced`], without the operations that the robot's zeros
-//!   and ones make superfluous, every operation once. [`Arguments`] name the numbers of the robot that stay inputs. A [`Program`] is
-//!   printed, read, counted and evaluated in any [`Scalar`](mozzi::Scalar).
-//! - [`Kernel`]: a program as machine code, for one state and for several, where the processor is an x86-64 with AVX2 and FMA, or AVX-512.
-//!   `mozzi_batch::compile` makes a robot of it.
+//! - [`record_quantity`] a program: `mozzi`'s own kernel, run once on the scalar [`Traced`], without the operations
+//!   that the robot's zeros and ones make superfluous, every operation once. [`Arguments`] name the numbers of the
+//!   robot that stay inputs. A [`Program`] is printed, read, counted and evaluated in any [`Scalar`](mozzi::Scalar).
+//! - [`Kernel`]: a program as machine code, for one state and for several, where the processor is an x86-64 with AVX2
+//!   and FMA, or AVX-512. `mozzi_batch::compile` makes a robot of it.
 //! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C; [`emit_into`] a folder, for `build.rs`.
 //! - [`record`] any computation on scalars, and make a [`Kernel`] of it.
 //!

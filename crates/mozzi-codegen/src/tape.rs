@@ -1,7 +1,8 @@
 //! What a recording keeps: each different operation once, in the order in which it was first asked for.
 //!
-//! Folded away are operations on constants, x + 0, x − x, x · 0, x · 1 and −(−x). x · 0 is 0 for finite x alone: a NaN or ∞ goes nowhere
-//! where the robot's numbers have a zero. Signs are kept beside nodes ([`Traced`]), so that x and −x, a − b and b − a, are one node.
+//! Folded away are operations on constants, x + 0, x − x, x · 0, x · 1 and −(−x). x · 0 is 0 for finite x alone: a NaN
+//! or ∞ goes nowhere where the robot's numbers have a zero. Signs are kept beside nodes ([`Traced`]), so that x and −x,
+//! a − b and b − a, are one node.
 
 use crate::count::Count;
 use crate::function::Function;

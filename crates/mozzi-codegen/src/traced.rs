@@ -4,11 +4,11 @@ use crate::tape;
 use mozzi::Scalar;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A number of the recording that this thread makes: it has neither value nor order, so a kernel runs on it unchanged and
-/// leaves its operations on the tape. See [`record`](crate::record()).
+/// A number of the recording that this thread makes: it has neither value nor order, so a kernel runs on it unchanged
+/// and leaves its operations on the tape. See [`record`](crate::record()).
 ///
-/// It is the place of a node on the tape and a sign: −x is x with the other sign, and is never computed for its own sake.
-/// It means nothing outside of the recording that made it.
+/// It is the place of a node on the tape and a sign: −x is x with the other sign, and is never computed for its own
+/// sake. It means nothing outside of the recording that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Traced(u32);
 

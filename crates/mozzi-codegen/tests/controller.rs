@@ -1,5 +1,5 @@
-//! `examples/panda_controller`, as its build script and the compilers make it: the Rust and the C of it against the same loop on the library's
-//! own kernels.
+//! `examples/panda_controller`, as its build script and the compilers make it: the Rust and the C of it against the
+//! same loop on the library's own kernels.
 
 #[path = "../../../examples/panda_controller/build.rs"]
 #[allow(dead_code)]

@@ -78,7 +78,8 @@ fn basics(language: Language, precision: Precision) -> Module {
     Module { files, calls: vec![Call { function: "basics".to_string(), program, states }] }
 }
 
-/// The robots' text with what is called: fixed, free, with friction, with inputs left open; and a pose's, named by its frame.
+/// The robots' text with what is called: fixed, free, with friction, with inputs left open; and a pose's, named by its
+/// frame.
 fn modules(language: Language, precision: Precision) -> Vec<Module> {
     let last = |model: &Model| model.frames().last().expect("a frame").0;
     let (panda, ur5) = (embedded("panda"), embedded("ur5"));

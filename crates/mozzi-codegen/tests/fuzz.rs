@@ -1,5 +1,5 @@
-//! Random programs, as machine code and by the interpreter: for `MOZZI_FUZZ_SECONDS` (5 where it is not set) from the seed
-//! `MOZZI_FUZZ_SEED`. Not in a plain `cargo test`; `cargo xtask test` runs it. A program that fails is printed.
+//! Random programs, as machine code and by the interpreter: for `MOZZI_FUZZ_SECONDS` (5 where it is not set) from the
+//! seed `MOZZI_FUZZ_SEED`. Not in a plain `cargo test`; `cargo xtask test` runs it. A program that fails is printed.
 #![allow(missing_docs)]
 
 use mozzi::Scalar;
@@ -7,8 +7,8 @@ use mozzi::testing::Random;
 use mozzi_codegen::{Kernel, Program, Shape, Traced, record};
 use std::time::{Duration, Instant};
 
-/// A program of operations that keep numbers of size 1 at size 1, and errors from growing, so that rounding explains no difference; in few
-/// or many registers.
+/// A program of operations that keep numbers of size 1 at size 1, and errors from growing, so that rounding explains no
+/// difference; in few or many registers.
 fn program(random: &mut Random) -> Program {
     let lengths = [1 + random.below(4), 1 + random.below(60)];
     record("random", &[("a", lengths[0]), ("b", lengths[1])], |arrays| {

@@ -174,8 +174,8 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
         };
         mine.joints.iter().filter_map(change).collect()
     };
-    // Pinocchio keeps damping and friction and leaves them out of its inverse dynamics, and has no springs; MuJoCo makes a constraint of dry
-    // friction; springs are reported by their forces
+    // Pinocchio keeps damping and friction and leaves them out of its inverse dynamics, and has no springs; MuJoCo
+    // makes a constraint of dry friction; springs are reported by their forces
     let pinocchio = answer.library == "Pinocchio";
     type Make = fn(Vec<Change>) -> Cause;
     let stiffness = if pinocchio { changes(|joint| joint.stiffness, true) } else { Vec::new() };

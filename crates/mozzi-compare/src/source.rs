@@ -26,7 +26,7 @@ impl Source {
     /// [`Error::Read`], [`Error::Write`].
     pub fn read(name_or_path: &str, robot: &Description) -> Result<Self> {
         let source = |language, path, text| Source { name: name_or_path.to_string(), language, path, text };
-        if let Some(embedded) = embedded::text(name_or_path) {
+        if let Some(embedded) = embedded::unless_file(name_or_path) {
             return Ok(source("urdf", None, Some(embedded.to_string())));
         }
         let path = Path::new(name_or_path);
@@ -34,8 +34,12 @@ impl Source {
             return Self::written(name_or_path, robot);
         }
         let bytes = std::fs::read(path).map_err(|error| Error::Read { file: name_or_path.to_string(), error })?;
-        let is_mjcf = mozzi_urdf::mjcf::is_mjcf(&String::from_utf8_lossy(&bytes));
-        Ok(source(if is_mjcf { "mjcf" } else { "urdf" }, Some(name_or_path.to_string()), None))
+        Ok(source(language(&String::from_utf8_lossy(&bytes)), Some(name_or_path.to_string()), None))
+    }
+
+    /// A text of URDF or MJCF, such as that of a pipe.
+    pub fn of_text(name: &str, text: &str) -> Self {
+        Source { name: name.to_string(), language: language(text), path: None, text: Some(text.to_string()) }
     }
 
     /// The robot, written as URDF.
@@ -46,4 +50,8 @@ impl Source {
         let text = mozzi_urdf::write(robot).map_err(|error| Error::Write { robot: name.to_string(), error })?;
         Ok(Source { name: name.to_string(), language: "urdf", path: None, text: Some(text) })
     }
+}
+
+fn language(text: &str) -> &'static str {
+    if mozzi_urdf::mjcf::is_mjcf(text) { "mjcf" } else { "urdf" }
 }

@@ -6,7 +6,8 @@ use mozzi::{Description, Freedom, Model, SE3, SO3, Vec3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// Of the robot in which mimic joints move on their own; here they are where they follow to. A floating base is at rest at {s}.
+/// Of the robot in which mimic joints move on their own; here they are where they follow to. A floating base is at rest
+/// at {s}.
 #[derive(Clone, Debug)]
 pub struct State {
     pub theta: Vec<f64>,

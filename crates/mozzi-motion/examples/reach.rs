@@ -1,4 +1,5 @@
-//! Inverse kinematics at 10,000 reachable poses of each embedded robot: how many are reached, by how many starts, and how fast.
+//! Inverse kinematics at 10,000 reachable poses of each embedded robot: how many are reached, by how many starts, and
+//! how fast.
 //!
 //! `cargo run --release -p mozzi-motion --example reach [POSES]`
 

@@ -34,8 +34,8 @@ pub struct Measured {
 }
 
 impl Convergence {
-    /// The order that errors show: of given steps the last two, by the steps; of Dormand-Prince the last and the one in the middle, by the evaluations.
-    /// None where they are rounding.
+    /// The order that errors show: of given steps the last two, by the steps; of Dormand-Prince the last and the one in
+    /// the middle, by the evaluations. None where they are rounding.
     pub fn measured_order(&self) -> Option<f64> {
         let (many, fine) = (self.measured.len(), self.measured.last()?);
         let coarse = if self.is_adaptive() { self.measured[many / 2] } else { self.measured[many.checked_sub(2)?] };
@@ -50,9 +50,10 @@ impl Convergence {
     }
 }
 
-/// Errors at the end of a motion whose motors are off, of all methods: by so many steps at first, halved so often, and
-/// by as many tolerances, each a tenth of the one before, from 10⁻³ on. The reference is Runge-Kutta 4 with a quarter
-/// of the shortest step. `progress(done, all)` is told of evaluations of θ̈, how many there will be being a guess.
+/// The error of every method at the end of a motion with motors off. Fixed-step methods begin with the given number of
+/// steps, which is doubled for each further error; adaptive ones take as many tolerances, each a tenth of the one
+/// before, from 10⁻³ on. The reference is Runge-Kutta 4 with a quarter of the shortest step. `progress(done, all)`
+/// counts evaluations of θ̈; `all` is an estimate.
 ///
 /// # Errors
 /// [`mozzi::Error`]s as of [`Model::simulate`].

@@ -1,5 +1,5 @@
-//! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]), and what they are to do when
-//! ([`trajectories`]), motors that do it
+//! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]), and what they are to do
+//! when ([`trajectories`]), motors that do it
 //! ([`controllers`]). How it then moves is [`mozzi::simulation`]; how exact its methods are, [`convergence`].
 //!
 //! ```
@@ -24,7 +24,8 @@ pub use error::Error;
 pub use inverse_kinematics::{Goal, InverseKinematics};
 pub use mozzi::simulation::Policy;
 
-/// The examples of the README and of docs/rust.md, run with the documentation's tests: here, where all of their crates are known.
+/// The examples of the README and of docs/rust.md, run with the documentation's tests: here, where all of their crates
+/// are known.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 #[doc = include_str!("../../../docs/rust.md")]

@@ -1,5 +1,5 @@
-//! What the tests measure mozzi by: every quantity a [second way](SecondWay), numbers of [31 and 71 digits](wide) that both ways can be
-//! computed in, and a [second reader](read_urdf) of URDF that keeps every digit of the file.
+//! What the tests measure mozzi by: every quantity a [second way](SecondWay), numbers of [31 and 71 digits](wide) that
+//! both ways can be computed in, and a [second reader](read_urdf) of URDF that keeps every digit of the file.
 //!
 //! Not published: it depends on `mozzi` alone, whose crates depend on it in tests.
 

@@ -1,5 +1,5 @@
-//! Every quantity a second time, by other means than its kernel: the book's stacked equations, links one by one from the description, dual
-//! numbers, linearity in the parameters.
+//! Every quantity a second time, by other means than its kernel: the book's stacked equations, links one by one from
+//! the description, dual numbers, linearity in the parameters.
 
 use crate::bodies::{bodies, frame, moments, momentum_columns, source, twist};
 use crate::linear::{inverse, solve};
@@ -183,8 +183,8 @@ impl<S: Entry> Given<'_, S> {
         };
         self.joints().flat_map(at).collect()
     }
-    /// Of each joint's spring: the place of its source joint among the velocities, k, its stretch q − θ₀ and the joint's ratio. Of a ball each part of
-    /// the logarithm of its rotation.
+    /// Of each joint's spring: the place of its source joint among the velocities, k, its stretch q − θ₀ and the
+    /// joint's ratio. Of a ball each part of the logarithm of its rotation.
     fn springs(&self) -> Vec<(usize, [S; 3])> {
         let at = |(joint, place, ratio, offset): (&Joint<S>, Place, S, S)| {
             let stretches = match self.theta()[place.positions()] {

@@ -1,5 +1,5 @@
-//! A second reader of URDF, for numbers of any width: the tree is taken from the first reader's description, each number from the
-//! file's decimals.
+//! A second reader of URDF, for numbers of any width: the tree is taken from the first reader's description, each
+//! number from the file's decimals.
 
 use crate::wide::Wide;
 use mozzi::linalg::Sym3;
@@ -75,8 +75,9 @@ fn kind<W: Wide>(joint: Node, described: JointKind<W>) -> Read<JointKind<W>> {
     Ok(JointKind::Screw(axis.0))
 }
 
-/// The description that the first reader made of a file, with the file's decimals in wide numbers. Gravity, which no file gives, is the
-/// description's shortest decimals; balls and rotor inertias, which URDF cannot say, are the description's numbers.
+/// The description that the first reader made of a file, with the file's decimals in wide numbers. Gravity, which no
+/// file gives, is the description's shortest decimals; balls and rotor inertias, which URDF cannot say, are the
+/// description's numbers.
 ///
 /// # Errors
 /// [`NotRead`] for what the second reader does not know, and where the two readers disagree.

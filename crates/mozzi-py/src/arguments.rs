@@ -1,4 +1,5 @@
-//! Arguments as Python passed them, each in its slot; what is missing, unknown or given twice is named in Python's words.
+//! Arguments as Python passed them, each in its slot; what is missing, unknown or given twice is named in Python's
+//! words.
 
 use crate::signature::{ENVIRONMENT, INPUTS, SLOTS, Signature, Slot};
 use pyo3::exceptions::PyTypeError;

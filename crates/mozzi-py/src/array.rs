@@ -187,7 +187,8 @@ pub fn shown(shape: &[usize]) -> String {
     }
 }
 
-/// Mostly both are empty: `==` would call `memcmp`, which takes a hundred nanoseconds for no bytes at an address without memory.
+/// Mostly both are empty: `==` would call `memcmp`, which takes a hundred nanoseconds for no bytes at an address
+/// without memory.
 fn are_same(a: &[usize], b: &[usize]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
 }

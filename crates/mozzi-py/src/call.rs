@@ -51,7 +51,8 @@ impl Robot {
         }
     }
 
-    /// The one result at one state of arrays that need no conversion, in the robot's own environment; `None` for all others.
+    /// The one result at one state of arrays that need no conversion, in the robot's own environment; `None` for all
+    /// others.
     #[inline]
     pub fn at_one_state<'py>(
         &self,
@@ -104,7 +105,8 @@ impl Robot {
         self.check_shape_as(numbers, numbers.name)
     }
 
-    /// As [`check_shape`](Self::check_shape), of an argument that is another's kind by another name: a guess is a `theta`.
+    /// As [`check_shape`](Self::check_shape), of an argument that is another's kind by another name: a guess is a
+    /// `theta`.
     pub fn check_shape_as(&self, numbers: &Numbers, kind: &str) -> PyResult<()> {
         let length = if kind == "theta" { self.model.nq() } else { self.model.n() };
         if numbers.shape.last() == Some(&length) {

@@ -1,4 +1,5 @@
-//! `mozzi.conventions`: states, forces and matrices in the order, frames and signs of Pinocchio and MuJoCo, there and back.
+//! `mozzi.conventions`: states, forces and matrices in the order, frames and signs of Pinocchio and MuJoCo, there and
+//! back.
 #![allow(clippy::wrong_self_convention)] // `from_` another library's convention, of the robot that self is
 
 use crate::array::{Numbers, by_rows, common_leading, wrong_shape};

@@ -8,9 +8,15 @@ create_exception!(
     mozzi,
     LoadError,
     PyValueError,
-    "A robot's file is wrong. `diagnostics` has one line for each finding, errors and warnings, in the order of the file."
+    "A robot's file is wrong. `diagnostics` has one line for each finding: errors in the order of the file, then warnings, those that change the motion first."
 );
 create_exception!(mozzi, LoadWarning, PyUserWarning, "What is odd about a robot's file, and computed as it stands.");
+create_exception!(
+    mozzi,
+    DynamicsWarning,
+    LoadWarning,
+    "Something of a robot's file that is not computed, or replaced, so that the robot may move differently: a force, a property, an unknown word."
+);
 create_exception!(
     mozzi,
     SingularError,
@@ -104,7 +110,8 @@ pub fn of_loader(py: Python<'_>, error: mozzi_urdf::LoadError) -> PyErr {
         },
         mozzi_urdf::LoadError::Refused { diagnostics, .. } => {
             let error = LoadError::new_err(text);
-            let lines: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+            let said = diagnostics.iter().filter(|found| found.consequence() != mozzi_urdf::Consequence::Unused);
+            let lines: Vec<String> = said.map(ToString::to_string).collect();
             match error.value(py).setattr("diagnostics", lines) {
                 Ok(()) => error,
                 Err(other) => other,

@@ -38,6 +38,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     modern_robotics::add_to(module)?;
     module.add("LoadError", py.get_type::<failure::LoadError>())?;
     module.add("LoadWarning", py.get_type::<failure::LoadWarning>())?;
+    module.add("DynamicsWarning", py.get_type::<failure::DynamicsWarning>())?;
     module.add("SingularError", py.get_type::<failure::SingularError>())?;
     module.add("DivergedError", py.get_type::<failure::DivergedError>())?;
     module.add("MotionError", py.get_type::<failure::MotionError>())?;

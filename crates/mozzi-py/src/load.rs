@@ -2,10 +2,10 @@
 
 use crate::array::{Numbers, wrong_shape};
 use crate::describe::{pose, refused};
-use crate::failure::{LoadWarning, of_loader, of_model};
+use crate::failure::{DynamicsWarning, LoadWarning, of_loader, of_model};
 use mozzi::model::Base;
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
-use mozzi_urdf::{LoadError, Loaded, Policy};
+use mozzi_urdf::{Consequence, LoadError, Loaded, Policy};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyString};
@@ -27,12 +27,16 @@ pub fn loaded(py: Python<'_>, name_or_path: &str, how: &str) -> PyResult<Result<
     Ok(py.detach(|| mozzi_urdf::open_with(name_or_path, policy)))
 }
 
-/// The model, its warnings said as Python's.
+/// The model; its warnings, those that change the motion first, as Python's.
 pub fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) -> PyResult<Model> {
     let loaded = loaded.map_err(|error| of_loader(py, error))?;
     for warning in &loaded.warnings {
         let text = CString::new(warning.to_string().replace('\0', "\\0")).map_err(refused)?;
-        PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
+        let category = match warning.consequence() {
+            Consequence::Motion => py.get_type::<DynamicsWarning>(),
+            _ => py.get_type::<LoadWarning>(),
+        };
+        PyErr::warn(py, &category, &text, 2)?;
     }
     let model = loaded.build().map_err(|error| of_loader(py, error))?;
     if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }

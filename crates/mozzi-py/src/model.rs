@@ -17,10 +17,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by threads.
+/// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by
+/// threads.
 ///
-/// Its methods compute one quantity each. Arguments are anything NumPy makes an array of; the last axis is a state, leading axes are
-/// many states, computed on all cores, broadcast by NumPy's rule. Results are float32 where all arrays given are, else float64.
+/// Its methods compute one quantity each. Arguments are anything NumPy makes an array of; the last axis is a state,
+/// leading axes are many states, computed on all cores, broadcast by NumPy's rule. Results are float32 where all arrays
+/// given are, else float64.
 ///
 /// Examples
 /// --------
@@ -87,8 +89,8 @@ pub fn array<'py>(
 
 #[pymethods]
 impl PyModel {
-    /// The robot of a URDF or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd, 'lenient' repairs
-    /// inertias and says so; `floating` frees the base.
+    /// The robot of a URDF or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd, 'lenient'
+    /// repairs inertias and says so; `floating` frees the base.
     #[staticmethod]
     #[pyo3(signature = (path_or_file, *, policy="default", floating=false))]
     fn from_urdf(path_or_file: &Bound<'_, PyAny>, policy: &str, floating: bool) -> PyResult<Self> {
@@ -109,9 +111,9 @@ impl PyModel {
         load::text(text, name, policy, floating).map(Self::of)
     }
 
-    /// A serial chain of the book's lists: n + 1 home frames (4, 4), each seen from the one before ('relative', as of the Modern
-    /// Robotics package) or from the base ('base'); n spatial inertias (6, 6), each in its link's frame; and the screw axes, the
-    /// columns of a matrix (6, n), in the 'space', 'body' or 'link' frame.
+    /// A serial chain of the book's lists: n + 1 home frames (4, 4), each seen from the one before ('relative', as of
+    /// the Modern Robotics package) or from the base ('base'); n spatial inertias (6, 6), each in its link's frame; and
+    /// the screw axes, the columns of a matrix (6, n), in the 'space', 'body' or 'link' frame.
     #[staticmethod]
     #[pyo3(signature = (M_list, G_list, S_list, *, name="robot", frames="relative", axes="space"))]
     fn from_screws(
@@ -146,9 +148,10 @@ impl PyModel {
         Ok((rebuild, (to_state(self.0.model.description()), names, threads)))
     }
 
-    /// The same robot with these quantities as machine code, which is faster at one state and at many. The code is used for float64, in the
-    /// robot's own gravity, with its own parameters, its base at rest, touching nothing; everything else is computed as before.
-    /// `simulate` uses 'forward_dynamics', from one start and, if the torques are a function, from many.
+    /// The same robot with these quantities as machine code, which is faster at one state and at many. The code is used
+    /// for float64, in the robot's own gravity, with its own parameters, its base at rest, touching nothing; everything
+    /// else is computed as before. `simulate` uses 'forward_dynamics', from one start and, if the torques are a
+    /// function, from many.
     ///
     /// Parameters
     /// ----------
@@ -194,8 +197,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// Engine
-    ///     A named tuple: `one` for one state, `many` for arrays of states. Each is such as 'machine code (avx512f), 5210 bytes', or
-    ///     'kernels: ' and why.
+    ///     A named tuple: `one` for one state, `many` for arrays of states. Each is such as 'machine code (avx512f),
+    ///     5210 bytes', or 'kernels: ' and why.
     ///
     /// Examples
     /// --------
@@ -270,15 +273,15 @@ impl PyModel {
         self.0.model.joint_names().collect()
     }
 
-    /// The names of the nq positions: a joint's own name, of a ball `joint.qw` to `joint.qz`, of a free joint `joint.qw` to `joint.z`; of a floating
-    /// base, which comes first, `base.qw` to `base.z`.
+    /// The names of the nq positions: a joint's own name, of a ball `joint.qw` to `joint.qz`, of a free joint
+    /// `joint.qw` to `joint.z`; of a floating base, which comes first, `base.qw` to `base.z`.
     #[getter]
     fn position_names(&self) -> Vec<&str> {
         self.0.model.position_names().collect()
     }
 
-    /// The names of the n velocities and forces: a joint's own name, of a ball `joint.wx` to `joint.wz`, of a free joint `joint.wx` to `joint.vz`; of a
-    /// floating base, which comes first, `base.wx` to `base.vz`.
+    /// The names of the n velocities and forces: a joint's own name, of a ball `joint.wx` to `joint.wz`, of a free
+    /// joint `joint.wx` to `joint.vz`; of a floating base, which comes first, `base.wx` to `base.vz`.
     #[getter]
     fn velocity_names(&self) -> Vec<&str> {
         self.0.model.velocity_names().collect()
@@ -362,8 +365,8 @@ impl PyModel {
         array(py, &[theta.len()], theta)
     }
 
-    /// The book's lists of this robot, over its N moving links, base to tips: `joints`, `links`, `parents`, `M` (N, 4, 4) and
-    /// `M_relative`, `S`, `A` and `B` (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
+    /// The book's lists of this robot, over its N moving links, base to tips: `joints`, `links`, `parents`, `M` (N, 4,
+    /// 4) and `M_relative`, `S`, `A` and `B` (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
     ///
     /// Raises `ValueError` for a robot with a ball or a free joint, which have no one screw axis.
     fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

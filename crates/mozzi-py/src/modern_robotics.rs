@@ -1,4 +1,5 @@
-//! What `mozzi.modern_robotics` is computed by: the book's lists at every call, as the Modern Robotics package takes them.
+//! What `mozzi.modern_robotics` is computed by: the book's lists at every call, as the Modern Robotics package takes
+//! them.
 
 use crate::array::{Numbers, wrong_shape};
 use crate::describe::refused;

@@ -1,9 +1,10 @@
-//! NumPy's arrays, through NumPy's C interface: what is a table of numbers is seen as a slice, and results are arrays from the start.
-//! The buffer protocol is in Python's stable interface from 3.11 on only, and takes longer.
+//! NumPy's arrays, through NumPy's C interface: what is a table of numbers is seen as a slice, and results are arrays
+//! from the start. The buffer protocol is in Python's stable interface from 3.11 on only, and takes longer.
 //!
-//! All of the binding's `unsafe` is here, but for that of methods. A slice is of an array's memory, which the reference to the array keeps. While Python's lock is
-//! held nothing else runs that could write there. Batches run without the lock: a thread that writes to an array which another
-//! thread computes on makes a race, as with every library that computes on NumPy's arrays.
+//! All of the binding's `unsafe` is here, but for that of methods. A slice is of an array's memory, which the reference
+//! to the array keeps. While Python's lock is held nothing else runs that could write there. Batches run without the
+//! lock: a thread that writes to an array which another thread computes on makes a race, as with every library that
+//! computes on NumPy's arrays.
 
 use pyo3::exceptions::PyImportError;
 use pyo3::ffi;
@@ -187,8 +188,8 @@ fn numbers<T: Element>(array: &ArrayObject, length: usize) -> &[T] {
     unsafe { std::slice::from_raw_parts(array.data.cast::<T>(), length) }
 }
 
-/// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs. A method asks once for each
-/// array of `out`, whose other arrays are among the inputs.
+/// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs. A
+/// method asks once for each array of `out`, whose other arrays are among the inputs.
 #[allow(clippy::mut_from_ref)] // of NumPy's memory, which the reference only keeps
 pub fn view_mut<'a, 'i, 'py: 'i, T: Element>(
     array: &'a Bound<'_, PyAny>,
@@ -231,8 +232,8 @@ impl<'py, T: Element> Fresh<'py, T> {
     pub fn new(py: Python<'py>, shape: &[usize]) -> PyResult<Self> {
         let api = api(py);
         let dtype = api.dtypes[T::PLACE];
-        // SAFETY: the function takes a reference to the dtype, which is given to it, and reads the lengths. It answers with a new reference
-        // to an array, or with none and Python's error set.
+        // SAFETY: the function takes a reference to the dtype, which is given to it, and reads the lengths. It answers
+        // with a new reference to an array, or with none and Python's error set.
         let array = unsafe {
             ffi::Py_IncRef(dtype);
             let array = (api.zeros)(shape.len() as c_int, shape.as_ptr().cast(), dtype, 0);
@@ -243,7 +244,8 @@ impl<'py, T: Element> Fresh<'py, T> {
 
     #[inline(always)]
     pub fn numbers(&mut self) -> &mut [T] {
-        // SAFETY: an array that was made with this many numbers of this type; no one else knows it yet. An empty one has an address, too.
+        // SAFETY: an array that was made with this many numbers of this type; no one else knows it yet. An empty one
+        // has an address, too.
         unsafe {
             let data = (*self.array.as_ptr().cast::<ArrayObject>()).data;
             std::slice::from_raw_parts_mut(data.cast::<T>(), self.length)
@@ -265,7 +267,8 @@ impl<'py, T: Element> Fresh<'py, T> {
     }
 }
 
-/// The numbers of an array that exists: their product does not overflow, but a part of it may, where another length is 0.
+/// The numbers of an array that exists: their product does not overflow, but a part of it may, where another length is
+/// 0.
 fn count(shape: &[usize]) -> usize {
     shape.iter().fold(1, |product: usize, &length| product.wrapping_mul(length))
 }

@@ -45,8 +45,9 @@ impl Robot {
         }
     }
 
-    /// The quantity at one state, whose lengths, frame and rows were checked; by machine code if there is some and the environment is the
-    /// robot's own, which is `None`. `fast::compute` would check all again, which takes a tenth of an arm's recursion.
+    /// The quantity at one state, whose lengths, frame and rows were checked; by machine code if there is some and the
+    /// environment is the robot's own, which is `None`. `fast::compute` would check all again, which takes a tenth of
+    /// an arm's recursion.
     #[inline]
     pub fn one(
         &self,

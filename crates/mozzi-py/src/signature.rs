@@ -1,5 +1,5 @@
-//! The arguments of a quantity's method, made from its declaration: their order, defaults, types and documentation. Without Python, so that
-//! `tests/stubs.rs` writes the stubs from it.
+//! The arguments of a quantity's method, made from its declaration: their order, defaults, types and documentation.
+//! Without Python, so that `tests/stubs.rs` writes the stubs from it.
 
 use mozzi::quantities::{Declaration, Dim, Input, Of, Uses};
 use std::fmt::Write;
@@ -142,8 +142,8 @@ fn state((input, slot): (&Input, Slot)) -> Argument {
     Argument { slot, name: input.name, default: None, stub: "ArrayLike", about: [""; 2] }
 }
 
-/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, nor do forces of wrenches alone, nor what multiplies
-/// the parameters.
+/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, nor do forces of wrenches
+/// alone, nor what multiplies the parameters.
 fn depends_on_parameters(declaration: &Declaration) -> bool {
     let free_of_them = |dim: &Dim| matches!(dim, Dim::Frames | Dim::Parameters);
     declaration.of != Of::Frame

@@ -1,4 +1,5 @@
-//! The library that `cargo xtask test` hands to Python is built by `cargo test --workspace`, which builds what this test depends on.
+//! The library that `cargo xtask test` hands to Python is built by `cargo test --workspace`, which builds what this
+//! test depends on.
 
 use std::path::Path;
 

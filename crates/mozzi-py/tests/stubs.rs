@@ -1,5 +1,6 @@
-//! What the package's text says of the quantities, held to the list: their methods in `_mozzi.pyi`, and the named tuples of several results,
-//! `_quantities.py`. `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-py --test stubs`, writes both anew.
+//! What the package's text says of the quantities, held to the list: their methods in `_mozzi.pyi`, and the named
+//! tuples of several results, `_quantities.py`. `cargo xtask docs`, or
+//! `MOZZI_BLESS=1 cargo test -p mozzi-py --test stubs`, writes both anew.
 
 #[allow(dead_code)] // used by the library
 #[path = "../src/signature.rs"]

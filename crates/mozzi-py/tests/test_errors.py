@@ -2,6 +2,7 @@
 
 import io
 import re
+import warnings
 
 import mozzi
 import numpy as np
@@ -139,6 +140,19 @@ def test_a_warning_is_pythons():
         mozzi.Model.from_urdf_string(text)
     with pytest.raises(mozzi.LoadError):
         mozzi.Model.from_urdf_string(text, policy="strict")
+
+
+def test_what_changes_the_motion_is_the_first_warning():
+    inertial = '<inertial mass="1" diaginertia="1 1 3"/>'
+    text = f"""<mujoco><worldbody><light/><body name="b"><joint range="9 -9"/>{inertial}<geom size="1" rgba="1 0 0 1"/>
+        <body gravcomp="1"><geom size="1"/></body></body></worldbody></mujoco>"""
+    with pytest.warns(mozzi.LoadWarning) as found:
+        mozzi.Model.from_urdf_string(text)
+    assert [warning.category for warning in found] == [mozzi.DynamicsWarning] + 2 * [mozzi.LoadWarning]
+    assert "gravity compensation" in str(found[0].message)
+    with warnings.catch_warnings():  # looks are no warning
+        warnings.simplefilter("error")
+        mozzi.Model.from_urdf_string('<mujoco><worldbody><geom size="1" rgba="1 0 0 1"/></worldbody></mujoco>')
 
 
 def test_lists(ur5):

@@ -3,10 +3,11 @@
 use crate::base64;
 use crate::robot::rows;
 use flate2::{Compression, write::GzEncoder};
-use mozzi_urdf::LoadError;
-use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, geometry, locate};
+use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry, locate, parse};
+use mozzi_urdf::{LoadError, visible};
 use serde_json::{Value, json};
-use std::io::Write;
+use std::collections::BTreeSet;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// A larger file is left out.
@@ -21,7 +22,7 @@ pub enum Meshes {
     /// Those that are meant to be seen; of a link without any, those that collide.
     #[default]
     Visual,
-    /// Those that collide: mostly smaller.
+    /// Those that collide, mostly smaller; of a link without any, its visual boxes, cylinders and balls.
     Collision,
     /// None: boxes, cylinders and balls alone, and a skeleton.
     None,
@@ -50,14 +51,32 @@ impl Drawing {
     /// # Errors
     /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
     pub fn of_file(name_or_path: &str, meshes: Meshes) -> Result<Self, LoadError> {
-        let Geometry { shapes, left_out } = geometry(name_or_path)?;
+        Ok(Self::new(geometry(name_or_path)?, Path::new(name_or_path), meshes))
+    }
+
+    /// The drawing of a text, such as that of a pipe: without meshes, since it has no folder.
+    pub fn of_text(file_name: &str, text: &[u8], meshes: Meshes) -> Self {
+        let Geometry { mut shapes, left_out } = parse(file_name, text);
+        let all = shapes.len();
+        shapes.retain(|shape| !matches!(shape.form, Form::Mesh { .. }));
+        let meshless = all - shapes.len();
+        let mut drawing = Self::new(Geometry { shapes, left_out }, Path::new(file_name), meshes);
+        if meshless > 0 && meshes != Meshes::None {
+            drawing
+                .notes
+                .push(format!("{meshless} meshes: {file_name} has no folder, in which they could be searched"));
+        }
+        drawing
+    }
+
+    fn new(Geometry { shapes, left_out }: Geometry, file: &Path, meshes: Meshes) -> Self {
         let mut drawing = Drawing { notes: left_out.iter().map(ToString::to_string).collect(), ..Drawing::default() };
         for shape in chosen(shapes, meshes) {
-            if drawing.has_mesh(&shape.form, Path::new(name_or_path)) {
+            if drawing.has_mesh(&shape.form, file) {
                 drawing.shapes.push(shape);
             }
         }
-        Ok(drawing)
+        drawing
     }
 
     /// Reads the mesh of a form, if it has one; false and noted where that fails.
@@ -103,6 +122,7 @@ impl Drawing {
             Form::Box { size } => ("box", size.to_vec(), None),
             Form::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None),
             Form::Capsule { radius, length } => ("capsule", vec![*radius, *length], None),
+            Form::Ellipsoid { radii } => ("ellipsoid", radii.to_vec(), None),
             Form::Sphere { radius } => ("sphere", vec![*radius], None),
             Form::Mesh { file, scale } => {
                 ("mesh", scale.to_vec(), self.meshes.iter().position(|mesh| mesh.address == *file))
@@ -113,11 +133,16 @@ impl Drawing {
 
 /// The shapes that are drawn.
 fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
-    let looks: Vec<String> =
-        shapes.iter().filter(|shape| shape.purpose == Purpose::Visual).map(|shape| shape.link.clone()).collect();
+    let links = |purpose| -> BTreeSet<String> {
+        shapes.iter().filter(|shape| shape.purpose == purpose).map(|shape| shape.link.clone()).collect()
+    };
+    let (looks, contacts) = (links(Purpose::Visual), links(Purpose::Collision));
     let is_chosen = |shape: &Shape| match (meshes, shape.purpose) {
         (Meshes::None, _) if matches!(shape.form, Form::Mesh { .. }) => false,
-        (Meshes::Collision, purpose) => purpose == Purpose::Collision,
+        (Meshes::Collision, Purpose::Visual) => {
+            !contacts.contains(&shape.link) && !matches!(shape.form, Form::Mesh { .. })
+        }
+        (Meshes::Collision, Purpose::Collision) => true,
         (_, Purpose::Visual) => true,
         (_, Purpose::Collision) => !looks.contains(&shape.link),
     };
@@ -128,21 +153,24 @@ fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
 fn read(robot_file: &Path, address: &str) -> Result<(&'static str, Vec<u8>), String> {
     let ending = Path::new(address).extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let Some(&format) = FORMATS.iter().find(|format| ending.as_deref() == Some(**format)) else {
-        return Err(format!("mesh {address}: is no .stl, .obj or .dae"));
+        return Err(format!("mesh {}: is no .stl, .obj or .dae", visible(address)));
     };
     let path = locate(robot_file, address).map_err(|error| error.to_string())?;
-    let cannot = |error: std::io::Error| format!("mesh {address}: {} cannot be read: {error}", path.display());
+    let place = visible(&format!("mesh {address}: {}", path.display()));
+    let cannot = |error: std::io::Error| format!("{place} cannot be read: {error}");
     let bytes = small(&path).map_err(cannot)?;
+    check_mesh(format, &bytes).map_err(|why| format!("{place} is no mesh: {why}"))?;
     let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
     gzip.write_all(&bytes).and_then(|()| gzip.finish()).map(|gzip| (format, gzip)).map_err(cannot)
 }
 
 fn small(path: &PathBuf) -> std::io::Result<Vec<u8>> {
-    let found = std::fs::metadata(path)?.len();
-    if found > MOST_BYTES {
-        return Err(std::io::Error::other(format!("it has {found} bytes, expected at most {MOST_BYTES}")));
+    let mut bytes = Vec::new();
+    let found = std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    match found as u64 > MOST_BYTES {
+        true => Err(std::io::Error::other(format!("it has more than {MOST_BYTES} bytes, expected at most these"))),
+        false => Ok(bytes),
     }
-    std::fs::read(path)
 }
 
 #[cfg(test)]
@@ -158,13 +186,37 @@ mod tests {
   <link name="d"><collision><geometry><sphere radius="1"/></geometry></collision></link>
 </robot>"#;
 
+    const TRIANGLE: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+                            endloop\nendfacet\nendsolid a\n";
+
+    #[test]
+    fn files_that_are_no_meshes_stay_out() {
+        let folder = std::env::temp_dir().join(format!("mozzi-secret-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("arm")).expect("a folder");
+        let secret = folder.join("secret.stl");
+        std::fs::write(&secret, TRIANGLE).expect("a file");
+        std::fs::write(folder.join("arm/a.stl"), "password = 1\n").expect("a file");
+        let robot = ARM.replace("b.ply", "../secret.stl").replace("c.obj", &secret.to_string_lossy());
+        let file = folder.join("arm/arm.urdf");
+        std::fs::write(&file, &robot).expect("a file");
+        let drawing = Drawing::of_file(&file.to_string_lossy(), Meshes::Visual).expect("read");
+        assert!(drawing.meshes.is_empty() && drawing.notes.len() == 3, "{:?}", drawing.notes);
+        assert!(drawing.notes[0].contains("a.stl is no mesh: line 1: expected `solid`"), "{:?}", drawing.notes);
+        for note in &drawing.notes[1..] {
+            assert!(note.contains("secret.stl, outside of the robot's folder"), "{note}");
+        }
+        let piped = Drawing::of_text("standard input", robot.as_bytes(), Meshes::Visual);
+        assert!(piped.notes[0].starts_with("4 meshes: standard input has no folder"), "{:?}", piped.notes);
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
+
     #[test]
     fn meshes_are_read_once_and_what_is_missing_is_noted() {
         let folder = std::env::temp_dir().join(format!("mozzi-drawing-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
         let file = folder.join("arm.urdf");
         std::fs::write(&file, ARM).expect("a file");
-        std::fs::write(folder.join("a.stl"), "solid a\nendsolid a\n").expect("a file");
+        std::fs::write(folder.join("a.stl"), TRIANGLE).expect("a file");
         let of = |meshes| Drawing::of_file(&file.to_string_lossy(), meshes).expect("read");
         let drawing = of(Meshes::Visual);
         let kinds: Vec<_> = drawing.shapes.iter().map(|shape| (&*shape.link, shape.purpose.name())).collect();

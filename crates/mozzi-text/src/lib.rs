@@ -20,7 +20,8 @@ pub fn pad(text: &str, to: usize, align: char) -> String {
     if align == 'r' { space + text } else { text.to_string() + &space }
 }
 
-/// How the numbers of a table are written: one number of decimals for all, so that their points stand below each other. What is below 10⁻¹² of the largest is rounding and shown as 0.
+/// How the numbers of a table are written: one number of decimals for all, so that their points stand below each other.
+/// What is below 10⁻¹² of the largest is rounding and shown as 0.
 #[derive(Clone, Copy)]
 pub struct Decimals {
     places: usize,
@@ -144,7 +145,8 @@ pub fn flow(entries: &[String]) -> Vec<String> {
     lines
 }
 
-/// Cells in columns, two spaces between them. `align` has one 'l' or 'r' for each column; its last holds for all further.
+/// Cells in columns, two spaces between them. `align` has one 'l' or 'r' for each column; its last holds for all
+/// further.
 pub fn table(rows: &[Vec<String>], align: &str) -> Vec<String> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let aligns: Vec<char> = align.chars().collect();

@@ -1,8 +1,9 @@
 //! What the readers of elements share.
 
 use crate::dialect::Dialect;
-use crate::finding::Findings;
-use crate::spelling::did_you_mean;
+use crate::finding::{Finding, Findings};
+use crate::spelling::nearest;
+use crate::version::Version;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -12,22 +13,20 @@ pub(crate) struct Context {
     pub findings: Findings,
     /// The language of the text.
     pub dialect: Dialect,
+    /// The version of URDF that the file declares.
+    pub version: Version,
     /// Places of values that were found to be no numbers: a default may be used often, and is reported once.
     pub unreadable: BTreeSet<usize>,
-    /// Attributes that say nothing about the dynamics of the tree, by the element that they stand on.
-    pub left_out: BTreeMap<String, LeftOut>,
+    /// The first places of attributes that do not affect the dynamics of the tree, by element and attribute.
+    pub left_out: BTreeMap<(String, &'static str), Range<usize>>,
     kinds: BTreeMap<(String, String, &'static str), Option<String>>,
-}
-
-/// Attributes of one kind of element that are left out, and the place of the first.
-pub(crate) struct LeftOut {
-    pub span: Range<usize>,
-    pub names: BTreeSet<&'static str>,
+    /// The first finding of each kind that may occur often, and how many there are.
+    repeated: BTreeMap<String, (Finding, usize)>,
 }
 
 /// Something that is not known.
 pub(crate) enum Unknown {
-    /// Near a word that is: "did you mean `x`?"
+    /// Near this known word.
     Misspelled(String),
     /// The first of its kind in such a parent.
     First,
@@ -43,8 +42,22 @@ impl Context {
 
     /// Notes an attribute that is left out, to be listed at the end.
     pub fn leave_out(&mut self, element: &str, attribute: &'static str, span: Range<usize>) {
-        let first = || LeftOut { span, names: BTreeSet::new() };
-        self.left_out.entry(element.to_string()).or_insert_with(first).names.insert(attribute);
+        self.left_out.entry((element.to_string(), attribute)).or_insert(span);
+    }
+
+    /// A finding of a kind that is reported once, with the number of its repetitions.
+    pub fn repeat(&mut self, kind: &str, finding: Finding) {
+        self.repeated.entry(kind.to_string()).or_insert((finding, 0)).1 += 1;
+    }
+
+    /// Reports the findings of [`repeat`](Self::repeat).
+    pub fn report_repeated(&mut self) {
+        for (mut finding, count) in std::mem::take(&mut self.repeated).into_values() {
+            if count > 1 {
+                finding.message.push_str(&format!(" (here, and {} more)", count - 1));
+            }
+            self.findings.add(finding);
+        }
     }
 
     /// What to make of a name that is not known, `what` it names, in such a parent.
@@ -57,12 +70,12 @@ impl Context {
     ) -> Unknown {
         let kind = (parent.to_string(), name.to_string(), what);
         match self.kinds.get(&kind) {
-            Some(Some(help)) => Unknown::Misspelled(help.clone()),
+            Some(Some(near)) => Unknown::Misspelled(near.clone()),
             Some(None) => Unknown::Again,
             None => {
-                let help = did_you_mean(name, known);
-                self.kinds.insert(kind, help.clone());
-                help.map_or(Unknown::First, Unknown::Misspelled)
+                let near = nearest(name, known).map(str::to_string);
+                self.kinds.insert(kind, near.clone());
+                near.map_or(Unknown::First, Unknown::Misspelled)
             }
         }
     }

@@ -1,9 +1,11 @@
 //! A diagnostic: message, place, severity, remedy.
 
+use crate::consequence::{Consequence, consequence};
 use crate::dialect::Dialect;
 use crate::explain::remedy;
-use crate::finding::Finding;
+use crate::finding::{Finding, Topic};
 use crate::source::{Position, Source};
+use crate::visible::visible;
 use mozzi::model::Severity;
 use std::fmt;
 use std::ops::Range;
@@ -18,15 +20,16 @@ pub struct Diagnostic {
     position: Position,
     span: Range<usize>,
     help: Option<String>,
+    topic: Option<Topic>,
     source: Source,
 }
 
 impl Diagnostic {
     pub(crate) fn new(finding: Finding, position: Position, source: Source, dialect: Dialect) -> Self {
-        let Finding { severity, code, span, message, help } = finding;
+        let Finding { severity, code, span, message, help, topic } = finding;
         let code = format!("{}{code}", dialect.prefix());
         let help = help.or_else(|| remedy(&code).map(str::to_string));
-        Diagnostic { severity, code, message, position, span, help, source }
+        Diagnostic { severity, code, message, position, span, help, topic, source }
     }
 
     /// Error (the file is refused) or warning (it is loaded).
@@ -37,6 +40,18 @@ impl Diagnostic {
     /// The code, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::explain).
     pub fn code(&self) -> &str {
         &self.code
+    }
+
+    /// What it means for the results.
+    pub fn consequence(&self) -> Consequence {
+        match self.topic {
+            Some(_) => Consequence::Unused,
+            None => consequence(&self.code),
+        }
+    }
+
+    pub(crate) fn topic(&self) -> Option<Topic> {
+        self.topic
     }
 
     /// The element, what was found there, and what was expected.
@@ -69,14 +84,14 @@ impl Diagnostic {
         self.help.as_deref()
     }
 
-    /// The text that the span covers.
+    /// The text that the span covers; empty in an included file that is no model.
     pub fn excerpt(&self) -> &str {
-        &self.source.text[self.span.clone()]
+        if self.source.is_shown { &self.source.text[self.span.clone()] } else { "" }
     }
 
-    /// The whole text, for excerpts.
-    pub(crate) fn text(&self) -> &str {
-        &self.source.text
+    /// The whole text, for excerpts, unless there shall be none.
+    pub(crate) fn text(&self) -> Option<&str> {
+        self.source.is_shown.then_some(&self.source.text)
     }
 
     pub(crate) fn into_error(self) -> Self {
@@ -94,7 +109,8 @@ impl fmt::Display for Diagnostic {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        write!(f, "{}:{}:{}: {severity}: {}", self.file(), self.line(), self.column(), self.message)
+        let (file, message) = (visible(self.file()), visible(&self.message));
+        write!(f, "{file}:{}:{}: {severity}: {message}", self.line(), self.column())
     }
 }
 

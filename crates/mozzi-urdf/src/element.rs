@@ -2,9 +2,11 @@
 //! place.
 
 use crate::context::{Context, Unknown};
+use crate::extension;
 use crate::finding::Finding;
 use crate::number::{NotNumbers, numbers};
 use crate::pages::Pages;
+use crate::spelling::meant;
 use crate::vocabulary::{Vocabulary, shown};
 use roxmltree::{Attribute, Node};
 use std::collections::BTreeMap;
@@ -61,6 +63,11 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
+    /// The text inside, up to the first child.
+    pub fn text(&self) -> &'a str {
+        self.node.text().unwrap_or_default()
+    }
+
     /// The place of the name in the start tag.
     pub fn span(&self) -> Range<usize> {
         let start = self.node.range().start + 1;
@@ -96,13 +103,8 @@ impl<'a> Element<'a> {
         let value = self.attribute(name);
         if value.is_none() {
             let message = format!("{}: has no attribute `{name}`", self.subject);
-            let help = (!self.node.text().unwrap_or_default().trim().is_empty()).then(|| {
-                format!(
-                    "values are attributes: <{} {name}=\"{}\"/>",
-                    self.name(),
-                    shown(self.node.text().unwrap_or_default().trim())
-                )
-            });
+            let help = (!self.text().trim().is_empty())
+                .then(|| format!("values are attributes: <{} {name}=\"{}\"/>", self.name(), shown(self.text().trim())));
             cx.findings.add(Finding::error("missing_attribute", self.span(), message).maybe_help(help));
         }
         value
@@ -167,8 +169,13 @@ impl<'a> Element<'a> {
 
     /// Reports attributes that are not known: a near miss is an error, others a warning once per kind.
     pub fn check_attributes(&self, words: &Vocabulary, cx: &mut Context) {
-        for attribute in self.node.attributes().filter(|attribute| !self.is_foreign(attribute)) {
+        for attribute in self.node.attributes() {
             let name = attribute.name();
+            if self.is_foreign(&attribute) {
+                let span = self.place(attribute.range_qname());
+                extension::attribute(self, self.raw(&span), span, cx);
+                continue;
+            }
             if words.attributes.contains(&name) || words.silent.contains(&name) {
                 continue;
             }
@@ -180,8 +187,14 @@ impl<'a> Element<'a> {
             let language = cx.dialect.name();
             let message = format!("{subject}: has an attribute `{}`, which {language} does not define", shown(name));
             match cx.unknown(self.name(), name, "attribute", words.attributes.iter().copied()) {
-                Unknown::Misspelled(help) => {
-                    cx.findings.add(Finding::error("misspelled_attribute", span, message).help(help));
+                // of a word that is given as well nothing is lost: `k_velocity` next to `velocity`
+                Unknown::Misspelled(near) if self.attribute(&near).is_some() => {
+                    let message = format!("{message}, next to `{near}`");
+                    let help = format!("it is ignored, and `{near}` is used");
+                    cx.findings.add(Finding::warning("redundant_attribute", span, message).help(help));
+                }
+                Unknown::Misspelled(near) => {
+                    cx.findings.add(Finding::error("misspelled_attribute", span, message).help(meant(&near)));
                 }
                 Unknown::First => {
                     let known = crate::vocabulary::list(words.attributes);
@@ -223,18 +236,18 @@ impl<'a> Element<'a> {
     /// Reports a name that is not known in the parent.
     fn check_name(&self, parent: &Element<'a>, words: &Vocabulary, cx: &mut Context) {
         if self.has_prefix() {
-            return;
+            return extension::element(self, parent, cx);
         }
         let name = self.name();
         if words.many.contains(&name) || words.silent.contains(&name) {
-            return;
+            return extension::settings(self, cx);
         }
         let (language, subject) = (cx.dialect.name(), &parent.subject);
         let message = format!("{subject}: has an element <{}>, which {language} does not define here", shown(name));
         let known = words.once.iter().chain(words.many).copied();
         match cx.unknown(parent.name(), name, "element", known) {
-            Unknown::Misspelled(help) => {
-                cx.findings.add(Finding::error("misspelled_element", self.span(), message).help(help));
+            Unknown::Misspelled(near) => {
+                cx.findings.add(Finding::error("misspelled_element", self.span(), message).help(meant(&near)));
             }
             Unknown::First => {
                 let help = format!("it is ignored here and elsewhere in <{}>", parent.name());
@@ -246,7 +259,7 @@ impl<'a> Element<'a> {
 
     /// Reports a text in the parent that is more than white space.
     fn check_text(&self, parent: &Element<'a>, cx: &mut Context) {
-        let text = self.node.text().unwrap_or_default();
+        let text = self.text();
         if !text.trim().is_empty() && matches!(cx.unknown(parent.name(), "", "text", []), Unknown::First) {
             let place = self.place(self.node.range());
             let raw = self.raw(&place);

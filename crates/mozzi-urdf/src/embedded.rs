@@ -1,5 +1,7 @@
 //! Embedded robots, each with the source of its numbers in its file.
 
+use std::path::Path;
+
 /// Name and text.
 const ROBOTS: [(&str, &str); 6] = [
     ("anymal", include_str!("../../../models/anymal.urdf")),
@@ -13,6 +15,11 @@ const ROBOTS: [(&str, &str); 6] = [
 /// The names, in alphabetical order.
 pub fn names() -> impl ExactSizeIterator<Item = &'static str> {
     ROBOTS.iter().map(|&(name, _)| name)
+}
+
+/// The URDF text of a robot, unless there is a file of this name, which comes first.
+pub fn unless_file(name: &str) -> Option<&'static str> {
+    text(name).filter(|_| !Path::new(name).is_file())
 }
 
 /// The URDF text of a robot.

@@ -2,6 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::embedded;
+use crate::visible::visible;
 use mozzi::model::Severity;
 use std::fmt;
 use std::path::PathBuf;
@@ -29,7 +30,8 @@ pub enum LoadError {
     Refused {
         /// Its name.
         file: String,
-        /// Errors and warnings in the order of the file; at most a thousand of each.
+        /// Errors in the order of the file, then warnings by consequence, then what is not used;
+        /// at most a thousand errors and a thousand others.
         diagnostics: Vec<Diagnostic>,
         /// Whether reading stopped after a thousand errors.
         is_cut: bool,
@@ -39,7 +41,8 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// Errors and warnings, in the order of the file; empty where no file was read.
+    /// Errors in the order of the file, then warnings by consequence, then what is not used; empty if no file
+    /// was read.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match self {
             LoadError::Refused { diagnostics, .. } => diagnostics,
@@ -58,6 +61,10 @@ impl LoadError {
 
     /// "robot.urdf is refused: 3 errors"
     pub(crate) fn headline(&self) -> String {
+        visible(&self.sentence())
+    }
+
+    fn sentence(&self) -> String {
         match self {
             LoadError::File { path, source } => format!("{} cannot be read: {source}", path.display()),
             LoadError::NoSuchRobot { name } => {

@@ -7,7 +7,7 @@ use crate::spelling::nearest;
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // code, meaning, remedy
-const CODES: [Entry; 58] = [
+const CODES: [Entry; 66] = [
     ("circular_mimic",
         "A mimic joint follows itself, directly or over other mimic joints. Its position is then undefined.",
         "remove one of the <mimic> elements"),
@@ -48,11 +48,23 @@ const CODES: [Entry; 58] = [
     ("fixed_source",
         "A mimic joint follows a fixed joint, which never moves.",
         "follow a joint that moves, or make this joint fixed, too"),
+    ("ignored_force",
+        "Something acts on the robot that mozzi does not compute: a spring, a bushing, a tendon, a tie that closes a \
+         loop, a controller in Drake's words; gravity that is switched off, or a spring, in Gazebo's settings; gravity, a \
+         fluid or changed masses in MuJoCo's. The robot is computed without it.",
+        "add its effect to the joint torques or applied wrenches; or remove it"),
     ("ignored_property",
         "A planar or floating joint has limits, damping or friction. URDF has one number for them, but such a \
-         joint both slides and turns, and URDF does not define which of the two is meant. The property is \
-         ignored.",
+         joint both slides and turns, and URDF does not define which of the two is meant. Likewise limits and \
+         friction of Drake's ball and universal joints; and Drake's rotors (`drake:rotor_inertia`) where Drake has \
+         none: in a transmission that is not simple, on a joint that has not one axis, or whose effort limit is 0. The \
+         property is ignored.",
         "remove it, or build the joint from joints of one axis, each with its own property"),
+    ("ignored_quaternion",
+        "An origin has a quaternion, `quat_xyzw`, which URDF defines from version 1.1 on. The file declares an \
+         earlier version, or none, which means 1.0: the quaternion is ignored, as urdfdom does, so the orientation \
+         is that of `rpy`, or none.",
+        "declare the version, <robot version=\"1.1\">, or write `rpy`"),
     ("implausible_inertia",
         "The moments of inertia are far too large for the mass: the radius of gyration is more than 10 m, and \
          more than ten times the longest distance in the robot. The numbers are used as given.",
@@ -72,6 +84,10 @@ const CODES: [Entry; 58] = [
          moments about the link's origin instead of the centre of mass.",
         "check the signs of ixy, ixz, iyz and that the moments are about the centre of mass; the lenient policy \
          uses the nearest physical inertia instead"),
+    ("late_declaration",
+        "There are blank lines, or a byte order mark, before the XML declaration. XML requires it at the beginning of \
+         the file; other readers of robots accept it anywhere, and nothing is lost.",
+        "remove what is before `<?xml`"),
     ("long_name",
         "A name is longer than 256 bytes.",
         "choose a shorter name; names are repeated in every message"),
@@ -124,6 +140,9 @@ const CODES: [Entry; 58] = [
         "The axis of a joint does not have length 1. Only its direction is used: the joint's position stays in \
          radians or metres. To scale a joint's motion, use the multiplier of a mimic joint.",
         "only its direction is used: the joint's position stays in radians or metres"),
+    ("non_unit_quaternion",
+        "The length of a quaternion differs from 1 by more than 0.001. It is normalized.",
+        "write a unit quaternion (x, y, z, w)"),
     ("not_a_number",
         "A value is not a number. The whole text must be a number: sign, digits, decimal point, exponent.",
         "write digits only, such as `0.5` or `5e-1`"),
@@ -133,11 +152,16 @@ const CODES: [Entry; 58] = [
     ("not_utf8",
         "The file is not encoded as UTF-8.",
         "save the file as UTF-8"),
+    ("redundant_attribute",
+        "An unknown attribute resembles one that the element has as well, such as `k_velocity` next to `velocity`, or \
+         `iyx` next to `ixy`. It is ignored; the known one is used.",
+        "remove it, or correct its name"),
     ("repaired_inertia",
         "Under the lenient policy, an unphysical inertia was replaced by the nearest physical one.",
         "the lenient policy repairs this; correct the file to be sure of the numbers"),
     ("reversed_limits",
-        "The lower limit of a joint is above the upper one.",
+        "The lower limit of a joint is above the upper one. Limits do not enter the dynamics; the joint is treated as \
+         unlimited.",
         "exchange `lower` and `upper`"),
     ("self_parent",
         "A joint's parent and child are the same link.",
@@ -145,6 +169,9 @@ const CODES: [Entry; 58] = [
     ("several_bases",
         "Several links are not the child of any joint. One of them is the base; no joint leads to the others.",
         "add a joint whose child is this link (of type `fixed` if it does not move), or remove the link"),
+    ("several_orientations",
+        "An origin has both `rpy` and `quat_xyzw`.",
+        "keep one of them"),
     ("stray_text",
         "There is text between elements. URDF keeps its values in attributes; the text is ignored.",
         "remove it, or put it into a comment <!-- -->"),
@@ -169,6 +196,10 @@ const CODES: [Entry; 58] = [
         "More than 64 namespaces are in scope at one place, or more than 4096 are declared. No robot needs this; \
          the file is refused to bound time and memory.",
         "declare each namespace once, on the <robot>"),
+    ("undeclared_prefix",
+        "A prefix of a namespace is used but not declared. Other readers of robots accept this; the name is read as if \
+         the prefix were declared.",
+        "declare it on the root: <robot xmlns:PREFIX=\"…\">"),
     ("unknown_attribute",
         "URDF does not define this attribute, nor one with a similar name. It is ignored; reported once per kind.",
         "remove it, or give it a namespace prefix of its own"),
@@ -202,6 +233,11 @@ const CODES: [Entry; 58] = [
          joint is a mimic joint.",
         "MJCF and mozzi's JSON support balls; in URDF, three hinges with massless links between them move like a \
          ball, except where two of their axes align"),
+    ("unsupported_version",
+        "The version of a URDF is 1.0, 1.1 or 1.2. Version 1.1 adds quaternions (`quat_xyzw` of <origin>) and \
+         capsules; 1.2 adds limits of acceleration, deceleration and jerk, and makes `effort` and `velocity` optional. \
+         urdfdom refuses other versions, and texts that are not of the form x.y.",
+        "write `version=\"1.0\"`, `1.1` or `1.2`, or omit it, which means 1.0"),
     ("wrong_count",
         "A vector has too few or too many numbers.",
         "separate numbers by spaces: `0 0 0.5`"),
@@ -218,8 +254,9 @@ const CODES: [Entry; 58] = [
          folders in DIR.",
         "expand it first: `pip install xacro; xacro robot.xacro > robot.urdf`"),
     ("zero_axis",
-        "The axis of a moving joint has length 0.",
-        "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`"),
+        "The axis of a moving joint, or a quaternion, has length 0.",
+        "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`; `0 0 0 1` is the quaternion of no \
+         rotation"),
 ];
 
 /// A code of one language, or of either: URDF's if it is in both. MJCF shares those of URDF that mean the same in it.

@@ -9,6 +9,15 @@ use std::ops::Range;
 /// More are counted, not kept.
 pub(crate) const MOST_FINDINGS: usize = 1000;
 
+/// What an attribute or element concerns that mozzi does not use. It is counted, not warned of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Topic {
+    Looks,
+    Actuators,
+    Settings,
+    Idle,
+}
+
 /// Something noticed at a span of the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
@@ -17,20 +26,39 @@ pub(crate) struct Finding {
     pub span: Range<usize>,
     pub message: String,
     pub help: Option<String>,
+    /// Of what is not used: what it concerns.
+    pub topic: Option<Topic>,
 }
 
 impl Finding {
     pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
-        Finding { severity: Severity::Error, code, span, message: message.into(), help: None }
+        Finding { severity: Severity::Error, code, span, message: message.into(), help: None, topic: None }
     }
 
     pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Finding { severity: Severity::Warning, ..Finding::error(code, span, message) }
     }
 
+    /// An attribute or element that is not used.
+    pub fn unused(topic: Topic, code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Finding { topic: Some(topic), ..Finding::warning(code, span, message) }
+    }
+
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+
+    /// Without words of the text, for a file whose content is not to be shown. What is said of an `<include>` and of an
+    /// encoding has none.
+    fn without_content(self) -> Self {
+        let says_nothing = ["include", "repeated_include", "too_large", "not_utf8", "empty"];
+        if says_nothing.contains(&self.code) {
+            return self;
+        }
+        let message = "this included file has content that MJCF does not define here; it is not shown".to_string();
+        let help = "if it is a part of the model, make <mujocoinclude> its root: then the content is shown";
+        Finding { message, help: Some(help.to_string()), ..self }
     }
 
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
@@ -98,12 +126,15 @@ impl Findings {
         let (mut diagnostics, mut kept) = (Vec::new(), self.kept.into_iter().peekable());
         for (i, source) in sources.iter().enumerate() {
             let end = sources.get(i + 1).map_or(usize::MAX, |next| next.base);
-            let mut walker = Walker::new(&source.text);
+            let file = source.file();
+            let mut walker = Walker::new(&file.text);
             while let Some(mut finding) = kept.next_if(|finding| finding.span.start < end) {
+                finding = if source.is_shown { finding } else { finding.without_content() };
                 let local = |place: usize| place.saturating_sub(source.base);
-                finding.span = source.clamp(local(finding.span.start)..local(finding.span.end));
+                let span = source.in_file(local(finding.span.start)..local(finding.span.end));
+                finding.span = file.clamp(span);
                 let position = walker.advance(finding.span.start);
-                diagnostics.push(Diagnostic::new(finding, position, source.clone(), dialect));
+                diagnostics.push(Diagnostic::new(finding, position, file.clone(), dialect));
             }
         }
         Placed { diagnostics, errors: self.errors, is_cut }

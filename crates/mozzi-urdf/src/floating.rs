@@ -1,11 +1,12 @@
-//! A floating joint at the root is a floating base: the link that carries it is {s}, and no link of the robot. Any other is a free joint.
+//! A floating joint at the root is a floating base: the link that carries it is {s}, and no link of the robot. Any
+//! other is a free joint.
 
 use crate::places::Places;
 use mozzi::model::description::FreeJoint;
 use mozzi::{Base, Description, SE3, SpatialInertia};
 
-/// Frees the base where one of these joints, the floating ones, says so: it stands alone between an empty root link and the base, whose frame is on it
-/// at 0. The others are free joints in the tree.
+/// Frees the base where one of these joints, the floating ones, says so: it stands alone between an empty root link and
+/// the base, whose frame is on it at 0. The others are free joints in the tree.
 pub(crate) fn free_base(floating: &[usize], description: &mut Description, places: &mut Places) {
     if places.tree_is_partial() {
         return; // what carries what is not known, as was said

@@ -2,16 +2,17 @@
 
 use crate::axis;
 use crate::context::Context;
+use crate::drake;
 use crate::element::{Children, Element};
 use crate::finding::Finding;
 use crate::limit;
 use crate::origin;
 use crate::places::Place;
-use crate::planar;
+use crate::series::{self, Part};
 use crate::spelling::did_you_mean;
 use crate::vocabulary::{DYNAMICS, JOINT, JOINT_TYPES, LIMIT, MIMIC, PARENT, list, shown};
 use mozzi::model::description::{Joint, JointKind, Limits, Mimic};
-use mozzi::{SE3, ScrewAxis};
+use mozzi::{SE3, Vec3};
 
 /// A joint, and how it moves where that is more than one freedom.
 pub(crate) struct Read {
@@ -24,8 +25,10 @@ pub(crate) struct Read {
 pub(crate) enum Freedoms {
     /// As its kind says.
     OneOrNone,
-    /// By slides and a turn.
-    Planar([ScrewAxis; 3]),
+    /// By several joints of one axis.
+    Series(Vec<Part>),
+    /// About a point.
+    Ball,
     /// In SE(3).
     Six,
 }
@@ -50,29 +53,46 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     if let Some(origin) = children.get("origin") {
         place.set("origin", origin.span());
     }
-    let kind = read_type(&element, cx);
+    let is_drake = element.written_name() == "drake:joint";
+    let kind = read_type(&element, is_drake, cx);
+    let (axis, limit) = (children.get("axis"), children.get("limit"));
+    let [damping, friction, stiffness, spring_reference, armature] = match (kind, is_drake) {
+        (Some("planar"), true) => read_dynamics(&children, &["friction"], &mut place, cx),
+        _ => read_dynamics(&children, &DYNAMICS_READ.map(|(name, _)| name), &mut place, cx),
+    };
     // what a joint that does not move has of these means nothing
-    let mut freedoms = Freedoms::OneOrNone;
-    let (screw, limits) = match kind {
-        None | Some("fixed") => (None, Limits::default()),
-        Some(kind @ ("planar" | "floating")) => {
-            freedoms = match kind {
-                "floating" => Freedoms::Six,
-                _ => axis::read(kind, children.get("axis"), &element, cx)
-                    .and_then(|normal| planar::screws(normal.twist().w))
-                    .map_or(Freedoms::OneOrNone, Freedoms::Planar),
+    let (mut freedoms, mut screw, mut limits) = (Freedoms::OneOrNone, None, Limits::default());
+    let series = |parts: Option<Vec<Part>>| parts.map_or(Freedoms::OneOrNone, Freedoms::Series);
+    match kind {
+        None | Some("fixed") => {}
+        Some("floating") => freedoms = Freedoms::Six,
+        Some("ball") => freedoms = Freedoms::Ball,
+        Some("universal") => {
+            drake::check_universal(axis, cx);
+            freedoms = series(series::universal(damping));
+        }
+        Some("planar") => {
+            let normal = axis::read("planar", axis, &element, cx);
+            let damping = match is_drake {
+                true => drake::planar_damping(children.get("dynamics"), cx),
+                false => Some([0.0; 3]),
             };
-            (None, Limits::default())
+            freedoms = series(normal.zip(damping).and_then(|(normal, d)| series::planar(normal.twist().w, d)));
+        }
+        Some("screw") => {
+            screw = drake::screw(&element, axis, cx);
+            limits = limit.map_or(limits, |limit| limit::read("screw", Some(limit), &element, &mut place, cx));
         }
         Some(kind) => {
-            let screw = axis::read(kind, children.get("axis"), &element, cx);
-            (screw, limit::read(kind, children.get("limit"), &element, &mut place, cx))
+            screw = axis::read(kind, axis, &element, cx);
+            limits = limit::read(kind, limit, &element, &mut place, cx);
         }
-    };
-    let [damping, friction, stiffness, spring_reference] = read_dynamics(&children, &mut place, cx);
-    let is_several = matches!(kind, Some("planar" | "floating"));
-    if let Some(kind @ ("planar" | "floating")) = kind {
-        let is_rough = [damping, friction, stiffness].iter().any(|x| *x != 0.0);
+    }
+    let is_several = matches!(kind, Some("planar" | "floating" | "ball" | "universal"));
+    // one damping of all axes is that of Drake's balls and universal joints
+    let is_damped = matches!(kind, Some("ball" | "universal"));
+    if let Some(kind) = kind.filter(|_| is_several) {
+        let is_rough = [if is_damped { 0.0 } else { damping }, friction, stiffness, armature].iter().any(|x| *x != 0.0);
         several_freedoms(kind, &children, is_rough, &element, cx);
     }
     if let Some(value) = element.attribute("type") {
@@ -85,12 +105,13 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         origin: origin.unwrap_or_else(SE3::identity),
         kind: match (&freedoms, screw) {
             (Freedoms::Six, _) => JointKind::Free,
+            (Freedoms::Ball, _) => JointKind::Ball(Vec3::zero()),
             (_, screw) => screw.map_or(JointKind::Fixed, JointKind::Screw),
         },
         limits,
-        damping: if is_several { 0.0 } else { damping },
+        damping: if is_several && !is_damped { 0.0 } else { damping },
         friction: if is_several { 0.0 } else { friction },
-        armature: 0.0,
+        armature: if is_several { 0.0 } else { armature },
         stiffness: if is_several { 0.0 } else { stiffness },
         spring_reference: if is_several { 0.0 } else { spring_reference },
         mimic: children.get("mimic").and_then(|mimic| read_mimic(mimic, &mut place, cx)),
@@ -113,8 +134,14 @@ fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &E
         numbers.iter().any(|x| *x != 0.0)
     });
     for given in limit.into_iter().chain(children.get("dynamics").filter(|_| is_rough)) {
-        let message =
-            format!("{}: is ignored: a {kind} joint slides and turns, in metres and in radians", given.subject);
+        let message = format!(
+            "{}: is ignored: a {kind} joint {}",
+            given.subject,
+            match kind {
+                "planar" | "floating" => "slides and turns, in metres and in radians",
+                _ => "turns about several axes",
+            }
+        );
         cx.findings.add(Finding::warning("ignored_property", given.span(), message));
     }
     if let Some(mimic) = children.get("mimic") {
@@ -124,24 +151,30 @@ fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &E
     }
 }
 
-/// One of the types that mozzi computes; None, and reported, for others.
-fn read_type(element: &Element, cx: &mut Context) -> Option<&'static str> {
+/// One of the types that mozzi computes, of URDF or of Drake; None, and reported, for others.
+fn read_type(element: &Element, is_drake: bool, cx: &mut Context) -> Option<&'static str> {
     let value = element.required("type", cx)?;
-    let known = JOINT_TYPES.into_iter().find(|&known| known == value.text);
+    let types: &[&'static str] = if is_drake { &drake::JOINT_TYPES } else { &JOINT_TYPES };
+    let known = types.iter().copied().find(|&known| known == value.text);
     if known.is_some() {
         return known;
     }
     let subject = &element.subject;
     cx.findings.add(match value.text {
-        "ball" | "spherical" => {
+        "curvilinear" if is_drake => {
+            let message =
+                format!("{subject}: type: is `curvilinear`, a joint along a curve, which mozzi does not compute");
+            Finding::error("unsupported_joint", value.span, message).help("use joints of one axis in its place")
+        }
+        "ball" | "spherical" if !is_drake => {
             let message = format!("{subject}: type: is `{}`, a ball joint, which URDF does not define", value.text);
-            let help = "URDF has no balls, MJCF has; or three hinges in its place, with massless links between, which move as it does, away from \
-                        the position where two of them line up";
+            let help = "URDF has no balls; Drake's <drake:joint type=\"ball\"> and MJCF's `ball` are read";
             Finding::error("unsupported_joint", value.span, message).help(help)
         }
         other => {
-            let message = format!("{subject}: type: is `{}`, expected one of {}", shown(other), list(&JOINT_TYPES));
-            Finding::error("unknown_joint_type", value.span, message).maybe_help(did_you_mean(other, JOINT_TYPES))
+            let message = format!("{subject}: type: is `{}`, expected one of {}", shown(other), list(types));
+            Finding::error("unknown_joint_type", value.span, message)
+                .maybe_help(did_you_mean(other, types.iter().copied()))
         }
     });
     None
@@ -161,22 +194,26 @@ fn read_end(name: &'static str, element: &Element, children: &Children, place: &
     place.note(name, value)
 }
 
-/// Damping, friction, and a spring by the names that SDF has for it: URDF itself has no springs.
-fn read_dynamics(children: &Children, place: &mut Place, cx: &mut Context) -> [f64; 4] {
-    let Some(dynamics) = children.get("dynamics") else { return [0.0; 4] };
+/// The attributes of `<dynamics>`, and how checks call them.
+const DYNAMICS_READ: [(&str, &str); 5] = [
+    ("damping", "damping"),
+    ("friction", "friction"),
+    ("spring_stiffness", "stiffness"),
+    ("spring_reference", "spring reference"),
+    ("armature", "armature"),
+];
+
+/// Damping, friction, and two extensions: a spring by SDF's names, the armature by MJCF's. Only the attributes in
+/// `read` are read as single numbers.
+fn read_dynamics(children: &Children, read: &[&str], place: &mut Place, cx: &mut Context) -> [f64; 5] {
+    let Some(dynamics) = children.get("dynamics") else { return [0.0; 5] };
     dynamics.check_attributes(&DYNAMICS, cx);
     dynamics.check_children(&DYNAMICS, cx);
-    let names = [
-        ("damping", "damping"),
-        ("friction", "friction"),
-        ("spring_stiffness", "stiffness"),
-        ("spring_reference", "spring reference"),
-    ];
-    names.map(|(name, check)| {
-        if let Some(value) = dynamics.attribute(name) {
-            place.set(check, value.span);
-        }
-        dynamics.number(name, cx).unwrap_or(0.0)
+    DYNAMICS_READ.map(|(name, check)| {
+        let Some(value) = dynamics.attribute(name).filter(|_| read.contains(&name)) else { return 0.0 };
+        let number = dynamics.vector::<1>(name, &value, cx).map_or(0.0, |[x]| x);
+        place.set(check, value.span);
+        number
     })
 }
 

@@ -9,18 +9,25 @@
 //! joint of a joint that does not exist, for negative moments of inertia, and for having no links.
 //!
 //! - A `floating` joint at the root is a floating base ([`mozzi::Base`]); the empty link that carries it is the space
-//!   frame, not a link of the robot. A `planar` joint `j` becomes the prismatic joints `j.x` and `j.y` and the revolute
-//!   joint `j.theta` about its axis, with massless links between: x is along the joint frame's x-axis projected onto
-//!   the plane (its y-axis if
-//!   |axis_x| > 0.9), y along axis × x. Any other `floating` joint is a free joint of the tree. Ball joints, which URDF does not
-//!   have, are refused.
-//! - Probable misspellings of URDF elements and attributes are errors. Known extensions (gazebo, transmission, other
-//!   namespaces) are skipped silently; other unknown ones give one warning per kind.
+//!   frame, not a link of the robot. Any other `floating` joint is a free joint of the tree. A `planar` joint `j`
+//!   becomes the prismatic joints `j.x` and `j.y` and the revolute joint `j.theta` about its axis, with massless links
+//!   between: x is along the joint frame's x-axis projected onto the plane (its y-axis if |axis_x| > 0.9), y along axis
+//!   × x.
+//! - Versions 1.0, 1.1 and 1.2 of URDF are read as by urdfdom 6: `quat_xyzw` of an origin from 1.1 on, and with a
+//!   warning that it is ignored before.
+//! - Drake's words: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint (`screw`), or,
+//!   if `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator
+//!   are the armature ratio² × inertia. Its other forces and ties are warnings that name them.
+//! - Probable misspellings of URDF elements and attributes are errors, unless the right word is there as well. Known
+//!   extensions (gazebo, transmission, ros2_control) are skipped, except for what changes the motion, such as a link
+//!   without gravity. Other unknown words, of any namespace, give one warning per kind.
 //! - A file that xacro has not expanded is an error, with the command that expands it. Meshes do not affect the
 //!   dynamics; only [`geometry`] locates them.
 //! - Only the direction of an axis is used, with a warning if its length differs from 1 by more than 10⁻³; positions
 //!   stay radians or metres.
-//! - A missing limit is a warning and means unlimited; limits do not enter the dynamics.
+//! - A missing limit is a warning and means unlimited, and so are reversed limits; limits do not enter the dynamics.
+//! - Warnings are in the order of their [`Consequence`]: what changes the motion comes first. Looks and contact are not
+//!   warned of but counted ([`Loaded::unused`]).
 //! - An inertia that breaks the triangle inequality is used as given, with a warning. A negative principal moment is an
 //!   error if the rigid body of all links fixed to each other has one, a warning otherwise.
 //! - [`Policy::Strict`] turns warnings into errors; [`Policy::Lenient`] repairs inertias and reports each repair.
@@ -44,42 +51,55 @@
 //! ```
 mod axis;
 mod bytes;
+mod consequence;
 mod context;
 mod diagnostic;
 mod dialect;
+mod drake;
+mod edit;
 mod element;
 pub mod embedded;
 mod error;
 mod explain;
+mod expressible;
+mod extension;
 mod finding;
 mod floating;
 pub mod geometry;
 mod joint;
 mod limit;
 mod link;
+mod mend;
 pub mod mjcf;
 mod number;
 mod origin;
 mod pages;
 mod places;
-mod planar;
 mod pretty;
 mod problem;
 mod repair;
 mod robot;
 mod scan;
+mod series;
 mod source;
 mod spelling;
 mod syntax;
+mod version;
+mod visible;
 mod vocabulary;
 mod write;
 mod xacro;
 
+pub use consequence::{Consequence, consequence, unused};
 pub use diagnostic::Diagnostic;
+pub use edit::{EditError, edit};
 pub use error::LoadError;
 pub use explain::{codes, explain, nearest_code, remedy};
+pub use expressible::expressible;
 pub use mozzi::model::Severity;
 pub use pretty::Style;
+pub use spelling::did_you_mean;
+pub use visible::visible;
 pub use write::{NotUrdf, write};
 
 use context::Context;
@@ -97,8 +117,10 @@ use std::path::Path;
 pub struct Loaded {
     /// The content of the file.
     pub description: Description,
-    /// In the order of the file.
+    /// By consequence, what changes the motion first; then in the order of the file.
     pub warnings: Vec<Diagnostic>,
+    /// Valid content that mozzi does not use, such as looks and contact: once per kind. See [`unused`].
+    pub unused: Vec<Diagnostic>,
 }
 
 impl Loaded {
@@ -173,6 +195,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], policy: Policy)
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text, &mut findings));
     let dialect = Dialect::of(&source.text);
+    let source = syntax::mended(source, dialect, &mut findings);
     let (mut sources, mut description) = (vec![source], None);
     if !findings.has_errors() {
         let mut cx = Context::new(findings, dialect);
@@ -184,15 +207,23 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], policy: Policy)
         description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));
     }
     let Placed { mut diagnostics, errors, is_cut } = findings.place(&sources, dialect);
-    let is_refused = |diagnostic: &Diagnostic| policy == Policy::Strict && !mjcf::is_list(diagnostic.code());
+    let is_unused = |found: &Diagnostic| found.consequence() == Consequence::Unused;
+    // a site with another name is the file's robot
+    let is_refused =
+        |found: &Diagnostic| policy == Policy::Strict && !is_unused(found) && !found.code().ends_with("::renamed_site");
+    // errors stay in the order of the file
+    diagnostics.sort_by_key(|found| (found.severity() == Severity::Warning).then(|| found.consequence()));
     let refused = errors > 0 || diagnostics.iter().any(is_refused);
-    if policy == Policy::Strict {
-        let strictly = |found| if is_refused(&found) { found.into_error() } else { found };
-        diagnostics = diagnostics.into_iter().map(strictly).collect();
-    }
     match description {
-        Some(description) if !refused => Ok(Loaded { description, warnings: diagnostics }),
-        _ => Err(LoadError::Refused { file: file_name.to_string(), diagnostics, is_cut }),
+        Some(description) if !refused => {
+            let (unused, warnings) = diagnostics.into_iter().partition(is_unused);
+            Ok(Loaded { description, warnings, unused })
+        }
+        _ => {
+            let strictly = |found| if is_refused(&found) { found.into_error() } else { found };
+            let diagnostics = diagnostics.into_iter().map(strictly).collect();
+            Err(LoadError::Refused { file: file_name.to_string(), diagnostics, is_cut })
+        }
     }
 }
 
@@ -204,7 +235,7 @@ pub fn model(path: impl AsRef<Path>) -> Result<Model, LoadError> {
     load(path)?.build()
 }
 
-/// A robot by the name of one that mozzi brings along (see [`embedded`]), or by its file's path.
+/// A robot by its file's path, or else by the name of one that mozzi brings along (see [`embedded`]).
 ///
 /// # Errors
 /// As [`load`]; [`LoadError::NoSuchRobot`] when there is neither.
@@ -217,7 +248,7 @@ pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
 /// # Errors
 /// As there; under [`Policy::Strict`] warnings too.
 pub fn open_with(name_or_path: &str, policy: Policy) -> Result<Loaded, LoadError> {
-    match embedded::text(name_or_path) {
+    match embedded::unless_file(name_or_path) {
         Some(text) => parse_with(&format!("{name_or_path}.urdf"), text, policy),
         None if Path::new(name_or_path).exists() => load_with(name_or_path, policy),
         None => Err(LoadError::NoSuchRobot { name: name_or_path.to_string() }),

@@ -3,14 +3,23 @@
 //! URDF demands a limit of revolute and prismatic joints, and takes 0 for a bound that is not given. Published robots
 //! (eight joints in two of the robots of `example-robot-data`: wheels and knees) give effort and velocity and no bound,
 //! and mean a joint that turns freely, not one that cannot move. So: with no bound at all the joint is unlimited, with
-//! one bound the other is URDF's 0; either way the user is told.
+//! one bound the other is URDF's 0; either way the user is told. From version 1.2 on URDF has no such default: a joint
+//! with one bound is unlimited, with a warning, and effort and velocity may be missing.
+//!
+//! Limits do not enter the dynamics. Reversed ones, which other readers accept, are left out with a warning: what uses
+//! limits expects the lower one first.
 
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::Place;
+use crate::version::Version;
 use crate::vocabulary::LIMIT;
 use mozzi::model::description::Limits;
+
+/// How a limit that does not exist is written: urdfdom refuses a moving joint's <limit> without `effort` and
+/// `velocity`, reads a missing bound as 0, and reads no infinity.
+pub(crate) const UNLIMITED: f64 = f64::MAX;
 
 /// The limits of a joint that moves.
 pub(crate) fn read(
@@ -35,6 +44,7 @@ pub(crate) fn read(
     limit.check_attributes(&LIMIT, cx);
     let is_misspelled = cx.findings.errors() > before;
     limit.check_children(&LIMIT, cx);
+    check_rates(limit, cx);
     for (name, attribute) in [("lower", "limits"), ("velocity", "velocity limit"), ("effort", "effort limit")] {
         if let Some(value) = limit.attribute(name) {
             place.set(attribute, value.span);
@@ -47,7 +57,7 @@ pub(crate) fn read(
     let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"].map(&mut number);
     if kind == "continuous" {
         continuous(limit, joint, [lower.1, upper.1], cx);
-        return Limits { position: None, velocity: velocity.1, effort: effort.1 };
+        return bounded(None, velocity.1, effort.1);
     }
     let mut missing = |name: &str, help: &str| {
         if is_misspelled {
@@ -56,9 +66,18 @@ pub(crate) fn read(
         let message = format!("{}: has no attribute `{name}`, expected one on a {kind} joint", limit.subject);
         cx.findings.add(Finding::warning("missing_limit", limit.span(), message).help(help));
     };
+    let has_default = cx.version < Version::WITH_ACCELERATION;
     let position = match (lower, upper) {
         ((false, _), (false, _)) => {
             missing("lower", "without `lower` and `upper` the joint is treated as unlimited");
+            None
+        }
+        ((true, _), (false, _)) if !has_default => {
+            missing("upper", "with one bound alone the joint is treated as unlimited");
+            None
+        }
+        ((false, _), (true, _)) if !has_default => {
+            missing("lower", "with one bound alone the joint is treated as unlimited");
             None
         }
         ((true, low), (false, _)) => {
@@ -72,11 +91,49 @@ pub(crate) fn read(
         ((true, low), (true, high)) => low.zip(high).map(|(low, high)| [low, high]),
     };
     for (name, (is_there, _)) in [("velocity", velocity), ("effort", effort)] {
-        if !is_there {
+        if !is_there && has_default {
             missing(name, "it is treated as unlimited");
         }
     }
-    Limits { position, velocity: velocity.1, effort: effort.1 }
+    let position = position.filter(|bounds| in_order(*bounds, limit, cx));
+    bounded(position, velocity.1, effort.1)
+}
+
+/// Without the limits that are [`UNLIMITED`].
+fn bounded(position: Option<[f64; 2]>, velocity: Option<f64>, effort: Option<f64>) -> Limits {
+    let exists = |limit: &f64| *limit != UNLIMITED;
+    Limits {
+        position: position.filter(|bounds| *bounds != [-UNLIMITED, UNLIMITED]),
+        velocity: velocity.filter(exists),
+        effort: effort.filter(exists),
+    }
+}
+
+/// Whether the lower bound is not above the upper one; the reverse is reported.
+fn in_order([low, high]: [f64; 2], limit: &Element, cx: &mut Context) -> bool {
+    if low > high {
+        let message = format!("{}: goes from {low} to {high}, expected the lower bound first", limit.subject);
+        let help = "the joint is treated as unlimited; exchange `lower` and `upper`";
+        let span = limit.attribute("lower").map_or_else(|| limit.span(), |value| value.span);
+        cx.findings.add(Finding::warning("reversed_limits", span, message).help(help));
+    }
+    low <= high
+}
+
+/// The limits of URDF 1.2, which nothing here uses, are numbers of at least 0.
+fn check_rates(limit: &Element, cx: &mut Context) {
+    if cx.version < Version::WITH_ACCELERATION {
+        return;
+    }
+    for name in LIMIT.silent {
+        let Some(value) = limit.attribute(name) else { continue };
+        if let Some([x]) = limit.vector::<1>(name, &value, cx)
+            && x < 0.0
+        {
+            let message = format!("{}: {name}: is {x}, expected at least 0", limit.subject);
+            cx.findings.add(Finding::error("negative_limit", value.span, message));
+        }
+    }
 }
 
 /// A continuous joint has no bounds; those that say nothing, because a full turn or more lies between them, or nothing

@@ -1,7 +1,9 @@
 //! The report for people: the line of the file, a mark under the value, and how to mend it.
 
+use crate::consequence::Consequence;
 use crate::diagnostic::Diagnostic;
 use crate::error::{LoadError, PRINTED};
+use crate::visible::visible;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents};
 use miette::{SourceCode, SourceSpan, SpanContents};
 use mozzi::model::Severity;
@@ -37,9 +39,10 @@ impl Diagnostic {
     /// The rendered report.
     pub fn pretty(&self, style: Style) -> String {
         let mut text = String::new();
-        match style.handler().render_report(&mut text, &View::new(self)) {
-            Ok(()) => text,
-            Err(_) => self.to_string(),
+        let view = self.text().map(|text| View::new(self, text));
+        match view.map(|view| style.handler().render_report(&mut text, &view)) {
+            Some(Ok(())) => text,
+            _ => format!("{self}\n"),
         }
     }
 }
@@ -48,7 +51,9 @@ impl LoadError {
     /// The rendered report: warnings, then errors, each with its place.
     pub fn pretty(&self, style: Style) -> String {
         let mut text = String::new();
-        let warnings = self.diagnostics().iter().filter(|diagnostic| diagnostic.severity() == Severity::Warning);
+        let is_warning =
+            |found: &&Diagnostic| found.severity() == Severity::Warning && found.consequence() != Consequence::Unused;
+        let warnings = self.diagnostics().iter().filter(is_warning);
         for diagnostic in warnings.take(PRINTED).chain(self.errors().take(PRINTED)) {
             text.push_str(&diagnostic.pretty(style));
         }
@@ -64,16 +69,18 @@ impl LoadError {
 /// A diagnostic as the report sees it.
 struct View<'d> {
     diagnostic: &'d Diagnostic,
-    /// The part of the text that is shown, its first line from 0, and what is marked in it.
-    shown: Range<usize>,
+    /// The part of the text that is shown, where it begins in the file, its first line from 0, and what is marked in
+    /// it: places as if the file before it were as it is, and the part as it is shown.
+    shown: String,
+    start: usize,
     first_line: usize,
     marked: Range<usize>,
 }
 
 impl<'d> View<'d> {
     /// The lines around the place; of a long line, the part around it.
-    fn new(diagnostic: &'d Diagnostic) -> Self {
-        let (text, span, line) = (diagnostic.text(), diagnostic.span(), diagnostic.line() - 1);
+    fn new(diagnostic: &'d Diagnostic, text: &str) -> Self {
+        let (span, line) = (diagnostic.span(), diagnostic.line() - 1);
         let start_of_line = |at: usize| text[..at].rfind('\n').map_or(0, |k| k + 1);
         let end_of_line = |at: usize| text[at..].find('\n').map_or(text.len(), |k| at + k);
         let (start, end) = (start_of_line(span.start), end_of_line(span.start));
@@ -87,13 +94,18 @@ impl<'d> View<'d> {
             let from = text.ceil_char_boundary(span.start.saturating_sub(LONG / 4)).max(start);
             (from..text.floor_char_boundary(span.start + LONG / 4).min(end), line)
         };
-        View { diagnostic, marked: span.start..span.end.min(shown.end).max(span.start), shown, first_line }
+        let marked = span.start..span.end.min(shown.end).max(span.start);
+        // \r is a part of a line's end
+        let part = |range: Range<usize>| visible(&text[range].replace('\r', ""));
+        let begin = shown.start + part(shown.start..marked.start).len();
+        let end = begin + part(marked).len();
+        View { diagnostic, marked: begin..end, start: shown.start, shown: part(shown), first_line }
     }
 }
 
 impl fmt::Display for View<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.diagnostic.message())
+        f.write_str(&visible(self.diagnostic.message()))
     }
 }
 
@@ -118,7 +130,7 @@ impl miette::Diagnostic for View<'_> {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.diagnostic.help().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.diagnostic.help().map(|help| Box::new(visible(help)) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -140,10 +152,10 @@ impl SourceCode for View<'_> {
         // the report asks with no lines before it for the place itself, then for what to show
         let (shown, line, column) = match before {
             0 => (self.marked.clone(), self.diagnostic.line() - 1, self.diagnostic.column() - 1),
-            _ => (self.shown.clone(), self.first_line, 0),
+            _ => (self.start..self.start + self.shown.len(), self.first_line, 0),
         };
-        let text = &self.diagnostic.text()[shown.clone()];
-        let (name, count) = (self.diagnostic.file().to_string(), text.lines().count());
+        let text = &self.shown[shown.start - self.start..shown.end - self.start];
+        let (name, count) = (visible(self.diagnostic.file()), text.lines().count());
         Ok(Box::new(MietteSpanContents::new_named(name, text.as_bytes(), shown.into(), line, column, count)))
     }
 }

@@ -25,6 +25,7 @@ pub(crate) fn findings(description: &Description, places: &Places) -> Vec<Findin
             code: problem.code,
             span: places.span(problem.element, problem.attribute),
             message: problem.to_string(),
+            topic: None,
             help: suggestion(&problem, description, &mut suggestions),
         })
         .collect()

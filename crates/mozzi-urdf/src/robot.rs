@@ -5,8 +5,9 @@ use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
 use crate::spelling::did_you_mean;
+use crate::version::Version;
 use crate::vocabulary::{ROBOT, shown};
-use crate::{floating, joint, link, planar};
+use crate::{drake, floating, joint, link, series};
 use joint::Freedoms;
 use mozzi::Description;
 
@@ -18,24 +19,25 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
         return None;
     }
     root.check_attributes(&ROBOT, cx);
+    cx.version = Version::read(root, cx);
     let mut places = Places { robot: Place::new(root.span()), ..Places::default() };
     let name = root.required_name("name", cx);
     let mut description = Description::new(places.robot.note("name", name));
     let mut floating_joints = Vec::new();
-    for child in root.elements().filter(|child| !child.has_prefix()) {
+    for child in root.elements() {
         if cx.findings.is_full() {
             return None;
         }
-        match child.name() {
+        match child.written_name() {
             "link" => {
                 let (link, place) = link::read(&child, cx);
                 description.links.push(link);
                 places.links.push(place);
             }
-            "joint" => {
+            "joint" | "drake:joint" => {
                 let joint::Read { joint, place, freedoms } = joint::read(&child, cx);
-                if let Freedoms::Planar(screws) = freedoms {
-                    planar::add(joint, screws, &place, &mut description, &mut places);
+                if let Freedoms::Series(parts) = &freedoms {
+                    series::add(joint, parts, &place, &mut description, &mut places);
                     continue;
                 }
                 if let Freedoms::Six = freedoms {
@@ -52,9 +54,11 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
             _ => {}
         }
     }
+    drake::rotors(root, &mut description, &mut places, cx);
     let before = cx.findings.errors();
     root.check_children(&ROBOT, cx);
     places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
+    cx.report_repeated();
     floating::free_base(&floating_joints, &mut description, &mut places);
     Some((description, places))
 }

@@ -7,9 +7,16 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(crate) struct Source {
     pub name: Arc<str>,
+    /// As it is parsed.
     pub text: Arc<str>,
     /// The place of its first byte among all texts of a robot.
     pub base: usize,
+    /// The text of the file, if it is parsed otherwise.
+    original: Option<Arc<str>>,
+    /// Where something was inserted into the text of the file, and its length.
+    inserted: (usize, usize),
+    /// Whether diagnostics may show lines of it.
+    pub is_shown: bool,
 }
 
 /// A place in a text, both counted from 1, columns in characters.
@@ -21,12 +28,50 @@ pub(crate) struct Position {
 
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
-        Source { name: name.into(), text: text.into(), base: 0 }
+        Source { name: name.into(), text: text.into(), base: 0, original: None, inserted: (0, 0), is_shown: true }
+    }
+
+    /// The same file, parsed as a text whose places are the same.
+    pub fn replaced(self, text: String) -> Self {
+        let original = self.original.or(Some(self.text));
+        Source { text: text.into(), original, ..self }
+    }
+
+    /// The same file, parsed with something inserted. All insertions are at one place.
+    pub fn with_insertion(&self, at: usize, what: &str) -> Self {
+        let text = format!("{}{what}{}", &self.text[..at], &self.text[at..]);
+        let inserted = (at, self.inserted.1 + what.len());
+        Source { inserted, ..self.clone().replaced(text) }
+    }
+
+    /// The file as it is, for excerpts.
+    pub fn file(&self) -> Source {
+        let text = self.original.clone().unwrap_or_else(|| self.text.clone());
+        Source { text, original: None, inserted: (0, 0), ..self.clone() }
+    }
+
+    /// The place in the parsed text of a place in the file.
+    pub fn in_text(&self, span: Range<usize>) -> Range<usize> {
+        let (at, length) = self.inserted;
+        let place = |k: usize| if k >= at { k + length } else { k };
+        place(span.start)..place(span.end)
+    }
+
+    /// The place in the file of a place in the parsed text.
+    pub fn in_file(&self, span: Range<usize>) -> Range<usize> {
+        let (at, length) = self.inserted;
+        let place = |k: usize| if k > at { k.saturating_sub(length).max(at) } else { k };
+        place(span.start)..place(span.end)
     }
 
     /// The same, after other texts.
     pub fn at(self, base: usize) -> Self {
         Source { base, ..self }
+    }
+
+    /// A model names it, but it may be any file of this machine: its lines are not for whoever reads the diagnostics.
+    pub fn hidden(self) -> Self {
+        Source { is_shown: false, ..self }
     }
 
     /// A place of this text among all.

@@ -11,7 +11,14 @@ pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) 
         // one slip in three letters or more, two in six, three in nine
         (d <= word.chars().count().min(known.chars().count()) / 3).then_some((d, known))
     };
-    known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(|&(d, _)| d).map(|(_, known)| known)
+    let letters = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    // of words as near, those of the same letters: `iyx` is `ixy`, not `ixx`
+    let rank = |&(d, known): &(usize, &str)| (d, letters(known) != letters(&lower));
+    known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(rank).map(|(_, known)| known)
 }
 
 /// A name that was given without what others put before it.
@@ -19,12 +26,17 @@ pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k st
     let is_longer = |known: &&str| {
         name.len() > 2 && known.strip_suffix(name).is_some_and(|start| start.ends_with(['_', '/', '-', '.']))
     };
-    known.into_iter().find(is_longer).map(|known| format!("did you mean `{known}`?"))
+    known.into_iter().find(is_longer).map(meant)
 }
 
 /// "did you mean `x`?"
-pub(crate) fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
-    nearest(word, known).map(|word| format!("did you mean `{word}`?"))
+pub(crate) fn meant(word: &str) -> String {
+    format!("did you mean `{word}`?")
+}
+
+/// The same of the known word nearest to an unknown one, if it is near enough to have been meant.
+pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    nearest(word, known).map(meant)
 }
 
 /// Letters to insert, drop, replace or swap with their neighbour (optimal string alignment).
@@ -57,6 +69,7 @@ mod tests {
         assert_eq!(nearest("revolut", ["revolute"]), Some("revolute"));
         assert_eq!(nearest("xzy", ["xyz", "rpy"]), Some("xyz"));
         assert_eq!(nearest("gravity", ["inertial", "visual", "collision"]), None);
+        assert_eq!(nearest("iyx", ["ixx", "iyy", "ixy"]), Some("ixy"));
         assert_eq!(nearest("D", ["damping"]), None);
         assert_eq!(distance("", "abc"), 3);
         let longer = longer_name("index_q1", ["index", "Left_index_q1"]);

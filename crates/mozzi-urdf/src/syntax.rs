@@ -2,15 +2,38 @@
 //! refused.
 
 use crate::dialect::Dialect;
-use crate::finding::Finding;
+use crate::finding::{Finding, Findings};
+use crate::mend;
 use crate::scan::{Unfinished, scan};
 use crate::source::Source;
 use crate::vocabulary::shown;
 use crate::xacro;
 use roxmltree::{Document, Error, ParsingOptions};
+use std::ops::Range;
 
 /// More nodes (elements, texts, comments) are refused: a parsed node is some ten times its text.
 const MOST_NODES: u32 = 2_000_000;
+
+/// The text as it is parsed: slips that lose nothing are mended, and reported.
+pub(crate) fn mended(source: Source, dialect: Dialect, findings: &mut Findings) -> Source {
+    let (source, late) = mend::declaration(source);
+    let (source, undeclared) = mend::prefixes(source, dialect);
+    late.into_iter().chain(undeclared).for_each(|finding| findings.add(finding));
+    source
+}
+
+/// The first prefix that is not declared, and its place in the text.
+pub(crate) fn undeclared(source: &Source) -> Option<(String, Range<usize>)> {
+    scan(&source.text).ok()?;
+    let Err(Error::UnknownNamespace(prefix, pos)) = document(&source.text) else { return None };
+    let at = source.offset(pos.row as usize, pos.col as usize);
+    let span = at..at + prefix.len();
+    Some((prefix, span))
+}
+
+fn document(text: &str) -> Result<Document<'_>, Error> {
+    Document::parse_with_options(text, ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() })
+}
 
 /// The parsed text, or the first error of its syntax.
 pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
@@ -24,9 +47,7 @@ pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, F
 /// The same, places counted from the text's beginning.
 fn parse_text(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
     let unfinished = scan(&source.text)?;
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let parsed = Document::parse_with_options(&source.text, options);
-    let document = parsed.map_err(|error| explain(source, dialect, error, unfinished))?;
+    let document = document(&source.text).map_err(|error| explain(source, dialect, error, unfinished))?;
     match xacro::refuse(&document, &source.name, dialect) {
         Some(finding) => Err(finding),
         None => Ok(document),

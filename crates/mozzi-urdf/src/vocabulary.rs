@@ -9,7 +9,7 @@ pub(crate) struct Vocabulary {
     pub many: &'static [&'static str],
     /// Known extensions, attributes or children, which say nothing about dynamics here.
     pub silent: &'static [&'static str],
-    /// Attributes that are left out, and listed as such: see [`LeftOut`](crate::context::LeftOut).
+    /// Attributes that are left out, and counted: see [`Context::leave_out`](crate::context::Context::leave_out).
     pub listed: &'static [&'static str],
 }
 
@@ -33,11 +33,11 @@ pub(crate) const INERTIAL: Vocabulary = Vocabulary { once: &["origin", "mass", "
 pub(crate) const MASS: Vocabulary = Vocabulary { attributes: &["value"], ..NOTHING };
 pub(crate) const INERTIA: Vocabulary =
     Vocabulary { attributes: &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], ..NOTHING };
-pub(crate) const ORIGIN: Vocabulary = Vocabulary { attributes: &["xyz", "rpy"], ..NOTHING };
+pub(crate) const ORIGIN: Vocabulary = Vocabulary { attributes: &["xyz", "rpy", "quat_xyzw"], ..NOTHING };
 pub(crate) const JOINT: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     once: &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"],
-    silent: &["gazebo", "sensor", "transmission"],
+    silent: &["gazebo", "sensor", "transmission", "actuator"],
     ..NOTHING
 };
 pub(crate) const PARENT: Vocabulary = Vocabulary { attributes: &["link"], ..NOTHING };
@@ -48,7 +48,7 @@ pub(crate) const LIMIT: Vocabulary = Vocabulary {
     ..NOTHING
 };
 pub(crate) const DYNAMICS: Vocabulary =
-    Vocabulary { attributes: &["damping", "friction", "spring_stiffness", "spring_reference"], ..NOTHING };
+    Vocabulary { attributes: &["damping", "friction", "spring_stiffness", "spring_reference", "armature"], ..NOTHING };
 pub(crate) const MIMIC: Vocabulary = Vocabulary { attributes: &["joint", "multiplier", "offset"], ..NOTHING };
 
 /// The types of joints that mozzi computes.

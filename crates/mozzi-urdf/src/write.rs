@@ -1,8 +1,9 @@
 //! Back to URDF text.
 
 use crate::floating::frees_the_base;
+use crate::limit::UNLIMITED;
 use crate::xacro::has_expression;
-use mozzi::model::description::{Joint, JointKind, Link};
+use mozzi::model::description::{Joint, JointKind, Limits, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::fmt::{self, Write};
 
@@ -21,14 +22,17 @@ impl fmt::Display for NotUrdf {
 
 impl std::error::Error for NotUrdf {}
 
-/// The URDF text of a robot. A round trip gives the same description up to rounding (inertias are converted to the
-/// centre of mass, orientations to roll, pitch and yaw), without the named states and the start, which URDF cannot
-/// express.
+/// The URDF text of a robot, which urdfdom reads, too. A round trip gives the same description up to rounding (inertias
+/// are converted to the centre of mass, orientations to roll, pitch and yaw), without the named states and the start,
+/// which URDF cannot express.
+///
+/// Springs and armature are attributes of `<dynamics>` that other readers ignore. urdfdom requires limits of effort and
+/// velocity, and bounds of prismatic joints: limits that do not exist are written as 1.7976931348623157e308.
 ///
 /// # Errors
-/// [`NotUrdf`] with everything that would be lost: balls, helical joints, axes that miss the child's frame, armature,
-/// further frames, a named end effector, gravity other than (0, 0, −9.81), control characters in names, names that
-/// xacro would evaluate.
+/// [`NotUrdf`] with everything that would be lost: balls, helical joints, axes that miss the child's frame, rotors of
+/// several joints, further frames, a named end effector, gravity other than (0, 0, −9.81), control characters in names,
+/// names that xacro would evaluate. [`expressible`](crate::expressible) replaces most of them.
 pub fn write(description: &Description) -> Result<String, NotUrdf> {
     let reasons = not_urdf(description);
     if !reasons.is_empty() {
@@ -57,21 +61,13 @@ fn not_urdf(d: &Description) -> Vec<String> {
                     "joint `{name}`: a free joint on an empty base, which would be read as a floating base"
                 ));
             }
-            JointKind::Free if joint.damping != 0.0 || joint.friction != 0.0 => {
+            JointKind::Free if joint.damping != 0.0 || joint.friction != 0.0 || joint.armature != 0.0 => {
                 reasons.push(format!(
-                    "joint `{name}`: damping {} and friction {} of a free joint",
-                    joint.damping, joint.friction
+                    "joint `{name}`: damping {}, friction {} and armature {} of a free joint",
+                    joint.damping, joint.friction, joint.armature
                 ));
             }
             _ => {}
-        }
-        if joint.armature != 0.0 {
-            reasons.push(format!("joint `{name}`: armature {}", joint.armature));
-        }
-        let infinite = |limit: Option<f64>| limit.is_some_and(|x| !x.is_finite());
-        let bounds = joint.limits.position.unwrap_or_default();
-        if infinite(joint.limits.velocity) || infinite(joint.limits.effort) || !bounds.iter().all(|x| x.is_finite()) {
-            reasons.push(format!("joint `{name}`: an infinite limit"));
         }
     }
     let names = d.links.iter().map(|link| &link.name).chain(d.joints.iter().map(|joint| &joint.name)).chain([
@@ -122,7 +118,7 @@ fn robot(text: &mut String, d: &Description) -> fmt::Result {
 }
 
 /// The name, or one like it that is not taken.
-fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
+pub(crate) fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut name = name.to_string();
     while taken(&name) {
         name.push('\'');
@@ -172,10 +168,10 @@ fn joint(text: &mut String, joint: &Joint) -> fmt::Result {
     text.write_str("  </joint>\n")
 }
 
-/// A spring by the names that SDF has for it, which readers of URDF pass over.
+/// A spring by the names that SDF has for it, the armature by MJCF's: other readers of URDF ignore both.
 fn dynamics(text: &mut String, joint: &Joint) -> fmt::Result {
     let is_springy = joint.stiffness != 0.0 || joint.spring_reference != 0.0;
-    if joint.damping == 0.0 && joint.friction == 0.0 && !is_springy {
+    if joint.damping == 0.0 && joint.friction == 0.0 && joint.armature == 0.0 && !is_springy {
         return Ok(());
     }
     write!(text, "    <dynamics damping=\"{:?}\" friction=\"{:?}\"", joint.damping, joint.friction)?;
@@ -183,21 +179,24 @@ fn dynamics(text: &mut String, joint: &Joint) -> fmt::Result {
         let (k, rest) = (joint.stiffness, joint.spring_reference);
         write!(text, " spring_stiffness=\"{k:?}\" spring_reference=\"{rest:?}\"")?;
     }
+    if joint.armature != 0.0 {
+        write!(text, " armature=\"{:?}\"", joint.armature)?;
+    }
     text.write_str("/>\n")
 }
 
+/// Complete wherever urdfdom requires a limit, or there is one; then urdfdom requires effort and velocity.
 fn limit(text: &mut String, joint: &Joint) -> fmt::Result {
-    let limits = joint.limits;
-    let [lower, upper] = limits.position.map_or([None; 2], |bounds| bounds.map(Some));
-    let given = [("lower", lower), ("upper", upper), ("effort", limits.effort), ("velocity", limits.velocity)];
-    if given.iter().all(|(_, value)| value.is_none()) {
+    let Limits { position, velocity, effort } = joint.limits;
+    let has_bounds = position.is_some() || matches!(joint.kind, JointKind::Screw(A) if A.is_prismatic());
+    if !has_bounds && velocity.is_none() && effort.is_none() {
         return Ok(());
     }
     text.write_str("    <limit")?;
-    for (name, value) in given {
-        if let Some(value) = value {
-            write!(text, " {name}=\"{value:?}\"")?;
-        }
+    let [lower, upper] = position.unwrap_or([-UNLIMITED, UNLIMITED]);
+    let bounds = [("lower", Some(lower)), ("upper", Some(upper))].into_iter().filter(|_| has_bounds);
+    for (name, limit) in bounds.chain([("effort", effort), ("velocity", velocity)]) {
+        write!(text, " {name}=\"{:?}\"", limit.unwrap_or(UNLIMITED).clamp(-UNLIMITED, UNLIMITED))?;
     }
     text.write_str("/>\n")
 }
@@ -218,13 +217,13 @@ fn direction(A: ScrewAxis) -> Vec3 {
     if A.is_prismatic() { A.twist().v } else { A.twist().w }
 }
 
-fn triple(v: Vec3) -> String {
+pub(crate) fn triple(v: Vec3) -> String {
     let [x, y, z] = v.0;
     format!("{x:?} {y:?} {z:?}")
 }
 
 /// As an attribute's value.
-fn escaped(name: &str) -> String {
+pub(crate) fn escaped(name: &str) -> String {
     let mut text = String::new();
     for c in name.chars() {
         match c {

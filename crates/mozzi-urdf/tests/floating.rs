@@ -1,6 +1,6 @@
-//! mozzi with a floating base against Pinocchio's free flyer and MuJoCo's free joint, by way of `mozzi::conventions`: the committed
-//! numbers of `oracles/floating/`, and, where the folder that the environment variable MOZZI_ORACLES names has a folder `floating` made
-//! by `oracles/make_floating.py`, a hundred states of every robot in that.
+//! mozzi with a floating base against Pinocchio's free flyer and MuJoCo's free joint, by way of `mozzi::conventions`:
+//! the committed numbers of `oracles/floating/`, and, where the folder that the environment variable MOZZI_ORACLES
+//! names has a folder `floating` made by `oracles/make_floating.py`, a hundred states of every robot in that.
 #![allow(clippy::unwrap_used)]
 
 mod common;

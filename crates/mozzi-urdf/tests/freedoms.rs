@@ -81,7 +81,7 @@ fn a_free_body_is_the_base_and_the_world_is_left() {
                 <body name='leg' pos='0 0 -1'><joint name='hip' axis='1 0 0'/><geom size='0.1' mass='1'/><site name='foot'/></body></body>\
                 <body name='lamp'><site/></body></worldbody></mujoco>";
     let robot = parse_with("m.xml", text, Policy::Strict).unwrap();
-    let said: Vec<&str> = robot.warnings.iter().map(|warning| warning.message()).collect();
+    let said: Vec<&str> = robot.unused.iter().map(|unused| unused.message()).collect();
     assert_eq!(
         said,
         [

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::description::JointKind;
-use mozzi_urdf::{LoadError, Loaded, load, open, parse};
+use mozzi_urdf::{LoadError, Loaded, Style, load, open, parse};
 use std::path::{Path, PathBuf};
 
 fn model(text: &str) -> Loaded {
@@ -41,7 +41,7 @@ fn what_is_switched_off_is_off() {
                 <worldbody><body><joint name='a' damping='1' stiffness='2' frictionloss='3'/><joint name='b'/><geom size='1'/>\
                 </body></worldbody><equality><joint joint1='a' joint2='b'/></equality></mujoco>";
     let robot = model(text);
-    assert_eq!(robot.warnings.len(), 1, "{:?}", robot.warnings);
+    assert_eq!((robot.warnings.len(), robot.unused.len()), (0, 1));
     assert_eq!(robot.description.gravity, [0.0; 3]);
     let a = &robot.description.joints[0];
     assert_eq!((a.damping, a.friction, a.stiffness, &a.mimic), (0.0, 0.0, 0.0, &None));
@@ -137,7 +137,7 @@ fn included_files_stand_where_they_are_named() {
     assert_eq!(names, ["world", "a", "b", "c", "d"]);
     assert_eq!(robot.description.links[2].inertia.mass, 2.0);
     assert!(robot.description.joints.iter().all(|joint| joint.kind == JointKind::Fixed));
-    let [light] = robot.warnings.as_slice() else { panic!("{:?}", robot.warnings) };
+    let [light] = robot.unused.as_slice() else { panic!("{:?}", robot.unused) };
     assert!(light.file().ends_with("geom.xml") && light.line() == 1 && light.column() == 32, "{light}");
     assert!(open(&folder.join("main.xml").to_string_lossy()).is_ok());
 }
@@ -171,11 +171,11 @@ fn wrong_includes() {
             "<x><include file='https://x.org/a.xml'/></x>",
             "./parts/a.xml:1:19: error: include: `https://x.org/a.xml` is not on this machine, expected a file",
         ),
-        ("syntax", "<x>\n<body", "./parts/a.xml:2:1: error: the file ends inside a tag that opens here"),
+        ("syntax", "<mujoco>\n<body", "./parts/a.xml:2:1: error: the file ends inside a tag that opens here"),
         ("empty", "", "./parts/a.xml:1:1: error: the file is empty, expected a <mujoco>"),
         (
             "content",
-            "<x>\n <worldbody><bodi/></worldbody></x>",
+            "<mujoco>\n <worldbody><bodi/></worldbody></mujoco>",
             "./parts/a.xml:2:14: error: worldbody: has an element <bodi>, which MJCF does not define here",
         ),
     ];
@@ -193,4 +193,36 @@ fn wrong_includes() {
         main_of(&folder).unwrap_err(),
         "./main.xml is refused: 1 error\n./parts/a.xml:2:1: error: byte 4 of the file is 0xff, which is not UTF-8"
     );
+}
+
+#[test]
+fn an_include_shows_no_lines_of_other_files() {
+    let main = "<mujoco>\n<include file='secret'/></mujoco>";
+    let secrets: [&[u8]; 6] = [
+        b"root:x:0:0:hunter2:/root:/bin/sh\nalice:x:1000:hunter2\n",
+        b"<config>\n  <password>hunter2</password>\n</config>",
+        b"<config user='hunter2'>\n  <joint name='hunter2' <</config>",
+        b"key = hunter2\n<!-- hunter2 -->\n<login password='hunter2'/>",
+        b"hunter2 \xff hunter2",
+        b"<x>\n<worldbody><body name='hunter2'><joint type='hunter2' axis='hunter2'/></body></worldbody></x>",
+    ];
+    for secret in secrets {
+        let folder = folder("secret", &[("main.xml", main)]);
+        std::fs::write(folder.join("secret"), secret).unwrap();
+        // an unknown element is a warning, all else an error
+        let diagnostics = match load(folder.join("main.xml")) {
+            Ok(loaded) => loaded.warnings,
+            Err(error) => error.diagnostics().to_vec(),
+        };
+        assert!(!diagnostics.is_empty());
+        for diagnostic in diagnostics {
+            let found = format!("{diagnostic}\n{}{:?}", diagnostic.pretty(Style::Unicode), diagnostic.help());
+            assert!(!found.contains("hunter2") && found.contains("secret:"), "{found}");
+            assert!(!diagnostic.excerpt().contains("hunter2"));
+        }
+    }
+    // of a model they are shown
+    let part = "<mujocoinclude>\n<worldbody><bodi/></worldbody></mujocoinclude>";
+    let folder = folder("own", &[("main.xml", main), ("secret", part)]);
+    assert!(load(folder.join("main.xml")).unwrap_err().pretty(Style::Unicode).contains("<worldbody><bodi/>"));
 }

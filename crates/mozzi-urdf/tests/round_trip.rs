@@ -115,20 +115,55 @@ fn springs_are_written_and_read() {
     assert!(message.contains("stiffness: is -1, expected a finite number, at least 0"), "{message}");
 }
 
+/// urdfdom refuses a limit without effort and velocity, and reads bounds that are missing as 0.
+#[test]
+fn limits_are_complete_and_armature_is_an_extension() {
+    let mut description = open("ur5").expect("embedded").description;
+    let slide = ScrewAxis::prismatic([0.0, 0.0, 1.0]).expect("unit");
+    description.joints[1].kind = mozzi::model::description::JointKind::Screw(slide);
+    description.joints[1].limits = mozzi::model::description::Limits::default();
+    description.joints[1].armature = 0.5;
+    description.joints[2].limits.effort = None;
+    description.joints[3].limits = mozzi::model::description::Limits::default();
+    let text = write(&description).expect("URDF");
+    let unlimited = "1.7976931348623157e308";
+    let limit = |more: &str| format!("<limit {more}effort=\"{unlimited}\" velocity=\"");
+    assert!(text.contains(&(limit(&format!("lower=\"-{unlimited}\" upper=\"{unlimited}\" ")) + unlimited)), "{text}");
+    assert_eq!(text.matches(" effort=").count(), 5, "a continuous joint without limits has none");
+    assert!(text.contains("armature=\"0.5\"/>"), "{text}");
+    let again = parse("again.urdf", &text).expect("sound");
+    assert!(again.warnings.is_empty(), "{:?}", again.warnings);
+    assert!(difference(&description, &again.description) < 1e-14);
+}
+
+/// Frames become links, and a joint beside its link's frame turns a link on its axis.
+#[test]
+fn other_robots_are_made_expressible() {
+    let text = include_str!("convert/offset.xml");
+    let robot = parse("offset.xml", text).expect("sound").description;
+    assert!(write(&robot).is_err());
+    let again = parse("again.urdf", write(&mozzi_urdf::expressible(&robot)).expect("URDF")).expect("sound").description;
+    let [a, b]: [mozzi::Model; 2] = [robot, again].map(|robot| robot.build().expect("sound"));
+    assert!(a.joint_names().eq(b.joint_names()) && a.n() == 3);
+    let theta = [0.3, -0.2, 0.7];
+    let (M, N) = (a.mass_matrix(&theta).expect("M"), b.mass_matrix(&theta).expect("M"));
+    assert!((M.clone() - N).amax() < 1e-14 * M.amax());
+    for (frame, name) in a.frames() {
+        let found = b.forward_kinematics(&theta, b.frame(name).expect("the same name")).expect("a pose");
+        let apart = a.forward_kinematics(&theta, frame).expect("a pose").inverse() * found;
+        assert!(apart.log().to_array().iter().all(|x| x.abs() < 1e-14), "{name}");
+    }
+}
+
 #[test]
 fn what_would_be_lost_is_refused() {
     let mut description = open("ur5").expect("embedded").description;
     description.gravity = [0.0, 0.0, -1.62];
-    description.joints[1].armature = 0.5;
     let screw = ScrewAxis::from_line([0.0, 0.0, 1.0], [0.0; 3], 0.1).expect("unit");
     description.joints[2].kind = mozzi::model::description::JointKind::Screw(screw);
     assert!(screw.twist().v != Vec3::zero());
     let message = write(&description).expect_err("not URDF").to_string();
-    let [first, second] = [&description.joints[1].name, &description.joints[2].name];
-    assert_eq!(
-        message,
-        format!(
-            "URDF cannot express joint `{first}`: armature 0.5, nor joint `{second}`: a helical joint, nor gravity [0.0, 0.0, -1.62]"
-        )
-    );
+    let name = &description.joints[2].name;
+    let expected = format!("URDF cannot express joint `{name}`: a helical joint, nor gravity [0.0, 0.0, -1.62]");
+    assert_eq!(message, expected);
 }

@@ -38,8 +38,8 @@ pub fn distance(a: SE3, b: SE3) -> f64 {
 }
 
 /// A random tree of moving links: revolute, prismatic and helical joints, axes and masses off every frame, masses over
-/// four decades, fixed links folded in between, friction, armature and springs; `mimic joints` of the last joints follow others, and two
-/// joints turn a rotor.
+/// four decades, fixed links folded in between, friction, armature and springs; `mimic joints` of the last joints
+/// follow others, and two joints turn a rotor.
 pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut random = Random(seed + 3000);
     let mut robot = Description::new("tree").link("link0", inertia(seed));

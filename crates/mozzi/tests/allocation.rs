@@ -1,5 +1,5 @@
-//! Simulations allocate what they record, and long chains cost no more than their length. That quantities allocate nothing is in the
-//! conformance test of `mozzi-batch`.
+//! Simulations allocate what they record, and long chains cost no more than their length. That quantities allocate
+//! nothing is in the conformance test of `mozzi-batch`.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::{HomeFrames, Screws};

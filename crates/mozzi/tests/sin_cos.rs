@@ -1,4 +1,5 @@
-//! `Scalar::sin_cos` at ten million points, in units of the last place, beside sums of two `f64` (Dekker 1971), good to 30 digits.
+//! `Scalar::sin_cos` at ten million points, in units of the last place, beside sums of two `f64` (Dekker 1971), good to
+//! 30 digits.
 
 use mozzi::Scalar;
 

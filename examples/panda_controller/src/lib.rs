@@ -28,7 +28,8 @@ pub struct ComputedTorque {
 }
 
 impl ComputedTorque {
-    /// The motors' torques, within their limits; none where a measurement is no number, or an angle beyond 10⁶ rad: stop the arm then.
+    /// The motors' torques, within their limits; none where a measurement is no number, or an angle beyond 10⁶ rad:
+    /// stop the arm then.
     pub fn torque(&self, reference: &Reference, theta: &Joints, dtheta: &Joints) -> Option<Joints> {
         let mut ddtheta = reference.ddtheta;
         for j in 0..7 {

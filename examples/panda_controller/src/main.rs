@@ -1,4 +1,5 @@
-//! The controller at 1 kHz on a simulated arm, for four seconds: the arm that it knows, and one that carries half a kilogram more.
+//! The controller at 1 kHz on a simulated arm, for four seconds: the arm that it knows, and one that carries half a
+//! kilogram more.
 
 use panda_controller::{ComputedTorque, Joints, Reference, panda};
 

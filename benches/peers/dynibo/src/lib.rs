@@ -1,5 +1,6 @@
-//! dynibo behind the C interface of `benches/peers/peer.hpp`. It reads URDFs alone. Of a floating base it has velocities, accelerations and
-//! forces in the world's axes, at the root's origin; they are turned here, outside of what is timed.
+//! dynibo behind the C interface of `benches/peers/peer.hpp`. It reads URDFs alone. Of a floating base it has
+//! velocities, accelerations and forces in the world's axes, at the root's origin; they are turned here, outside of
+//! what is timed.
 #![allow(non_snake_case)] // R, X, M
 
 mod robot;

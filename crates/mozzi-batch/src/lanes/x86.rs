@@ -1,8 +1,8 @@
 //! x86-64's registers: AVX2 with fused multiply-add, 4 `f64` or 8 `f32`; AVX-512, 8 `f64` or 16 `f32`.
 //!
 //! Values of these types are made and used only inside the entries of `instruction_set.rs`, which run only where the
-//! processor has the instructions: that is what every block here rests on. Each method is inlined into an entry, and is one instruction
-//! or two there. Negation is −0 − x, which the compiler takes into a fused multiply-add.
+//! processor has the instructions: that is what every block here rests on. Each method is inlined into an entry, and is
+//! one instruction or two there. Negation is −0 − x, which the compiler takes into a fused multiply-add.
 
 use super::Lane;
 use core::arch::x86_64::*;

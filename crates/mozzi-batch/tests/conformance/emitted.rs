@@ -46,7 +46,8 @@ fn call(library: &libloading::Library, name: &str, inputs: &[&[f64]], outputs: &
             match arrays.len() {
                 $($count => {
                     type Function = unsafe extern "C" fn($(call!(@pointer $k)),*);
-                    // SAFETY: the emitted function of this name takes as many arrays, each as long as the program's; inputs are const.
+                    // SAFETY: the emitted function of this name takes as many arrays, each as long as the program's;
+                    // inputs are const.
                     unsafe {
                         let function: libloading::Symbol<Function> = library.get(name.as_bytes()).expect(name);
                         function($(arrays[$k]),*)

@@ -1,6 +1,7 @@
-//! Every quantity of the list, in every way that it can be computed, against a second, independent way: on plain and fused `f64`, `f32`, dual
-//! numbers, memory full of NaN, every register of the machine in rows, recorded programs interpreted, as machine code at one state and
-//! at many, as C; on fixed and floating bases, with and without mimic joints, friction, base motion, wrenches on two frames.
+//! Every quantity of the list, in every way that it can be computed, against a second, independent way: on plain and
+//! fused `f64`, `f32`, dual numbers, memory full of NaN, every register of the machine in rows, recorded programs
+//! interpreted, as machine code at one state and at many, as C; on fixed and floating bases, with and without mimic
+//! joints, friction, base motion, wrenches on two frames.
 #![allow(missing_docs)]
 
 mod allocations;

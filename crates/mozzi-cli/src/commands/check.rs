@@ -2,11 +2,12 @@
 
 use super::info;
 use crate::failure::{self, Failure, Result};
+use crate::json_file::Misplaced;
 use crate::robot::PolicyArguments;
-use crate::robot_json;
+use crate::{input, robot_json};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
-use mozzi_urdf::{Diagnostic, Severity};
+use mozzi_urdf::{Consequence, Diagnostic, Severity};
 use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
@@ -30,14 +31,14 @@ enum Format {
 }
 
 pub fn run(arguments: &CheckArguments) -> Result<String> {
-    let name = &arguments.model;
+    let name = arguments.model.as_str();
     if robot_json::is_json(name) {
         return json_robot(arguments);
     }
     let answer = arguments.policy.open(name);
     if arguments.json || arguments.format == Format::Json {
         return match answer {
-            Ok(loaded) => Ok(lines(&loaded.warnings)),
+            Ok(loaded) => Ok(lines(&loaded.warnings) + &lines(&loaded.unused)),
             Err(error) if error.diagnostics().is_empty() => {
                 Err(Failure::Answered(placeless(name, "error", None, &error.to_string())))
             }
@@ -46,16 +47,19 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
     }
     let loaded = answer?;
     loaded.warnings.iter().for_each(failure::say);
+    mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
     let count = loaded.warnings.len();
-    sound(name, count, &loaded.build()?)
+    sound(input::name(name), count, &loaded.build()?)
 }
 
 /// A robot of JSON: the same checks, each problem by its element, as there is no text to point at.
 fn json_robot(arguments: &CheckArguments) -> Result<String> {
-    let name = &arguments.model;
+    let name = input::name(&arguments.model);
     let is_lines = arguments.json || arguments.format == Format::Json;
-    let robot = match robot_json::read(name) {
-        Err(Failure::Wrong(why)) if is_lines => return Err(Failure::Answered(placeless(name, "error", None, &why))),
+    let robot = match robot_json::read(&arguments.model) {
+        Err(errors) if is_lines => {
+            return Err(Failure::Answered(errors.iter().map(|error| misplaced(name, error)).collect()));
+        }
         other => other?,
     };
     let (errors, warnings) = arguments.policy.problems(&robot);
@@ -86,6 +90,7 @@ fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
 fn lines(diagnostics: &[Diagnostic]) -> String {
     let line = |found: &Diagnostic| {
         let severity = match found.severity() {
+            _ if found.consequence() == Consequence::Unused => "note",
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
@@ -112,6 +117,15 @@ fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> S
         "line": null,
         "column": null,
         "help": code.and_then(mozzi_urdf::remedy),
+    }))
+}
+
+/// The text of JSON itself is wrong.
+fn misplaced(name: &str, error: &Misplaced) -> String {
+    let (row, column) = error.position.unzip();
+    line(json!({
+        "severity": "error", "code": null, "message": error.message,
+        "file": name, "line": row, "column": column, "help": null,
     }))
 }
 

@@ -4,6 +4,7 @@ use super::info;
 use crate::failure::{Failure, Result};
 use crate::json;
 use crate::robot::PolicyArguments;
+use crate::{input, robot_json};
 use clap::Args;
 use mozzi::Description;
 use mozzi_compare::{Options, Source, ask, compare, find_python};
@@ -40,20 +41,32 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
     let options = Options { python, states: arguments.states.into(), seed: arguments.seed };
     let (headline, comparison) = match arguments.policy.model(&arguments.model) {
         Ok(model) => {
-            let comparison = compare(&model, Source::read(&arguments.model, model.description())?, &options)?;
+            let comparison = compare(&model, source(&arguments.model, model.description())?, &options)?;
             (info::headline(&model) + "\n", comparison)
         }
         Err(refusal) => {
             let has_place = matches!(&refusal, Failure::Load(error) if !error.diagnostics().is_empty());
-            if !has_place || !Path::new(&arguments.model).is_file() {
+            if !has_place || arguments.model != "-" && !Path::new(&arguments.model).is_file() {
                 return Err(refusal);
             }
             refusal.say();
-            (String::new(), ask(Source::read(&arguments.model, &Description::new("refused"))?, &options)?)
+            (String::new(), ask(source(&arguments.model, &Description::new("refused"))?, &options)?)
         }
     };
     let text = if arguments.json { json::print(&comparison.json()) } else { headline + &comparison.text() };
     if comparison.is_explained() { Ok(text) } else { Err(Failure::Answered(text)) }
+}
+
+/// What the libraries read: the file, or the text that a pipe held.
+fn source(name: &str, robot: &Description) -> Result<Source> {
+    if name != "-" {
+        return Ok(Source::read(name, robot)?);
+    }
+    if robot_json::is_json(name) {
+        return Ok(Source::written(input::name(name), robot)?);
+    }
+    let text = input::robot_text().map_err(|error| input::cannot(name, &error))?;
+    Ok(Source::of_text(input::name(name), &String::from_utf8_lossy(text)))
 }
 
 impl From<mozzi_compare::Error> for Failure {

@@ -1,4 +1,7 @@
-//! `mozzi convert`: the same robot in another file.
+//! `mozzi convert`: the same robot in another file, or an edited one.
+
+mod edits;
+mod urdf;
 
 use super::screws;
 use crate::columns::save;
@@ -6,7 +9,9 @@ use crate::failure::{self, Failure, Result};
 use crate::robot::PolicyArguments;
 use crate::robot_json;
 use clap::Args;
+use edits::EditArguments;
 use std::path::Path;
+use urdf::LeftOut;
 
 #[derive(Args, Debug)]
 pub struct ConvertArguments {
@@ -14,9 +19,17 @@ pub struct ConvertArguments {
     #[arg(value_name = "IN")]
     input: String,
     /// Output file; its ending chooses the format: .urdf, .json (links, joints, the book's lists), .py (lists for
-    /// NumPy)
+    /// NumPy). From URDF to URDF the text is kept, with its visuals, comments and unknown elements
     #[arg(value_name = "OUT")]
     output: String,
+    /// Allow OUT to be the file IN, which is overwritten
+    #[arg(long)]
+    in_place: bool,
+    /// Leave out of a URDF what it cannot express (gravity, rotors), or what other readers ignore (armature, springs)
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
+    leave_out: Vec<LeftOut>,
+    #[command(flatten)]
+    edits: EditArguments,
     #[command(flatten)]
     policy: PolicyArguments,
 }
@@ -27,10 +40,12 @@ pub fn run(arguments: &ConvertArguments) -> Result<String> {
     if !["urdf", "json", "py"].contains(&suffix) {
         return Err(Failure::wrong(format!("OUT is `{output}`, expected a name that ends in .urdf, .json or .py")));
     }
-    let model = arguments.policy.model(input)?;
+    if !arguments.in_place && is_same_file(input, output) {
+        return Err(Failure::wrong(format!("OUT is the file IN, `{input}`; --in-place overwrites it")));
+    }
+    let model = arguments.edits.apply(arguments.policy.model(input)?)?;
     let text = match suffix {
-        "urdf" => mozzi_urdf::write(model.description())
-            .map_err(|why| Failure::wrong(format!("{output} is not written: {why}; .json can express all of it")))?,
+        "urdf" => urdf::text(input, output, model.description(), &arguments.leave_out)?,
         "json" => robot_json::write(&model),
         _ => screws::python(&model)?,
     };
@@ -43,4 +58,24 @@ pub fn run(arguments: &ConvertArguments) -> Result<String> {
         ));
     }
     Ok(format!("{output}: {}\n", super::info::headline(&model)))
+}
+
+/// Also by a link or another spelling of the path. An embedded robot is no file.
+fn is_same_file(input: &str, output: &str) -> bool {
+    match (std::fs::canonicalize(input), std::fs::canonicalize(output)) {
+        (Ok(a), Ok(b)) => a == b || is_same_inode(&a, &b),
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn is_same_inode(a: &Path, b: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let file = |path: &Path| std::fs::metadata(path).map(|data| (data.dev(), data.ino())).ok();
+    file(a).is_some() && file(a) == file(b)
+}
+
+#[cfg(not(unix))]
+fn is_same_inode(_: &Path, _: &Path) -> bool {
+    false
 }

@@ -7,6 +7,7 @@ use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units, space_frame};
 use crate::state::positions;
+use crate::tables::format::Format;
 use crate::text::{Page, about, column, table};
 use crate::{goals, interrupt, json};
 use clap::{Args, ValueEnum};
@@ -72,6 +73,7 @@ enum Way {
 }
 
 pub fn run(arguments: &IkArguments) -> Result<String> {
+    arguments.output.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load()?;
     let guess = positions("--guess", arguments.guess.as_deref(), &model)?;
     let near = arguments.near.as_deref().map(|text| positions("--near", Some(text), &model)).transpose()?;

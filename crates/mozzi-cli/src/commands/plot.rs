@@ -8,6 +8,7 @@ use crate::report;
 use crate::robot::RobotArguments;
 use crate::state::{StartArguments, positions};
 use crate::text::scalar;
+use crate::workload::Workload;
 use clap::{Args, Subcommand, ValueEnum};
 use mozzi::Model;
 use mozzi_motion::convergence::{self, Measured};
@@ -49,7 +50,7 @@ struct OutArguments {
 struct MotionArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// A CSV file with columns t, theta_1 … and optionally others, as `mozzi simulate --out` writes it
+    /// A table with columns t, theta_1 … and optionally others, as `mozzi simulate --out` writes it
     trajectory: String,
     #[command(flatten)]
     out: OutArguments,
@@ -124,6 +125,9 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let (theta, dtheta) = arguments.start.read(&model)?;
     let (time, step) = (number("--time", &arguments.time)?, number("--step", &arguments.step)?);
     let coarsest = mozzi::simulation::Options::with_step(time, step)?.steps;
+    let steps = coarsest as f64 * f64::from(1 << u32::from(arguments.halvings));
+    let cause = format!("--step {} with --halvings {}", arguments.step.trim(), arguments.halvings);
+    Workload { cause, steps, rows: 0.0, bytes: 0.0, place: "memory".into(), flag: None }.check(false)?;
     let mut progress = None;
     let found =
         convergence::convergence(&model, [&theta, &dtheta], time, coarsest, arguments.halvings.into(), |done, all| {

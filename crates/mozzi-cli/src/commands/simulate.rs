@@ -11,8 +11,10 @@ use crate::progress::Progress;
 use crate::report::{self, PageArguments};
 use crate::robot::RobotArguments;
 use crate::state::StartArguments;
+use crate::tables::format::Format;
 use crate::text::scalar;
-use crate::{interrupt, json, log};
+use crate::workload::{BINARY, TEXT, Workload};
+use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{Account, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
@@ -50,14 +52,19 @@ pub struct SimulateArguments {
     /// Smooth Coulomb friction: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
     #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
     slip_speed: Option<String>,
-    /// Compute forward dynamics by machine code generated for this robot: equal up to rounding, two to three times as fast
+    /// Compute forward dynamics by machine code generated for this robot: equal up to rounding, two to three times as
+    /// fast
     #[arg(long)]
     compiled: bool,
     /// Record every K-th step
     #[arg(long, value_name = "K", default_value_t = 1)]
     record_every: usize,
-    /// Write the motion to a file, row by row; its ending chooses the format: .csv ("-": standard output), .npy, .npz, .arrow,
-    /// .feather; .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and works
+    /// Allow a motion of more than 1e9 steps or 16 GB
+    #[arg(long)]
+    allow_large: bool,
+    /// Write the motion to a file, row by row; its ending chooses the format: .csv ("-": standard output), .npy, .npz,
+    /// .arrow, .feather; .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and
+    /// works
     #[arg(long, value_name = "FILE")]
     out: Option<String>,
     /// Write the motion as one HTML file that needs no network: the robot in 3-D, and plots
@@ -85,7 +92,7 @@ enum Way {
 const KEPT: usize = 20_000;
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
-    arguments.out.as_deref().map(log::Format::of).transpose()?; // before the motion, which may take long
+    arguments.out.as_deref().map(log::format).transpose()?; // before the motion, which may take long
     let model = arguments.robot.load()?;
     let outcome = arguments.simulate(&model)?;
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
@@ -132,6 +139,7 @@ impl SimulateArguments {
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
         let input = (&mut motors, self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
+        self.workload(model, end)?.check(self.allow_large)?;
         let options = self.options(end)?;
         let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
         let (motion, account, Ending { events, stops, .. }) =
@@ -190,6 +198,26 @@ impl SimulateArguments {
         let (record_every, joint_limits) = (self.record_every, self.joint_limits.into());
         let options = Options::with_step(end, number("--step", &self.step)?)?;
         Ok(Options { method, friction, record_every, joint_limits, ..options })
+    }
+
+    /// Its rows go to a file as they come; those for JSON and the page stay in memory.
+    fn workload(&self, model: &Model, end: f64) -> Result<Workload> {
+        // a step or a duration that makes no sense is refused later
+        let step = number("--step", &self.step)?;
+        let steps = if step > 0.0 { (end / step).ceil().max(0.0) } else { 0.0 };
+        let rows = 1.0 + (steps / self.record_every.max(1) as f64).ceil();
+        let kept = if self.robot.json { f64::INFINITY } else { self.page.rows(self.report.is_some()) as f64 };
+        let numbers = log::names(model).len() as f64;
+        let in_memory = rows.min(kept) * numbers * BINARY;
+        let is_text =
+            self.out.as_deref().is_some_and(|file| log::format(file).is_ok_and(|format| format == Format::Csv));
+        let written = if self.out.is_some() { rows * numbers * if is_text { TEXT } else { BINARY } } else { 0.0 };
+        let (bytes, place) = match self.out.as_deref() {
+            Some(file) if written >= in_memory => (written, input::name(file)),
+            _ => (in_memory, "memory"),
+        };
+        let cause = format!("--step {}", self.step.trim());
+        Ok(Workload { cause, steps, rows, bytes, place: place.to_string(), flag: Some("--allow-large") })
     }
 
     /// The motion, its rows written as they come, and those that are kept.

@@ -145,7 +145,8 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
     page.end()
 }
 
-/// A sentence for each event that happened or did not, each joint that came to its limit, and each motor that was asked for more than it has.
+/// A sentence for each event that happened or did not, each joint that came to its limit, and each motor that was asked
+/// for more than it has.
 pub fn told(outcome: &Outcome) -> Vec<String> {
     let missed = |condition: &String| {
         format!("event: `{condition}` did not happen up to t = {} s", scalar(outcome.motion.last().t))

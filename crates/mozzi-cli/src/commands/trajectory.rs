@@ -1,7 +1,6 @@
 //! `mozzi trajectory`: a motion to be followed.
 
 use crate::columns::{Columns, save};
-use crate::csv;
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
@@ -10,7 +9,10 @@ use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
 use crate::state::positions;
+use crate::tables::format::Format;
+use crate::tables::read as table_file;
 use crate::text::{Decimals, Page, about, scalar, table};
+use crate::workload::{self, BINARY, TEXT};
 use clap::{Args, ValueEnum};
 use mozzi::Freedom;
 use mozzi::{Model, SE3};
@@ -31,9 +33,9 @@ pub struct TrajectoryArguments {
     /// Final positions, or the name of a state
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     to: Option<String>,
-    /// Via points in a CSV file with columns theta_1 …; with a column t, passed at these times by a spline at rest at
+    /// Via points in a table with columns theta_1 …; with a column t, passed at these times by a spline at rest at
     /// both ends
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE")]
     via: Option<String>,
     /// The path: of the joints, or of the end effector to the pose of --to or of --position and --rpy
     #[arg(long, value_name = "PATH", default_value = "joints", conflicts_with = "via")]
@@ -93,17 +95,27 @@ enum Shaped {
 
 /// Rows of the table on the screen.
 const SHOWN: usize = 10;
+/// Rows of a motion, which are all in memory.
+const MOST_ROWS: f64 = 1e7;
 /// Number of points at which limits are checked.
 const PLACES: usize = 500;
 
 pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
+    arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load()?;
     let limits = arguments.limits(&model)?;
     let motion = arguments.motion(&model, &limits)?;
     let step = number("--step", &arguments.step)?;
-    if !(step > 0.0) || motion.duration() / step > 1e7 {
+    let count = motion.duration() / step;
+    if !(step > 0.0) || count > MOST_ROWS {
+        let bytes = count * (1 + model.nq() + 3 * model.n()) as f64 * (BINARY + TEXT);
+        let cost = match step > 0.0 {
+            true => format!("{} rows, about {} of memory", workload::count(count), workload::size(bytes)),
+            false => "no rows".to_string(),
+        };
         return Err(Failure::wrong(format!(
-            "--step is {step}, expected a positive number of seconds that gives at most 10⁷ rows"
+            "--step is {}, which gives {cost}; expected a positive number of seconds that gives at most 10⁷ rows",
+            arguments.step.trim()
         )));
     }
     let rows = motion.sampled((motion.duration() / step).ceil().max(1.0) as usize);
@@ -155,7 +167,7 @@ impl TrajectoryArguments {
     fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Timed<Box<dyn Path + 'm>>> {
         let path: Box<dyn Path + 'm> = match &self.via {
             Some(file) => {
-                let samples = csv::read(file, model)?;
+                let samples = table_file::read(file, model)?;
                 let points = samples.need("theta", model)?.chunks(model.nq());
                 let points = &points.map(<[f64]>::to_vec).collect::<Vec<_>>();
                 let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));

@@ -10,7 +10,7 @@ use clap::Args;
 pub struct ViewArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// A CSV file with columns t, theta_1 … and optionally dtheta_, ddtheta_, tau_ and the tip's wrench; without it,
+    /// A table with columns t, theta_1 … and optionally dtheta_, ddtheta_, tau_ and the tip's wrench; without it,
     /// sliders move the joints
     trajectory: Option<String>,
     #[command(flatten)]
@@ -47,6 +47,6 @@ pub fn run(arguments: &ViewArguments) -> Result<String> {
         "{} is at http://{address}/ on this machine only ({size}); Ctrl-C ends it\n",
         model.description().name
     ));
-    server.run(&page).map_err(cannot)?;
+    server.run(page).map_err(cannot)?;
     Ok(String::new())
 }

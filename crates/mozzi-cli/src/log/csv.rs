@@ -1,8 +1,7 @@
 //! CSV, row by row, with every digit.
 
 use super::Rows;
-use super::row::{names, values};
-use mozzi::Model;
+use super::row::values;
 use mozzi::simulation::Sample;
 use std::io::{Result, Write};
 
@@ -10,8 +9,8 @@ pub struct Csv<W>(W);
 
 impl<W: Write> Csv<W> {
     /// Writes the header.
-    pub fn new(mut to: W, model: &Model) -> Result<Self> {
-        writeln!(to, "{}", names(model).join(","))?;
+    pub fn new(mut to: W, names: &[String]) -> Result<Self> {
+        writeln!(to, "{}", names.join(","))?;
         Ok(Csv(to))
     }
 }

@@ -4,7 +4,6 @@ mod arrow;
 #[cfg(feature = "mcap")]
 mod cdr;
 mod csv;
-mod format;
 #[cfg(feature = "mcap")]
 mod mcap;
 mod npy;
@@ -14,14 +13,14 @@ mod ros;
 mod row;
 
 pub use csv::line;
-pub use format::Format;
 pub use row::names;
 
-use crate::failure::{Failure, Result};
-use crate::interrupt::Writing;
+use crate::failure::Result;
+use crate::output::{Output, failed};
+use crate::tables::format::{Format, MOTION};
+use crate::terminal;
 use mozzi::Model;
 use mozzi::simulation::{Recorder, Sample};
-use std::fs::File;
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
 
@@ -32,8 +31,12 @@ pub trait Rows {
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-/// A file to which rows go. It is made at the first row, so that wrong arguments leave an older file as it is, and
-/// removed if it is not [finished](Self::finish).
+/// What kind of file a motion goes to.
+pub fn format(file: &str) -> Result<Format> {
+    Format::of(file, &MOTION)
+}
+
+/// A file to which rows go. An older one stays until this is [finished](Self::finish).
 pub struct Log<'m> {
     file: String,
     format: Format,
@@ -41,25 +44,26 @@ pub struct Log<'m> {
     expected: usize,
     rows: Option<Box<dyn Rows + 'm>>,
     error: Option<io::Error>,
-    writing: Option<Writing>,
+    output: Option<Output>,
 }
 
 impl<'m> Log<'m> {
     /// As many rows are expected; "-" is standard output.
     pub fn new(file: &str, model: &'m Model, expected: usize) -> Result<Self> {
-        let format = Format::of(file)?;
-        Ok(Log { file: file.to_string(), format, model, expected, rows: None, error: None, writing: None })
+        let format = format(file)?;
+        let output = if file == "-" { None } else { Some(Output::create(file)?) };
+        Ok(Log { file: file.to_string(), format, model, expected, rows: None, error: None, output })
     }
 
     fn open(&mut self) -> io::Result<Box<dyn Rows + 'm>> {
         let model = self.model;
-        if self.file == "-" {
-            return Ok(Box::new(csv::Csv::new(BufWriter::new(io::stdout().lock()), model)?));
-        }
-        let to = File::create(&self.file)?;
-        self.writing = Some(Writing::to(&self.file));
+        let Some(output) = &self.output else {
+            let visible: Vec<String> = names(model).iter().map(|name| terminal::result(name)).collect();
+            return Ok(Box::new(csv::Csv::new(BufWriter::new(io::stdout().lock()), &visible)?));
+        };
+        let to = output.handle()?;
         Ok(match self.format {
-            Format::Csv => Box::new(csv::Csv::new(BufWriter::new(to), model)?),
+            Format::Csv => Box::new(csv::Csv::new(BufWriter::new(to), &names(model))?),
             Format::Npy => Box::new(npy::Npy::new(to, model, self.expected)?),
             Format::Npz => Box::new(npz::Npz::new(to, &self.file, model)?),
             Format::Arrow => Box::new(arrow::Batches::to_arrow(to, model)?),
@@ -76,30 +80,15 @@ impl<'m> Log<'m> {
     pub fn finish(mut self) -> Result<()> {
         let rows = self.rows.take();
         let error = self.error.take().or_else(|| rows?.finish().err());
-        match error {
+        match (error, self.output.take()) {
             // who reads has seen enough
-            Some(error) if self.file == "-" && error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            Some(error) => {
-                self.remove();
+            (Some(error), None) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            (Some(error), _) => {
                 let name = if self.file == "-" { "standard output" } else { &self.file };
-                Err(Failure::wrong(format!("{name} cannot be written: {error}")))
+                Err(failed(name, &error))
             }
-            None => Ok(()),
-        }
-    }
-
-    /// Files alone: a pipe or a device is not ours to remove.
-    fn remove(&self) {
-        if self.writing.is_some() && std::fs::metadata(&self.file).is_ok_and(|found| found.is_file()) {
-            let _ = std::fs::remove_file(&self.file); // the error itself is already reported
-        }
-    }
-}
-
-impl Drop for Log<'_> {
-    fn drop(&mut self) {
-        if self.rows.is_some() {
-            self.remove();
+            (None, Some(output)) => output.finish(),
+            (None, None) => Ok(()),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! NumPy's .npy, row by row: one array, its columns as of CSV.
+//! NumPy's .npy, row by row: a structured array, its columns named as of CSV.
 
 use super::Rows;
 use super::row::{names, values};
-use crate::tables::npy::header;
+use crate::tables::npy::structured_header;
 use mozzi::Model;
 use mozzi::simulation::Sample;
 use std::fs::File;
@@ -10,7 +10,7 @@ use std::io::{BufWriter, Result, Seek, SeekFrom, Write};
 
 pub struct Npy {
     to: BufWriter<File>,
-    columns: usize,
+    names: Vec<String>,
     expected: usize,
     rows: usize,
 }
@@ -18,10 +18,10 @@ pub struct Npy {
 impl Npy {
     /// The header says as many rows as are expected; it is written anew if there are others.
     pub fn new(to: File, model: &Model, expected: usize) -> Result<Self> {
-        let columns = names(model).len();
+        let names = names(model);
         let mut to = BufWriter::new(to);
-        to.write_all(&header::<f64>(&[expected, columns]))?;
-        Ok(Npy { to, columns, expected, rows: 0 })
+        to.write_all(&structured_header(&names, expected))?;
+        Ok(Npy { to, names, expected, rows: 0 })
     }
 }
 
@@ -34,7 +34,7 @@ impl Rows for Npy {
     fn finish(mut self: Box<Self>) -> Result<()> {
         if self.rows != self.expected {
             self.to.seek(SeekFrom::Start(0))?;
-            self.to.write_all(&header::<f64>(&[self.rows, self.columns]))?;
+            self.to.write_all(&structured_header(&self.names, self.rows))?;
         }
         self.to.flush()
     }

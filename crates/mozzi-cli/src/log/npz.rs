@@ -3,7 +3,7 @@
 
 use super::Rows;
 use super::row::{groups, values};
-use crate::tables::npy::header;
+use crate::tables::npy::plain_header;
 use crate::tables::npz::stored;
 use mozzi::Model;
 use mozzi::simulation::Sample;
@@ -66,7 +66,7 @@ impl Rows for Npz {
         for mut part in parts {
             archive.start_file(format!("{}.npy", part.name), stored())?;
             let shape = if part.is_vector { vec![rows, part.columns] } else { vec![rows] };
-            archive.write_all(&header::<f64>(&shape))?;
+            archive.write_all(&plain_header::<f64>(&shape))?;
             part.numbers.flush()?;
             let numbers = part.numbers.get_mut();
             numbers.seek(SeekFrom::Start(0))?;

@@ -1,7 +1,7 @@
 //! The columns of a motion's row.
 
 use crate::columns;
-use crate::csv::ENERGIES;
+use crate::places::ENERGIES;
 use mozzi::Model;
 use mozzi::simulation::Sample;
 

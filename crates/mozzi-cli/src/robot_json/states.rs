@@ -1,6 +1,6 @@
 //! Named states, by joint.
 
-use super::{At, Read};
+use super::entry::{At, Read};
 use crate::json;
 use mozzi::model::description::{BaseState, JointState, NamedState};
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! What kind of file a table is, by its ending.
+//! What kind of file a table or a motion is, by its ending.
 
 use crate::failure::{Failure, Result};
 use crate::quantity::hyphenated;
@@ -7,32 +7,89 @@ use std::path::Path;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
+    Csv,
+    /// One array; of a motion, and where columns have names, a structured one.
     Npy,
+    /// Arrays by name, (N,) and (N, n).
     Npz,
     /// Arrow's IPC file, which is Feather's second version.
     Arrow,
-    Csv,
+    Parquet,
+    /// ROS 2's joint states and transforms, which Foxglove and Rerun show.
+    Mcap,
 }
 
+use Format::{Arrow, Csv, Mcap, Npy, Npz, Parquet};
+
+/// What motions are written to.
+pub const MOTION: [Format; 6] = [Csv, Npy, Npz, Arrow, Parquet, Mcap];
+/// What tables are read from.
+pub const TABLE: [Format; 5] = [Csv, Npy, Npz, Arrow, Parquet];
+/// What results are written to.
+const RESULT: [Format; 4] = [Csv, Npy, Npz, Arrow];
+
 impl Format {
-    /// "-" is a pipe, of CSV.
-    pub fn of(file: &str) -> Result<Self> {
-        let ending = Path::new(file).extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        match ending.as_deref() {
-            _ if file == "-" => Ok(Format::Csv),
-            Some("npy") => Ok(Format::Npy),
-            Some("npz") => Ok(Format::Npz),
-            Some("arrow" | "feather" | "ipc") => Ok(Format::Arrow),
-            Some("csv") => Ok(Format::Csv),
-            _ => Err(Failure::wrong(format!(
-                "{file}: expected a name that ends in .npy, .npz, .arrow, .feather or .csv"
-            ))),
+    fn endings(self) -> &'static [&'static str] {
+        match self {
+            Csv => &["csv"],
+            Npy => &["npy"],
+            Npz => &["npz"],
+            Arrow => &["arrow", "feather", "ipc"],
+            Parquet => &["parquet"],
+            Mcap => &["mcap"],
         }
+    }
+
+    /// By the file's ending, one of these; "-" is a pipe, of CSV.
+    pub fn of(file: &str, expected: &[Format]) -> Result<Self> {
+        match Self::known(file, expected)? {
+            Some(format) => Ok(format),
+            None => {
+                let endings: Vec<String> =
+                    expected.iter().flat_map(|format| format.endings()).map(|ending| format!(".{ending}")).collect();
+                let (last, others) =
+                    endings.split_last().map_or(("", &[][..]), |(last, others)| (last.as_str(), others));
+                let endings = format!("{} or {last}", others.join(", "));
+                Err(Failure::wrong(format!("{file}: expected a name that ends in {endings}")))
+            }
+        }
+    }
+
+    /// Of a table that is read: a file of any other ending, such as a pipe, is CSV.
+    pub fn of_input(file: &str) -> Result<Self> {
+        Ok(Self::known(file, &TABLE)?.unwrap_or(Csv))
+    }
+
+    /// Of a file that will hold CSV: the name of another format would mislead whoever reads it.
+    pub fn check_csv(file: &str) -> Result<()> {
+        match Self::known(file, &MOTION) {
+            Ok(None | Some(Csv)) => Ok(()),
+            _ => Err(Failure::wrong(format!("{file}: only CSV is written here, expected a name that ends in .csv"))),
+        }
+    }
+
+    fn known(file: &str, expected: &[Format]) -> Result<Option<Self>> {
+        if file == "-" {
+            return Ok(Some(Csv));
+        }
+        let ending = Path::new(file).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let is_of = |format: &&Format| ending.as_deref().is_some_and(|ending| format.endings().contains(&ending));
+        let found = expected.iter().find(is_of).copied();
+        for (needs, is_there, feature) in
+            [(Parquet, cfg!(feature = "parquet"), "parquet"), (Mcap, cfg!(feature = "mcap"), "mcap")]
+        {
+            if found == Some(needs) && !is_there {
+                return Err(Failure::wrong(format!(
+                    "{file}: this program was built without .{feature}: cargo install --path crates/mozzi-cli --features {feature}"
+                )));
+            }
+        }
+        Ok(found)
     }
 
     /// Of a file that is to hold this.
     pub fn of_results(file: &str, query: Query) -> Result<Self> {
-        let format = Self::of(file)?;
+        let format = Self::of(file, &RESULT)?;
         let names: Vec<&str> = query.declaration().outputs.iter().map(|output| output.name).collect();
         if format == Format::Npy && names.len() > 1 {
             return Err(Failure::wrong(format!(
@@ -43,5 +100,25 @@ impl Format {
             )));
         }
         Ok(format)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_tells_the_format() {
+        let of = |file| Format::of(file, &MOTION).ok();
+        assert_eq!((of("a/b.CSV"), of("-"), of("x.feather")), (Some(Csv), Some(Csv), Some(Arrow)));
+        assert_eq!(
+            (of("x.mcap").is_some(), of("x.parquet").is_some()),
+            (cfg!(feature = "mcap"), cfg!(feature = "parquet"))
+        );
+        let said = |file, among: &[Format]| format!("{:?}", Format::of(file, among).expect_err("unknown"));
+        assert!(said("motion.txt", &MOTION).contains("motion.txt: expected a name that ends in .csv, .npy"));
+        assert!(said("x.mcap", &RESULT).contains(".csv, .npy, .npz, .arrow, .feather or .ipc"));
+        assert!(Format::check_csv("way.npy").is_err() && Format::check_csv("way.txt").is_ok());
+        assert_eq!((Format::of_input("/dev/fd/63").ok(), Format::of_input("x.npy").ok()), (Some(Csv), Some(Npy)));
     }
 }

@@ -1,30 +1,58 @@
 //! NumPy's .npz: a zip of .npy, each called after its array.
 
 use super::array::Array;
-use super::npy;
+use super::bound::{Unpacked, caught};
+use super::npy::{self, Header};
 use super::precision::Precision;
 use crate::failure::{Failure, Result};
-use crate::interrupt::Writing;
+use crate::input::cannot;
+use crate::output::Output;
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Read, Write};
+use std::io::{BufReader, BufWriter, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-/// All arrays.
-pub fn read(file: &str) -> Result<Vec<Array>> {
-    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be read: {error}"));
-    let reader = BufReader::new(File::open(file).map_err(|error| cannot(&error))?);
-    let mut archive = ZipArchive::new(reader).map_err(|error| cannot(&error))?;
-    let mut arrays = Vec::new();
-    for index in 0..archive.len() {
-        let mut entry = archive.by_index(index).map_err(|error| cannot(&error))?;
-        let name = entry.name().map_err(|error| cannot(&error))?.to_string();
-        let mut bytes = Vec::new();
-        entry.read_to_end(&mut bytes).map_err(|error| cannot(&error))?;
-        let name = name.trim_end_matches(".npy");
-        arrays.push(npy::parse(&format_args!("{file}: `{name}`"), name, &bytes)?);
-    }
-    Ok(arrays)
+/// All arrays. Each is first shown with its name and shape, and its numbers are read if that is accepted.
+pub fn read(file: &str, mut accept: impl FnMut(&str, &Header) -> Result<()>) -> Result<Vec<Array>> {
+    caught(file, || {
+        let cannot = |error: &dyn std::fmt::Display| cannot(file, error);
+        let opened = File::open(file).map_err(|error| cannot(&error))?;
+        let length = opened.metadata().map_err(|error| cannot(&error))?.len();
+        let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| cannot(&error))?;
+        let (mut unpacked, mut stored, mut arrays) = (Unpacked::of(length), length, Vec::<Array>::new());
+        for index in 0..archive.len() {
+            let mut entry = archive.by_index(index).map_err(|error| cannot(&error))?;
+            let name = entry.name().map_err(|error| cannot(&error))?.trim_end_matches(".npy").to_string();
+            let place = format!("{file}: `{name}`");
+            if arrays.iter().any(|array| array.name == name) {
+                return Err(Failure::wrong(format!("{file} has two arrays `{name}`, expected one")));
+            }
+            let header = npy::header(&place, &mut entry)?;
+            accept(&name, &header)?;
+            let bytes = header.shape.iter().fold(header.size() as u64, |all, &count| all.saturating_mul(count as u64));
+            match entry.compression() {
+                // entries of a sound archive do not share bytes
+                CompressionMethod::Stored => {
+                    stored = stored.checked_sub(bytes).ok_or_else(|| cannot(&"its arrays are larger than it"))?;
+                }
+                _ => unpacked.take(bytes).map_err(|why| cannot(&why))?,
+            }
+            let values = npy::numbers(&place, &header, None, &mut entry)?;
+            arrays.push(Array { name, shape: header.shape, values });
+        }
+        Ok(arrays)
+    })
+}
+
+/// How many positions a state has, by the shape of `theta`; 0 without it.
+pub fn positions(file: &str) -> Result<usize> {
+    caught(file, || {
+        let opened = File::open(file).map_err(|error| cannot(file, &error))?;
+        let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| cannot(file, &error))?;
+        let Ok(mut theta) = archive.by_name("theta.npy") else { return Ok(0) };
+        let header = npy::header(&format!("{file}: `theta`"), &mut theta)?;
+        Ok(header.shape.get(1).copied().unwrap_or(0))
+    })
 }
 
 /// Not compressed, as `numpy.savez` writes arrays.
@@ -34,15 +62,12 @@ pub fn stored() -> SimpleFileOptions {
 
 /// As `numpy.savez` writes it.
 pub fn write<T: Precision>(file: &str, arrays: &[Array<T>]) -> Result<()> {
-    let cannot = |error: &dyn std::fmt::Display| Failure::wrong(format!("{file} cannot be written: {error}"));
-    let _writing = Writing::to(file);
-    let writer = BufWriter::new(File::create(file).map_err(|error| cannot(&error))?);
-    let mut archive = ZipWriter::new(writer);
-    for array in arrays {
-        archive.start_file(format!("{}.npy", array.name), stored()).map_err(|error| cannot(&error))?;
-        let bytes = npy::bytes(&array.shape, &array.values);
-        archive.write_all(&bytes).map_err(|error| cannot(&error))?;
-    }
-    let mut writer = archive.finish().map_err(|error| cannot(&error))?;
-    writer.flush().map_err(|error| cannot(&error))
+    Output::create(file)?.write(|to| {
+        let mut archive = ZipWriter::new(BufWriter::new(to));
+        for array in arrays {
+            archive.start_file(format!("{}.npy", array.name), stored())?;
+            archive.write_all(&npy::bytes(array))?;
+        }
+        archive.finish()?.flush()
+    })
 }

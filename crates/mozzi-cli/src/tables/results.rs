@@ -38,15 +38,15 @@ pub fn write<T: Precision>(
     states: &States<T>,
     results: &[Array<T>],
 ) -> Result<String> {
-    match Format::of(file)? {
+    match Format::of_results(file, query)? {
         Format::Npz => npz::write(file, results)?,
         Format::Arrow => arrow::write(file, columns(query, model, results))?,
         Format::Npy => {
             for array in results {
-                save(file, npy::bytes(&array.shape, &array.values))?;
+                save(file, npy::bytes(array))?;
             }
         }
-        Format::Csv => {
+        _ => {
             let text = csv(query, model, states, results);
             if file == "-" {
                 return Ok(text);

@@ -1,16 +1,17 @@
 //! The states of a file, as tables by rows.
 
-use super::array::{Array, tuple};
-use super::format::Format;
+use super::array::tuple;
+use super::format::{Format, TABLE};
+use super::npy::Header;
 use super::precision::Precision;
+use super::read;
 use super::samples::{Samples, columns_of};
-use super::{arrow, npy, npz};
-use crate::csv::{self, ENERGIES, GROUPS};
 use crate::failure::{Failure, Result};
+use crate::input::Input;
 use crate::numbers::WRENCH;
 use crate::quantity::hyphenated;
 use crate::state::check_frames;
-use mozzi::quantities::{Dim, INPUTS, Query, Uses};
+use mozzi::quantities::{Query, Uses};
 use mozzi::{FrameId, Model, Wrench};
 
 /// The tables that a quantity takes from a file.
@@ -27,14 +28,15 @@ pub struct States<T> {
 impl<T: Precision> States<T> {
     /// `applied` is the same in all states; no frame's wrench may be in the file, too.
     pub fn read(file: &str, query: Query, model: &Model, applied: &[(FrameId, Wrench)]) -> Result<Self> {
-        let format = Format::of(file)?;
+        let format = Format::of(file, &TABLE)?;
         // what is of wrenches alone is 0 without them
         let needs_wrench = query.declaration().uses == Uses::WRENCHES && applied.is_empty();
         let mut samples = match format {
-            Format::Npy => one_array(file, query, model, needs_wrench)?,
-            Format::Npz => arrays(file, model)?,
-            Format::Arrow => arrow::read(file, model)?,
-            Format::Csv => csv::read(file, model)?,
+            Format::Npy => match read::open_npy(file)? {
+                (header, from) if header.is_structured => read::structured(file, &header, from, &|_| model)?,
+                (header, from) => one_array(file, header, from, query, model, needs_wrench)?,
+            },
+            _ => read::read(file, model)?,
         };
         let missing = |samples: &Samples, name: &str| {
             let what = match format {
@@ -75,24 +77,16 @@ impl<T: Precision> States<T> {
     }
 }
 
-/// The shape of a table at one state.
-fn shape(model: &Model, table: &str) -> Vec<usize> {
-    let input = INPUTS.iter().find(|input| input.name == table);
-    match (input, table) {
-        (Some(input), _) => vec![if input.dim == Dim::Nq { model.nq() } else { model.n() }],
-        (_, "gravity") => vec![3],
-        (_, "parameters") => vec![model.parameter_count()],
-        (_, "t") => vec![],
-        _ if ENERGIES.contains(&table) => vec![],
-        _ => vec![WRENCH.len()],
-    }
-}
-
 /// One array: the inputs of the quantity in order, then optionally the tip's wrench.
-fn one_array(file: &str, query: Query, model: &Model, needs_wrench: bool) -> Result<Samples> {
-    let bytes = std::fs::read(file).map_err(|error| Failure::wrong(format!("{file} cannot be read: {error}")))?;
-    let Array { shape, values, .. } = npy::parse(&file, "", &bytes)?;
-    drop(bytes);
+fn one_array(
+    file: &str,
+    header: Header,
+    from: Input,
+    query: Query,
+    model: &Model,
+    needs_wrench: bool,
+) -> Result<Samples> {
+    let shape = &header.shape;
     let declaration = query.declaration();
     let mut columns: Vec<(&str, usize)> =
         declaration.inputs.iter().map(|input| input.name).zip(query.input_lengths(model)).collect();
@@ -110,51 +104,15 @@ fn one_array(file: &str, query: Query, model: &Model, needs_wrench: bool) -> Res
             true => format!("(N, {own}): {list} of `{robot}`; or (N, {with_wrench}) with the tip's wrench"),
             false => format!("(N, {own}): {list} of `{robot}`"),
         };
-        return Err(Failure::wrong(format!("{file} has shape {}, expected {expected}", tuple(&shape))));
+        return Err(Failure::wrong(format!("{file} has shape {}, expected {expected}", tuple(shape))));
     }
+    let values = read::rest(file, &header, from)?;
     let mut samples = Samples { file: file.to_string(), count: shape[0], ..Samples::default() };
     let (all, mut first) = (found.unwrap_or(1).max(1), 0);
     for (name, width) in columns {
         let table = values.chunks_exact(all).flat_map(|row| &row[first..first + width]).copied().collect();
         samples.tables.insert(name.to_string(), table);
         first += width;
-    }
-    Ok(samples)
-}
-
-/// Arrays by name; as many states in each.
-fn arrays(file: &str, model: &Model) -> Result<Samples> {
-    let mut samples = Samples { file: file.to_string(), ..Samples::default() };
-    let mut first: Option<String> = None;
-    for Array { name, shape: found, values } in npz::read(file)? {
-        let further = ["t", "wrench", "gravity", "parameters"];
-        let is_known = GROUPS.iter().chain(&further).chain(&ENERGIES).any(|known| *known == name);
-        if !is_known && !name.starts_with("wrench_") {
-            let all = GROUPS.iter().chain(&further).copied().collect::<Vec<_>>().join(", ");
-            return Err(Failure::wrong(format!(
-                "{file} has an array `{name}`, expected only {all}, or wrench_FRAME of a frame"
-            )));
-        }
-        let expected = shape(model, &name);
-        let wrong = |expected: String| {
-            Failure::wrong(format!("{file}: `{name}` has shape {}, expected {expected}", tuple(&found)))
-        };
-        if found.split_first().is_none_or(|(_, rest)| rest != expected) {
-            let sizes: String = expected.iter().map(|size| format!(" {size}")).collect();
-            return Err(wrong(format!("(N,{sizes}) of `{}`", model.description().name)));
-        }
-        match &first {
-            None => (first, samples.count) = (Some(name.clone()), found[0]),
-            Some(of) if samples.count != found[0] => {
-                let whole = [vec![samples.count], expected].concat();
-                return Err(wrong(format!("{}: as many states as `{of}`", tuple(&whole))));
-            }
-            Some(_) => {}
-        }
-        match name.as_str() {
-            "t" => samples.t = Some(values),
-            _ => drop(samples.tables.insert(name, values)),
-        }
     }
     Ok(samples)
 }

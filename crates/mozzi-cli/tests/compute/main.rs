@@ -269,14 +269,14 @@ fn what_is_wrong_is_named() {
         ("tip-forces", &whole, "whole.arrow has no columns m_x m_y m_z f_x f_y f_z, which tip-forces needs"),
         ("forward-dynamics", &whole, "whole.arrow has no columns tau_1 …, which forward-dynamics needs"),
         ("mass-matrix", &null, "null.arrow: column `theta_1`, row 1 (counted from 0) is null, expected a number"),
-        ("mass-matrix", &text, "text.arrow: column `theta_1` has type Utf8, expected Float64, Float32 or Int64"),
+        ("mass-matrix", &text, "text.arrow: column `theta_1` has type Utf8, expected Float64, Float32 or integers"),
         ("mass-matrix", &name, "name.arrow: column 1 is called `angle`, expected t, theta_1 …"),
         ("mass-matrix", &nothing, "nothing.arrow cannot be read: "),
         ("mass-matrix", &csv, "states.csv:2: column 6 (`theta_6`) is `x`, expected a number"),
         (
             "mass-matrix",
-            &"states.parquet".to_string(),
-            "states.parquet: expected a name that ends in .npy, .npz, .arrow, .feather or .csv",
+            &"states.txt".to_string(),
+            "states.txt: expected a name that ends in .csv, .npy, .npz, .arrow, .feather, .ipc or .parquet",
         ),
         ("mass-matrix", &"nowhere.npy".to_string(), "nowhere.npy cannot be read: "),
         (

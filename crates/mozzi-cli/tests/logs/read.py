@@ -16,6 +16,10 @@ def table(found):
     return {name: found.column(name).to_pylist() for name in found.column_names}
 
 
+def columns(array):
+    return {name: array[name].tolist() for name in array.dtype.names}
+
+
 def messages(path):
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
@@ -40,7 +44,7 @@ def numbers(transform):
 
 
 READERS = {
-    ".npy": lambda path: numpy.load(path).tolist(),
+    ".npy": lambda path: columns(numpy.load(path)),
     ".npz": lambda path: {name: array.tolist() for name, array in numpy.load(path).items()},
     ".arrow": lambda path: table(pyarrow.feather.read_table(path)),
     ".parquet": lambda path: table(pyarrow.parquet.read_table(path)),

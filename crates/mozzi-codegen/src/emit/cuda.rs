@@ -1,6 +1,7 @@
 //! CUDA C: one state's function, and kernels of one thread a state on two layouts.
 //!
-//! The function reads and writes entries that are `stride` apart; each kernel calls it with its own, so that a program is written once.
+//! The function reads and writes entries that are `stride` apart; each kernel calls it with its own, so that a program
+//! is written once.
 
 use super::c::C;
 use super::dialect::{Argument, Dialect, Emitted, Sines, Source};

@@ -76,8 +76,8 @@ pub(super) struct Sines {
     pub cos: Option<String>,
 }
 
-/// Sines that a loop computes: a name for its arrays, their length, which makes the loop worth a compiler's registers (a multiple of four, or
-/// two), and the angles, filled up with zeros.
+/// Sines that a loop computes: a name for its arrays, their length, which makes the loop worth a compiler's registers
+/// (a multiple of four, or two), and the angles, filled up with zeros.
 pub(super) fn abreast<'s>(sines: &'s [Sines], zero: &str) -> Option<(&'s str, usize, String)> {
     let name = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref()))?;
     let count = if sines.len() <= 2 { sines.len() } else { sines.len().next_multiple_of(4) };
@@ -91,7 +91,8 @@ pub(super) trait Dialect {
     fn literal(&self, x: f64) -> String;
     /// An entry of an argument.
     fn entry(&self, array: &str, index: usize) -> String;
-    /// What the file calls one of its helpers, or of the language's functions: `mul_add`, `sgn`, `sqrt`, `tanh`, `sin_cos`.
+    /// What the file calls one of its helpers, or of the language's functions: `mul_add`, `sgn`, `sqrt`, `tanh`,
+    /// `sin_cos`.
     fn helper(&self, name: &str) -> String;
     /// A new number.
     fn bind(&self, name: &str, expression: &str) -> String;

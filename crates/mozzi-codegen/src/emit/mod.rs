@@ -74,7 +74,12 @@ impl SourceFile {
     pub fn write(&self, folder: &Path) -> Result<PathBuf, EmitError> {
         let path = folder.join(&self.name);
         if std::fs::read(&path).ok().as_deref() != Some(self.text.as_bytes()) {
-            let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&path, &self.text));
+            // next to its place and renamed, so that a full disk leaves an older file whole
+            let part = folder.join(format!(".mozzi-{}.part", std::process::id()));
+            let written = std::fs::create_dir_all(folder)
+                .and_then(|()| std::fs::write(&part, &self.text))
+                .and_then(|()| std::fs::rename(&part, &path))
+                .inspect_err(|_| drop(std::fs::remove_file(&part)));
             written.map_err(|error| EmitError::Write(path.clone(), error))?;
         }
         Ok(path)
@@ -122,7 +127,8 @@ impl std::error::Error for EmitError {}
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let model = mozzi_urdf::open("ur5")?.build()?;
 /// let files = emit(&model, &[GravityForces.into()], Arguments::default(), Language::C, Precision::F32)?;
-/// assert!(files[0].name == "ur5.h" && files[0].text.contains("void ur5_gravity_forces(const float theta[6], float g[6]);"));
+/// let declared = "void ur5_gravity_forces(const float theta[6], float g[6]);";
+/// assert!(files[0].name == "ur5.h" && files[0].text.contains(declared));
 /// assert!(files[1].name == "ur5.c");
 /// # Ok(()) }
 /// ```

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-/// Words that one of the languages keeps for itself or its library, that a system has no file of, or that the emitted text uses.
+/// Words that one of the languages keeps for itself or its library, that a system has no file of, or that the emitted
+/// text uses.
 const KEPT: &str = " abstract alignas alignof and asm assert auto aux become bool box break case catch char class con concept const \
     constexpr continue count crate decltype default delete do double dyn else enum entry explicit export extern extern_c f32 f64 false final \
     float fn for friend goto if impl in inline int let long loop macro match mod move mul_add mut mutable namespace new noexcept not nul \

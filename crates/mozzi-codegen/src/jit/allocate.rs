@@ -1,4 +1,5 @@
-//! Registers for a straight line: what is needed last gives way first (Belady 1966), which for equal costs is the best that can be done.
+//! Registers for a straight line: what is needed last gives way first (Belady 1966), which for equal costs is the best
+//! that can be done.
 
 use super::Refusal;
 use super::assembler::{Assembler, Memory, Operand, Register};
@@ -177,7 +178,8 @@ impl<'p> Line<'p> {
         self.register[value as usize].map_or_else(|| self.in_memory(value), Operand::Register)
     }
 
-    /// A register for something new: a free one, or that of the value that is needed last, values that need not be stored first.
+    /// A register for something new: a free one, or that of the value that is needed last, values that need not be
+    /// stored first.
     fn take(&mut self, here: usize, pinned: &mut Vec<Register>) -> Register {
         let is_pinned = |register: &usize| pinned.contains(&(*register as Register));
         let mut best = (0, None);

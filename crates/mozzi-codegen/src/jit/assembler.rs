@@ -1,7 +1,8 @@
-//! Instructions as bytes: the forms that programs need, of x86-64 with VEX (AVX2, FMA) and with EVEX (AVX-512) prefixes.
+//! Instructions as bytes: the forms that programs need, of x86-64 with VEX (AVX2, FMA) and with EVEX (AVX-512)
+//! prefixes.
 //!
-//! The assembler is where machine code becomes safe to run: it knows the bytes of every array, and no instruction that it writes reads or
-//! writes beyond them, whatever it is asked for.
+//! The assembler is where machine code becomes safe to run: it knows the bytes of every array, and no instruction that
+//! it writes reads or writes beyond them, whatever it is asked for.
 
 use super::instruction::Operation;
 use super::shape::{Encoding, Shape};
@@ -22,8 +23,8 @@ pub(crate) enum Operand {
     Repeated(Memory, usize),
 }
 
-/// General registers that hold the arrays' addresses; rdi, which brings them, last of those that need not be saved. Of `rsp` and `r12` as
-/// bases the encoding is another.
+/// General registers that hold the arrays' addresses; rdi, which brings them, last of those that need not be saved. Of
+/// `rsp` and `r12` as bases the encoding is another.
 const BASES: [u8; 13] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
 /// The first of them that belongs to the caller.
 const SAVED: usize = 9;
@@ -60,7 +61,8 @@ pub(crate) struct Assembler {
 }
 
 impl Assembler {
-    /// Code that finds at rdi the addresses of all arrays of these sizes in bytes, and after them has a frame of its own, as the last array.
+    /// Code that finds at rdi the addresses of all arrays of these sizes in bytes, and after them has a frame of its
+    /// own, as the last array.
     pub fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();

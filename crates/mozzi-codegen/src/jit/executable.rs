@@ -1,13 +1,14 @@
 //! Memory that holds machine code, and its calls: the one place of this crate where safety is argued.
 //!
-//! What is run is made by [`allocate`](super::allocate()) alone. Its assembler knows how many bytes each array has and refuses an instruction
-//! that would read or write beyond one of them, so that a fault in what it is asked for (a wrong program, a wrong register) gives wrong
-//! numbers, and never a wrong address. What remains to be trusted are the assembler's few forms, each of which the tests compare with a
-//! disassembler, and its frame, which is on the stack, touched page by page. The code calls nothing, does not branch, and restores the
-//! registers that System V says are the caller's.
+//! What is run is made by [`allocate`](super::allocate()) alone. Its assembler knows how many bytes each array has and
+//! refuses an instruction that would read or write beyond one of them, so that a fault in what it is asked for (a wrong
+//! program, a wrong register) gives wrong numbers, and never a wrong address. What remains to be trusted are the
+//! assembler's few forms, each of which the tests compare with a disassembler, and its frame, which is on the stack,
+//! touched page by page. The code calls nothing, does not branch, and restores the registers that System V says are the
+//! caller's.
 //!
-//! Memory is writable while it is filled and executable afterwards, never both; constants are in pages of their own that become
-//! read-only.
+//! Memory is writable while it is filled and executable afterwards, never both; constants are in pages of their own
+//! that become read-only.
 
 use super::allocate::Code;
 use super::assembler::MOST_ARRAYS;
@@ -67,9 +68,9 @@ impl Executable {
     #[inline(always)]
     fn run(&self, addresses: &mut [*mut u8; MOST_ARRAYS]) {
         addresses[self.lengths.len()] = self.pages.start.wrapping_add(self.pool);
-        // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has its instructions
-        // (`new`). It reads and writes the arrays whose addresses it finds, each as long as the assembler was told (`call`; of the
-        // outputs, the borrows are exclusive), its constants, and its stack.
+        // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has
+        // its instructions (`new`). It reads and writes the arrays whose addresses it finds, each as long as the
+        // assembler was told (`call`; of the outputs, the borrows are exclusive), its constants, and its stack.
         unsafe {
             let function: extern "sysv64" fn(*const *mut u8) = std::mem::transmute(self.pages.start);
             function(addresses.as_ptr());
@@ -110,8 +111,8 @@ impl Pages {
             return None;
         }
         let pages = Pages { start: start.cast(), length };
-        // SAFETY: the mapping is `length` bytes long, writable, and nobody else's yet; code and constants fit in their parts. Afterwards
-        // neither part is written again: the first is made executable, the second read-only.
+        // SAFETY: the mapping is `length` bytes long, writable, and nobody else's yet; code and constants fit in their
+        // parts. Afterwards neither part is written again: the first is made executable, the second read-only.
         let is_granted = unsafe {
             std::ptr::copy_nonoverlapping(code.as_ptr(), pages.start, code.len());
             std::ptr::copy_nonoverlapping(constants.as_ptr(), pages.start.add(pool), constants.len());

@@ -11,8 +11,9 @@ use std::collections::HashMap;
 pub(crate) struct Lowered {
     pub nodes: Vec<Node>,
     pub outputs: Vec<Vec<Value>>,
-    /// What is computed before, in registers of several numbers: the sines and cosines of neighbouring angles of one state. Its inputs are
-    /// [`TOGETHER`] numbers of an array from an entry on; its one output is what [`SINES`] are read from.
+    /// What is computed before, in registers of several numbers: the sines and cosines of neighbouring angles of one
+    /// state. Its inputs are [`TOGETHER`] numbers of an array from an entry on; its one output is what [`SINES`] are
+    /// read from.
     pub before: Option<Box<Lowered>>,
 }
 
@@ -73,7 +74,8 @@ impl Builder {
         self.bits(if self.is_f64 { 1 << 63 } else { 1 << 31 })
     }
 
-    /// −1, 0 or 1: a number that is not 0 is far beyond ±1 after two products by a power of two. NaN stays NaN, where it is second.
+    /// −1, 0 or 1: a number that is not 0 is far beyond ±1 after two products by a power of two. NaN stays NaN, where
+    /// it is second.
     fn sgn(&mut self, x: Value) -> Value {
         let huge = self.constant(2.0_f64.powi(if self.is_f64 { 600 } else { 100 }));
         let (one, minus_one) = (self.constant(1.0), self.constant(-1.0));

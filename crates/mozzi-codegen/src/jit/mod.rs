@@ -70,8 +70,8 @@ impl Kernel {
         Self::condensing(program, shape, usize::MAX)
     }
 
-    /// Likewise; in the place of each output from number `condensed` on stand its least entry and the sum of its
-    /// entries: all that the quick test of pivots needs.
+    /// Likewise, but each output from number `condensed` on is replaced by its least entry and the sum of its entries,
+    /// which is enough to judge pivots.
     ///
     /// # Errors
     /// As [`new`](Self::new).

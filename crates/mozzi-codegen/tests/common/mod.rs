@@ -13,8 +13,8 @@ fn body(random: &mut Random) -> SpatialInertia {
     Solid::Box([0.3, 0.2 + 0.1 * random.next(), 0.1]).inertia(2.0 + random.next()).transformed(turn)
 }
 
-/// A tree of revolute, prismatic and helical joints off every axis, with friction, armature and springs; `mimic joints` of the last joints follow
-/// others.
+/// A tree of revolute, prismatic and helical joints off every axis, with friction, armature and springs; `mimic joints`
+/// of the last joints follow others.
 pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
     let mut random = Random(seed);
     let mut robot = Description::new(format!("tree {seed}")).link("link0", body(&mut random));
@@ -86,7 +86,8 @@ pub fn robots() -> Vec<(String, Model)> {
     robots
 }
 
-/// Every quantity of a robot; those of a frame of its last one, those of a task of the last one that can move so in every state of the tests.
+/// Every quantity of a robot; those of a frame of its last one, those of a task of the last one that can move so in
+/// every state of the tests.
 pub fn quantities(model: &Model) -> Vec<Query<'static>> {
     let frames: Vec<_> = model.frames().map(|(frame, _)| frame).collect();
     let task = |query: Query<'static>| {

@@ -8,8 +8,8 @@ use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::simulation::Input;
 use mozzi::{Model, fast};
 
-/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot that is as modelled,
-/// ë + K_d ė + K_p e = 0.
+/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot
+/// that is as modelled, ë + K_d ė + K_p e = 0.
 pub struct ComputedTorque<'m, R> {
     model: &'m Model,
     /// What is followed.
@@ -23,8 +23,8 @@ impl<'m, R: Reference> ComputedTorque<'m, R> {
     /// For a robot that this model describes, rightly or not.
     ///
     /// # Errors
-    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or a floating base, which no motor
-    /// moves.
+    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or a
+    /// floating base, which no motor moves.
     pub fn new(model: &'m Model, reference: R, gains: Gains) -> Result<Self, Error> {
         gains.check(model)?;
         check_driven(model, "a robot under computed torque")?;

@@ -1,5 +1,6 @@
-//! Controllers: motors that follow a [`Reference`](crate::trajectories::Reference) (Modern Robotics, chapter 11). Each is an
-//! [`Input`](mozzi::simulation::Input) of a simulation, and has a model of its own, which may be wrong about the robot that is simulated.
+//! Controllers: motors that follow a [`Reference`](crate::trajectories::Reference) (Modern Robotics, chapter 11). Each
+//! is an [`Input`](mozzi::simulation::Input) of a simulation, and has a model of its own, which may be wrong about the
+//! robot that is simulated.
 //!
 //! | | τ | the error of a robot that is as modelled |
 //! |---|---|---|

@@ -6,8 +6,8 @@ use crate::trajectories::Reference;
 use mozzi::simulation::Input;
 use mozzi::{Freedom, Model, Place, Workspace, gravity_forces, spring_forces};
 
-/// τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė: gravity and the robot's own springs are held, with K_p in N m/rad or N/m. Along a moving reference it lags: it
-/// knows of no accelerations. A floating base and a free joint have no
+/// τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė: gravity and the robot's own springs are held, with K_p in N m/rad or N/m.
+/// Along a moving reference it lags: it knows of no accelerations. A floating base and a free joint have no
 /// motors.
 pub struct PdGravity<'m, R> {
     model: &'m Model,

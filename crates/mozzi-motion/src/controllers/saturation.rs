@@ -4,7 +4,7 @@ use crate::Policy;
 use mozzi::simulation::Input;
 use mozzi::{Error, FrameId, Model, Wrench};
 
-/// A motor that was asked for more than it has.
+/// A motor whose controller demanded more than its effort limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overload {
     /// The joint.
@@ -19,7 +19,8 @@ pub struct Overload {
     pub last: f64,
 }
 
-/// An input whose torques are held to the joints' effort limits, or only compared with them. A joint without a limit has none.
+/// An input whose torques are held to the joints' effort limits, or only compared with them. A joint without a limit
+/// has none.
 pub struct Saturated<I> {
     /// What drives the robot, before its limits.
     pub input: I,
@@ -47,7 +48,8 @@ impl<I: Input> Saturated<I> {
         }
     }
 
-    /// Of each joint that was asked for more than it has, since the start, whatever was made of it; none where limits are ignored.
+    /// Of each joint that was asked for more than it has, since the start, whatever was made of it; none where limits
+    /// are ignored.
     pub fn overloads(&self) -> impl Iterator<Item = &Overload> {
         self.overloads.iter().flatten()
     }

@@ -1,4 +1,5 @@
-//! Control of a frame, by the dynamics that it shows (Modern Robotics, sections 11.4.3 and 11.7; Khatib 1987, Hogan 1985).
+//! Control of a frame, by the dynamics that it shows (Modern Robotics, sections 11.4.3 and 11.7; Khatib 1987, Hogan
+//! 1985).
 
 use super::Gains;
 use crate::Error;
@@ -18,7 +19,8 @@ pub enum Law {
         /// K_d.
         d: [f64; 6],
     },
-    /// A wrench K X_e + B 𝒱_e: the frame yields as a spring and a damper do, with the robot's own inertia Λ. N m/rad, N/m; N m s/rad, N s/m.
+    /// A wrench K X_e + B 𝒱_e: the frame yields as a spring and a damper do, with the robot's own inertia Λ. N m/rad,
+    /// N/m; N m s/rad, N s/m.
     Impedance {
         /// K.
         stiffness: [f64; 6],
@@ -27,11 +29,11 @@ pub enum Law {
     },
 }
 
-/// 𝓕 = Λ(θ)a + η(θ, 𝒱) + the [`Law`]'s, τ = Jᵀ𝓕 and, where the robot has joints to spare, its posture: the reference is a motion of the joints, of
-/// which the frame follows the frame's, and what the frame leaves free follows the rest.
+/// 𝓕 = Λ(θ)a + η(θ, 𝒱) + the [`Law`]'s, τ = Jᵀ𝓕 and, where the robot has joints to spare, its posture: the reference is
+/// a motion of the joints, of which the frame follows the frame's, and what the frame leaves free follows the rest.
 ///
-/// In one formula, whatever the number of joints, with z the acceleration of the posture: τ = Mz + h + f + Jᵀ(Λ(a − J̇θ̇ − Jz) + …), which is
-/// Jᵀ(Λa + η + …) where J is square.
+/// In one formula, whatever the number of joints, with z the acceleration of the posture: τ = Mz + h + f + Jᵀ(Λ(a −
+/// J̇θ̇ − Jz) + …), which is Jᵀ(Λa + η + …) where J is square.
 pub struct TaskSpace<'m, R> {
     model: &'m Model,
     /// What is followed.
@@ -55,8 +57,8 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
     /// For a frame of a robot that this model describes, rightly or not; the gains of the posture are of accelerations.
     ///
     /// # Errors
-    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, a frame of another model, or a
-    /// floating base.
+    /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, a frame
+    /// of another model, or a floating base.
     pub fn new(model: &'m Model, reference: R, frame: FrameId, law: Law, posture: Gains) -> Result<Self, Error> {
         model.check_frame(frame)?;
         posture.check(model)?;

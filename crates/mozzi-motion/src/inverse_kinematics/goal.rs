@@ -17,7 +17,8 @@ pub enum Goal {
 
 impl Goal {
     /// The body twist that leads from T to the goal in one second, and 0 where nothing is asked: log(T⁻¹T_d) of a pose,
-    /// (0, Rᵀ(p_d − p)) of a position, (log(RᵀR_d), 0) of an orientation. Its derivative along θ is −`J_b`, where it is 0.
+    /// (0, Rᵀ(p_d − p)) of a position, (log(RᵀR_d), 0) of an orientation. Its derivative along θ is −`J_b`, where it is
+    /// 0.
     pub fn error(&self, T: SE3) -> Twist {
         match *self {
             Goal::Pose(goal) => (T.inverse() * goal).log(),

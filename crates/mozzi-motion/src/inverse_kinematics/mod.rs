@@ -2,9 +2,9 @@
 //!
 //! > e = log(T_sb(θ)⁻¹T_sd),  δ = Jᵀ(JJᵀ + λI)⁻¹e,  θ ← θ ⊕ δ
 //!
-//! A joint at a bound that δ would take beyond it is held there, and δ computed anew of the others. A start that gets no nearer is
-//! given up for another. Where the robot has joints to spare, a [`Secondary`] goal chooses among the solutions: steps in the null space
-//! of J, each followed by steps back to the goal.
+//! A joint at a bound that δ would take beyond it is held there, and δ computed anew of the others. A start that gets
+//! no nearer is given up for another. Where the robot has joints to spare, a [`Secondary`] goal chooses among the
+//! solutions: steps in the null space of J, each followed by steps back to the goal.
 
 mod bounds;
 mod goal;
@@ -79,7 +79,8 @@ impl<'m> InverseKinematics<'m> {
         Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0 })
     }
 
-    /// Positions that reach the goal, from a guess and, where it leads nowhere, from random ones. An iteration costs O(n).
+    /// Positions that reach the goal, from a guess and, where it leads nowhere, from random ones. An iteration costs
+    /// O(n).
     ///
     /// # Errors
     /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for a guess or a goal that make no sense.
@@ -87,7 +88,8 @@ impl<'m> InverseKinematics<'m> {
         self.solve_with(goal, guess, &Secondary::None)
     }
 
-    /// As [`solve`](Self::solve), and among the solutions one at which a secondary goal has a minimum, as far as the null space leads.
+    /// As [`solve`](Self::solve), and among the solutions one at which a secondary goal has a minimum, as far as the
+    /// null space leads.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
@@ -149,7 +151,8 @@ impl<'m> InverseKinematics<'m> {
         self.step.held.fill(false);
     }
 
-    /// Steps towards the goal until it is reached, or no more is gained; leaves the best θ on the way and returns ‖e‖ there.
+    /// Steps towards the goal until it is reached, or no more is gained; leaves the best θ on the way and returns ‖e‖
+    /// there.
     fn approach(&mut self, goal: &Goal, theta: &mut [f64], iterations: usize) -> f64 {
         self.bounds.clamp(theta);
         let (mut best, mut least, mut mark, mut since) = (theta.to_vec(), f64::INFINITY, f64::INFINITY, 0);

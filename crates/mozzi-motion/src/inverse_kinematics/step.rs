@@ -1,4 +1,5 @@
-//! One step of a least-squares method under bounds: δ = JᵀA⁻¹e with A = JJᵀ + λI, six equations however many joints there are.
+//! One step of a least-squares method under bounds: δ = JᵀA⁻¹e with A = JJᵀ + λI, six equations however many joints
+//! there are.
 
 use super::bounds::Within;
 use mozzi::Twist;
@@ -9,11 +10,11 @@ use std::ops::Range;
 /// How a step is damped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Newton and Raphson's, by the pseudo-inverse (Modern Robotics, section 6.2.2): δ = J⁺e. Few iterations from a near guess; it
-    /// wanders from afar and near singular positions.
+    /// Newton and Raphson's, by the pseudo-inverse (Modern Robotics, section 6.2.2): δ = J⁺e. Few iterations from a
+    /// near guess; it wanders from afar and near singular positions.
     Newton,
-    /// Levenberg and Marquardt's with λ = ‖e‖²/50 (after Chan and Lawrence 1988): δ = Jᵀ(JJᵀ + λI)⁻¹e. Cautious far from the goal, Newton's
-    /// near it.
+    /// Levenberg and Marquardt's with λ = ‖e‖²/50 (after Chan and Lawrence 1988): δ = Jᵀ(JJᵀ + λI)⁻¹e. Cautious far
+    /// from the goal, Newton's near it.
     LevenbergMarquardt,
 }
 

@@ -44,12 +44,13 @@ pub struct Cartesian {
 const INTERVALS: [usize; 2] = [8, 4096];
 
 impl Cartesian {
-    /// A frame led from where it is at θ₀ to the goal, off its path by at most a tolerance (of ‖(ω, v)‖, rad and m), kept by as many knots as
-    /// that takes. Each knot is searched from the one before it, so that a robot with joints to spare takes the shortest steps.
+    /// A frame led from where it is at θ₀ to the goal, off its path by at most a tolerance (of ‖(ω, v)‖, rad and m),
+    /// kept by as many knots as that takes. Each knot is searched from the one before it, so that a robot with joints
+    /// to spare takes the shortest steps.
     ///
     /// # Errors
-    /// [`Error::OffPath`] where the path leaves the robot's reach; [`Error::PathBroken`] where the solutions jump (at singular
-    /// positions, or at a joint's limit); [`Error::Model`].
+    /// [`Error::OffPath`] where the path leaves the robot's reach; [`Error::PathBroken`] where the solutions jump (at
+    /// singular positions, or at a joint's limit); [`Error::Model`].
     pub fn new(
         model: &Model,
         frame: FrameId,

@@ -22,7 +22,8 @@ impl Limits {
         Limits { velocity: none.clone(), acceleration: none.clone(), torque: none }
     }
 
-    /// The velocity and effort limits of the robot's description, a ball's of each of its three velocities; it has none of accelerations.
+    /// The velocity and effort limits of the robot's description, a ball's of each of its three velocities; it has none
+    /// of accelerations.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
         for (place, joint) in model.places().iter().zip(model.joints()) {

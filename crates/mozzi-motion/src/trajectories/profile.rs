@@ -14,7 +14,8 @@ pub struct Progress {
     pub dds: f64,
 }
 
-/// s(t), a polynomial of at most fifth degree in each of some pieces. Before its start s is 0, after its end 1, both at rest.
+/// s(t), a polynomial of at most fifth degree in each of some pieces. Before its start s is 0, after its end 1, both at
+/// rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     /// Where the pieces begin, and the end: s.
@@ -40,8 +41,8 @@ impl Profile {
         Self::single(duration, [0.0, 0.0, 3.0, -2.0, 0.0, 0.0])
     }
 
-    /// s = 10(t/T)³ − 15(t/T)⁴ + 6(t/T)⁵: s̈ is 0 at both ends, too, so that torques do not jump. Largest ṡ 1.875/T, largest |s̈|
-    /// 10/(√3 T²).
+    /// s = 10(t/T)³ − 15(t/T)⁴ + 6(t/T)⁵: s̈ is 0 at both ends, too, so that torques do not jump. Largest ṡ 1.875/T,
+    /// largest |s̈| 10/(√3 T²).
     ///
     /// # Errors
     /// As [`linear`](Self::linear).
@@ -138,8 +139,8 @@ impl Profile {
         Progress { s: s.clamp(0.0, 1.0), ds: ds.max(0.0), dds }
     }
 
-    /// As [`at`](Self::at), but before the start and after the end the first and the last polynomial go on, as in the Modern Robotics package: s
-    /// leaves 0 to 1 there.
+    /// As [`at`](Self::at), but before the start and after the end the first and the last polynomial go on, as in the
+    /// Modern Robotics package: s leaves 0 to 1 there.
     pub fn continued(&self, t: f64) -> Progress {
         let k = self.times.partition_point(|&begin| begin <= t).clamp(1, self.pieces.len()) - 1;
         let ([a, b, c, d, e, f], x) = (self.pieces[k], t - self.times[k]);

@@ -7,8 +7,9 @@ use crate::Error;
 use crate::error::check;
 use mozzi::Model;
 
-/// Rows of θ at increasing times, and of θ̇ and θ̈ where they are known. In between: with θ̈ the quintic that meets θ, θ̇ and θ̈ of both rows, with
-/// θ̇ alone the cubic that meets θ and θ̇, with neither the cubic spline at rest at both ends.
+/// Rows of θ at increasing times, and of θ̇ and θ̈ where they are known. In between: with θ̈ the quintic that meets θ,
+/// θ̇ and θ̈ of both rows, with θ̇ alone the cubic that meets θ and θ̇, with neither the cubic spline at rest at both
+/// ends.
 #[derive(Clone, Debug)]
 pub struct Recorded {
     times: Vec<f64>,
@@ -27,8 +28,8 @@ impl Recorded {
     /// From rows at these times, in seconds, the first not below 0.
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] for times that do not increase, numbers that are not finite, θ̈ without θ̇, or a floating base;
-    /// [`mozzi::Error::WrongLength`].
+    /// [`mozzi::Error::BadArgument`] for times that do not increase, numbers that are not finite, θ̈ without θ̇, or a
+    /// floating base; [`mozzi::Error::WrongLength`].
     pub fn new(
         model: &Model,
         times: &[f64],
@@ -100,7 +101,8 @@ impl Reference for Recorded {
     }
 }
 
-/// y, y′ and y″ at x of the polynomial on [0, h] that has these values and slopes at its ends, and these second derivatives.
+/// y, y′ and y″ at x of the polynomial on [0, h] that has these values and slopes at its ends, and these second
+/// derivatives.
 fn hermite(h: f64, x: f64, [[y0, v0], [y1, v1]]: [[f64; 2]; 2], second: Option<[f64; 2]>) -> [f64; 3] {
     let rest = y1 - y0 - v0 * h;
     let c = match second {

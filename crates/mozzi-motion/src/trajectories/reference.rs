@@ -75,7 +75,8 @@ impl<P: Path> Reference for Timed<P> {
     }
 }
 
-/// A motion of the joints of a robot whose base floats. Nothing drives that, so that no controller looks at where it is desired: at one pose, at rest.
+/// A motion of the joints of a robot whose base floats. Nothing drives that, so that no controller looks at where it is
+/// desired: at one pose, at rest.
 #[derive(Clone, Debug)]
 pub struct OfJoints<R> {
     /// What the joints are to do, as those of the fixed robot.

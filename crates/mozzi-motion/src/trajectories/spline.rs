@@ -26,8 +26,8 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// Through rows of positions at these s. Scaled to begin at 0 and end at 1: times in seconds do, for a path that is to be run through by
-    /// [`Profile::linear`](super::Profile::linear) of their span.
+    /// Through rows of positions at these s. Scaled to begin at 0 and end at 1: times in seconds do, for a path that is
+    /// to be run through by [`Profile::linear`](super::Profile::linear) of their span.
     ///
     /// # Errors
     /// [`mozzi::Error::BadArgument`] for fewer than two points, an s that does not increase, or a floating base;
@@ -92,8 +92,8 @@ impl Path for Spline {
     }
 }
 
-/// The second derivatives M of continuous slopes: h[k−1] M[k−1] + 2(h[k−1] + h[k]) M[k] + h[k] M[k+1] = 6(d[k] − d[k−1]), d the slopes of the
-/// chords, solved by elimination.
+/// The second derivatives M of continuous slopes: h[k−1] M[k−1] + 2(h[k−1] + h[k]) M[k] + h[k] M[k+1] = 6(d[k] −
+/// d[k−1]), d the slopes of the chords, solved by elimination.
 fn curvatures(s: &[f64], points: &[Vec<f64>], ends: Ends) -> Vec<f64> {
     let (count, joints) = (s.len(), points[0].len());
     let h: Vec<f64> = s.windows(2).map(|s| s[1] - s[0]).collect();

@@ -8,8 +8,8 @@ use crate::Error;
 use crate::error::{check, check_driven};
 use mozzi::Model;
 
-/// The profile, run through in the shortest time that keeps the limits at N + 1 equal times: with y the old duration over the new one, θ̇
-/// grows as y, θ̈ as y², and τ = A y² + D y + c.
+/// The profile, run through in the shortest time that keeps the limits at N + 1 equal times: with y the old duration
+/// over the new one, θ̇ grows as y, θ̈ as y², and τ = A y² + D y + c.
 ///
 /// # Errors
 /// [`Error::TooWeak`] where a torque limit cannot hold the robot; [`Error::Unlimited`] where nothing is limited;

@@ -1,11 +1,12 @@
-//! The fastest way through a path under limits of velocity, acceleration and torque, by reachability (Pham and Pham 2018).
+//! The fastest way through a path under limits of velocity, acceleration and torque, by reachability (Pham and Pham
+//! 2018).
 //!
 //! With u = s̈ and x = ṡ², of which u is constant between grid points, x[i+1] = x[i] + 2Δu and every limit is linear:
 //!
 //! > |θ′u + θ″x| ≤ θ̈_max,  |a u + b x + c| ≤ τ_max,  x ≤ (θ̇_max/θ′)²
 //!
-//! Backwards, each point gets the largest x from which the next one's can be kept; forwards, each step takes the largest u.
-//! Limits are asked for at both ends of each interval.
+//! Backwards, each point gets the largest x from which the next one's can be kept; forwards, each step takes the
+//! largest u. Limits are asked for at both ends of each interval.
 
 use super::demands::{Demand, demands, demands_of_a_motion};
 use super::limits::Limits;
@@ -20,17 +21,19 @@ use mozzi::Model;
 const UNBOUNDED: f64 = 1e12;
 /// Linearisations of viscous friction.
 const ROUNDS: usize = 4;
-/// So many places of each interval are looked at where the limits were not asked for, and so often are limits drawn in that are passed there.
+/// So many places of each interval are looked at where the limits were not asked for, and so often are limits drawn in
+/// that are passed there.
 const BETWEEN: usize = 15;
 const CORRECTIONS: usize = 3;
 
-/// s(t) as fast as the limits allow, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques are those of the model's own gravity and
-/// friction; of viscous friction √x is replaced by a tangent, which is never below it. Limits hold at the ends of each interval; where they are passed
-/// within, by some 10⁻⁴ of them, they are drawn in by as much, and all is solved anew.
+/// s(t) as fast as the limits allow, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques are those
+/// of the model's own gravity and friction; of viscous friction √x is replaced by a tangent, which is never below it.
+/// Limits hold at the ends of each interval; where they are passed within, by some 10⁻⁴ of them, they are drawn in by
+/// as much, and all is solved anew.
 ///
 /// # Errors
-/// [`Error::TooWeak`] where a torque limit cannot hold the robot, or carry it along; [`Error::Unlimited`] where some part of the path is
-/// limited by nothing; [`mozzi::Error::BadArgument`], also of a path along which nothing moves.
+/// [`Error::TooWeak`] where a torque limit cannot hold the robot, or carry it along; [`Error::Unlimited`] where some
+/// part of the path is limited by nothing; [`mozzi::Error::BadArgument`], also of a path along which nothing moves.
 pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
     limits.check(model)?;
     check(intervals >= 2, "the number of intervals", intervals, "at least 2")?;
@@ -55,7 +58,8 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
     Ok(Profile::of_speeds(&s, &reachable(model, &s, &grid, &drawn_in)?))
 }
 
-/// The largest shares of the limits of velocity, acceleration and torque that are used at places between those of the grid, s̈ being constant in between.
+/// The largest shares of the limits of velocity, acceleration and torque that are used at places between those of the
+/// grid, s̈ being constant in between.
 fn shares(s: &[f64], speeds: &[f64], inside: &[Demand], limits: &Limits) -> [Vec<f64>; 3] {
     let mut largest = [(); 3].map(|()| vec![0.0_f64; limits.torque.len()]);
     for (k, demand) in inside.iter().enumerate() {
@@ -109,7 +113,8 @@ fn reachable(model: &Model, s: &[f64], demands: &[Demand], limits: &Limits) -> R
     Ok(speeds)
 }
 
-/// The limits at a point, as half-planes of (u, x); √x touched at a speed, viscous friction left out where that is infinite.
+/// The limits at a point, as half-planes of (u, x); √x touched at a speed, viscous friction left out where that is
+/// infinite.
 fn planes(demand: &Demand, limits: &Limits, speed: f64) -> Vec<HalfPlane> {
     let mut planes = Vec::new();
     for j in 0..demand.a.len() {

@@ -1,7 +1,7 @@
 //! Double-double: the unevaluated sum of two `f64`, 106 bits, 31 digits. For millions of states.
 //!
-//! The algorithms are those of Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
-//! arithmetic" (2017): 1 to 4 units of 2⁻¹⁰⁶ an operation, also where leading digits cancel.
+//! The algorithms are those of Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks
+//! of double-word arithmetic" (2017): 1 to 4 units of 2⁻¹⁰⁶ an operation, also where leading digits cancel.
 
 use super::{Octuple, Wide, further_operators};
 use core::cmp::Ordering;

@@ -15,7 +15,8 @@ further_operators!(Octuple);
 const STORED: u32 = 236;
 const BIAS: i32 = 0x3FFFF;
 
-// No operation is inlined: forty kernels of them would take minutes to compile. Most entries of the stacked matrices are zeros: a sum or product with one is known without arithmetic.
+// No operation is inlined: forty kernels of them would take minutes to compile. Most entries of the stacked matrices
+// are zeros: a sum or product with one is known without arithmetic.
 
 impl Add for Octuple {
     type Output = Self;

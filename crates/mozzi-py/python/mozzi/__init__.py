@@ -7,6 +7,7 @@ from . import _quantities, controllers, conventions, models, modern_robotics, tr
 from ._compare import Comparison, compare
 from ._mozzi import (
     DivergedError,
+    DynamicsWarning,
     InverseKinematics,
     LoadError,
     LoadWarning,
@@ -36,6 +37,7 @@ __all__ = [
     "ClosedForm",
     "Comparison",
     "DivergedError",
+    "DynamicsWarning",
     "Engine",
     "InverseKinematics",
     "LimitReached",

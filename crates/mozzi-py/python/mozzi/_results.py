@@ -69,7 +69,7 @@ class Desired(NamedTuple):
 
 
 class Overload(NamedTuple):
-    """A motor that was asked for more than it has: see ``controllers.Saturated``."""
+    """A motor whose controller demanded more than its effort limit: see ``controllers.Saturated``."""
 
     joint: str
     largest: float

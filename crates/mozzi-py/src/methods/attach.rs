@@ -1,5 +1,5 @@
-//! The quantities as methods of the class `Model`: one descriptor for each entry of the list, by Python's stable interface, since `#[pymethods]`
-//! wants each method written out. Its `unsafe` is all here.
+//! The quantities as methods of the class `Model`: one descriptor for each entry of the list, by Python's stable
+//! interface, since `#[pymethods]` wants each method written out. Its `unsafe` is all here.
 
 use super::documentation::documentation;
 use super::quantity::call;
@@ -41,7 +41,8 @@ const METHODS: &[Method] = {
 /// From Python's arguments to a new reference, or none and Python's error set.
 ///
 /// # Safety
-/// The arguments are those of a call of a method with `METH_FASTCALL | METH_KEYWORDS`, by a thread that holds Python's lock.
+/// The arguments are those of a call of a method with `METH_FASTCALL | METH_KEYWORDS`, by a thread that holds Python's
+/// lock.
 unsafe fn enter(
     index: usize,
     this: *mut ffi::PyObject,
@@ -49,8 +50,8 @@ unsafe fn enter(
     positional: ffi::Py_ssize_t,
     names: *mut ffi::PyObject,
 ) -> *mut ffi::PyObject {
-    // SAFETY: the caller holds the lock, and keeps `this`, the values and the tuple of names while the method runs. A `Borrowed` is a
-    // transparent pointer, and there is a value for each positional argument and each name.
+    // SAFETY: the caller holds the lock, and keeps `this`, the values and the tuple of names while the method runs. A
+    // `Borrowed` is a transparent pointer, and there is a value for each positional argument and each name.
     let (py, this, values, names) = unsafe {
         let py = Python::assume_attached();
         let names = Borrowed::from_ptr_or_opt(py, names).map(|names| names.cast_unchecked::<PyTuple>());

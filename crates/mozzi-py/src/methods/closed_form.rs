@@ -61,8 +61,8 @@ fn environment<'py>(model: &mozzi::Model, given: [Given<'_, 'py>; 5]) -> PyResul
 
 #[pymethods]
 impl PyModel {
-    /// The book's stacked matrices at one state (Modern Robotics, section 8.4), dense and by another way than all other methods: to
-    /// read and to compare.
+    /// The book's stacked matrices at one state (Modern Robotics, section 8.4), dense and by another way than all other
+    /// methods: to read and to compare.
     ///
     /// Parameters
     /// ----------
@@ -73,9 +73,9 @@ impl PyModel {
     /// Returns
     /// -------
     /// ClosedForm
-    ///     Matrices over N bodies, the moving links and a floating base: `A` (6N, n), `G`, `W`, `L`, `ad_V`, `ad_Adtheta` (6N, 6N); `V`,
-    ///     `V_base`, `dV_base`, `F_tip` (6N,); `M`, `armature` (n, n); `c`, `g`, `tip_forces`, `friction`,
-    ///     `springs` (n,).
+    ///     Matrices over N bodies, the moving links and a floating base: `A` (6N, n), `G`, `W`, `L`, `ad_V`,
+    ///     `ad_Adtheta` (6N, 6N); `V`, `V_base`, `dV_base`, `F_tip` (6N,); `M`, `armature` (n, n); `c`, `g`,
+    ///     `tip_forces`, `friction`, `springs` (n,).
     ///
     /// Examples
     /// --------
@@ -124,7 +124,8 @@ impl PyModel {
         named(py, "ClosedForm", fields)
     }
 
-    /// Inverse dynamics at one state with all that the recursion finds on its way, for the N moving links, base to tips.
+    /// Inverse dynamics at one state with all that the recursion finds on its way, for the N moving links, base to
+    /// tips.
     ///
     /// Parameters
     /// ----------
@@ -137,7 +138,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// NewtonEuler
-    ///     `twists`, `accelerations` (gravity in them), `wrenches` that the joints transmit, each (N, 6); `base_reaction` (6,); `tau` (n,).
+    ///     `twists`, `accelerations` (gravity in them), `wrenches` that the joints transmit, each (N, 6);
+    ///     `base_reaction` (6,); `tau` (n,).
     ///
     /// Examples
     /// --------
@@ -189,8 +191,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// BaseParameters
-    ///     `columns` of `regressor` that are independent; `combination` K, (base parameters, parameters); `names`, such as
-    ///     `link1.Izz + 0.25 link2.m`.
+    ///     `columns` of `regressor` that are independent; `combination` K, (base parameters, parameters); `names`, such
+    ///     as `link1.Izz + 0.25 link2.m`.
     ///
     /// Examples
     /// --------

@@ -73,7 +73,8 @@ impl PyModel {
     /// trajectory : Trajectory, optional
     ///     What `simulate` gave; without it the page has a slider for each joint.
     /// shapes : path or str, optional
-    ///     The robot's file, or the name of a robot that mozzi brings along, for its shapes; without it there is a skeleton.
+    ///     The robot's file, or the name of a robot that mozzi brings along, for its shapes; without it there is a
+    ///     skeleton.
     /// meshes : {'visual', 'collision', 'none'}
     ///     Which meshes of that file go into the page.
     /// title : str

@@ -8,7 +8,7 @@ use mozzi_motion::Goal;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Which of a frame's numbers are asked for.
+/// Which part of a frame's pose is the goal.
 #[derive(Clone, Copy)]
 enum Kind {
     Pose,

@@ -110,8 +110,8 @@ impl PyPath {
 
     /// The fastest profile through this path under limits, at rest at both ends (Pham and Pham 2018).
     ///
-    /// Limits are |θ̇| ≤ velocity, |θ̈| ≤ acceleration, |τ| ≤ torque, with τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇) in the
-    /// robot's own gravity.
+    /// Limits are |θ̇| ≤ velocity, |θ̈| ≤ acceleration, |τ| ≤ torque, with τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇) in
+    /// the robot's own gravity.
     ///
     /// Parameters
     /// ----------

@@ -25,7 +25,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// torque : callable
 ///     `torque(t, theta, dtheta)`, such as a `Controller`; answers τ, shape (..., n).
 /// policy : {'respect', 'report', 'ignore'}
-///     'respect' holds |τ| to the limits and notes what was asked for, 'report' notes it alone, 'ignore' does neither.
+///     'respect' clamps τ to the limits and records the demand, 'report' only records it, 'ignore' does neither.
 ///
 /// Examples
 /// --------

@@ -15,8 +15,8 @@ use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, BatchEnvironment};
 use pyo3::prelude::*;
 
-/// Steps of all robots together between two looks at whether Python was interrupted: a part of a second. Not by the clock: how steps are cut
-/// into pieces may change a last bit.
+/// Steps of all robots together between two looks at whether Python was interrupted: a part of a second. Not by the
+/// clock: how steps are cut into pieces may change a last bit.
 const BETWEEN_LOOKS: usize = 5_000;
 /// Fewer steps in a row would spend too much on the state that each piece begins with.
 const FEWEST_STEPS: usize = 8;

@@ -69,7 +69,8 @@ fn policy(name: &str) -> PyResult<Policy> {
 
 #[pymethods]
 impl PyModel {
-    /// The motion from (θ(0), θ̇(0)) over `duration` seconds, in `steps` equal steps; from many starts, many motions at once, on all cores.
+    /// The motion from (θ(0), θ̇(0)) over `duration` seconds, in `steps` equal steps; from many starts, many motions at
+    /// once, on all cores.
     ///
     /// Parameters
     /// ----------
@@ -82,9 +83,10 @@ impl PyModel {
     /// steps : int
     ///     At least 1. With 'dopri', whose steps are its own, the number of intervals between rows.
     /// torque : callable, array_like, 'gravity_compensation' or None
-    ///     The motors' τ: `torque(t, theta, dtheta)`, asked at each stage of each step; constant, shape (..., n); τ = g(θ) + k(θ − θ₀), what holds
-    ///     gravity and springs; or none. Of many
-    ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers (..., n).
+    ///     The motors' τ: `torque(t, theta, dtheta)`, asked at each stage of each step; constant, shape (..., n); τ =
+    ///     g(θ) + k(θ − θ₀), what holds gravity and springs; or none. Of many
+    ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers
+    ///     (..., n).
     /// method : {'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
     ///     How a step is taken. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and
     ///     symplectic: the energy's error stays bounded. These two take one start.
@@ -111,8 +113,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// Trajectory, or Trajectories where there are leading axes
-    ///     `t`, shape (rows,); `theta`, shape (..., rows, nq); `dtheta`, `ddtheta`, `tau`, shape (..., rows, n); and the energies, shape
-    ///     (..., rows). Works, such as `motor_work`, of one start alone.
+    ///     `t`, shape (rows,); `theta`, shape (..., rows, nq); `dtheta`, `ddtheta`, `tau`, shape (..., rows, n); and
+    ///     the energies, shape (..., rows). Works, such as `motor_work`, of one start alone.
     ///
     /// Raises
     /// ------

@@ -51,8 +51,8 @@ impl Entries {
     }
 }
 
-/// A quantity of a motion: its symbol, its units of turning and sliding joints, and the two parts that it has of balls and free joints, each
-/// with its length.
+/// A quantity of a motion: its symbol, its units of turning and sliding joints, and the two parts that it has of balls
+/// and free joints, each with its length.
 struct Quantity<'m> {
     symbol: &'static str,
     units: [&'static str; 2],
@@ -80,8 +80,9 @@ fn column(rows: &[f64], width: usize, k: usize) -> impl Iterator<Item = f64> {
     rows.chunks(width.max(1)).map(move |row| row[k])
 }
 
-/// θ, θ̇, θ̈ and τ of the joints over time, as far as they are known; turning and sliding joints apart. A ball and a free joint have panels of their
-/// own: quaternion and origin, angular and linear velocity, moment and force. A floating base is not shown.
+/// θ, θ̇, θ̈ and τ of the joints over time, as far as they are known; turning and sliding joints apart. A ball and a
+/// free joint have panels of their own: quaternion and origin, angular and linear velocity, moment and force. A
+/// floating base is not shown.
 ///
 /// # Errors
 /// [`Error::Motion`] where the rows are not as long as this robot's.
@@ -149,7 +150,8 @@ pub fn energy(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     Ok(Figure { title: motion.title.clone(), panels, columns: 1 })
 }
 
-/// θ̇ over θ, a panel for each joint of one axis: the velocities of balls and free joints are no rates of their positions.
+/// θ̇ over θ, a panel for each joint of one axis: the velocities of balls and free joints are no rates of their
+/// positions.
 ///
 /// # Errors
 /// [`Error::Motion`] as [`trajectories`], and where velocities are not known.

@@ -1,24 +1,36 @@
 //! Where a mesh that a robot's file names is.
 
+use crate::visible::visible;
 use std::ffi::OsString;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
-/// A mesh that was not found.
+/// A mesh that was not found, or that is none of the robot's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotLocated {
     /// The name in the robot's file.
     pub file: String,
     /// The places searched; empty for unsupported kinds of addresses.
     pub tried: Vec<PathBuf>,
+    /// A file that was found, and is not used because it is outside of the robot's folder and package.
+    pub outside: Option<PathBuf>,
 }
 
 impl fmt::Display for NotLocated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = visible(&self.file);
+        let shown = |path: &Path| visible(&path.display().to_string());
+        if let Some(outside) = &self.outside {
+            let outside = shown(outside);
+            return write!(
+                f,
+                "mesh {name} is {outside}, outside of the robot's folder and of its package (a folder with package.xml)"
+            );
+        }
         let Some(first) = self.tried.first() else {
-            return write!(f, "mesh {}: expected package://, file://, or a path", self.file);
+            return write!(f, "mesh {name}: expected package://, file://, or a path");
         };
-        write!(f, "mesh {} was not found: neither {}", self.file, first.display())?;
+        write!(f, "mesh {name} was not found: neither {}", shown(first))?;
         match self.tried.len() - 1 {
             0 => Ok(()),
             more => write!(f, " nor {more} other places"),
@@ -33,35 +45,87 @@ impl std::error::Error for NotLocated {}
 /// file, then in those of `ROS_PACKAGE_PATH`, and as `share/NAME/PATH` in those of `AMENT_PREFIX_PATH`. Nothing is
 /// fetched.
 ///
+/// Whoever writes a robot's file must not reach other files of whoever reads it: links followed, the mesh lies in the
+/// folder of the robot's file, in the package around it (the nearest folder above that has a `package.xml`), or in the
+/// package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS.
+///
 /// # Errors
-/// [`NotLocated`] with the places.
+/// [`NotLocated`] with the places, or with the file that is elsewhere.
 pub fn locate(robot_file: &Path, mesh: &str) -> Result<PathBuf, NotLocated> {
-    let tried = candidates(robot_file, mesh, &|name| std::env::var_os(name));
-    match tried.iter().find(|path| path.is_file()) {
-        Some(found) => Ok(found.clone()),
-        None => Err(NotLocated { file: mesh.to_string(), tried }),
+    let candidates = candidates(robot_file, mesh, &|name| std::env::var_os(name));
+    let own = own_folders(robot_file);
+    let mut outside = None;
+    for candidate in candidates.iter().filter(|candidate| candidate.path.is_file()) {
+        match candidate.is_allowed(&own) {
+            true => return Ok(candidate.path.clone()),
+            false => outside = outside.or(Some(candidate.path.clone())),
+        }
+    }
+    Err(NotLocated {
+        file: mesh.to_string(),
+        tried: candidates.into_iter().map(|candidate| candidate.path).collect(),
+        outside,
+    })
+}
+
+/// The folder of the robot's file and the package around it; of a link, also those of the file itself.
+fn own_folders(robot_file: &Path) -> Vec<PathBuf> {
+    let parent = robot_file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let real = robot_file.canonicalize().ok().and_then(|file| file.parent().map(Path::to_path_buf));
+    let folders: Vec<PathBuf> = parent.canonicalize().ok().into_iter().chain(real).collect();
+    let package = |folder: &PathBuf| folder.ancestors().find(|above| is_package(above)).map(Path::to_path_buf);
+    let packages: Vec<PathBuf> = folders.iter().filter_map(package).collect();
+    folders.into_iter().chain(packages).collect()
+}
+
+fn is_package(folder: &Path) -> bool {
+    folder.join("package.xml").is_file()
+}
+
+/// A place where a mesh may be.
+struct Candidate {
+    path: PathBuf,
+    /// The package of a `package://` address, and whether it is one of ROS.
+    package: Option<(PathBuf, bool)>,
+}
+
+impl Candidate {
+    /// Is it, links followed, in one of these folders or in its package?
+    fn is_allowed(&self, own: &[PathBuf]) -> bool {
+        let Ok(file) = self.path.canonicalize() else { return false };
+        let of_package = self.package.as_ref().and_then(|(folder, is_of_ros)| {
+            let folder = folder.canonicalize().ok()?;
+            (*is_of_ros || is_package(&folder) || own.iter().any(|own| own.starts_with(&folder))).then_some(folder)
+        });
+        own.iter().chain(&of_package).any(|folder| file.starts_with(folder))
     }
 }
 
-fn candidates(robot_file: &Path, mesh: &str, variable: &dyn Fn(&str) -> Option<OsString>) -> Vec<PathBuf> {
+fn candidates(robot_file: &Path, mesh: &str, variable: &dyn Fn(&str) -> Option<OsString>) -> Vec<Candidate> {
     let folder = robot_file.parent().unwrap_or(Path::new(""));
+    let plain = |path: &str| vec![Candidate { path: folder.join(path), package: None }];
     if let Some(path) = mesh.strip_prefix("file://") {
-        return vec![folder.join(path)];
+        return plain(path);
     }
     let Some(path) = mesh.strip_prefix("package://") else {
-        return if mesh.contains("://") { Vec::new() } else { vec![folder.join(mesh)] };
+        return if mesh.contains("://") { Vec::new() } else { plain(mesh) };
     };
-    let path = path.trim_start_matches('/');
+    let path = Path::new(path.trim_start_matches('/'));
+    let Some(Component::Normal(name)) = path.components().next() else { return Vec::new() };
+    let of = |folder: PathBuf, is_of_ros| Candidate {
+        path: folder.join(path),
+        package: Some((folder.join(name), is_of_ros)),
+    };
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
     let listed = |name: &str| variable(name).map(|list| std::env::split_paths(&list).collect::<Vec<_>>());
     let ros = listed("ROS_PACKAGE_PATH").unwrap_or_default().into_iter().flat_map(|folder| {
         // a folder of packages, or the package itself
-        let parent = folder.parent().map(|parent| parent.join(path));
-        std::iter::once(folder.join(path)).chain(parent)
+        let parent = folder.parent().map(Path::to_path_buf);
+        std::iter::once(folder).chain(parent)
     });
-    let ament =
-        listed("AMENT_PREFIX_PATH").unwrap_or_default().into_iter().map(|folder| folder.join("share").join(path));
-    whole.ancestors().map(|above| above.join(path)).chain(ros).chain(ament).collect()
+    let ament = listed("AMENT_PREFIX_PATH").unwrap_or_default().into_iter().map(|folder| folder.join("share"));
+    let of_ros = ros.chain(ament).map(|folder| of(folder, true));
+    whole.ancestors().map(|above| of(above.to_path_buf(), false)).chain(of_ros).collect()
 }
 
 #[cfg(test)]
@@ -71,18 +135,20 @@ mod tests {
     #[test]
     fn addresses_lead_to_places() {
         let none = |_: &str| None;
-        let of = |mesh: &str| candidates(Path::new("/robots/arm/urdf/arm.urdf"), mesh, &none);
+        let paths = |found: Vec<Candidate>| found.into_iter().map(|found| found.path).collect::<Vec<_>>();
+        let of = |mesh: &str| paths(candidates(Path::new("/robots/arm/urdf/arm.urdf"), mesh, &none));
         assert_eq!(of("meshes/a.stl"), [Path::new("/robots/arm/urdf/meshes/a.stl")]);
         assert_eq!(of("file:///x/a.stl"), [Path::new("/x/a.stl")]);
         assert!(of("https://a.b/c.stl").is_empty());
         let package = of("package://arm/meshes/a.stl");
         assert!(package.contains(&PathBuf::from("/robots/arm/meshes/a.stl")), "{package:?}");
         assert_eq!(of("package:///arm/meshes/a.stl"), package);
-        let paths = |name: &str| match name {
+        assert!(of("package://../a.stl").is_empty() && of("package:///").is_empty());
+        let variables = |name: &str| match name {
             "ROS_PACKAGE_PATH" => Some(OsString::from("/ws/src/arm")),
             _ => Some(OsString::from("/opt/ros")),
         };
-        let found = candidates(Path::new("arm.urdf"), "package://arm/a.stl", &paths);
+        let found = paths(candidates(Path::new("arm.urdf"), "package://arm/a.stl", &variables));
         for place in ["/ws/src/arm/a.stl", "/opt/ros/share/arm/a.stl"] {
             assert!(found.contains(&PathBuf::from(place)), "{place} in {found:?}");
         }
@@ -95,5 +161,55 @@ mod tests {
         assert!(error.starts_with("mesh package://arm/a.stl was not found: neither /"), "{error}");
         let error = locate(Path::new("a.urdf"), "http://a/b.stl").expect_err("no network").to_string();
         assert_eq!(error, "mesh http://a/b.stl: expected package://, file://, or a path");
+    }
+    #[test]
+    #[cfg(unix)]
+    fn files_of_others_are_not_meshes_of_the_robot() {
+        let top = std::env::temp_dir().join(format!("mozzi-locate-{}", std::process::id()));
+        for folder in ["ws/arm/urdf/near", "ws/arm/meshes", "ws/tool/meshes", "ws/secret"] {
+            std::fs::create_dir_all(top.join(folder)).expect("a folder");
+        }
+        let files =
+            ["ws/arm/meshes/a.stl", "ws/arm/urdf/near/b.stl", "ws/tool/meshes/c.stl", "ws/secret/d.stl", "e.stl"];
+        files.iter().for_each(|file| std::fs::write(top.join(file), "").expect("a file"));
+        std::os::unix::fs::symlink(top.join("e.stl"), top.join("ws/arm/urdf/link.stl")).expect("a link");
+        std::os::unix::fs::symlink(top.join("e.stl"), top.join("ws/tool/link.stl")).expect("a link");
+        let robot = top.join("ws/arm/urdf/arm.urdf");
+        std::fs::write(&robot, "").expect("a file");
+        let is_found = |mesh: &str| match locate(&robot, mesh) {
+            Ok(_) => true,
+            Err(error) => {
+                assert!(
+                    error.outside.is_some() && error.to_string().contains("outside of the robot's folder"),
+                    "{error}"
+                );
+                false
+            }
+        };
+        let absolute = format!("file://{}", top.join("e.stl").display());
+        let addresses = [
+            "near/b.stl",
+            "near/../near/b.stl",
+            "../meshes/a.stl",
+            "package://arm/meshes/a.stl",
+            "package://tool/meshes/c.stl",
+            "package://secret/d.stl",
+            "link.stl",
+            "package://tool/link.stl",
+            "package://arm/../../e.stl",
+            "../../../e.stl",
+            &absolute,
+        ];
+        let found = |expected: &[usize]| {
+            for (k, address) in addresses.iter().enumerate() {
+                assert_eq!(is_found(address), expected.contains(&k), "{address}");
+            }
+        };
+        found(&[0, 1, 3]);
+        std::fs::write(top.join("ws/tool/package.xml"), "").expect("a file");
+        found(&[0, 1, 3, 4]);
+        std::fs::write(top.join("ws/arm/package.xml"), "").expect("a file");
+        found(&[0, 1, 2, 3, 4]);
+        std::fs::remove_dir_all(&top).expect("removed");
     }
 }

@@ -1,10 +1,12 @@
-//! What a URDF says of its links' looks: `<visual>` and `<collision>`, which say nothing about the dynamics.
+//! The shapes of links: `<visual>` and `<collision>` of URDF, `<geom>` of MJCF. They do not affect the dynamics here.
 
 mod files;
+mod mesh;
 mod read;
 mod shape;
 
 pub use files::{NotLocated, locate};
+pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 
 use crate::context::Context;
@@ -14,7 +16,8 @@ use crate::error::LoadError;
 use crate::finding::Findings;
 use crate::pages::Pages;
 use crate::source::Source;
-use crate::{bytes, embedded, file_bytes, syntax};
+use crate::version::Version;
+use crate::{bytes, embedded, file_bytes, mjcf, syntax};
 use std::path::Path;
 
 /// The shapes of a robot.
@@ -26,38 +29,57 @@ pub struct Geometry {
     pub left_out: Vec<Diagnostic>,
 }
 
-/// The shapes of an embedded robot by its name, or of a URDF file. None in files of other languages: MJCF, JSON.
+/// The shapes of an embedded robot by its name, or of a file: URDF, or MJCF with what it includes. JSON has none.
 ///
 /// # Errors
 /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
 pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
-    if let Some(text) = embedded::text(name_or_path) {
+    if let Some(text) = embedded::unless_file(name_or_path) {
         return Ok(parse(&format!("{name_or_path}.urdf"), text));
     }
     if !Path::new(name_or_path).exists() {
         return Err(LoadError::NoSuchRobot { name: name_or_path.to_string() });
     }
-    Ok(parse(name_or_path, file_bytes(Path::new(name_or_path))?))
+    let path = Path::new(name_or_path);
+    Ok(parse_in(path.parent(), name_or_path, &file_bytes(path)?))
 }
 
 /// The shapes of a text. Diagnostics use the name as its file name.
 pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
+    parse_in(None, file_name, text.as_ref())
+}
+
+/// What a text of MJCF includes is searched in a folder.
+fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8]) -> Geometry {
     let mut findings = Findings::default();
-    let source = Source::new(file_name, bytes::read(text.as_ref(), &mut findings));
+    let source = Source::new(file_name, bytes::read(text, &mut findings));
+    let dialect = Dialect::of(&source.text);
+    let source = syntax::mended(source, dialect, &mut Findings::default()); // the model's reader reports it
     let mut shapes = Vec::new();
-    if Dialect::of(&source.text) == Dialect::Urdf && source.text.trim_start().starts_with('<') {
+    if dialect == Dialect::Mjcf && !findings.has_errors() {
+        let mut sources = vec![source];
+        let (shapes, cx) = mjcf::shapes(&mut sources, folder);
+        return placed(shapes, cx.findings, &sources, dialect);
+    }
+    if dialect == Dialect::Urdf && source.text.trim_start().starts_with('<') {
         match syntax::parse(&source, Dialect::Urdf) {
             Err(finding) => findings.add(finding),
             Ok(document) => {
                 let mut cx = Context::new(findings, Dialect::Urdf);
                 if let Some(root) = Pages::single(&source, document).root("robot") {
+                    cx.version = Version::read(&root, &mut cx);
                     shapes = read::robot(&root, &mut cx);
+                    cx.report_repeated();
                 }
                 findings = cx.findings;
             }
         }
     }
-    let placed = findings.place(&[source], Dialect::Urdf);
+    placed(shapes, findings, &[source], dialect)
+}
+
+fn placed(shapes: Vec<Shape>, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {
+    let placed = findings.place(sources, dialect);
     Geometry { shapes, left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect() }
 }
 
@@ -116,10 +138,59 @@ mod tests {
         assert!(left_out.iter().all(|found| found.severity() == crate::Severity::Warning));
     }
 
+    const FIGURE: &str = r#"<mujoco>
+  <compiler angle="radian" meshdir="assets"/>
+  <default>
+    <geom type="capsule" size="0.1 0.2" rgba="0 1 0 1"/><mesh scale="0.001 0.001 0.001"/>
+    <default class="contact"><geom type="box" size="0.5 1 2" group="3"/></default>
+  </default>
+  <asset>
+    <mesh file="deep/hand.stl" refpos="100 0 0"/>
+    <mesh name="points" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
+    <material name="steel" rgba="0.5 0.5 0.6 1"/>
+  </asset>
+  <worldbody>
+    <geom type="plane" size="1 1 1"/>
+    <body name="arm" pos="0 0 5">
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <joint type="hinge" axis="0 1 0"/>
+      <geom fromto="0 0 0 0 0 1"/>
+      <geom class="contact"/>
+      <frame pos="0 3 0"><geom type="ellipsoid" size="1 2 3" pos="1 0 0"/></frame>
+      <geom type="mesh" mesh="hand" material="steel" rgba="1 0 0 0.5"/>
+      <geom type="mesh" mesh="points"/>
+      <geom type="sphere" size="1" rgba="0 0 0 0"/>
+      <geom type="cylinder" size="0" pos="0 0 1"/>
+    </body>
+  </worldbody>
+</mujoco>"#;
+
+    #[test]
+    fn geoms_are_shapes() {
+        let Geometry { shapes, left_out } = parse("figure.xml", FIGURE);
+        let forms: Vec<_> = shapes.iter().map(|shape| (shape.purpose, shape.form.clone())).collect();
+        let hand = Form::Mesh { file: "assets/deep/hand.stl".into(), scale: [0.001; 3] };
+        let expected = [
+            (Purpose::Visual, Form::Capsule { radius: 0.1, length: 1.0 }),
+            (Purpose::Collision, Form::Box { size: [1.0, 2.0, 4.0] }),
+            (Purpose::Visual, Form::Ellipsoid { radii: [1.0, 2.0, 3.0] }),
+            (Purpose::Visual, hand),
+        ];
+        assert_eq!(forms, expected);
+        assert!(shapes.iter().all(|shape| shape.link == "arm"));
+        assert_eq!((shapes[0].T.p, shapes[2].T.p), (Vec3([0.0, 0.0, 0.5]), Vec3([1.0, 3.0, 0.0])));
+        assert!((shapes[3].T.p - Vec3([-0.1, 0.0, 0.0])).norm() < 1e-15, "the reference point is subtracted");
+        assert_eq!((shapes[0].color, shapes[3].color), (Some([0.0, 1.0, 0.0, 1.0]), Some([1.0, 0.0, 0.0, 0.5])));
+        let said: Vec<_> = left_out.iter().map(|found| (found.line(), found.code())).collect();
+        assert_eq!(said, [(21, "mozzi::mjcf::ignored_mesh"), (23, "mozzi::mjcf::missing_size")], "{left_out:?}");
+        // a free body leaves the world, whose shapes are not drawn
+        let free = FIGURE.replace("<joint type=\"hinge\" axis=\"0 1 0\"/>", "<freejoint/>");
+        let shapes = parse("figure.xml", free).shapes;
+        assert!(shapes.len() == 4 && shapes.iter().all(|shape| shape.link == "arm"));
+    }
+
     #[test]
     fn other_languages_have_none_and_broken_files_say_why() {
-        let none = parse("a.xml", "<mujoco><worldbody><geom type='box' size='1 1 1'/></worldbody></mujoco>");
-        assert!(none.shapes.is_empty() && none.left_out.is_empty());
         assert!(parse("a.json", "{}").left_out.is_empty());
         assert_eq!(parse("a.urdf", "<robot name='a'><link").left_out.len(), 1);
         assert!(matches!(geometry("no_such_robot"), Err(LoadError::NoSuchRobot { .. })));

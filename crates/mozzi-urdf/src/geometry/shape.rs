@@ -20,9 +20,9 @@ pub struct Shape {
 /// What a shape is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// `<visual>`
+    /// `<visual>`; in MJCF a geom of the groups 0 to 2, which MuJoCo draws.
     Visual,
-    /// `<collision>`
+    /// `<collision>`; in MJCF a geom of another group.
     Collision,
 }
 
@@ -62,6 +62,11 @@ pub enum Form {
     Sphere {
         /// Its radius.
         radius: f64,
+    },
+    /// An ellipsoid.
+    Ellipsoid {
+        /// Its semi-axes along x, y, z.
+        radii: [f64; 3],
     },
     /// A surface in a file of its own.
     Mesh {

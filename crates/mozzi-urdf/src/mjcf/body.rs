@@ -37,6 +37,7 @@ impl<'a> Model<'a> {
             let message = "worldbody: has a joint, but the world does not move";
             cx.findings.error("misplaced_joint", joint.item.element.span(), message);
         }
+        self.draw(&contents.geoms, 0);
         contents.geoms.iter().for_each(|geom| self.check_geom(&geom.item.element.called("worldbody: geom"), cx));
         self.rest(contents, Carrier { link: 0, is_static: true, depth: 0 }, cx);
     }
@@ -87,6 +88,7 @@ impl<'a> Model<'a> {
             self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
         }
         self.tree.links.push(Link { name, inertia, place });
+        self.draw(&contents.geoms, link);
         self.rest(contents, Carrier { link, is_static, depth: carrier.depth + 1 }, cx);
     }
 

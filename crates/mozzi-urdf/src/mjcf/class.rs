@@ -1,6 +1,7 @@
 //! `<default>`: classes of values for attributes that are not written.
 
 use super::attributes::Item;
+use super::shapes::LOOKS;
 use super::vocabulary;
 use crate::context::Context;
 use crate::element::{Element, Value};
@@ -72,6 +73,11 @@ impl<'a> Classes<'a> {
         }
         for child in element.elements() {
             let Some((tag, words)) = of_tag(child.name()) else {
+                match child.name() {
+                    "mesh" => self.keep(class, "mesh", &["scale"], &child),
+                    "material" => self.keep(class, "material", &["rgba"], &child),
+                    _ => {}
+                }
                 if let Some(known) =
                     vocabulary::DEFAULT.many.iter().find(|&&known| known == child.name() && known != "default")
                 {
@@ -81,6 +87,9 @@ impl<'a> Classes<'a> {
             };
             if tag != "actuator" {
                 child.check_attributes(words, cx);
+            }
+            if tag == "geom" {
+                self.keep(class, tag, &LOOKS, &child);
             }
             let values = Rc::make_mut(self.values[class.0].entry(tag).or_default());
             for &name in words.attributes {
@@ -111,6 +120,16 @@ impl<'a> Classes<'a> {
             self.values.push(self.values[class.0].clone());
             self.names.insert(name.text.to_string(), inner);
             self.fill(&child.called(format!("default `{}`", shown(name.text))), inner, depth + 1, cx);
+        }
+    }
+
+    /// Keeps attributes that only shapes take.
+    fn keep(&mut self, class: Class, tag: &'static str, names: &[&'static str], element: &Element<'a>) {
+        let values = Rc::make_mut(self.values[class.0].entry(tag).or_default());
+        for &name in names {
+            if let Some(value) = element.attribute(name).filter(|value| value.text.len() <= LONGEST_VALUE) {
+                values.insert(name, vec![value]);
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::explain::Entry;
 
 #[rustfmt::skip] // code, meaning, remedy
-pub(crate) const CODES: [Entry; 40] = [
+pub(crate) const CODES: [Entry; 41] = [
     ("actuator_armature",
         "An actuator has an armature, but drives neither a joint nor a tendon to which it could be added. MuJoCo \
          refuses it, too.",
@@ -30,21 +30,24 @@ pub(crate) const CODES: [Entry; 40] = [
     ("ignored_attribute",
         "Attributes do not affect the dynamics of the tree: contacts, settings of MuJoCo's solver and compiler, \
          file names, groups, a key's numbers for actuators and mocap bodies, appearance. Also an actuator's force \
-         range that is not symmetric. All attributes of one kind of element are reported together; the strict \
-         policy accepts them.",
+         range that is not symmetric. They are counted, not warned of; the strict policy accepts them.",
         "no action is needed; they concern contacts, appearance, files, or MuJoCo's solver"),
     ("ignored_element",
         "An element does not affect the dynamics of the tree: actuators (their torques are arguments), sensors, \
-         contacts, appearance. Reported once per kind; the strict policy accepts it.",
+         contacts, appearance. It is counted once per kind, not warned of; the strict policy accepts it.",
         "no action is needed; the tree is read without it"),
     ("ignored_force",
         "MuJoCo would apply a force that mozzi does not compute: a nonlinear spring or damper, gravity \
          compensation, a fluid, a plugin. The mass matrix, Coriolis and gravity terms are right without it; \
          inverse and forward dynamics omit it. Reported once per kind.",
         "add its effect to the joint torques"),
+    ("ignored_limit",
+        "A tendon is limited. Like the limits of joints, its limits do not enter the dynamics; MuJoCo applies a force \
+         beyond them. Reported once.",
+        "add the force beyond the limit to the joint torques, if the motion reaches it"),
     ("ignored_mesh",
         "A body that does not move has a mesh of unknown mass. It does not affect the dynamics; its mass is taken \
-         as 0.",
+         as 0. For the page: a mesh that has no file, because the model gives its vertices, is not drawn.",
         "no action is needed, unless you need the total mass"),
     ("include",
         "An included file cannot be read. Files are searched in the folder of the main file, also if an included \
@@ -101,7 +104,7 @@ pub(crate) const CODES: [Entry; 40] = [
         "A file is included twice, or includes itself. MuJoCo refuses this, too.",
         "include each file once"),
     ("reversed_limits",
-        "The lower end of a range is above its upper end.",
+        "The lower end of a range is above its upper end. Limits do not enter the dynamics; the range is not used.",
         "exchange the two numbers"),
     ("several_orientations",
         "An orientation is given in two ways.",
@@ -141,7 +144,7 @@ pub(crate) const CODES: [Entry; 40] = [
         "A free joint is inside the tree, or its body has other joints, too. MuJoCo refuses it, too.",
         "a ball and three slides in one body move like a free joint"),
     ("unsupported_tendon",
-        "A tendon has a force or limits of its own, or is spatial and has an armature: its effect then varies \
+        "A tendon has a force of its own, or is spatial and has an armature: its effect then varies \
          with the joints. The armature of a fixed tendon is computed, as a rotor that several joints turn.",
         "remove it, if you want to compute the tree without it"),
     ("wrong_root",

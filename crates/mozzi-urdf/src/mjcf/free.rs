@@ -115,6 +115,9 @@ impl<'a> Model<'a> {
         self.tree.links.retain(|_| each.next() == Some(&true));
         self.tree.joints.retain(|joint| stays[joint.child]);
         self.tree.sites.retain(|site| stays[site.link]);
+        if let Some(shapes) = &mut self.shapes {
+            shapes.renumber(&stays, &numbers);
+        }
         for joint in &mut self.tree.joints {
             (joint.parent, joint.child) = (numbers[joint.parent], numbers[joint.child]);
         }

@@ -9,7 +9,8 @@ use mozzi::{SE3, Solid, SpatialInertia, Vec3};
 /// MuJoCo's default density, that of water: kg/m³.
 const DENSITY: f64 = 1000.0;
 
-const TYPES: [&str; 9] = ["plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"];
+pub(crate) const TYPES: [&str; 9] =
+    ["plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"];
 
 /// What a geom adds to its body.
 pub(crate) enum Mass {
@@ -59,7 +60,7 @@ impl Model<'_> {
     }
 
     /// The solid, centred in its frame; None, and reported, where a size is missing.
-    fn solid(&self, item: &Item, kind: &str, cx: &mut Context) -> Option<(Solid, SE3)> {
+    pub fn solid(&self, item: &Item, kind: &str, cx: &mut Context) -> Option<(Solid, SE3)> {
         let mut size = item.overlaid::<3>("size", cx);
         let mut frame = pose(item, &self.compiler, cx);
         if kind != "sphere"

@@ -1,10 +1,10 @@
 //! What of a model does not enter the dynamics: said once per kind, with how often it stands there.
 
 use super::attributes::Item;
-use crate::context::{Context, LeftOut};
+use crate::context::Context;
 use crate::element::Element;
-use crate::finding::Finding;
-use crate::vocabulary::{list, shown};
+use crate::finding::{Finding, Topic};
+use crate::vocabulary::shown;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -18,6 +18,8 @@ struct Kind {
     message: String,
     help: &'static str,
     count: usize,
+    /// Of what is not used: what it concerns.
+    topic: Option<Topic>,
 }
 
 /// Everything left out, by kind.
@@ -45,6 +47,7 @@ impl Ignored {
                 message: format!("{}: {name}:{text} {what}, which mozzi does not compute", item.element.subject),
                 help: "M, c, g and inverse and forward dynamics omit it; add its effect to the joint torques",
                 count: 1,
+                topic: None,
             }
         });
     }
@@ -57,6 +60,7 @@ impl Ignored {
             message: format!("{}: is a mesh of unknown mass; the body does not move", item.element.subject),
             help: "the mass of a body that does not move affects only the total mass",
             count: 1,
+            topic: None,
         });
     }
 
@@ -85,6 +89,7 @@ impl Ignored {
             message: format!("{what} `{name}`: does not move, and is ignored next to the free body `{free}`"),
             help: "it acts on the free body by contacts only, which are not computed",
             count: 1,
+            topic: Some(Topic::Looks),
         });
     }
 
@@ -97,6 +102,7 @@ impl Ignored {
             message: message(),
             help,
             count: 1,
+            topic: Some(topic_of(name)),
         });
     }
 
@@ -128,18 +134,27 @@ impl Ignored {
 
     /// Reports all of it.
     pub fn tell(&mut self, cx: &mut Context) {
-        for (element, LeftOut { span, names }) in std::mem::take(&mut cx.left_out) {
-            let names: Vec<&str> = names.into_iter().collect();
-            let are = if names.len() == 1 { "is" } else { "are" };
-            let message = format!("{element}: {} {are} ignored", list(&names));
-            cx.findings.add(Finding::warning("ignored_attribute", span, message));
+        for ((element, name), span) in std::mem::take(&mut cx.left_out) {
+            let message = format!("{element}: `{name}` is ignored");
+            cx.findings.add(Finding::unused(topic_of(&element), "ignored_attribute", span, message));
         }
         for (_, kind) in std::mem::take(&mut self.0) {
             let message = match kind.count {
                 1 => kind.message,
                 count => format!("{} (here, and {} more)", kind.message, count - 1),
             };
-            cx.findings.add(Finding::warning(kind.code, kind.span, message).help(kind.help));
+            let finding = Finding::warning(kind.code, kind.span, message).help(kind.help);
+            cx.findings.add(Finding { topic: kind.topic, ..finding });
         }
+    }
+}
+
+/// What an element concerns that is not used, or whose attribute is not.
+fn topic_of(element: &str) -> Topic {
+    match element {
+        "actuator" | "sensor" | "key" => Topic::Actuators,
+        "compiler" | "option" | "flag" | "size" | "custom" | "extension" => Topic::Settings,
+        "equality" | "tendon" => Topic::Idle,
+        _ => Topic::Looks,
     }
 }

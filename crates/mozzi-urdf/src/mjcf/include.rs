@@ -50,6 +50,8 @@ pub(crate) fn gather(
                     bytes += content.len();
                     let mut findings = Findings::default();
                     let text = Source::new(&name, bytes::read(&content, &mut findings)).at(base);
+                    let text = if Dialect::of(&text.text) == Dialect::Mjcf { text } else { text.hidden() };
+                    let text = syntax::mended(text, Dialect::Mjcf, &mut cx.findings);
                     pages.insert(include.place, sources.len());
                     sources.push(text);
                     if findings.has_errors() {

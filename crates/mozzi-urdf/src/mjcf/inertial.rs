@@ -37,10 +37,14 @@ impl Model<'_> {
             let message = format!("has both fullinertia and {name}, expected one of them");
             cx.findings.add(item.error("several_orientations", name, &message));
         }
-        if diagonal == full {
-            let found = if full { "has both diaginertia and" } else { "has neither diaginertia nor" };
-            let message = format!("{}: {found} fullinertia, expected one of them", item.element.subject);
-            cx.findings.add(Finding::error("missing_attribute", item.element.span(), message));
+        let (subject, span) = (&item.element.subject, item.element.span());
+        if diagonal && full {
+            let message = format!("{subject}: has both diaginertia and fullinertia, expected one of them");
+            cx.findings.error("missing_attribute", span, message);
+        } else if !diagonal && !full {
+            let message = format!("{subject}: has neither diaginertia nor fullinertia: the moments are 0");
+            let help = "as in MuJoCo, it is a point mass; write diaginertia=\"0 0 0\" if that is meant";
+            cx.findings.add(Finding::warning("missing_attribute", span, message).help(help));
         }
         let I = if let Some([xx, yy, zz, xy, xz, yz]) = item.vector::<6>("fullinertia", cx) {
             Sym3 { xx, xy, xz, yy, yz, zz }

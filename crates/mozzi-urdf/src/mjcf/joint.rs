@@ -48,6 +48,7 @@ impl<'a> Model<'a> {
         let reference = if is_ball { 0.0 } else { position(item.number("ref", 0.0, cx)) };
         let rest = if is_ball { 0.0 } else { position(item.number("springref", 0.0, cx)) };
         let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
+        let limits = limits.filter(|bounds| is_ball || in_order("range", *bounds, &item, cx));
         let effort = self.effort(&item, cx);
         let [damping, friction] = self.friction(&item, cx);
         let stiffness = self.stiffness(&item, cx);
@@ -100,10 +101,10 @@ impl<'a> Model<'a> {
     fn effort(&self, item: &Item, cx: &mut Context) -> Option<f64> {
         const NAME: &str = "actuatorfrcrange";
         let [low, high] = self.range(item, NAME, "actuatorfrclimited", cx)?;
-        if !(low < high) {
-            let message = format!("{NAME}: goes from {low} to {high}, expected the lower bound first");
-            cx.findings.add(item.error("reversed_limits", NAME, &message));
-        } else if low != -high {
+        if !in_order(NAME, [low, high], item, cx) {
+            return None;
+        }
+        if low != -high {
             let span = item.value(NAME).map_or_else(|| item.element.span(), |value| value.span);
             cx.leave_out("joint", NAME, span);
         }
@@ -135,6 +136,18 @@ impl<'a> Model<'a> {
         }
         linear
     }
+}
+
+/// Whether the lower bound is not above the upper one; the reverse is reported.
+fn in_order(name: &str, [low, high]: [f64; 2], item: &Item, cx: &mut Context) -> bool {
+    if low > high {
+        let message =
+            format!("{}: {name}: goes from {low} to {high}, expected the lower bound first", item.element.subject);
+        let span = item.value(name).map_or_else(|| item.element.span(), |value| value.span);
+        cx.findings
+            .add(Finding::warning("reversed_limits", span, message).help("it is not used; exchange the numbers"));
+    }
+    low <= high
 }
 
 /// The screw axis in the body's frame; reports an axis of length 0 and returns `None`.

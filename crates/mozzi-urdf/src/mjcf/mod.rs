@@ -26,13 +26,15 @@
 //!   as in MuJoCo. Numbers of mimic joints are checked against their source joints', and not kept.
 //!
 //! # What is not read
-//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces or limits, spatial
-//!   tendons with an armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
+//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces, spatial tendons with
+//!   an armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
 //!   shells.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
-//! - Listed in warnings with the codes `ignored_element` and `ignored_attribute`, once per kind, accepted by the strict
-//!   policy: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies, settings of MuJoCo's
-//!   solver, appearance.
+//! - Loaded with a warning that nothing of the dynamics is lost: limits of tendons, reversed limits, an `<inertial>`
+//!   without moments, which is a point mass.
+//! - Counted ([`Loaded::unused`](crate::Loaded)), once per kind, with the codes `ignored_element` and
+//!   `ignored_attribute`: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies,
+//!   settings of MuJoCo's solver, appearance.
 //!
 //! Every element and attribute of MuJoCo's schema is in one of these classes; a test checks all of them.
 mod attributes;
@@ -55,6 +57,7 @@ mod orientation;
 mod rotor;
 #[cfg(test)]
 mod schema;
+mod shapes;
 mod spring;
 mod tree;
 mod vocabulary;
@@ -65,7 +68,8 @@ pub use explain::codes;
 use crate::context::Context;
 use crate::dialect::Dialect;
 use crate::element::Element;
-use crate::finding::Finding;
+use crate::finding::{Finding, Findings};
+use crate::geometry::Shape;
 use crate::pages::Pages;
 use crate::places::Places;
 use crate::source::Source;
@@ -76,17 +80,13 @@ use ignored::Ignored;
 use keyframe::Key;
 use mozzi::Description;
 use option::Options;
+use shapes::Shapes;
 use std::path::Path;
 use tree::Tree;
 
 /// Whether the first element of this text is that of an MJCF model.
 pub fn is_mjcf(text: &str) -> bool {
     Dialect::of(text) == Dialect::Mjcf
-}
-
-/// Whether this is the code of a warning about valid MJCF content that is ignored. The strict policy accepts it.
-pub(crate) fn is_list(code: &str) -> bool {
-    matches!(code, "mozzi::mjcf::ignored_attribute" | "mozzi::mjcf::ignored_element" | "mozzi::mjcf::renamed_site")
 }
 
 /// State shared by the readers of a model.
@@ -96,6 +96,15 @@ pub(crate) struct Model<'a> {
     pub classes: Classes<'a>,
     pub ignored: Ignored,
     pub tree: Tree,
+    /// If they are asked for.
+    pub shapes: Option<Shapes>,
+}
+
+/// What a caller wants of a model.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Dynamics,
+    Shapes,
 }
 
 /// From texts to a description. Included files are added to the sources.
@@ -104,6 +113,22 @@ pub(crate) fn read(
     folder: Option<&Path>,
     cx: &mut Context,
 ) -> Option<(Description, Places)> {
+    let (description, places, _) = read_pages(sources, folder, Wanted::Dynamics, cx)?;
+    Some((description, places))
+}
+
+/// From texts to shapes, with the findings about them alone; none if the model is refused.
+pub(crate) fn shapes(sources: &mut Vec<Source>, folder: Option<&Path>) -> (Vec<Shape>, Context) {
+    let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
+    match read_pages(sources, folder, Wanted::Shapes, &mut cx) {
+        Some((description, _, Some(shapes))) => shapes.named(&description.links),
+        _ => (Vec::new(), Context::default()),
+    }
+}
+
+type Read = (Description, Places, Option<Shapes>);
+
+fn read_pages(sources: &mut Vec<Source>, folder: Option<&Path>, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     let includes = include::gather(sources, folder, cx)?;
     let mut pages = Vec::new();
     for source in sources.iter() {
@@ -116,10 +141,10 @@ pub(crate) fn read(
         }
     }
     let pages = Pages::new(pages, includes);
-    read_model(&pages.root("mujoco")?, cx)
+    read_model(&pages.root("mujoco")?, wanted, cx)
 }
 
-fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)> {
+fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
             format!("the root element is <{}>, expected <mujoco>", crate::vocabulary::shown(root.written_name()));
@@ -139,7 +164,9 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
         classes: Classes::read(of("default"), cx),
         ignored: Ignored::default(),
         tree: Tree::new(root),
+        shapes: None,
     };
+    model.shapes = (wanted == Wanted::Shapes).then(|| Shapes::new(&sections, &model.classes));
     model.options = Options::read(of("option"), &mut model.ignored, cx);
     for worldbody in of("worldbody") {
         model.world(worldbody, cx);
@@ -150,6 +177,7 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     let keys = Key::read(of("keyframe"), cx);
     model.ignored.sections(&sections);
     model.ignored.tell(cx);
+    cx.report_repeated();
     if cx.findings.is_full() {
         return None;
     }
@@ -159,5 +187,5 @@ fn read_model(root: &Element, cx: &mut Context) -> Option<(Description, Places)>
     let (mut description, mut places) = model.tree.describe(name, model.options.gravity, cx);
     spring::tune(&mut description, &tunings, cx);
     keyframe::add(keys, &slots, &mut description, &mut places, cx);
-    Some((description, places))
+    Some((description, places, model.shapes))
 }

@@ -32,24 +32,42 @@ impl<'a> Model<'a> {
             let help = "remove it, if you want to compute the tree without it";
             cx.findings.add(item.error("unsupported_tendon", name, &message).help(help));
         }
+        let is_limited = self.is_limited(&item, cx);
+        if is_limited {
+            let message = format!("{}: its limits are ignored", item.element.subject);
+            let help = "limits do not enter the dynamics; MuJoCo applies a force beyond them";
+            let span = item.value("range").map_or_else(|| item.element.span(), |value| value.span);
+            cx.repeat("tendon limits", Finding::warning("ignored_limit", span, message).help(help));
+        }
         let mut place = Place::new(item.element.span());
         if let Some(value) = item.value("armature") {
             place.set("armature", value.span);
         }
         let gears = if is_fixed { gears(&item, names, cx) } else { Vec::new() };
         let name = Name::of(&item.element, format!("tendon{}", self.tree.rotors.len()), cx);
-        self.tree.rotors.push(Rotor { name, armature, gears, is_fixed, is_refused: force.is_some(), place });
+        self.tree.rotors.push(Rotor {
+            name,
+            armature,
+            gears,
+            is_fixed,
+            is_refused: force.is_some(),
+            is_limited,
+            place,
+        });
     }
 
     /// The attribute of a tendon's unsupported effect, and a description of it.
     fn force_of_tendon(&self, item: &Item, is_moved: bool, cx: &mut Context) -> Option<(&'static str, &'static str)> {
         let force = ["stiffness", "damping"].into_iter().find(|name| item.overlaid::<3>(name, cx) != [0.0; 3]);
         let friction = (item.number("frictionloss", 0.0, cx) != 0.0).then_some("frictionloss");
-        let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");
-        let is_limited = limited == "true" || limited == "auto" && item.has("range") && self.compiler.autolimits;
         let force = force.or(friction).map(|name| (name, "has a force of its own"));
         let armature = is_moved.then_some(("armature", "has an inertia that varies with the joints"));
-        force.or(armature).or(is_limited.then_some(("range", "is limited")))
+        force.or(armature)
+    }
+
+    fn is_limited(&self, item: &Item, cx: &mut Context) -> bool {
+        let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");
+        limited == "true" || limited == "auto" && item.has("range") && self.compiler.autolimits
     }
 
     /// Reads the rotors and dampers of actuators; their torques are arguments of the functions.
@@ -98,7 +116,7 @@ impl<'a> Model<'a> {
     pub fn settle_rotors(&mut self, names: &BTreeMap<String, usize>) {
         for rotor in std::mem::take(&mut self.tree.rotors) {
             match *rotor.gears.as_slice() {
-                _ if rotor.is_refused => {}
+                _ if rotor.is_refused || rotor.armature == 0.0 && rotor.is_limited => {}
                 _ if rotor.armature == 0.0 => {
                     let help = "without stiffness, damping, friction, armature and limits it has no effect";
                     self.ignored.list("tendon", rotor.place.span(""), "mujoco", help);

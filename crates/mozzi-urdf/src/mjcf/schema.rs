@@ -59,7 +59,7 @@ const TOLD: [(&str, &str, &str); 23] = [
 /// Errors or warnings of a model.
 fn said(inside: &str) -> Vec<Diagnostic> {
     match parse("a.xml", format!("<mujoco>{inside}</mujoco>")) {
-        Ok(robot) => robot.warnings,
+        Ok(robot) => [robot.warnings, robot.unused].concat(),
         Err(error) => error.diagnostics().to_vec(),
     }
 }

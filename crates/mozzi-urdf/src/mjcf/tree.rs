@@ -65,6 +65,7 @@ pub(crate) struct Rotor {
     pub is_fixed: bool,
     /// Is it refused, for a reason that was reported?
     pub is_refused: bool,
+    pub is_limited: bool,
     pub place: Place,
 }
 

@@ -23,8 +23,8 @@ pub fn compare(
         worst.add("∂τ/∂θ̇", &theirs(&mine.d_dtheta), &matrix(&state["dtau_dv"]), 0.0);
     }
     if state.get("ddq_dq").is_some() {
-        // backward: M times the difference, over the size of M's products with it; by θ also over what θ̈ is uncertain by, M⁻¹ times
-        // τ's rounding, times ∂M/∂θ, which is as large as M
+        // backward: M times the difference, over the size of M's products with it; by θ also over what θ̈ is uncertain
+        // by, M⁻¹ times τ's rounding, times ∂M/∂θ, which is as large as M
         let M = theirs(&model.mass_matrix(theta).unwrap());
         let mine = model.forward_dynamics_derivatives(theta, dtheta, tau, &environment).unwrap();
         let largest = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

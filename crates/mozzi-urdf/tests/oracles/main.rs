@@ -25,8 +25,8 @@ const CLOSURES: [&str; 6] = [
     "unsupported_attribute",
 ];
 
-/// The robot of a file of oracles, without friction and springs, and without armature where the oracle has none. The reason, where
-/// it is a model that mozzi refuses for good reason.
+/// The robot of a file of oracles, without friction and springs, and without armature where the oracle has none. The
+/// reason, where it is a model that mozzi refuses for good reason.
 fn model(oracle: &Value) -> Result<Model, String> {
     let text = |key: &str| oracle.get(key).and_then(Value::as_str);
     let path = match text("urdf_path") {

@@ -31,7 +31,7 @@ const WHY: [(&str, &str); 9] = [
     ),
     ("unsupported_equality", "Tendons are coupled, by constraint forces that a tree does not have."),
     ("unsupported_joint", "A free joint inside the tree, which MuJoCo refuses, too."),
-    ("unsupported_tendon", "A tendon with stiffness, damping or limits puts forces on several joints at once."),
+    ("unsupported_tendon", "A tendon with stiffness or damping puts forces on several joints at once."),
     (
         "missing_attribute",
         "An `<inertial>` gives no moments; MuJoCo takes them as 0, and refuses the model if the body moves.",

@@ -20,11 +20,16 @@ table load without warnings. `cargo xtask docs` writes this page; a test of `car
 ";
 
 /// Why each kind is right; a kind that is not here fails the test.
-const WHY: [(&str, &str); 11] = [
+const WHY: [(&str, &str); 12] = [
     (
         "fixed_mimic",
         "The arms of Talos were reduced by making joints fixed, and their `<mimic>` was left in. A fixed joint does not \
          move, so these fingers stay as they are: the warning is for users who expect a gripper that closes.",
+    ),
+    (
+        "ignored_force",
+        "The PR2 switches gravity off for its arms and cameras in Gazebo. mozzi does not read Gazebo's settings: gravity acts on \
+         these links here.",
     ),
     ("implausible_mass", "Moments of inertia without a mass: one of them was forgotten, or both are placeholders."),
     (

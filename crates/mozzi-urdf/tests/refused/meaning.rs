@@ -48,11 +48,6 @@ fn joints() {
             "joint `j`: mimic: a floating joint has several positions and cannot be a mimic joint",
         ),
         (
-            limit("lower='§1' upper='-1'"),
-            "reversed_limits",
-            "joint `j`: limits: go from 1 to -1, expected the lower bound first",
-        ),
-        (
             joint(HINGE, "<limit lower='0' upper='1' effort='§-1' velocity='1'/>"),
             "negative_limit",
             "joint `j`: effort limit: is -1, expected at least 0",
@@ -177,6 +172,16 @@ fn words() {
     ]);
     warned(&[
         (
+            joint(HINGE, "<limit lower='§1' upper='-1' effort='1' velocity='1'/>"),
+            "reversed_limits",
+            "joint `j`: limit: goes from 1 to -1, expected the lower bound first",
+        ),
+        (
+            joint(HINGE, "<limit lower='0' upper='1' effort='1' velocity='1' §k_velocity='2'/>"),
+            "redundant_attribute",
+            "joint `j`: limit: has an attribute `k_velocity`, which URDF does not define, next to `velocity`",
+        ),
+        (
             joint(TURNS, "<§rotor/><rotor/>"),
             "unknown_element",
             "joint `j`: has an element <rotor>, which URDF does not define here",
@@ -192,9 +197,26 @@ fn words() {
 
 #[test]
 fn known_extensions_are_silent() {
-    let text = "<robot name='r' version='1.0' xmlns:x='http://x.org'><gazebo/><transmission/><material name='m'/><x:y z='w'/>\
-        <link name='a' x:b='c'><visual/><visual/><collision/><x:y/></link><!-- and so on --></robot>";
+    let text = "<robot name='r' version='1.0' xmlns:x='http://x.org' xmlns:sensor='s'><gazebo/><transmission/><material name='m'/>\
+        <sensor:camera/><link name='a' xml:lang='en'><visual><x:y z='w'/></visual><visual/><collision x:b='c'/></link></robot>";
     assert_eq!(parse("a.urdf", text).expect("a robot").warnings.len(), 0);
+    warned(&[
+        (
+            "<robot name='r' xmlns:x='http://x.org'><link name='a'/><§x:y/><x:y/></robot>",
+            "unknown_element",
+            "robot: has an element <x:y>, which mozzi does not read; it may change the motion",
+        ),
+        (
+            "<robot name='r' xmlns:x='http://x.org'><link name='a' §x:b='c'/></robot>",
+            "unknown_attribute",
+            "link `a`: has an attribute `x:b`, which mozzi does not read; it may change the motion",
+        ),
+        (
+            "<mujoco xmlns:x='http://x.org'><worldbody><§x:y/></worldbody></mujoco>",
+            "unknown_element",
+            "worldbody: has an element <x:y>, which mozzi does not read; it may change the motion",
+        ),
+    ]);
     let spaced = "<robot name='r' xmlns='http://x.org'><link name='a'/></robot>";
     assert_eq!(parse("a.urdf", spaced).expect("a default namespace").description.links.len(), 1);
 }

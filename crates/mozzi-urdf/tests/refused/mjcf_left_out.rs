@@ -62,16 +62,52 @@ fn what_is_left_out_is_said() {
 }
 
 #[test]
+fn what_loses_nothing_is_said() {
+    let joints = "<joint name='p'/><joint name='q' axis='1 0 0'/><geom size='1'/></body></worldbody>";
+    let tendons = |text: &str| format!("<mujoco><worldbody><body name='b'>{joints}<tendon>{text}</tendon></mujoco>");
+    let fixed = "<joint joint='p' coef='1'/><joint joint='q' coef='2'/></fixed>";
+    for (text, message) in [
+        ("<spatial range='§0 1'><site site='s'/></spatial>".to_string(), "tendon: spatial: its limits are ignored"),
+        (format!("<fixed name='t' limited='true' range='§0 1'>{fixed}"), "tendon: fixed `t`: its limits are ignored"),
+        (
+            format!("<fixed name='t' range='§0 1'>{fixed}<fixed range='0 1'>{fixed}"),
+            "tendon: fixed `t`: its limits are ignored (here, and 1 more)",
+        ),
+    ] {
+        warned(&[(tendons(&text).leak(), "ignored_limit", message)]);
+    }
+    let armature = parse("a.xml", tendons(&format!("<fixed armature='2' range='0 1'>{fixed}"))).expect("a rotor");
+    assert_eq!((armature.description.rotors.len(), armature.warnings.len()), (1, 1));
+    warned(&[
+        (
+            body!("<joint range='§1 -1'/><geom size='1'/>"),
+            "reversed_limits",
+            "joint `joint0`: range: goes from 0.017453292519943295 to -0.017453292519943295, expected the lower bound first",
+        ),
+        (
+            body!("<joint actuatorfrcrange='§2 -2'/><geom size='1'/>"),
+            "reversed_limits",
+            "joint `joint0`: actuatorfrcrange: goes from 2 to -2, expected the lower bound first",
+        ),
+        (
+            body!("<joint/><geom size='1'/><body name='c'><§inertial mass='0'/></body>"),
+            "missing_attribute",
+            "body `c`: inertial: has neither diaginertia nor fullinertia: the moments are 0",
+        ),
+    ]);
+}
+
+#[test]
 fn plugins_are_told_where_they_are_declared() {
     let extension = |plugin: &str, inside: &str| {
         let text = format!("<mujoco><extension><plugin plugin='{plugin}'>{inside}</plugin></extension></mujoco>");
         let robot = parse("a.xml", text).expect("a model");
-        robot.warnings.iter().map(|warning| warning.message().to_string()).collect::<Vec<_>>()
+        robot.warnings.iter().chain(&robot.unused).map(|found| found.message().to_string()).collect::<Vec<_>>()
     };
     let listed = "mujoco: <extension> is ignored";
     let force =
         "extension: plugin: plugin: is `org.wind`, a plugin, which may apply forces, which mozzi does not compute";
-    assert_eq!(extension("org.wind", "<instance name='i'/>"), [listed, force]);
+    assert_eq!(extension("org.wind", "<instance name='i'/>"), [force, listed]);
     assert_eq!(extension("org.wind", ""), [listed]);
     assert_eq!(extension("mujoco.pid", "<instance name='i'/>"), [listed]);
 }
@@ -84,9 +120,11 @@ fn attributes_without_effect_are_listed() {
     );
     for policy in [Policy::Default, Policy::Strict] {
         let robot = parse_with("a.xml", text, policy).expect("a model");
-        let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
-        let joint = "joint: `actuatorfrcrange`, `margin`, `user` are ignored";
-        assert_eq!(said, [joint, "geom: `friction`, `rgba` are ignored"]);
+        let said: Vec<&str> = robot.unused.iter().map(|unused| unused.message()).collect();
+        let ignored =
+            ["joint: `margin`", "joint: `user`", "joint: `actuatorfrcrange`", "geom: `rgba`", "geom: `friction`"];
+        assert_eq!(said, ignored.map(|what| format!("{what} is ignored")));
+        assert!(robot.warnings.is_empty());
         let effort: Vec<Option<f64>> = robot.description.joints.iter().map(|joint| joint.limits.effort).collect();
         assert_eq!(effort, [Some(5.0), None]);
     }
@@ -98,20 +136,17 @@ fn what_is_right_and_has_no_place_is_listed() {
                 </body></worldbody><actuator><motor joint='j'/></actuator><sensor/><keyframe><key ctrl='1'/></keyframe><visual/></mujoco>";
     for policy in [Policy::Default, Policy::Strict] {
         let robot = parse_with("a.xml", text, policy).expect("a model");
-        let is_known = |code: &str| {
-            ["ignored_attribute", "ignored_element", "renamed_site"]
-                .iter()
-                .any(|known| code == format!("mozzi::mjcf::{known}"))
-        };
-        assert!(robot.warnings.iter().all(|warning| is_known(warning.code())));
-        let said: Vec<String> = robot.warnings.iter().map(|warning| warning.message().to_string()).collect();
+        let is_known = |code: &str| ["mozzi::mjcf::ignored_attribute", "mozzi::mjcf::ignored_element"].contains(&code);
+        assert!(robot.unused.iter().all(|unused| is_known(unused.code())));
+        let [renamed] = robot.warnings.as_slice() else { panic!("{:?}", robot.warnings) };
+        assert_eq!(renamed.message(), "site `b`: a body has this name, too; the site is called `b:site` here");
+        let said: Vec<&str> = robot.unused.iter().map(|unused| unused.message()).collect();
         assert_eq!(
             said,
             [
                 "mujoco: <asset> is ignored",
                 "worldbody: <light> is ignored",
                 "body `b`: <camera> is ignored (here, and 1 more)",
-                "site `b`: a body has this name, too; the site is called `b:site` here",
                 "mujoco: <actuator> is ignored",
                 "mujoco: <sensor> is ignored",
                 "key: `ctrl` is ignored",

@@ -19,7 +19,6 @@ fn broken_xml() {
             "syntax",
             "the attribute `name` occurs twice on one element",
         ),
-        ("<robot name='a'><§drake:link name='b'/></robot>", "syntax", "the prefix `drake:` is not declared"),
         ("<robot name='§&who;'/>", "syntax", "the entity `&who;` is unknown; entities are not expanded"),
         ("<robot name='a§&b'/>", "syntax", "`&` begins no entity here"),
         ("<robot name='a>\n §<link name='b'/>\n</robot>", "syntax", "`<` is inside an attribute's value"),

@@ -84,7 +84,10 @@ fn models() -> Vec<Broken> {
 /// What its author reads, and the codes in it.
 fn report(broken: &Broken) -> (String, BTreeSet<String>) {
     let (text, diagnostics) = match broken.load() {
-        Ok(robot) => (robot.warnings.iter().map(|warning| warning.pretty(Style::Ascii)).collect(), robot.warnings),
+        Ok(robot) => {
+            let all = [robot.warnings, robot.unused].concat();
+            (all.iter().map(|found| found.pretty(Style::Ascii)).collect(), all)
+        }
         Err(error) => (error.pretty(Style::Ascii) + "\n", error.diagnostics().to_vec()),
     };
     // the folder is another on each machine
@@ -101,7 +104,8 @@ fn compare(language: &str, folder: &Path, all: Vec<Broken>) -> BTreeSet<String> 
         let (found, codes) = report(&broken);
         let code = format!("mozzi::{language}::{}", broken.code());
         // a value that stands as text is stray, too; what is told may stand in a section that is listed
-        let beside = ["stray_text", "ignored_element"].map(|short| format!("mozzi::{language}::{short}"));
+        let beside =
+            ["stray_text", "ignored_element", "undeclared_prefix"].map(|short| format!("mozzi::{language}::{short}"));
         let others = codes.iter().filter(|found| **found != code && !beside.contains(*found)).count();
         if others > 0 || !codes.contains(&code) {
             differing.push(format!("{}: expected {code} alone\n{found}", broken.name));

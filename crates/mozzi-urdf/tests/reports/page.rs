@@ -12,7 +12,7 @@ const HEAD: &str = "\
 
 The errors and warnings of `mozzi check`, and of every other command that reads a robot, with an example of each. `mozzi explain
 CODE` prints the same texts. An *error* refuses the file; all errors in content are reported together, syntax errors stop at the
-first. After a *warning* the file is loaded; `--strict` turns warnings into errors (except for the lists of ignored MJCF content).
+first. After a *warning* the file is loaded; `--strict` turns warnings into errors (but not what is only counted: looks, contact, settings).
 `--lenient` repairs inertias and reports each repair.
 
 `cargo xtask docs` writes this page.
@@ -35,7 +35,7 @@ fn severity(all: &[Broken], language: &str, code: &str) -> &'static str {
     let (mut error, mut warning) = (false, false);
     for broken in all.iter().filter(|broken| broken.code() == code) {
         let diagnostics = match broken.load() {
-            Ok(robot) => robot.warnings,
+            Ok(robot) => [robot.warnings, robot.unused].concat(),
             Err(refused) => refused.diagnostics().to_vec(),
         };
         for found in diagnostics.iter().filter(|found| found.code() == full) {

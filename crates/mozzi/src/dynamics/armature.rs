@@ -1,7 +1,9 @@
-//! The rotors' inertia: on the diagonal of M for a joint's own, a JᵀJ for a rotor that several joints turn, and the velocity product of a free joint's.
+//! The rotors' inertia: on the diagonal of M for a joint's own, a JᵀJ for a rotor that several joints turn, and the
+//! velocity product of a free joint's.
 //!
-//! A joint's armature a adds ½ a‖θ̇‖² to the kinetic energy, θ̇ being all its velocities. Of one axis and of a ball it gives the force a θ̈ alone. A free
-//! joint's velocities are a twist (ω, v) in the axes of a link that turns: there, the linear part gives a(v̇ + ω × v).
+//! A joint's armature a adds ½ a‖θ̇‖² to the kinetic energy, θ̇ being all its velocities. Of one axis and of a ball it
+//! gives the force a θ̈ alone. A free joint's velocities are a twist (ω, v) in the axes of a link that turns: there,
+//! the linear part gives a(v̇ + ω × v).
 
 use crate::linalg::Vec3;
 use crate::model::Model;
@@ -67,7 +69,8 @@ pub(super) fn add_velocity_product_rates<S: Scalar + From<C>, C: Scalar>(model: 
     }
 }
 
-/// Adds to C what gives a ω × v, and is skew-symmetric since the armature's part of M is constant: a`[ω]` in the linear block.
+/// Adds to C what gives a ω × v, and is skew-symmetric since the armature's part of M is constant: a`[ω]` in the linear
+/// block.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_coriolis_blocks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], X: &mut [S]) {
     for &j in &model.structure.free {

@@ -11,17 +11,20 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// What is left of a column of the stacked regressor beside the columns before it, relative to its length: less is rounding.
+/// What is left of a column of the stacked regressor beside the columns before it, relative to its length: less is
+/// rounding.
 const INDEPENDENT: f64 = 1e-9;
 
-/// The identifiable combinations π_b = K π of a model's parameters π: as few numbers as give the same forces at every state,
+/// The identifiable combinations π_b = K π of a model's parameters π: as few numbers as give the same forces at every
+/// state,
 ///
 /// > Y π = Y_b π_b, Y_b the [`columns`](Self::columns) of Y
 ///
 /// Each is a parameter and multiples of others that have no effect apart from it.
 #[derive(Clone, Debug)]
 pub struct BaseParameters {
-    /// The columns of the regressor that are independent, ascending: those that are none of the columns before them combined.
+    /// The columns of the regressor that are independent, ascending: those that are none of the columns before them
+    /// combined.
     pub columns: Vec<usize>,
     /// K, one row for each base parameter and a column for each parameter.
     pub combination: DMatrix<f64>,
@@ -78,9 +81,9 @@ impl BaseParameters {
 }
 
 impl Model<f64> {
-    /// The base parameters under the model's gravity, {s} at rest: by rank of the regressor, stacked at random states (always the
-    /// same ones). Of parameters that cannot be told apart the one nearest to the base is kept, and the others are added to it.
-    /// Joint limits are not asked: these are the combinations that *some* motion tells.
+    /// The base parameters under the model's gravity, {s} at rest: by rank of the regressor, stacked at random states
+    /// (always the same ones). Of parameters that cannot be told apart the one nearest to the base is kept, and the
+    /// others are added to it. Joint limits are not asked: these are the combinations that *some* motion tells.
     ///
     /// Cost O(p³) for p parameters.
     pub fn base_parameters(&self) -> BaseParameters {
@@ -147,8 +150,9 @@ mod tests {
 
     #[test]
     fn the_planar_arm_has_the_combinations_derived_by_hand() {
-        // By Lagrange, with the elbow at l: 𝒦 = ½ (Izz₁ + l² m₂) θ̇₁² + ½ Izz₂ (θ̇₁ + θ̇₂)² + l θ̇₁(θ̇₁ + θ̇₂)(mcx₂ cos θ₂ − mcy₂ sin θ₂),
-        // and 𝒫 holds mcx₁ + l m₂ and mcy₁. Armature 1 acts as Izz₁, and all the rest of the joints' on its own.
+        // By Lagrange, with the elbow at l: 𝒦 = ½ (Izz₁ + l² m₂) θ̇₁² + ½ Izz₂ (θ̇₁ + θ̇₂)² + l θ̇₁(θ̇₁ + θ̇₂)(mcx₂ cos
+        // θ₂ − mcy₂ sin θ₂), and 𝒫 holds mcx₁ + l m₂ and mcy₁. Armature 1 acts as Izz₁, and all the rest of the joints'
+        // on its own.
         let of_joints = [
             "joint1.damping",
             "joint1.friction",
@@ -218,7 +222,8 @@ mod tests {
         }
         let base = robot.build().expect("sound").base_parameters();
         assert_eq!(base.columns.iter().filter(|&&k| k < 60).count(), 36);
-        // rotors 1 and 2 act as the inertia of their links about the axes, the other four on their own; 12 of friction and 12 of springs
+        // rotors 1 and 2 act as the inertia of their links about the axes, the other four on their own; 12 of friction
+        // and 12 of springs
         assert_eq!(base.count(), 36 + 4 + 12 + 12);
         let names = base.names();
         assert!(names.iter().any(|name| name.starts_with("2.Iyy") && name.ends_with("+ joint2.armature")), "{names:?}");

@@ -8,8 +8,8 @@ use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
 
-/// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction and springs. Wrenches in `environment.applied` and a
-/// base that moves are counted in, where they are given.
+/// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction and springs. Wrenches in
+/// `environment.applied` and a base that moves are counted in, where they are given.
 ///
 /// Cost O(n), no allocation.
 ///

@@ -1,12 +1,12 @@
-//! Composite rigid bodies: the one pass behind M, C, ∂τ and ∂θ̈ (Walker and Orin 1982; Featherstone 2008, section 6.2; Echeandia and Wensing 2021;
-//! Singh, Russell and Wensing 2022).
+//! Composite rigid bodies: the one pass behind M, C, ∂τ and ∂θ̈ (Walker and Orin 1982; Featherstone 2008, section 6.2;
+//! Echeandia and Wensing 2021; Singh, Russell and Wensing 2022).
 //!
-//! Each of these n × n matrices is the same form in two bodies' worth of numbers, with another pair of twists (r, s) for each axis:
+//! Each of these n × n matrices is the same form, with another pair of twists (r, s) for each axis:
 //!
 //! > X_ij = A_iᵀ (𝒢ᶜ r_j + 𝓑ᶜ s_j) for i and j on one path from the base to a tip, else 0
 //!
-//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the inertia of all that its link carries, 𝓑ᶜ the sum of
-//! 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
+//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the inertia of all that its link carries,
+//! 𝓑ᶜ the sum of 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
 //!
 //! | X | r | s |
 //! |---|---|---|
@@ -15,21 +15,23 @@
 //! | ∂τ/∂θ̇ | D | A |
 //! | ∂τ/∂θ | Ä | Ȧ |
 //!
-//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has a term more where j is beyond i. A mimic joint's axis is taken times its ratio, and its
-//! entries are added to its source joint's.
+//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has a term more where j is beyond i. A mimic joint's axis is
+//! taken times its ratio, and its entries are added to its source joint's.
 //!
-//! Bodies are in each link's own frame, whose z is the joint's axis: in one frame for all, the moment of inertia of a slender link about its own joint
-//! becomes a difference of large numbers. How a wrench goes from a link to the base is [`Path`]'s.
+//! Bodies are in each link's own frame, whose z is the joint's axis: in one frame for all, the moment of inertia of a
+//! slender link about its own joint becomes a difference of large numbers. How a wrench goes from a link to the base is
+//! [`Path`]'s.
 
 use super::armature::set_armature;
-use super::path::{BaseAxes, LinkFrames, Path, turn};
+use super::path::{BaseAxes, LinkFrames, Pairs, Path, turn};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Model, Pair, Workspace};
+use crate::model::{ByRates, Model, Row, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, SpatialInertia, Twist, Wrench};
 
-/// The pairs (r, s) of the six axes e of a floating base, in its coordinates: r_e = `[ad_X]` e + `[ad_Y][ad_Y]` e and s_e = σ e + `[ad_Y]` e.
+/// The pairs (r, s) of the six axes e of a floating base, in its coordinates: r_e = `[ad_X]` e + `[ad_Y][ad_Y]` e and
+/// s_e = σ e + `[ad_Y]` e.
 #[derive(Clone, Copy)]
 pub(super) struct BaseRates<S> {
     pub X: Twist<S>,
@@ -41,13 +43,13 @@ pub(super) struct BaseRates<S> {
 impl<S: Scalar> BaseRates<S> {
     /// (r_e, s_e).
     #[inline(always)]
-    fn of(&self, e: Twist<S>) -> Pair<S> {
+    fn of(&self, e: Twist<S>) -> (Twist<S>, Vec3<S>) {
         let (r, s) = (self.X.ad() * e, e.w * self.sigma);
         match self.Y {
-            None => Pair { r, s },
+            None => (r, s),
             Some(Y) => {
                 let Ye = Y.ad() * e;
-                Pair { r: r + Y.ad() * Ye, s: s + Ye.w }
+                (r + Y.ad() * Ye, s + Ye.w)
             }
         }
     }
@@ -63,10 +65,20 @@ impl<S: Scalar> BaseRates<S> {
     }
 }
 
-/// A matrix to fill: its pairs stand in `workspace.pairs` at the same place.
+/// A matrix to fill.
 pub(super) struct Filled<'x, S> {
     pub X: &'x mut [S],
     pub base: BaseRates<S>,
+}
+
+/// The matrices to fill. Their pairs stand in the workspace.
+pub(super) struct Matrices<'x, S> {
+    /// ∂τ/∂θ, which has the term of wrenches that are carried past axes.
+    pub by_theta: Option<Filled<'x, S>>,
+    /// ∂τ/∂θ̇ or C.
+    pub by_rates: Option<Filled<'x, S>>,
+    /// It then holds the rotors' inertia.
+    pub M: Option<&'x mut [S]>,
 }
 
 /// What the pass does besides.
@@ -74,47 +86,57 @@ pub(super) struct Filled<'x, S> {
 pub(super) struct Does {
     /// 𝓑, too, becomes that of composite bodies; 𝒢 does always.
     pub adds_factors: bool,
-    /// And so do the wrenches 𝓕, and 𝒢ᶜA is kept in `workspace.U`.
+    /// And so do the wrenches 𝓕.
     pub adds_wrenches: bool,
+    /// 𝒢ᶜA is kept in `workspace.U`.
+    pub keeps_columns: bool,
     /// They are composite already, of a pass before.
     pub is_composite: bool,
-    /// The first matrix is ∂τ/∂θ, which has the term of wrenches that are carried past axes.
-    pub first_is_by_theta: bool,
 }
 
-/// Fills K matrices, and M, which then holds the rotors' inertia. The workspace holds T_{i,i−1}(θ), and of each link 𝒢, the pairs, 𝓑 and 𝓕, as far as
-/// the matrices take them.
+/// Fills the matrices. The workspace holds T_{i,i−1}(θ), and of each link 𝒢, the pairs, 𝓑 and 𝓕, as far as the matrices
+/// take them.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
-pub(super) fn composite_pass<const K: usize, S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, workspace: &mut Workspace<S>, mut matrices: [Filled<S>; K], mut M: Option<&mut [S]>, does: Does,
+pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, workspace: &mut Workspace<S>, Matrices { mut by_theta, mut by_rates, mut M }: Matrices<S>, does: Does,
 ) {
-    for matrix in &mut matrices {
-        check_size(model, matrix.X);
-        matrix.X.fill(S::zero());
+    if let Some(Filled { X, .. }) = &mut by_theta {
+        check_size(model, X);
+        X.fill(S::zero());
+    }
+    if let Some(Filled { X, .. }) = &mut by_rates {
+        check_size(model, X);
+        X.fill(S::zero());
     }
     if let Some(M) = &mut M {
         check_size(model, M);
         set_armature(model, M);
     }
     let slots = model.links.len() + 1;
-    let Workspace { T, F, U, pairs: [first, second], turned, G_c, B, .. } = workspace;
+    let Workspace { T, F, U, turned, rows, G_c, B, .. } = workspace;
     let bodies = Bodies { T: &T[..slots], F: &mut F[..slots], U: &mut U[..slots], G: &mut G_c[..slots], B: &mut B[..slots] };
-    let (T, pairs) = (&T[..slots], [&first[..slots], &second[..slots]]);
+    let pairs = Pairs { by_theta: &workspace.by_theta[..slots], by_rates: &workspace.by_rates[..slots] };
     if S::IS_ONE && model.structure.is_deep {
-        turn::<K, S, C>(model, T, pairs, &mut turned[..slots]);
-        fill(model, BaseAxes(&turned[..slots]), pairs, bodies, &mut matrices, &mut M, does);
+        let taken = [by_theta.is_some(), by_rates.is_some()];
+        turn(model, &T[..slots], pairs, taken, &mut turned[..slots], rows);
+        let path = BaseAxes { links: &turned[..slots], rows, runs: &model.structure.runs };
+        fill(model, path, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does);
     } else {
-        fill(model, LinkFrames { T, pairs }, pairs, bodies, &mut matrices, &mut M, does);
+        fill(model, LinkFrames { T: &T[..slots], pairs }, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does);
     }
 
     // a floating base: the axes e
     if model.is_floating() {
         let n = model.n();
         for (r, e) in Twist::axes().into_iter().enumerate() {
-            for q in 0..K {
-                let of_e = matrices[q].base.of(e);
-                set_column(matrices[q].X, n, r, G_c[0] * of_e.r + B[0] * of_e.s);
+            if let Some(Filled { X, base }) = &mut by_theta {
+                let (r_e, s_e) = base.of(e);
+                set_column(X, n, r, G_c[0] * r_e + B[0] * s_e);
+            }
+            if let Some(Filled { X, base }) = &mut by_rates {
+                let (r_e, s_e) = base.of(e);
+                set_column(X, n, r, G_c[0] * r_e + B[0] * s_e);
             }
             if let Some(M) = &mut M {
                 set_column(M, n, r, G_c[0] * e);
@@ -135,51 +157,67 @@ struct Bodies<'w, S> {
 /// The entries of the joints, and the rows and columns of a floating base at them.
 #[inline(always)]
 #[rustfmt::skip] // one equation a line
-fn fill<const K: usize, S: Scalar + From<C>, C: Scalar, P: Path<S>>(
-    model: &Model<C>, path: P, pairs: [&[Pair<S>]; 2], bodies: Bodies<S>,
-    matrices: &mut [Filled<S>; K], M: &mut Option<&mut [S]>, does: Does,
+fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
+    model: &Model<C>, path: P, pairs: Pairs<S>, bodies: Bodies<S>,
+    [by_theta, by_rates]: [&mut Option<Filled<S>>; 2], M: &mut Option<&mut [S]>, does: Does,
 ) {
     let Bodies { T, F, U, G: G_c, B } = bodies;
     let n = model.n();
     for (i, link) in model.inward::<S>() {
         let (j, A, G_i, B_i) = (link.j, link.A(), G_c[i], B[i]);
-        let mut GA  = G_i * A;                                               // row j, and column j of M
-        let mut BtA = B_i.transpose_mul(A);                                  // a moment
-        let mut columns = [Wrench::zero(); K];
-        for q in 0..K {
-            columns[q] = G_i * pairs[q][i].r + B_i * pairs[q][i].s;
-        }
-        if does.first_is_by_theta && K > 0 {
-            columns[0] -= A.ad_transpose(F[i]);                               // 𝓕ᶜ is carried past the axes below
-            if link.is_next() {
-                carried_together(model, i, T, A.ad_transpose(F[i]), matrices[0].X);
-            }
-        }
-        if does.adds_wrenches {
+        let (mut GA, mut BtA) = (G_i * A, B_i.transpose_mul(A));              // row j, and column j of M; a moment
+        let (mut of_theta, mut of_rates) = (Wrench::zero(), Wrench::zero()); // the other columns j
+        if does.keeps_columns {
             U[i] = GA;
         }
-        for q in 0..K {
-            matrices[q].X[j * n + j] += A * columns[q];
+        if let Some(Filled { X, .. }) = by_theta {
+            of_theta = pairs.by_theta[i].column(G_i, B_i) - A.ad_transpose(F[i]);   // 𝓕ᶜ is carried past the axes below
+            X[j * n + j] += A * of_theta;
+            if link.is_next() {
+                carried_together(model, i, T, A.ad_transpose(F[i]), X);
+            }
+        }
+        if let Some(Filled { X, .. }) = by_rates {
+            of_rates = pairs.by_rates[i].column(G_i, B_i);
+            X[j * n + j] += A * of_rates;
         }
         if let Some(M) = M {
             M[j * n + j] += A * GA;
         }
         (GA, BtA) = (path.taken(i, GA), path.taken_moment(i, BtA));
-        for q in 0..K {
-            columns[q] = path.taken(i, columns[q]);
-        }
-        let mut above = i;
-        for (k, below) in model.to_base::<S>(link.parent) {
+        (of_theta, of_rates) = (path.taken(i, of_theta), path.taken(i, of_rates));
+        let (mut above, mut way) = (i, model.to_base::<S>(link.parent));
+        while let Some((k, below)) = way.next() {
             (GA, BtA) = (path.carried(above, GA), path.carried_moment(above, BtA));
-            for q in 0..K {
-                columns[q] = path.carried(above, columns[q]);
+            (of_theta, of_rates) = (path.carried(above, of_theta), path.carried(above, of_rates));
+            if let Some((run, row)) = path.row(k) {
+                let (ij, ji) = (run.j * n + j, j * n + run.j);
+                if let Some(Filled { X, .. }) = by_theta {
+                    add_column(X, n, ij, row.forces(of_theta));
+                    add_row(X, ji, Row::products(&row.by_theta, GA, BtA));
+                }
+                if let Some(Filled { X, .. }) = by_rates {
+                    add_column(X, n, ij, row.forces(of_rates));
+                    add_row(X, ji, Row::products(&row.by_rates, GA, BtA));
+                }
+                if let Some(M) = M {
+                    let entries = row.forces(GA);
+                    add_column(M, n, ij, entries);
+                    add_row(M, ji, entries);
+                }
+                (GA, of_theta, of_rates) = (GA.about(row.p), of_theta.about(row.p), of_rates.about(row.p));
+                (above, way) = (run.first, model.to_base::<S>(run.parent));
+                continue;
             }
             above = k;
             let (ij, ji) = (below.j * n + j, j * n + below.j);
-            for q in 0..K {
-                let Pair { r, s } = path.pair(q, k);
-                matrices[q].X[ij] += path.force(k, &below, columns[q]);
-                matrices[q].X[ji] += r.dot(GA) + s.dot(BtA);
+            if let Some(Filled { X, .. }) = by_theta {
+                X[ij] += path.force(k, &below, of_theta);
+                X[ji] += path.by_theta(k, GA, BtA);
+            }
+            if let Some(Filled { X, .. }) = by_rates {
+                X[ij] += path.force(k, &below, of_rates);
+                X[ji] += path.by_rates(k, GA, BtA);
             }
             if let Some(M) = M {
                 let entry = path.force(k, &below, GA);
@@ -189,9 +227,12 @@ fn fill<const K: usize, S: Scalar + From<C>, C: Scalar, P: Path<S>>(
         }
         if model.is_floating() {
             (GA, BtA) = (path.carried(above, GA), path.carried_moment(above, BtA));
-            for q in 0..K {
-                let row = matrices[q].base.dot(GA, BtA);
-                add_cross(matrices[q].X, n, j, path.carried(above, columns[q]), row);
+            (of_theta, of_rates) = (path.carried(above, of_theta), path.carried(above, of_rates));
+            if let Some(Filled { X, base }) = by_theta {
+                add_cross(X, n, j, of_theta, base.dot(GA, BtA));
+            }
+            if let Some(Filled { X, base }) = by_rates {
+                add_cross(X, n, j, of_rates, base.dot(GA, BtA));
             }
             if let Some(M) = M {
                 add_cross(M, n, j, GA, GA);
@@ -214,12 +255,12 @@ fn fill<const K: usize, S: Scalar + From<C>, C: Scalar, P: Path<S>>(
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, i: usize, T: &[SE3<S>], V: Twist<S>, pairs: &mut [Pair<S>],
+    model: &Model<C>, i: usize, T: &[SE3<S>], V: Twist<S>, pairs: &mut [ByRates<S>],
 ) {
     let (mut k, mut V) = (i, V);
     loop {
         let link = model.link::<S>(k);
-        pairs[k].r += (V.ad() * link.A()).twist();
+        pairs[k].r += (V.ad() * link.A()).rate();
         if !link.is_next() {
             break;
         }
@@ -227,7 +268,8 @@ pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W = `[ad_A]`ᵀ𝓕ᶜ. They move together.
+/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W =
+/// `[ad_A]`ᵀ𝓕ᶜ. They move together.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn carried_together<S: Scalar + From<C>, C: Scalar>(
@@ -257,6 +299,23 @@ fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row:
     for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
         X[r * n + j] += column;
         X[j * n + r] += row;
+    }
+}
+
+/// Adds entries of a column, from `at` on.
+#[inline(always)]
+fn add_column<const W: usize, S: Scalar>(X: &mut [S], n: usize, at: usize, entries: [S; W]) {
+    for w in 0..W {
+        X[at + w * n] += entries[w];
+    }
+}
+
+/// Adds entries of a row, from `at` on.
+#[inline(always)]
+fn add_row<const W: usize, S: Scalar>(X: &mut [S], at: usize, entries: [S; W]) {
+    let X = &mut X[at..at + W];
+    for w in 0..W {
+        X[w] += entries[w];
     }
 }
 

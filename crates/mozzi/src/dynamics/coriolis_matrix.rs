@@ -1,22 +1,22 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
 use super::armature::add_coriolis_blocks;
-use super::composite::{BaseRates, Does, Filled, add_moved_by_link, composite_pass};
+use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, composite_pass};
 use crate::kinematics::{base_twist, joint_transforms};
 use crate::linalg::add_transpose;
-use crate::model::{Model, Pair, Workspace};
+use crate::model::{ByRates, Model, Workspace};
 use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
-use crate::spatial::{CoriolisFactor, Twist};
+use crate::spatial::{AxisRate, CoriolisFactor, Twist};
 
 /// C(θ, θ̇) of the Christoffel symbols, n × n, row-major into `C`: Cθ̇ = c and Ṁ − 2C skew-symmetric; base at rest.
 ///
 /// > C = Σ_k J_kᵀ (𝒢_k J̇_k + ½ (𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 + H(𝒢𝒱)) J_k), H(m, f) = `[[−[m], −[f]], [−[f], 0]]`
 ///
 /// With J̇_k = Ad `[ad_𝒱_i]` A_i − `[ad_𝒱_k]` Ad A_i, what stands before Ad A_i is ½ (𝒢̇ + H(𝒢𝒱)): the rate of the
-/// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too, but
-/// Ṁ − 2C is not skew for it.) A floating base's velocities are no coordinates' rates and have no Christoffel symbols; the same
-/// formula gives a C with the same two properties for it.
+/// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too,
+/// but Ṁ − 2C is not skew for it.) A floating base's velocities are no coordinates' rates and have no Christoffel
+/// symbols; the same formula gives a C with the same two properties for it.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -39,8 +39,8 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
     let slots = model.links.len() + 1;
-    let Workspace { T, V, pairs: [pairs, _], G_c, B, .. } = workspace;
-    let (T, V, pairs) = (&T[..slots], &mut V[..slots], &mut pairs[..slots]);
+    let Workspace { T, V, by_rates, G_c, B, .. } = workspace;
+    let (T, V, by_rates) = (&T[..slots], &mut V[..slots], &mut by_rates[..slots]);
     let (G_c, B, half) = (&mut G_c[..slots], &mut B[..slots], S::from_f64(0.5));
     V[0] = base_twist;
     let G = model.base_inertia.map(S::from);
@@ -48,21 +48,21 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     for (i, link) in model.outward::<S>() {
         V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j];
         let (A, G) = (link.A(), link.G());
-        let moved = if link.has_one_axis() { (V[i].ad() * A).twist() } else { Twist::zero() };
-        pairs[i] = Pair { r: moved, s: A.twist().w * half };
+        let moved = if link.has_one_axis() { (V[i].ad() * A).rate() } else { AxisRate::zero() };
+        by_rates[i] = ByRates { r: moved, s: A.a * half };
         if !link.has_one_axis() && link.is_last {
-            add_moved_by_link(model, i, T, V[i], pairs);
+            add_moved_by_link(model, i, T, V[i], by_rates);
         }
         (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V[i], G * V[i]));
     }
     let base = BaseRates { X: base_twist, Y: None, sigma: half };
-    let does = Does { adds_factors: true, adds_wrenches: false, is_composite: false, first_is_by_theta: false };
-    composite_pass(model, workspace, [Filled { X: C, base }], None, does);
+    let does = Does { adds_factors: true, adds_wrenches: false, keeps_columns: false, is_composite: false };
+    composite_pass(model, workspace, Matrices { by_theta: None, by_rates: Some(Filled { X: C, base }), M: None }, does);
     add_coriolis_blocks(model, dtheta, C);
 }
 
-/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is left out: in C + Cᵀ
-/// what it adds would cancel, up to rounding.
+/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is
+/// left out: in C + Cᵀ what it adds would cancel, up to rounding.
 ///
 /// Cost O(n · depth), no allocation.
 ///

@@ -1,40 +1,45 @@
 //! The two passes behind ∂τ and ∂θ̈, analytic (Carpentier and Mansard 2018; Singh, Russell and Wensing 2022).
 //!
-//! All twists and wrenches are in each link's **own frame**, whose z is the joint's axis. One frame for all would save the transport of wrenches, and
-//! lose digits: the moment of inertia of a slender link about its own joint becomes a difference of large numbers, and ∂θ̈ divides by it. (Measured by
-//! `cargo xtask accuracy` on Tiago: 5·10⁵ units about one origin, 350 in one frame's axes about each link's own origin, 12 in link frames.)
+//! All twists and wrenches are in each link's **own frame**, whose z is the joint's axis. One frame for all would save
+//! the transport of wrenches, and lose digits: the moment of inertia of a slender link about its own joint becomes a
+//! difference of large numbers, and ∂θ̈ divides by it. (Measured by `cargo xtask accuracy` on Tiago: 5·10⁵ units about
+//! one origin, 350 in one frame's axes about each link's own origin, 12 in link frames.)
 //!
-//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p, both seen from the link. So its rates are, θ̇ and θ̈ being per unit,
+//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p, both seen from the link. So its rates are,
+//! θ̇ and θ̈ being per unit,
 //!
 //! > Ȧ = `[ad_𝒱_p]` A, Ä = `[ad_𝒱̇_p]` A + `[ad_𝒱_p]` Ȧ, and 𝒱 = 𝒱_p + A θ̇, 𝒱̇ = 𝒱̇_p + Ȧ θ̇ + A θ̈
 //!
-//! **What a body beyond the joint sees.** A small motion of the joint carries all links beyond it along, without a change of
-//! the joints between them. Seen from such a link, whose own coordinates are carried too, its twist, its acceleration and the
-//! wrench 𝓕 = 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 change by
+//! **What a body beyond the joint sees.** A small motion of the joint carries all links beyond it along, without a
+//! change of the joints between them. Seen from such a link, whose own coordinates are carried too, its twist, its
+//! acceleration and the wrench 𝓕 = 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 change by
 //!
 //! > ∂𝒱 = Ȧ, ∂𝒱̇ = Ä − `[ad_𝒱]` Ȧ, ∂𝓕 = 𝒢 Ä + (−𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢) Ȧ − `[ad_Ȧ]`ᵀ 𝒢𝒱 = 𝒢 Ä + 𝓑 Ȧ, by θ
 //! >
-//! > ∂𝒱 = A, ∂𝒱̇ = D − `[ad_𝒱]` A, ∂𝓕 = 𝒢 D + 𝓑 A, by θ̇, with D = Ȧ + `[ad_𝒱_J]` A, 𝒱_J the twist of the link that the joint carries: 2 Ȧ for a joint of one axis
+//! > ∂𝒱 = A, ∂𝒱̇ = D − `[ad_𝒱]` A, ∂𝓕 = 𝒢 D + 𝓑 A, by θ̇, with D = Ȧ + `[ad_𝒱_J]` A, 𝒱_J the twist of the link that the
+//! > joint carries: 2 Ȧ for a joint of one axis
 //! >
 //! > ∂𝒱 = 0, ∂𝒱̇ = A, ∂𝓕 = 𝒢 A, by θ̈
 //!
-//! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia and H(P)A = −`[ad_A]`ᵀP, skew. Half of 𝓑 cancels: it is
-//! `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. Seen from one frame, 𝒢, K, f and 𝓕 add up over all that
-//! hangs from the joint: 28 numbers, no 6 × 6 matrix. A wrench that is applied to a link is constant in its coordinates and adds to
-//! 𝓕 alone.
+//! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia and H(P)A = −`[ad_A]`ᵀP, skew. Half of 𝓑
+//! cancels: it is `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. Seen from one frame, 𝒢, K, f and 𝓕 add up over
+//! all that hangs from the joint: 28 numbers, no 6 × 6 matrix. A wrench that is applied to a link is constant in its
+//! coordinates and adds to 𝓕 alone.
 //!
-//! **What a joint i carries**, τ_i = A_iᵀ𝓕ᶜ_i. By a joint j at i or between it and the base, axis and wrench are both carried, and what is
-//! left is ∂𝓕 of the bodies beyond i. By a joint j beyond i, they are the bodies beyond j that change, and are carried past an axis that is not:
+//! **What a joint i carries**, τ_i = A_iᵀ𝓕ᶜ_i. By a joint j at i or between it and the base, axis and wrench are both
+//! carried, and what is left is ∂𝓕 of the bodies beyond i. By a joint j beyond i, they are the bodies beyond j that
+//! change, and are carried past an axis that is not:
 //!
-//! > ∂τ_i/∂θ_j = A_iᵀ (𝒢ᶜ_i Ä_j + 𝓑ᶜ_i Ȧ_j), j at or before i; A_iᵀ (𝒢ᶜ_j Ä_j + 𝓑ᶜ_j Ȧ_j − `[ad_A_j]`ᵀ 𝓕ᶜ_j), j beyond i
+//! > ∂τ_i/∂θ_j = A_iᵀ (𝒢ᶜ_i Ä_j + 𝓑ᶜ_i Ȧ_j), j at or before i; A_iᵀ (𝒢ᶜ_j Ä_j + 𝓑ᶜ_j Ȧ_j − `[ad_A_j]`ᵀ 𝓕ᶜ_j), j beyond
+//! > i
 //! >
 //! > ∂τ_i/∂θ̇_j = A_iᵀ (𝒢ᶜ D_j + 𝓑ᶜ A_j), ∂τ_i/∂θ̈_j = A_iᵀ 𝒢ᶜ A_j, 𝒢ᶜ and 𝓑ᶜ of the outer one of the two
 //!
 //! The axes of one ball or free joint are carried together: for two of them, j is never beyond i.
 
-use super::composite::{BaseRates, Does, Filled, add_moved_by_link, composite_pass};
+use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, composite_pass};
 use crate::kinematics::{base_motion, base_pose};
-use crate::model::{Environment, Model, Pair, Workspace};
+use crate::model::{ByRates, ByTheta, Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
@@ -52,14 +57,14 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     by_rates: Option<[&mut [S]; 2]>,
 ) {
     outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
-    let does = Does { adds_factors: true, adds_wrenches: true, is_composite: false, first_is_by_theta: true };
+    let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: false, is_composite: false };
     let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
-    let by_theta = Filled { X: d_theta, base: by_theta };
+    let by_theta = Some(Filled { X: d_theta, base: by_theta });
     match by_rates {
-        None => composite_pass(model, workspace, [by_theta], None, does),
+        None => composite_pass(model, workspace, Matrices { by_theta, by_rates: None, M: None }, does),
         Some([d_dtheta, M]) => {
-            let both = [by_theta, Filled { X: d_dtheta, base: by_dtheta }];
-            composite_pass(model, workspace, both, Some(M), does);
+            let by_rates = Some(Filled { X: &mut *d_dtheta, base: by_dtheta });
+            composite_pass(model, workspace, Matrices { by_theta, by_rates, M: Some(M) }, does);
             add_damping(model, d_dtheta);
         }
     }
@@ -125,9 +130,9 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, pairs: [by_theta, by_dtheta], G_c, B, .. } = workspace;
+    let Workspace { T, V, dV, F, carrier, by_theta, by_rates, G_c, B, .. } = workspace;
     let (T, V, dV, F) = (&T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
-    let (by_theta, by_dtheta) = (&mut by_theta[..slots], &mut by_dtheta[..slots]);
+    let (by_theta, by_rates) = (&mut by_theta[..slots], &mut by_rates[..slots]);
     let (G_c, B) = (&mut G_c[..slots], &mut B[..slots]);
     for (i, link) in model.outward::<S>() {
         let link = link.among::<ONE_AXIS>();
@@ -141,15 +146,15 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
             carrier[i] = [V_c, dV_c];
         }
         let A    = link.A();
-        let dA   = (V_c.ad() * A).twist();
+        let dA   = (V_c.ad() * A).rate();
         let ddA  = V_c.ad() * dA + dV_c.ad() * A;
         let V_i  = V_p + link.A() * dtheta[link.j];
         let dV_i = dA.mul_add(dtheta[j], dV_p) + link.A() * ddtheta[link.j];
         let D    = if link.has_one_axis() { dA + dA } else { dA };
         (V[i], dV[i]) = (V_i, dV_i);
-        (by_theta[i], by_dtheta[i]) = (Pair { r: ddA, s: dA.w }, Pair { r: D, s: A.twist().w });
+        (by_theta[i], by_rates[i]) = (ByTheta { r: ddA, s: dA.w }, ByRates { r: D, s: A.a });
         if !link.has_one_axis() && link.is_last {
-            add_moved_by_link(model, i, T, V_i, by_dtheta);
+            add_moved_by_link(model, i, T, V_i, by_rates);
         }
         let G = link.G();
         let P = G * V_i;
@@ -158,12 +163,12 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Adds θ̈ to what was carried and filled without: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by `[ad_𝒱̇'_p]` A,
-/// and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
+/// Adds θ̈ to what was carried and filled without: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä
+/// grows by `[ad_𝒱̇'_p]` A, and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
-    let Workspace { T, dV, F, U, carrier, pairs: [by_theta, _], G_c, .. } = workspace;
+    let Workspace { T, dV, F, U, carrier, by_theta, G_c, .. } = workspace;
     dV[0] = match ddtheta.first_chunk() {
         Some(&dV) if model.is_floating() => Twist::from_array(dV),
         _ => Twist::zero(),

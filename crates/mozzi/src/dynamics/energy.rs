@@ -34,8 +34,8 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     (twice + rotor_energy(model, dtheta)) * S::from_f64(0.5)
 }
 
-/// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at its origin and a
-/// spring at rest.
+/// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at
+/// its origin and a spring at rest.
 ///
 /// Cost O(n), no allocation.
 ///

@@ -11,8 +11,8 @@ use crate::quantity::{
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
-/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is fixed: g is a gradient. Of a floating base along its body
-/// twist, as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
+/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is fixed: g is a gradient. Of a floating
+/// base along its body twist, as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
 /// Cost O(n · depth) beside n² zeros, no allocation.
 ///

@@ -16,9 +16,10 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ, θ̇)
 ///
-/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a 6 × 6 LDLᵀ at the root; where joints are coupled, by
-/// a mimic joint or a rotor, by the mass matrix. No allocation. Where M is singular the result is not finite or meaningless: the methods
-/// of [`Model`] look at the pivots and answer with an error.
+/// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a
+/// 6 × 6 LDLᵀ at the root; where joints are coupled, by a mimic joint or a rotor, by the mass matrix. No allocation.
+/// Where M is singular the result is not finite or meaningless: the methods of [`Model`] look at the pivots and answer
+/// with an error.
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, τ or θ̈ not n.
@@ -118,7 +119,8 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// From that of the base, 𝒱 of each link where no joint accelerates, 𝒱̇ less what the parent adds, and 𝓕 and 𝒢 of its own.
+/// From that of the base, 𝒱 of each link where no joint accelerates, 𝒱̇ less what the parent adds, and 𝓕 and 𝒢 of its
+/// own.
 #[inline(always)]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(

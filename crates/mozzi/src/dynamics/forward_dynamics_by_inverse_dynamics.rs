@@ -9,8 +9,8 @@ use crate::quantity::{
 };
 use crate::scalar::Scalar;
 
-/// θ̈ from τ: h + f by one call of inverse dynamics, M by n calls with θ̈ = e_i and without springs, and a dense LDLᵀ. `M` is memory for n × n numbers,
-/// `e` for n, and `zeros` holds n of them; `dense` is the pattern of a full matrix.
+/// θ̈ from τ: h + f by one call of inverse dynamics, M by n calls with θ̈ = e_i and without springs, and a dense LDLᵀ.
+/// `M` is memory for n × n numbers, `e` for n, and `zeros` holds n of them; `dense` is the pattern of a full matrix.
 ///
 /// Cost O(n³), no allocation.
 ///

@@ -1,9 +1,12 @@
 //! ∂θ̈ of forward dynamics, by those of inverse dynamics and the factors of M (Carpentier and Mansard 2018).
 
 use super::armature::{add_velocity_product_rates, add_velocity_products};
+use super::articulated_solve::solve_columns;
 use super::bias_forces::take_zeros;
-use super::composite::{Does, Filled, composite_pass};
+use super::composite::{Does, Filled, Matrices, composite_pass};
 use super::derivatives::{add_accelerations, add_damping, base_rates, joint_forces, outward_pass};
+use super::forward_dynamics::forward_dynamics;
+use super::inverse_dynamics_derivatives::inverse_dynamics_derivatives;
 use super::joint_friction::joint_friction;
 use super::spring_forces::{add_spring_forces, add_stiffness};
 use crate::kinematics::joint_transforms;
@@ -14,17 +17,19 @@ use crate::quantity::{
 };
 use crate::scalar::Scalar;
 
-/// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n × n, row-major: row i is
-/// θ̈_i's, and columns are as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
+/// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n
+/// × n, row-major: row i is θ̈_i's, and columns are as of
+/// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
-/// θ̈ is by M, which the derivatives need as well. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
+/// θ̈ is by M, which the derivatives need as well; of robots of long limbs by articulated bodies, whose factors solve
+/// for all columns. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
 ///
 /// > ∂θ̈/∂θ = −M⁻¹ ∂τ/∂θ, ∂θ̈/∂θ̇ = −M⁻¹ ∂τ/∂θ̇, ∂θ̈/∂τ = M⁻¹, all at this θ̈
 ///
-/// Where M is singular the results are not finite or meaningless: the methods of [`Model`] look at the pivots and answer with an
-/// error.
+/// Where M is singular the results are not finite or meaningless: the methods of [`Model`] look at the pivots and
+/// answer with an error.
 ///
-/// Cost O(n² · depth), no allocation.
+/// Cost O(n² · depth), of robots of long limbs O(n²), no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or a derivative not n².
@@ -37,14 +42,21 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 ) {
     let (n, pattern) = (model.n(), &model.structure.pattern);
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
+    if S::IS_ONE && model.structure.solves_by_bodies {
+        forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
+        let by_all = [&mut *d_theta, &mut *d_dtheta, &mut *d_tau];
+        inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, workspace, by_all);
+        solve_columns(model, workspace, [d_theta, d_dtheta, d_tau]);
+        return;
+    }
     joint_transforms(model, theta, workspace);
     let zero = take_zeros(workspace);
     outward_pass(model, theta, dtheta, &zero, environment, workspace);
     workspace.vector = zero;
 
     // M θ̈ = τ − h − f
-    let does = Does { adds_factors: true, adds_wrenches: true, is_composite: false, first_is_by_theta: false };
-    composite_pass(model, workspace, [], Some(d_tau), does);
+    let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: true, is_composite: false };
+    composite_pass(model, workspace, Matrices { by_theta: None, by_rates: None, M: Some(&mut *d_tau) }, does);
     joint_forces(model, workspace, ddtheta);
     add_velocity_products(model, dtheta, ddtheta);
     add_spring_forces(model, theta, ddtheta);
@@ -56,9 +68,10 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 
     add_accelerations(model, ddtheta, workspace);
     let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
-    let both = [Filled { X: d_theta, base: by_theta }, Filled { X: d_dtheta, base: by_dtheta }];
-    let does = Does { adds_wrenches: false, is_composite: true, first_is_by_theta: true, ..does };
-    composite_pass(model, workspace, both, None, does);
+    let by_theta = Some(Filled { X: &mut *d_theta, base: by_theta });
+    let by_rates = Some(Filled { X: &mut *d_dtheta, base: by_dtheta });
+    let does = Does { adds_wrenches: false, keeps_columns: false, is_composite: true, ..does };
+    composite_pass(model, workspace, Matrices { by_theta, by_rates, M: None }, does);
     add_damping(model, d_dtheta);
     add_stiffness(model, theta, d_theta);
     add_velocity_product_rates(model, dtheta, d_dtheta);

@@ -16,8 +16,8 @@ use crate::spatial::{Twist, Wrench};
 /// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇), with f = k(θ − θ₀) + d θ̇ + μ sgn θ̇
 ///
 /// where M holds the rotors' inertia (armature) and F is what `environment.applied` says the robot applies to its
-/// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a floating base are the
-/// wrench (m, f) on it that the motion takes, in its own coordinates.
+/// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a floating base are
+/// the wrench (m, f) on it that the motion takes, in its own coordinates.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -42,14 +42,15 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     add_spring_forces(model, theta, tau);
 }
 
-/// The links' part of τ and all velocity products, without what armature adds to Mθ̈, friction and springs, added to what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and
-/// 𝓕 of every link, the motion as seen from beside it; 𝓕_0 is the wrench that a fixed base applies to the chain, or that a free
-/// one, itself included, needs.
+/// The links' part of τ and all velocity products, without what armature adds to Mθ̈, friction and springs, added to
+/// what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link, the motion as seen from beside it;
+/// 𝓕_0 is the wrench that a fixed base applies to the chain, or that a free one, itself included, needs.
 ///
-/// **Seen from beside the link.** The equations of a body are the same for all observers in uniform motion. One of them moves, at
-/// this moment, along with the origin of link i: for him 𝒱_i = (ω, 0), and 𝒱̇_i = (ω̇, a) with the acceleration a = v̇ + ω × v of the
-/// origin. So link i's motion is computed from its parent's as the parent's observer sees it, by the book's equations, and handed on
-/// as its own does. The wrench 𝓕_i is the same for both; the linear part of 𝒱 costs nothing.
+/// **Seen from beside the link.** The equations of a body are the same for all observers in uniform motion. One of them
+/// moves, at this moment, along with the origin of link i: for him 𝒱_i = (ω, 0), and 𝒱̇_i = (ω̇, a) with the
+/// acceleration a = v̇ + ω × v of the origin. So link i's motion is computed from its parent's as the parent's observer
+/// sees it, by the book's equations, and handed on as its own does. The wrench 𝓕_i is the same for both; the linear
+/// part of 𝒱 costs nothing.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
@@ -93,7 +94,8 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     add_velocity_products(model, dtheta, tau);
 }
 
-/// From those of the base, 𝒱 and 𝒱̇ of each link, and of 𝓕 what its own motion needs; `ONE_AXIS` says that all joints have one.
+/// From those of the base, 𝒱 and 𝒱̇ of each link, and of 𝓕 what its own motion needs; `ONE_AXIS` says that all joints
+/// have one.
 #[inline(always)]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
@@ -116,8 +118,9 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The twist with which a joint's axis is carried, up to what the axis itself adds: that of its own link `V_i`; of a further axis of a ball or a free joint
-/// that of the joint's parent, for the observer who moves along with the origin of all of them.
+/// The twist with which a joint's axis is carried, up to what the axis itself adds: that of its own link `V_i`; of a
+/// further axis of a ball or a free joint that of the joint's parent, for the observer who moves along with the origin
+/// of all of them.
 #[inline(always)]
 pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
     link: &Lifted<C, S>,

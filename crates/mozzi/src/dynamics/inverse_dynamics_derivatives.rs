@@ -8,11 +8,13 @@ use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{Call, D_FORCE, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
 use crate::scalar::Scalar;
 
-/// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n, row-major: row i is τ_i's.
+/// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n,
+/// row-major: row i is τ_i's.
 ///
-/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ for a joint, the
-/// body twist of a floating base, in its own coordinates. The wrenches that are applied keep their coordinates in their frames, {s} its
-/// motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
+/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ
+/// for a joint, the body twist of a floating base, in its own coordinates. The wrenches that are applied keep their
+/// coordinates in their frames, {s} its motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of ∂τ/∂θ̇
+/// (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
 ///
 /// Entries are 0 unless [`couples`](Model::couples) i and j.
 ///

@@ -4,8 +4,8 @@ use crate::model::Model;
 use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, Rare, VECTOR, output};
 use crate::scalar::Scalar;
 
-/// f(θ̇) = d θ̇ + μ sgn θ̇ of joint j at its rate, with sgn 0 = 0. Sticking is not modelled: at rest Coulomb friction is 0. N m
-/// or N.
+/// f(θ̇) = d θ̇ + μ sgn θ̇ of joint j at its rate, with sgn 0 = 0. Sticking is not modelled: at rest Coulomb friction
+/// is 0. N m or N.
 ///
 /// # Panics
 /// When there is no joint j.

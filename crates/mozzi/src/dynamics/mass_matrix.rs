@@ -1,16 +1,17 @@
 //! The mass matrix: composite rigid bodies (Walker and Orin 1982; Featherstone 2008, section 6.2).
 
-use super::composite::{Does, composite_pass};
+use super::composite::{Does, Matrices, composite_pass};
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
-/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ of each rotor that several joints turn. kg m², kg m or kg.
+/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ of each rotor
+/// that several joints turn. kg m², kg m or kg.
 ///
 /// Each link's composite inertia 𝒢ᶜ holds all that hangs from it. Accelerating joint i alone needs the wrench 𝒢ᶜA at
-/// link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their block is the
-/// whole robot's composite inertia.
+/// link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their
+/// block is the whole robot's composite inertia.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -27,8 +28,8 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     for (i, link) in model.outward::<S>() {
         workspace.G_c[i] = link.G();
     }
-    let does = Does { adds_factors: false, adds_wrenches: false, is_composite: false, first_is_by_theta: false };
-    composite_pass(model, workspace, [], Some(M), does);
+    let does = Does { adds_factors: false, adds_wrenches: false, keeps_columns: false, is_composite: false };
+    composite_pass(model, workspace, Matrices { by_theta: None, by_rates: None, M: Some(M) }, does);
 }
 
 /// See [`mass_matrix`].

@@ -6,7 +6,8 @@ use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
-/// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: what accelerations a unit of each joint force produces. 1/(kg m²), 1/(kg m) or 1/kg.
+/// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: what accelerations a unit of each joint force produces. 1/(kg
+/// m²), 1/(kg m) or 1/kg.
 ///
 /// Where M is singular the result is not finite or meaningless: the methods of [`Model`] judge the pivots.
 ///

@@ -1,6 +1,7 @@
 //! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇).
 
 mod armature;
+mod articulated_solve;
 mod base_parameters;
 mod bias_forces;
 mod center_of_mass;
@@ -25,6 +26,8 @@ mod path;
 mod regressor;
 mod spring_forces;
 mod task_space_dynamics;
+
+pub(crate) use articulated_solve::AtLink;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -1,4 +1,5 @@
-//! Momentum of all that moves: its matrix by composite rigid bodies, its rate by Newton-Euler (Orin, Goswami and Lee 2013).
+//! Momentum of all that moves: its matrix by composite rigid bodies, its rate by Newton-Euler (Orin, Goswami and Lee
+//! 2013).
 
 use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
@@ -9,8 +10,8 @@ use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, 
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist, Wrench};
 
-/// The spatial inertia of all that moves (the moving links, and a floating base), about the origin of {s} in its coordinates: its
-/// `mass`, and its `mc`, the mass times the centre of mass.
+/// The spatial inertia of all that moves (the moving links, and a floating base), about the origin of {s} in its
+/// coordinates: its `mass`, and its `mc`, the mass times the centre of mass.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -52,7 +53,8 @@ pub fn momentum<S: Scalar + From<C>, C: Scalar>(
     seen_from_space(model, theta, P[0])
 }
 
-/// The n columns of the matrix A with [`momentum`] h = Aθ̇. About the centre of mass it is the centroidal momentum matrix.
+/// The n columns of the matrix A with [`momentum`] h = Aθ̇. About the centre of mass it is the centroidal momentum
+/// matrix.
 ///
 /// > A_i = `[Ad_T_is]`ᵀ 𝒢ᶜ_i 𝒜_i
 ///
@@ -88,8 +90,8 @@ pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE
     }
 }
 
-/// ḣ of the [`momentum`] h along a motion: Aθ̈ + Ȧθ̇, about the origin of {s}. It is what gravity, the ground and all else that
-/// pushes must add up to.
+/// ḣ of the [`momentum`] h along a motion: Aθ̈ + Ȧθ̇, about the origin of {s}. It is what gravity, the ground and all
+/// else that pushes must add up to.
 ///
 /// Cost O(n), no allocation.
 ///

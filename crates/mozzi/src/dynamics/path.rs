@@ -1,20 +1,29 @@
 //! The way of a wrench from a link to the base, in one of two kinds of coordinates.
 //!
-//! In each link's own frame an axis is along z, and of a wrench little is multiplied, but it is turned at every step. In the base's axes, about each
-//! link's own origin, a step is a shift, but an axis is a general twist, and every link is turned once. Composite bodies stay in the links' own frames
-//! either way, where they keep their digits.
+//! In each link's own frame an axis is along z, and of a wrench little is multiplied, but it is turned at every step.
+//! In the base's axes, about each link's own origin, a step is a shift, but an axis is a general twist, and every link
+//! is turned once. Links that follow each other are then taken together, about the origin of the last, the nearest to
+//! where the wrench comes from. Composite bodies stay in the links' own frames either way, where they keep their
+//! digits.
 
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
-use crate::model::{Lifted, Model, Pair, Turned};
+use crate::model::{ByRates, ByTheta, Lifted, Model, Row, Run, Runs, Turned};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
+
+/// The pairs of all axes, in the links' own frames.
+#[derive(Clone, Copy)]
+pub(super) struct Pairs<'w, S> {
+    pub by_theta: &'w [ByTheta<S>],
+    pub by_rates: &'w [ByRates<S>],
+}
 
 /// What the composite-body pass asks on the way from link i to the base.
 pub(super) trait Path<S: Scalar> {
     /// A wrench that is given in link i's frame, as the way begins.
     fn taken(&self, i: usize, F: Wrench<S>) -> Wrench<S>;
-    /// A moment likewise, which is the same about every origin.
+    /// A moment without a force likewise, which is the same about every origin.
     fn taken_moment(&self, i: usize, m: Vec3<S>) -> Vec3<S>;
     /// A wrench as it goes on from a link to its parent.
     fn carried(&self, link: usize, F: Wrench<S>) -> Wrench<S>;
@@ -24,14 +33,18 @@ pub(super) trait Path<S: Scalar> {
     fn force<C: Scalar>(&self, k: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
     where
         S: From<C>;
-    /// (r, s) of axis k for the matrix q.
-    fn pair(&self, q: usize, k: usize) -> Pair<S>;
+    /// rᵀ(𝒢ᶜA) + sᵀ(𝓑ᶜᵀA) of axis k, by θ.
+    fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S;
+    /// And by rates.
+    fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S;
+    /// The links that are taken together, of which k is the last.
+    fn row(&self, k: usize) -> Option<(&Run, &Row<S>)>;
 }
 
 /// Each link's own frame.
 pub(super) struct LinkFrames<'w, S> {
     pub T: &'w [SE3<S>],
-    pub pairs: [&'w [Pair<S>]; 2],
+    pub pairs: Pairs<'w, S>,
 }
 
 impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
@@ -59,27 +72,42 @@ impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
         link.A() * F
     }
     #[inline(always)]
-    fn pair(&self, q: usize, k: usize) -> Pair<S> {
-        self.pairs[q][k]
+    fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
+        let ByTheta { r, s: [x, y] } = self.pairs.by_theta[k];
+        let [u, v, _] = BtA.0;
+        x.mul_add(u, y.mul_add(v, r.dot(GA)))
+    }
+    #[inline(always)]
+    fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
+        let ByRates { r, s } = self.pairs.by_rates[k];
+        s.mul_add(BtA.0[2], r.dot(GA))
+    }
+    #[inline(always)]
+    fn row(&self, _: usize) -> Option<(&Run, &Row<S>)> {
+        None
     }
 }
 
 /// The base's axes, about each link's own origin.
-pub(super) struct BaseAxes<'w, S>(pub &'w [Turned<S>]);
+pub(super) struct BaseAxes<'w, S> {
+    pub links: &'w [Turned<S>],
+    pub runs: &'w Runs,
+    pub rows: &'w [Row<S>],
+}
 
 impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
     #[inline(always)]
     fn taken(&self, i: usize, F: Wrench<S>) -> Wrench<S> {
-        let R = self.0[i].R;
+        let R = self.links[i].R;
         Wrench { m: R * F.m, f: R * F.f }
     }
     #[inline(always)]
     fn taken_moment(&self, i: usize, m: Vec3<S>) -> Vec3<S> {
-        self.0[i].R * m
+        self.links[i].R * m
     }
     #[inline(always)]
     fn carried(&self, link: usize, F: Wrench<S>) -> Wrench<S> {
-        Wrench { m: F.m + self.0[link].p.cross(F.f), f: F.f }
+        F.about(self.links[link].p)
     }
     #[inline(always)]
     fn carried_moment(&self, _: usize, m: Vec3<S>) -> Vec3<S> {
@@ -90,33 +118,51 @@ impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
     where
         S: From<C>,
     {
-        self.0[k].A.dot(F)
+        self.links[k].A.dot(F)
     }
     #[inline(always)]
-    fn pair(&self, q: usize, k: usize) -> Pair<S> {
-        self.0[k].pairs[q]
+    fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
+        let (r, s) = self.links[k].by_theta;
+        r.dot(GA) + s.dot(BtA)
+    }
+    #[inline(always)]
+    fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
+        let (r, s) = self.links[k].by_rates;
+        r.dot(GA) + s.dot(BtA)
+    }
+    #[inline(always)]
+    fn row(&self, k: usize) -> Option<(&Run, &Row<S>)> {
+        let at = self.runs.ending_at(k)?;
+        Some((&self.runs.list[at], &self.rows[at]))
     }
 }
 
-/// Turns into the base's axes what the pass asks of links, from T_{i,i−1} and the first K lists of pairs.
+/// Turns into the base's axes what the pass asks of links, from T_{i,i−1} and those lists of pairs that are `taken`.
 #[cfg_attr(not(test), inline(always))]
-pub(super) fn turn<const K: usize, S: Scalar + From<C>, C: Scalar>(
+pub(super) fn turn<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     T: &[SE3<S>],
-    pairs: [&[Pair<S>]; 2],
+    pairs: Pairs<S>,
+    taken: [bool; 2],
     turned: &mut [Turned<S>],
+    rows: &mut [Row<S>],
 ) {
     turned[0].R = SO3::identity();
     for (i, link) in model.outward::<S>() {
         let R = turned[link.parent].R * T[i].R.inverse();
-        let A = link.A().twist();
-        // T is of the parent's frame seen from the link: its origin is −p from here
-        let (p, A) = (-(R * T[i].p), Twist { w: R * A.w, v: R * A.v });
-        let mut of_axis = [Pair::zero(); 2];
-        for q in 0..K {
-            let Pair { r, s } = pairs[q][i];
-            of_axis[q] = Pair { r: Twist { w: R * r.w, v: R * r.v }, s: R * s };
+        let turn = |V: Twist<S>| Twist { w: R * V.w, v: R * V.v };
+        let now = &mut turned[i];
+        (now.R, now.p, now.A) = (R, R * T[i].p, turn(link.A().twist()));
+        if taken[0] {
+            let ByTheta { r, s: [x, y] } = pairs.by_theta[i];
+            now.by_theta = (turn(r), R * Vec3([x, y, S::zero()]));
         }
-        turned[i] = Turned { R, p, A, pairs: of_axis };
+        if taken[1] {
+            let ByRates { r, s } = pairs.by_rates[i];
+            now.by_rates = (turn(r.twist()), R * Vec3([S::zero(), S::zero(), s]));
+        }
+    }
+    for (run, row) in model.structure.runs.list.iter().zip(rows) {
+        row.gather(run, turned, taken);
     }
 }

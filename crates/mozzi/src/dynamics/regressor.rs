@@ -1,4 +1,5 @@
-//! Forces and energies, linear in the model's parameters: the regressor (Khosla and Kanade 1985; Atkeson, An and Hollerbach 1986).
+//! Forces and energies, linear in the model's parameters: the regressor (Khosla and Kanade 1985; Atkeson, An and
+//! Hollerbach 1986).
 
 use super::armature::of_free_joint;
 use super::inverse_dynamics::newton_euler;
@@ -14,18 +15,18 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// > Y π = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇)
 ///
-/// with π = [`parameters`](Model::parameters). Gravity and a {s} that moves are in it; `environment.applied` is not, since no
-/// parameter is in JᵀF: τ = Y π + JᵀF.
+/// with π = [`parameters`](Model::parameters). Gravity and a {s} that moves are in it; `environment.applied` is not,
+/// since no parameter is in JᵀF: τ = Y π + JᵀF.
 ///
 /// The wrench that a body needs is linear in its ten parameters: its columns are the wrenches of ten unit inertias in
 /// the link's frame, each felt by every joint between the body and the base.
 ///
 /// > F_k = 𝒢_k 𝒱̇ − `[ad_𝒱]`ᵀ 𝒢_k 𝒱, Y_jk = Σ ratio A_jᵀ `[Ad_T]`ᵀ F_k
 ///
-/// A joint's armature, damping, friction, stiffness and preload have the columns θ̈_j, θ̇_j, sgn θ̇_j, θ_j and −1 in its own row; of a ball the first four
-/// in each of its three rows, its rotation vector in place of θ_j; of a free joint the first three in each of its six, and ω × v
-/// beside the linear θ̈. A rotor's armature has the column Jᵀ Jθ̈, J the row of its gears. Entries are N m or N over
-/// the parameter's unit.
+/// A joint's armature, damping, friction, stiffness and preload have the columns θ̈_j, θ̇_j, sgn θ̇_j, θ_j and −1 in
+/// its own row; of a ball the first four in each of its three rows, its rotation vector in place of θ_j; of a free
+/// joint the first three in each of its six, and ω × v beside the linear θ̈. A rotor's armature has the column Jᵀ Jθ̈,
+/// J the row of its gears. Entries are N m or N over the parameter's unit.
 ///
 /// Cost O(N · depth), no allocation.
 ///
@@ -90,11 +91,12 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, as [`kinetic_energy`](super::kinetic_energy) and
-/// [`potential_energy`](super::potential_energy) have them, with π = [`parameters`](Model::parameters); `V_s` is the twist
-/// of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy at θ = 0.
+/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, as [`kinetic_energy`](super::kinetic_energy)
+/// and [`potential_energy`](super::potential_energy) have them, with π = [`parameters`](Model::parameters); `V_s` is
+/// the twist of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy at θ = 0.
 ///
-/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments, ½ θ² (½ ‖φ‖² of a ball) of
+/// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments, ½ θ²
+/// > (½ ‖φ‖² of a ball) of
 /// > stiffnesses, −θ of preloads
 ///
 /// Joules over the parameter's unit. Cost O(N), no allocation.

@@ -7,7 +7,8 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` takes its n columns,
-/// J̇_i = `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link beyond all three.
+/// J̇_i = `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link
+/// beyond all three.
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -37,9 +38,9 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     }
 }
 
-/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns, J̇_i = `[ad_𝒱]` J_i, 𝒱 the twist
-/// of the link that carries joint i; of a ball's axes, which move with what they carry, the twist of the link beyond all three.
-/// (By J̇_b and the frame's own twist, the joints between would cancel.)
+/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns, J̇_i =
+/// `[ad_𝒱]` J_i, 𝒱 the twist of the link that carries joint i; of a ball's axes, which move with what they carry, the
+/// twist of the link beyond all three. (By J̇_b and the frame's own twist, the joints between would cancel.)
 ///
 /// Cost O(depth), no allocation.
 ///

@@ -5,7 +5,8 @@ use crate::model::{Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// `workspace.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; the workspace holds T_{i,i−1}(θ).
+/// `workspace.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; the workspace holds
+/// T_{i,i−1}(θ).
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(

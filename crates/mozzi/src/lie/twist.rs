@@ -65,12 +65,6 @@ impl<S: Scalar> Twist<S> {
         self.w.dot_add(F.m, self.v.dot(F.f))
     }
 
-    /// k V + W.
-    #[inline(always)]
-    pub(crate) fn mul_add(self, k: S, W: Self) -> Self {
-        Twist { w: self.w.mul_add(k, W.w), v: self.v.mul_add(k, W.v) }
-    }
-
     /// `[V]`, the 4 × 4 matrix `[[[ω], v], [0, 0]]`, as rows.
     pub fn hat(self) -> [[S; 4]; 4] {
         let ([x, y, z], [a, b, c]) = (Mat3::hat(self.w).rows(), self.v.0);

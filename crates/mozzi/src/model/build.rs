@@ -3,7 +3,8 @@
 use super::description::{self, Joint, JointKind};
 use super::places::names_of;
 use super::{
-    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Severity, Spring, Structure,
+    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Runs, Severity, Spring,
+    Structure,
 };
 use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
@@ -113,6 +114,8 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
     let joint_places = &places[usize::from(base_name.is_some())..];
     let rotors = rotors(description, &moving_joints, &links);
     let (springs, spring_energy) = springs(description, &moving_joints, &links, &places);
+    let is_deep = mean_depth_exceeds(DEEP, &links);
+    let coupled_free = rotors.is_empty() && moving_joints.iter().all(|&i| description.joints[i].mimic.is_none());
     Model {
         base_inertia: inertias[0],
         armature: sum(|joint, ratio| ratio * ratio * joint.armature),
@@ -132,7 +135,9 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
             ),
             has_mimic_joints: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
             free: joint_places.iter().filter(|place| place.freedom == Freedom::Free).map(|place| place.j).collect(),
-            is_deep: is_deep(&links),
+            is_deep,
+            solves_by_bodies: coupled_free && mean_depth_exceeds(VERY_DEEP, &links),
+            runs: if is_deep { Runs::new(&links) } else { Runs::default() },
             of_one_axis: joint_places.iter().all(|place| place.freedom == Freedom::One),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
             base,
@@ -199,8 +204,10 @@ fn couple<C: Real>(
     (joints, places)
 }
 
-/// See [`is_deep`].
+/// Mean numbers of links between a link and the base above which the base's axes are faster, and articulated bodies;
+/// measured, see `docs/performance-log.md`.
 const DEEP: usize = 8;
+const VERY_DEEP: usize = 10;
 const TURN: [bool; 2] = [true, false];
 const SLIDE: [bool; 2] = [false, true];
 
@@ -223,13 +230,13 @@ fn several<C: Real>(links: &mut Vec<Link<C>>, parent: usize, motion: Motion, M: 
     }
 }
 
-/// Is the mean number of links between a link and the base above what makes the base's axes faster? Measured: see `dynamics/path.rs`.
-fn is_deep<C>(links: &[Link<C>]) -> bool {
+/// Is the mean number of links between a link and the base more than that?
+fn mean_depth_exceeds<C>(mean: usize, links: &[Link<C>]) -> bool {
     let mut depths = vec![0];
     for link in links {
         depths.push(depths[link.parent] + 1);
     }
-    depths.iter().sum::<usize>() > DEEP * links.len()
+    depths.iter().sum::<usize>() > mean * links.len()
 }
 
 /// The rotors that several joints turn, by independent joints. What is locked does not turn them.

@@ -7,12 +7,13 @@ use crate::spatial::{JointAxis, SpatialInertia};
 use core::marker::PhantomData;
 use core::ops::Deref;
 
-/// How θ moves a link. A ball is three axes at one place, a free joint six (three turns, then three slides), each with a link of its own, of which all but the last
-/// are massless: so every pivot is a number, and every axis along z. The axes are those of the joint's link itself, x, y, z in turn, so that the
-/// first link's axes are the joint's link's y, z, x, and each next has those of the one before in turn.
+/// How θ moves a link. A ball is three axes at one place, a free joint six (three turns, then three slides), each with
+/// a link of its own, of which all but the last are massless: so every pivot is a number, and every axis along z. The
+/// axes are those of the joint's link itself, x, y, z in turn, so that the first link's axes are the joint's link's y,
+/// z, x, and each next has those of the one before in turn.
 ///
-/// Such axes are carried **all by the joint's parent**: in 𝒱̇ = 𝒱̇_p + `[ad_𝒱]` 𝒱_J + 𝒱̇_J the joint's own part of 𝒱 cancels, so that each of them adds
-/// `[ad_𝒱_p]` A θ̇, 𝒱_p being the parent's twist and not that of the axis before.
+/// Such axes are carried **all by the joint's parent**: in 𝒱̇ = 𝒱̇_p + `[ad_𝒱]` 𝒱_J + 𝒱̇_J the joint's own part of 𝒱
+/// cancels, so that each of them adds `[ad_𝒱_p]` A θ̇, 𝒱_p being the parent's twist and not that of the axis before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Motion {
     /// The one axis of its joint: T = e^{−`[A]`q} M.
@@ -42,7 +43,8 @@ pub(crate) struct Link<C> {
     pub motion: Motion,
     /// Is this the joint's last axis, whose link is not massless?
     pub is_last: bool,
-    /// M_{i,i−1}: the parent's frame seen from this one when the joint is at 0; of a ball's or a free joint's first axis, seen from the link's frame.
+    /// M_{i,i−1}: the parent's frame seen from this one when the joint is at 0; of a ball's or a free joint's first
+    /// axis, seen from the link's frame.
     pub M: SE3<C>,
     /// 𝒢.
     pub G: SpatialInertia<C>,
@@ -69,7 +71,8 @@ impl<C: Scalar> Link<C> {
     }
 }
 
-/// A link, its constants as `S`, each where it is asked for: a kernel that holds all of them at once has no registers left.
+/// A link, its constants as `S`, each where it is asked for: a kernel that holds all of them at once has no registers
+/// left.
 #[derive(Clone, Copy)]
 pub(crate) struct Lifted<'m, C, S> {
     link: &'m Link<C>,
@@ -84,7 +87,8 @@ impl<'m, C, S> Lifted<'m, C, S> {
         Lifted { link, motion: link.motion, number: PhantomData }
     }
 
-    /// The same. If all joints of the model have one axis, what is done about others is left out where this is compiled: it costs a twentieth.
+    /// The same. If all joints of the model have one axis, what is done about others is left out where this is
+    /// compiled: it costs a twentieth.
     #[inline(always)]
     pub fn among<const ONE_AXIS: bool>(self) -> Self {
         if ONE_AXIS { Lifted { motion: Motion::Screw, ..self } } else { self }
@@ -154,7 +158,8 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         }
     }
 
-    /// The sine and cosine of the joint's angle; of an axis of a ball or a free joint numbers that nobody reads, which costs less than to ask.
+    /// The sine and cosine of the joint's angle; of an axis of a ball or a free joint numbers that nobody reads, which
+    /// costs less than to ask.
     #[inline(always)]
     pub fn sin_cos(&self, theta: &[S]) -> (S, S) {
         self.screw().sin_cos(self.own(theta))

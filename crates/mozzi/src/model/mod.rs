@@ -1,5 +1,6 @@
 //! The robot: the content of its file ([`Description`]), and the constants of the kernels ([`Model`]).
 
+mod axis_pairs;
 mod base;
 mod bounds;
 mod build;
@@ -17,6 +18,7 @@ mod places;
 mod provenance;
 mod reduced;
 mod rotor;
+mod runs;
 mod screws;
 mod spring;
 mod states;
@@ -33,6 +35,7 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+pub(crate) use axis_pairs::{ByRates, ByTheta, Turned};
 pub use base::Base;
 pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
@@ -46,13 +49,13 @@ pub use pivots::{Pivots, clearance, least_is_clear};
 pub use places::{Freedom, Place};
 pub use provenance::FoldedBody;
 pub(crate) use rotor::Rotor;
+pub(crate) use runs::{Row, Run, Runs, TOGETHER};
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub(crate) use spring::Spring;
 pub use states::State;
 pub use task::{Task, TaskFrame, TaskMemory};
 pub use variation::Variation;
 pub use workspace::Workspace;
-pub(crate) use workspace::{Pair, Turned};
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
 /// fixed joints are folded away, and every frame of the file remains as a [`Frame`].
@@ -111,6 +114,10 @@ pub(crate) struct Structure {
     pub free: Vec<usize>,
     /// A link has many between it and the base, on average: the composite-body pass then goes by the base's axes.
     pub is_deep: bool,
+    /// Its joints are not coupled, and so deep that ∂θ̈ goes by articulated bodies.
+    pub solves_by_bodies: bool,
+    /// Of a deep robot the links that are then taken together.
+    pub runs: Runs,
     /// No joint is a ball or free.
     pub of_one_axis: bool,
 }

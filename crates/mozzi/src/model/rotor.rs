@@ -3,8 +3,8 @@
 use crate::scalar::Scalar;
 use alloc::vec::Vec;
 
-/// A rotor whose rate is a constant combination of velocities, J θ̇: it adds a JᵀJ to M. Mimic joints are counted in as M has them, by their
-/// source joints.
+/// A rotor whose rate is a constant combination of velocities, J θ̇: it adds a JᵀJ to M. Mimic joints are counted in as
+/// M has them, by their source joints.
 #[derive(Clone, Debug)]
 pub(crate) struct Rotor<C> {
     /// a.

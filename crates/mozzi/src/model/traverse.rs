@@ -1,7 +1,7 @@
 //! The ways over a tree: base to tips, tips to base, and from one link to the base.
 //!
-//! Iterators of our own, and not closures, so that a kernel's whole body is compiled for the instruction set of the entry
-//! that it is inlined into.
+//! Iterators of our own, and not closures, so that a kernel's whole body is compiled for the instruction set of the
+//! entry that it is inlined into.
 
 use super::{Lifted, Link, Model};
 use crate::scalar::Scalar;

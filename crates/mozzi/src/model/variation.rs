@@ -75,7 +75,8 @@ impl Model<f64> {
     ///
     /// let (theta, still) = (Dual::constants(&[0.3]), Dual::constants(&[0.0]));
     /// let (mut workspace, mut tau) = (Workspace::new(&with_parameter_tangent), Dual::constants(&[0.0]));
-    /// inverse_dynamics(&with_parameter_tangent, &theta, &still, &still, &with_parameter_tangent.environment(), &mut workspace, &mut tau);
+    /// let environment = with_parameter_tangent.environment();
+    /// inverse_dynamics(&with_parameter_tangent, &theta, &still, &still, &environment, &mut workspace, &mut tau);
     /// assert!((tau[0].derivative - 2.0 * 9.81 * 0.3_f64.sin()).abs() < 1e-12); // τ = m g l sin θ
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -1,44 +1,13 @@
 //! Memory for one evaluation.
 
-use super::Model;
-use crate::lie::{SE3, SO3};
+use super::{ByRates, ByTheta, Model, Row, Turned};
+use crate::dynamics::AtLink;
+use crate::lie::SE3;
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
-use crate::spatial::{ArticulatedInertia, CoriolisFactor, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, AxisRate, CoriolisFactor, SpatialInertia, Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
-
-/// The pair (r, s) of an axis, of one of the matrices in `dynamics/composite.rs`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair<S> {
-    pub r: Twist<S>,
-    /// The angular part; what the linear one multiplies is 0.
-    pub s: Vec3<S>,
-}
-
-/// What the composite-body pass asks of a link, in the base's axes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Turned<S> {
-    /// R_0i.
-    pub R: SO3<S>,
-    /// From the parent's origin to the link's.
-    pub p: Vec3<S>,
-    /// A, about the link's origin.
-    pub A: Twist<S>,
-    pub pairs: [Pair<S>; 2],
-}
-
-impl<S: Scalar> Turned<S> {
-    fn zero() -> Self {
-        Turned { R: SO3::identity(), p: Vec3::zero(), A: Twist::zero(), pairs: [Pair::zero(); 2] }
-    }
-}
-
-impl<S: Scalar> Pair<S> {
-    pub fn zero() -> Self {
-        Pair { r: Twist::zero(), s: Vec3::zero() }
-    }
-}
 
 /// Scratch memory for the kernels; nothing in it survives a call. Slot 0 is the base, slot i moving link i.
 #[derive(Clone, Debug)]
@@ -54,10 +23,14 @@ pub struct Workspace<S = f64> {
     /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, seen from each of its axes.
     pub(crate) carrier: Vec<[Twist<S>; 2]>,
     pub(crate) F: Vec<Wrench<S>>,
-    /// Of the matrices that are filled, the first and the second.
-    pub(crate) pairs: [Vec<Pair<S>>; 2],
+    /// The pairs of ∂τ/∂θ.
+    pub(crate) by_theta: Vec<ByTheta<S>>,
+    /// Those of ∂τ/∂θ̇ or C.
+    pub(crate) by_rates: Vec<ByRates<S>>,
     /// Of links in the base's axes; empty unless the robot is deep.
     pub(crate) turned: Vec<Turned<S>>,
+    /// Of links that follow each other, likewise.
+    pub(crate) rows: Vec<Row<S>>,
     /// Composite inertia 𝒢ᶜ.
     pub(crate) G_c: Vec<SpatialInertia<S>>,
     /// 𝓑 of the composite bodies.
@@ -66,6 +39,8 @@ pub struct Workspace<S = f64> {
     pub(crate) G_hat: Vec<ArticulatedInertia<S>>,
     /// ĜA.
     pub(crate) U: Vec<Wrench<S>>,
+    /// Of several columns of three matrices at each link.
+    pub(crate) columns: [Vec<AtLink<S>>; 3],
     /// One number for each joint.
     pub(crate) u: Vec<S>,
     /// The pivots of the last solve, for the caller that can compare numbers.
@@ -89,12 +64,17 @@ impl<S: Scalar> Workspace<S> {
             dV: vec![Twist::zero(); slots],
             carrier: vec![[Twist::zero(); 2]; slots],
             F: vec![Wrench::zero(); slots],
-            pairs: [vec![Pair::zero(); slots], vec![Pair::zero(); slots]],
+            by_theta: vec![ByTheta::zero(); slots],
+            by_rates: vec![ByRates::zero(); slots],
             turned: if model.structure.is_deep { vec![Turned::zero(); slots] } else { Vec::new() },
+            rows: vec![Row::zero(); model.structure.runs.list.len()],
             G_c: vec![SpatialInertia::zero(); slots],
             B: vec![CoriolisFactor { K: Mat3::zero(), f: Vec3::zero() }; slots],
             G_hat: vec![SpatialInertia::zero().into(); slots],
             U: vec![Wrench::zero(); slots],
+            columns: core::array::from_fn(|_| {
+                vec![AtLink::zero(); if model.structure.solves_by_bodies { slots } else { 0 }]
+            }),
             u: vec![o; slots],
             pivots: vec![o; n],
             vector: vec![o; n],
@@ -120,7 +100,8 @@ impl<S: Scalar> Workspace<S> {
         self.carrier.fill([V; 2]);
         self.F.fill(F);
         self.U.fill(F);
-        self.pairs.iter_mut().for_each(|pairs| pairs.fill(Pair { r: V, s: V.w }));
+        self.by_theta.fill(ByTheta { r: V, s: [nan; 2] });
+        self.by_rates.fill(ByRates { r: AxisRate { w: [nan; 2], v: [nan; 2] }, s: nan });
         self.G_c.fill(G);
         self.B.fill(CoriolisFactor { K: Mat3::zero().map(|_: S| nan), f: V.v });
         self.G_hat.fill(G.into());

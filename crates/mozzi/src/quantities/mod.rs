@@ -9,7 +9,8 @@
 //! use mozzi::quantities::{BodyJacobian, Query};
 //! # fn example(model: &mozzi::Model, theta: &[f64]) -> Result<(), mozzi::Error> {
 //! let tip = model.end_effector()?;
-//! let J = model.compute(Query::from(BodyJacobian).of(tip), &[theta], &model.environment())?.remove(0); // 6 × n, by rows
+//! // 6 × n, by rows
+//! let J = model.compute(Query::from(BodyJacobian).of(tip), &[theta], &model.environment())?.remove(0);
 //! let by_name = model.compute(Query::named("body-jacobian")?.of(tip), &[theta], &model.environment())?.remove(0);
 //! assert_eq!(J, by_name);
 //! # Ok(()) }

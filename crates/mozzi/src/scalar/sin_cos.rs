@@ -1,9 +1,9 @@
 //! Sine and cosine together: reduction by π/2 in three parts (Cody and Waite), then polynomials on ±π/4.
 //!
-//! The polynomials interpolate (sin r − r)/r³ and (cos r − 1 + r²/2)/r⁴ in z = r² at Chebyshev points. One text for a number
-//! and for a register of numbers: no branch, and what depends on the quadrant is done on the bits. The tests bound the error:
-//! 1 ulp in `f64` up to |x| = 10⁶; 1.5 ulp in `f32` up to 8192, values below 10⁻³ (close to a zero of the function) held to
-//! 10⁻³'s ulp.
+//! The polynomials interpolate (sin r − r)/r³ and (cos r − 1 + r²/2)/r⁴ in z = r² at Chebyshev points. One text for a
+//! number and for a register of numbers: no branch, and what depends on the quadrant is done on the bits. The tests
+//! bound the error: 1 ulp in `f64` up to |x| = 10⁶; 1.5 ulp in `f32` up to 8192, values below 10⁻³ (close to a zero of
+//! the function) held to 10⁻³'s ulp.
 
 use super::{Fused, Scalar};
 

@@ -1,4 +1,5 @@
-//! Dormand and Prince's pair of orders 5 and 4 with its dense output (Hairer, Nørsett and Wanner 1993, section II.5 and II.6).
+//! Dormand and Prince's pair of orders 5 and 4 with its dense output (Hairer, Nørsett and Wanner 1993, section II.5 and
+//! II.6).
 
 use super::dense::{Dense, rate};
 use super::driven::Driven;

@@ -89,7 +89,8 @@ impl<'m> Driven<'m> {
         }
     }
 
-    /// x ← x + M⁻¹Eλ with the λ that makes x 0 at the held joints, which is returned: forces, of accelerations, or impulses, of velocities.
+    /// x ← x + M⁻¹Eλ with the λ that makes x 0 at the held joints, which is returned: forces, of accelerations, or
+    /// impulses, of velocities.
     pub fn bring_to_rest(&self, M: &Cholesky<f64, Dyn>, x: &mut [f64]) -> Vec<f64> {
         let count = self.held.len();
         let mut E = DMatrix::zeros(x.len(), count);
@@ -106,8 +107,8 @@ impl<'m> Driven<'m> {
         lambda.as_slice().to_vec()
     }
 
-    /// Lets go of the held joints whose stop would have to pull, the worst first: forces of accelerations, impulses of velocities; x is what
-    /// it would be without stops. Returns whether some were let go.
+    /// Lets go of the held joints whose stop would have to pull, the worst first: forces of accelerations, impulses of
+    /// velocities; x is what it would be without stops. Returns whether some were let go.
     pub fn let_go(&mut self, M: &Cholesky<f64, Dyn>, x: &[f64]) -> bool {
         let mut found = false;
         while !self.held.is_empty() {

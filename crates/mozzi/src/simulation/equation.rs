@@ -1,6 +1,7 @@
 //! The differential equation of a driven robot: θ̈ = FD(θ, θ̇, τ, F), and the powers beside it.
 //!
-//! Forward dynamics is computed with the machine's fused multiply-add, where there is `std` to find it, or [by another](ForwardDynamics).
+//! Forward dynamics is computed with the machine's fused multiply-add, where there is `std` to find it, or [by
+//! another](ForwardDynamics).
 
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
@@ -21,8 +22,8 @@ use alloc::vec::Vec;
 /// Powers in watts: of the motors, of friction, and what the environment takes.
 pub type Powers = [f64; 3];
 
-/// Another way to θ̈ than the kernels: a program for the one robot, in its own gravity, touching nothing, such as `mozzi_batch::Compiled`.
-/// Elsewhere the kernels are asked.
+/// Another way to θ̈ than the kernels: a program for the one robot, in its own gravity, touching nothing, such as
+/// `mozzi_batch::Compiled`. Elsewhere the kernels are asked.
 pub trait ForwardDynamics {
     /// The robot.
     fn model(&self) -> &Model;
@@ -111,8 +112,8 @@ impl<'m, I: Input> Equation<'m, I> {
     /// Asks the input, writes θ̈ and returns the powers. O(n), no allocation but the input's.
     ///
     /// # Errors
-    /// [`Error::Diverged`], [`Error::SingularMassMatrix`], [`Error::BadArgument`] for an input that is not finite, what the input
-    /// answers.
+    /// [`Error::Diverged`], [`Error::SingularMassMatrix`], [`Error::BadArgument`] for an input that is not finite, what
+    /// the input answers.
     ///
     /// # Panics
     /// On slices of a wrong length.
@@ -181,8 +182,8 @@ impl<'m, I: Input> Equation<'m, I> {
         Ok(())
     }
 
-    /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ with the
-    /// difference of the two laws. Returns the power of friction.
+    /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ with
+    /// the difference of the two laws. Returns the power of friction.
     fn friction(&mut self, dtheta: &[f64]) -> f64 {
         if self.is_frictionless {
             self.force.copy_from_slice(&self.tau);

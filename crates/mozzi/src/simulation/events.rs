@@ -80,7 +80,8 @@ pub struct Occurrence {
 /// Parts of a step at whose ends signs are compared.
 const PARTS: usize = 4;
 
-/// The first zero of f within the step, of the direction, after its beginning: a time at which the sign has changed, as near as numbers go.
+/// The first zero of f within the step, of the direction, after its beginning: a time at which the sign has changed, as
+/// near as numbers go.
 pub(super) fn first_zero(
     model: &Model,
     dense: &Dense,

@@ -10,9 +10,9 @@ use alloc::vec::Vec;
 
 /// The motors' τ and the wrenches that the robot applies *to* the environment, at time t in the state (θ, θ̇).
 ///
-/// Each input adds its part: τ starts at zero and `wrenches` empty, so a pair of inputs `(a, b)` is an input, their sum.
-/// Inputs are asked once at each stage of a step, in the order of time (Runge-Kutta: t, t + h/2 twice, t + h) and once at
-/// the end; one that keeps a memory must expect that.
+/// Each input adds its part: τ starts at zero and `wrenches` empty, so a pair of inputs `(a, b)` is an input, their
+/// sum. Inputs are asked once at each stage of a step, in the order of time (Runge-Kutta: t, t + h/2 twice, t + h) and
+/// once at the end; one that keeps a memory must expect that.
 pub trait Input {
     /// Adds to τ, n entries: N m (revolute, helical) or N (prismatic).
     ///
@@ -67,9 +67,9 @@ impl<A: Input, B: Input> Input for (A, B) {
 pub struct Zero;
 impl Input for Zero {}
 
-/// τ = g(θ) + k(θ − θ₀), what holds the robot against gravity and its springs, and nothing against friction: a robot at rest stays, a moving one coasts. (With Coulomb friction that is not
-/// smooth it trembles instead of staying, see [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it
-/// falls.
+/// τ = g(θ) + k(θ − θ₀), what holds the robot against gravity and its springs, and nothing against friction: a robot at
+/// rest stays, a moving one coasts. (With Coulomb friction that is not smooth it trembles instead of staying, see
+/// [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it falls.
 #[derive(Clone, Debug)]
 pub struct GravityCompensation<'m> {
     model: &'m Model,

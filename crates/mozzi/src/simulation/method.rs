@@ -10,7 +10,8 @@ use alloc::vec::Vec;
 /// see [`explicit`](Self::explicit). With θ̈ = F(t, θ, θ̇) and step h:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// The book's: θ\[k+1\] = θ\[k\] + θ̇\[k\]h, θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h. Order 1; a swinging robot gains energy.
+    /// The book's: θ\[k+1\] = θ\[k\] + θ̇\[k\]h, θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h. Order 1; a swinging robot gains
+    /// energy.
     Euler,
     /// θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h, then θ\[k+1\] = θ\[k\] + θ̇\[k+1\]h. Order 1; a pendulum's energy stays bounded.
     SemiImplicitEuler,
@@ -84,8 +85,8 @@ impl Method {
     }
 }
 
-/// A state with its rates, and with integrals of K further rates (such as work, of powers). Or the states of many robots of one
-/// model, side by side.
+/// A state with its rates, and with integrals of K further rates (such as work, of powers). Or the states of many
+/// robots of one model, side by side.
 #[derive(Clone, Debug)]
 pub struct Motion<S = f64, const K: usize = 0> {
     space: ConfigurationSpace,
@@ -138,7 +139,8 @@ fn add<S: Scalar>(x: &mut [S], k: &[S], h: S) {
 }
 
 impl<S: Real, const K: usize> Motion<S, K> {
-    /// At time t, of a robot with these configurations, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations and returns the further rates.
+    /// At time t, of a robot with these configurations, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations
+    /// and returns the further rates.
     ///
     /// # Errors
     /// Those of F.
@@ -152,8 +154,8 @@ impl<S: Real, const K: usize> Motion<S, K> {
         Self::start_many(space, 1, t, theta, dtheta, F)
     }
 
-    /// As [`start`](Self::start), of this many robots: θ has the positions of one after the other, θ̇ their velocities, and F is asked of
-    /// all of them at once.
+    /// As [`start`](Self::start), of this many robots: θ has the positions of one after the other, θ̇ their velocities,
+    /// and F is asked of all of them at once.
     ///
     /// # Errors
     /// Those of F.
@@ -188,8 +190,8 @@ impl<S: Real, const K: usize> Motion<S, K> {
         })
     }
 
-    /// One step of size h to the time `t_next` (t + h but for rounding), and the rates there. F is asked at the stages in
-    /// between (Runge-Kutta: three) and at the end; no allocation.
+    /// One step of size h to the time `t_next` (t + h but for rounding), and the rates there. F is asked at the stages
+    /// in between (Runge-Kutta: three) and at the end; no allocation.
     ///
     /// # Errors
     /// Those of F; then the motion is left between two states.
@@ -219,8 +221,9 @@ impl<S: Real, const K: usize> Motion<S, K> {
         Ok(())
     }
 
-    /// x ⊕ h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts from
-    /// x again, along the k before it. The k of a ball and of a floating base is the rate of log(T₀⁻¹T) (Munthe-Kaas).
+    /// x ⊕ h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts
+    /// from x again, along the k before it. The k of a ball and of a floating base is the rate of log(T₀⁻¹T)
+    /// (Munthe-Kaas).
     fn runge_kutta_4<E>(
         &mut self,
         h: f64,

@@ -160,6 +160,7 @@ mod tests {
             assert_eq!((sample.energy.kinetic, sample.energy.potential), (K, P));
         }
         let still = robot.simulate(&start.0, &start.1, Zero, &Options::new(0.0, 1)).expect("no motion");
+        assert_eq!(still.len(), 1);
         assert_eq!(still.last().theta, start.0);
     }
 

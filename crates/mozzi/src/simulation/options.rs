@@ -36,8 +36,8 @@ pub enum Friction {
     /// μ sgn θ̇ with sgn 0 = 0, as in forward dynamics. Around rest θ̇ changes its sign from step to step, by up to
     /// μ δt / M, instead of staying 0.
     Coulomb,
-    /// μ tanh(θ̇ / v_s), smooth, so that Runge-Kutta keeps its order; creeps at up to about v_s instead of sticking. Stiff
-    /// for small v_s: the explicit methods here need δt below about v_s M / μ.
+    /// μ tanh(θ̇ / v_s), smooth, so that Runge-Kutta keeps its order; creeps at up to about v_s instead of sticking.
+    /// Stiff for small v_s: the explicit methods here need δt below about v_s M / μ.
     Smooth {
         /// v_s > 0: three quarters of μ act at this speed; rad/s or m/s.
         slip_speed: f64,

@@ -1,5 +1,5 @@
-//! How the end of a simulation changes with its start, its torques and the robot: exact derivatives of the discrete map, by dual
-//! numbers (forward mode).
+//! How the end of a simulation changes with its start, its torques and the robot: exact derivatives of the discrete
+//! map, by dual numbers (forward mode).
 
 use super::options::check;
 use super::{Explicit, Friction, Motion, Options};
@@ -12,9 +12,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is told in n numbers, along
-/// θ ⊕ δθ (see [`integrate`](crate::integrate)): of a floating base as a twist (ω, v) in its own coordinates, at either end of the
-/// step.
+/// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is told in n
+/// numbers, along θ ⊕ δθ (see [`integrate`](crate::integrate)): of a floating base as a twist (ω, v) in its own
+/// coordinates, at either end of the step.
 #[derive(Clone, Debug)]
 pub struct StepSensitivity {
     /// θ\[k+1\].
@@ -60,8 +60,9 @@ impl EndSensitivity {
 }
 
 impl Model<f64> {
-    /// One step of δt = t_f / N from (θ, θ̇), τ held: the state (θ, θ̇) after it. The method, friction and gravity are those of the
-    /// options, {s} is at rest, nothing is touched. The Euler methods' steps are those of [`simulate`](Self::simulate).
+    /// One step of δt = t_f / N from (θ, θ̇), τ held: the state (θ, θ̇) after it. The method, friction and gravity are
+    /// those of the options, {s} is at rest, nothing is touched. The Euler methods' steps are those of
+    /// [`simulate`](Self::simulate).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for options that make no sense, or a method that is not
@@ -83,8 +84,9 @@ impl Model<f64> {
         Ok((end.theta, end.dtheta))
     }
 
-    /// [`held_step`](Self::held_step) with its derivatives by the start, by the torque, and by each of these changes of the robot:
-    /// exact to rounding for the step as it is taken, whatever its size. At θ̇ = 0 Coulomb friction has the derivative 0.
+    /// [`held_step`](Self::held_step) with its derivatives by the start, by the torque, and by each of these changes of
+    /// the robot: exact to rounding for the step as it is taken, whatever its size. At θ̇ = 0 Coulomb friction has the
+    /// derivative 0.
     ///
     /// Cost: 3n steps on dual numbers, and one for each change.
     ///
@@ -127,8 +129,8 @@ impl Model<f64> {
         Ok(StepSensitivity { theta: end.0, dtheta: end.1, A, B: matrix(&d_tau), P })
     }
 
-    /// [`step_sensitivity`](Self::step_sensitivity) along a trajectory of N steps, τ\[k\] held during step k: each step starts
-    /// where the one before it ended. For the derivatives of the end see [`EndSensitivity::of`].
+    /// [`step_sensitivity`](Self::step_sensitivity) along a trajectory of N steps, τ\[k\] held during step k: each step
+    /// starts where the one before it ended. For the derivatives of the end see [`EndSensitivity::of`].
     ///
     /// # Errors
     /// Those of [`step_sensitivity`](Self::step_sensitivity); [`Error::BadArgument`] unless there are N torques.

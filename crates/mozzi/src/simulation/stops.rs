@@ -144,7 +144,8 @@ impl Stops {
         Ok(Some(b))
     }
 
-    /// The joint comes to rest there, without a rebound, and all that rests against stops with it; what the impact takes is friction's.
+    /// The joint comes to rest there, without a rebound, and all that rests against stops with it; what the impact
+    /// takes is friction's.
     pub fn impact(&mut self, state: &mut State, k: usize, side: usize, driven: &mut Driven) -> Result<(), Error> {
         self.note(state.t, k, side, 0.0, true);
         state.theta[self.bounds.places[k].q] = self.bounds.joints[k][side];

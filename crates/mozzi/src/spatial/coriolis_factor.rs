@@ -6,8 +6,8 @@ use crate::linalg::{Mat3, Skew, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::ops::Mul;
 
-/// 𝓑 = 𝒢̇ + H(𝒢𝒱) : se(3) → se(3)*, with 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 and H(P)A = −`[ad_A]`ᵀP. The first moment of 𝒢̇ is the linear
-/// momentum f, so that half of it cancels against H:
+/// 𝓑 = 𝒢̇ + H(𝒢𝒱) : se(3) → se(3)*, with 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 and H(P)A = −`[ad_A]`ᵀP. The first moment of 𝒢̇
+/// is the linear momentum f, so that half of it cancels against H:
 ///
 /// > 𝓑 = `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, with (m, f) = 𝒢𝒱
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 
 mod angular_velocity;
 mod articulated_inertia;
+mod axis_rate;
 mod coriolis_factor;
 mod inertia;
 mod inertia_parameters;
@@ -12,6 +13,7 @@ pub mod solids;
 
 pub use crate::lie::{Twist, Wrench};
 pub use articulated_inertia::ArticulatedInertia;
+pub(crate) use axis_rate::AxisRate;
 pub(crate) use coriolis_factor::CoriolisFactor;
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;

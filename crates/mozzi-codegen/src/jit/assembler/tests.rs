@@ -30,7 +30,8 @@ fn named(shape: Shape, register: Register) -> Named {
     first + u32::from(register)
 }
 
-/// Places in memory near and far, those that short displacements reach and those that they do not, in arrays with every base.
+/// Places in memory near and far, those that short displacements reach and those that they do not, in arrays with every
+/// base.
 fn places(shape: Shape) -> impl Iterator<Item = (Memory, usize)> {
     let width = shape.width();
     (0..MOST_ARRAYS - 1).map(move |memory| {

@@ -14,7 +14,8 @@ use nalgebra::{DMatrix, DVector};
 const TREES: [(usize, usize); 7] = [(1, 0), (2, 0), (5, 0), (8, 2), (12, 0), (12, 4), (20, 0)];
 
 pub fn models() -> impl Iterator<Item = (u64, Model)> {
-    let deep = [tree(70, 20, 0), floating_tree(71, 18, 3), mixed_tree(72, 18, 2), floating_mixed_tree(73, 17, 0)];
+    let mixed = [mixed_tree(72, 18, 2), floating_mixed_tree(73, 17, 0)];
+    let deep = [tree(70, 20, 0), floating_tree(71, 18, 3), floating_tree(74, 23, 0)].into_iter().chain(mixed);
     let deep = (70..).zip(deep.map(|model| chain(&model)));
     deep.chain(trees())
 }

@@ -1,0 +1,76 @@
+//! `--payload`, `--inertia`, `--lock`: edits of the robot before it is written.
+
+use crate::failure::{Failure, Result};
+use crate::numbers::{array, number, numbers};
+use clap::Args;
+use mozzi::linalg::Sym3;
+use mozzi::{Model, SpatialInertia, Vec3};
+
+#[derive(Args, Debug)]
+pub struct EditArguments {
+    /// Add a payload to a link or frame: its mass, kg, its centre of mass, m, and moments about that centre, kg m², in
+    /// the frame's axes [default: a point mass at the frame's origin]
+    #[arg(long, value_name = "FRAME=m[,cx,cy,cz[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]")]
+    payload: Vec<String>,
+    /// Replace a link's inertia: as --payload, in the link's axes
+    #[arg(long, value_name = "LINK=m,cx,cy,cz,Ixx,Ixy,Ixz,Iyy,Iyz,Izz")]
+    inertia: Vec<String>,
+    /// Lock a joint at a position, rad or m, and its mimic joints with it
+    #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
+    lock: Vec<String>,
+}
+
+const INERTIA: [&str; 10] = ["m", "c_x", "c_y", "c_z", "I_xx", "I_xy", "I_xz", "I_yy", "I_yz", "I_zz"];
+
+impl EditArguments {
+    /// Inertias first, so that a payload is added to the new inertia; then payloads; then locks.
+    pub fn apply(&self, mut model: Model) -> Result<Model> {
+        for text in &self.inertia {
+            let (name, list) = split("--inertia", text, "LINK=m,cx,cy,cz,Ixx,Ixy,Ixz,Iyy,Iyz,Izz")?;
+            let place = format!("--inertia {name}");
+            let inertia = inertia(&place, array(&place, list, INERTIA)?)?;
+            let mut robot = model.description().clone();
+            let Some(link) = robot.links.iter_mut().find(|link| link.name == name) else {
+                let known: Vec<&str> = model.description().links.iter().map(|link| link.name.as_str()).collect();
+                return Err(Failure::wrong(format!(
+                    "--inertia: there is no link `{name}`, expected one of {}",
+                    known.join(", ")
+                )));
+            };
+            link.inertia = inertia;
+            model = robot.build()?;
+        }
+        for text in &self.payload {
+            let (name, list) = split("--payload", text, "FRAME=m, FRAME=m,cx,cy,cz, or these and six moments")?;
+            let place = format!("--payload {name}");
+            let mut list = numbers(&place, list)?;
+            if !matches!(list.len(), 1 | 4 | 10) {
+                let found = list.len();
+                return Err(Failure::wrong(format!(
+                    "{place} has {found} entries, expected m, m and c, or all of {}",
+                    INERTIA.join(", ")
+                )));
+            }
+            list.resize(INERTIA.len(), 0.0);
+            let all = list.try_into().unwrap_or([0.0; 10]);
+            model = model.with_payload(model.frame(name)?, inertia(&place, all)?)?;
+        }
+        let mut locks = Vec::new();
+        for text in &self.lock {
+            let (name, position) = split("--lock", text, "JOINT=POSITION")?;
+            locks.push((name, number(format_args!("--lock {name}"), position)?));
+        }
+        Ok(if locks.is_empty() { model } else { model.with_locked_joints(&locks)? })
+    }
+}
+
+fn split<'t>(flag: &str, text: &'t str, expected: &str) -> Result<(&'t str, &'t str)> {
+    text.rsplit_once('=').ok_or_else(|| Failure::wrong(format!("{flag} is `{text}`, expected {expected}")))
+}
+
+fn inertia(place: &str, [m, x, y, z, xx, xy, xz, yy, yz, zz]: [f64; 10]) -> Result<SpatialInertia> {
+    if m < 0.0 {
+        return Err(Failure::wrong(format!("{place}: the mass is {m} kg, expected at least 0")));
+    }
+    Ok(SpatialInertia::new(m, Vec3([x, y, z]), Sym3 { xx, xy, xz, yy, yz, zz }))
+}

@@ -1,0 +1,129 @@
+//! A URDF's text: the edited text of IN, if that is a URDF, or one that is written anew.
+
+use crate::failure::{self, Failure, Result};
+use crate::robot_json;
+use clap::ValueEnum;
+use mozzi::Description;
+use mozzi::model::description::Joint;
+use mozzi_urdf::{edit, embedded, expressible, mjcf};
+use std::path::Path;
+
+/// What a URDF is written without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LeftOut {
+    Armature,
+    Springs,
+    Gravity,
+    Rotors,
+}
+
+pub fn text(input: &str, output: &str, robot: &Description, left_out: &[LeftOut]) -> Result<String> {
+    let not_written =
+        |why: &dyn std::fmt::Display, help: &str| Failure::wrong(format!("{output} is not written: {why}; {help}"));
+    match source(input)? {
+        Some(text) if left_out.is_empty() => {
+            relative_meshes(input, output, &text);
+            edit(input, &text, robot).map_err(|why| not_written(&why, "convert to .json first, and that to .urdf"))
+        }
+        _ => {
+            let robot = reduced(output, robot, left_out);
+            let text = mozzi_urdf::write(&robot).map_err(|why| not_written(&why, HELP))?;
+            ignored_elsewhere(output, &robot);
+            Ok(text)
+        }
+    }
+}
+
+const HELP: &str = ".json can express all of it, --leave-out drops gravity and rotors";
+
+/// The text of a URDF.
+fn source(input: &str) -> Result<Option<String>> {
+    if let Some(text) = embedded::text(input) {
+        return Ok(Some(text.to_string()));
+    }
+    if robot_json::is_json(input) {
+        return Ok(None);
+    }
+    let text =
+        std::fs::read_to_string(input).map_err(|error| Failure::wrong(format!("{input}: cannot be read: {error}")))?;
+    Ok(Some(text).filter(|text| !mjcf::is_mjcf(text)))
+}
+
+/// Visuals whose files are named relative to the text's folder.
+fn relative_meshes(input: &str, output: &str, text: &str) {
+    let folder = |file: &str| {
+        let parent = Path::new(file).parent().filter(|parent| !parent.as_os_str().is_empty());
+        std::fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
+    };
+    let is_relative = |name: &&str| !name.contains("://") && !Path::new(name).is_absolute();
+    let mut files = text.split("filename=").skip(1).filter_map(|rest| rest.get(1..)?.split(['"', '\'']).next());
+    if let Some(file) = files.find(is_relative).filter(|_| folder(input) != folder(output)) {
+        failure::note(&format!(
+            "{output} is in another folder than {input}; its paths of meshes, such as `{file}`, are unchanged"
+        ));
+    }
+}
+
+/// Without what URDF has no words for, with a note for each loss.
+fn reduced(output: &str, robot: &Description, left_out: &[LeftOut]) -> Description {
+    let mut robot = expressible(robot);
+    let omitted = |what: String| failure::note(&format!("{output} omits {what}"));
+    if let Some(name) = robot.end_effector.take() {
+        omitted(format!("the choice of the end effector, `{name}`; --end-effector {name} sets it"));
+    }
+    for what in left_out {
+        match what {
+            LeftOut::Armature => {
+                let names = names(&robot, |joint| joint.armature != 0.0);
+                robot.joints.iter_mut().for_each(|joint| joint.armature = 0.0);
+                names.into_iter().for_each(|names| omitted(format!("the armature of {names}: M differs")));
+            }
+            LeftOut::Springs => {
+                let names = names(&robot, |joint| joint.stiffness != 0.0);
+                robot.joints.iter_mut().for_each(|joint| (joint.stiffness, joint.spring_reference) = (0.0, 0.0));
+                names.into_iter().for_each(|names| omitted(format!("the springs of {names}: τ differs")));
+            }
+            LeftOut::Gravity => {
+                let standard = Description::new("").gravity;
+                if robot.gravity != standard {
+                    omitted(format!("gravity {:?}, read as {standard:?}: τ differs", robot.gravity));
+                }
+                robot.gravity = standard;
+            }
+            LeftOut::Rotors => {
+                let names: Vec<String> = robot.rotors.drain(..).map(|rotor| format!("`{}`", rotor.name)).collect();
+                if !names.is_empty() {
+                    omitted(format!("the rotors {}: M differs", names.join(", ")));
+                }
+            }
+        }
+    }
+    robot
+}
+
+/// A warning about extensions, which only mozzi reads.
+fn ignored_elsewhere(output: &str, robot: &Description) {
+    for (attributes, quantity, names) in [
+        ("armature", "M", names(robot, |joint| joint.armature != 0.0)),
+        ("spring_stiffness", "τ", names(robot, |joint| joint.stiffness != 0.0)),
+    ] {
+        if let Some(names) = names {
+            failure::write(&format!(
+                "{output}: warning: `{attributes}` of {names} is an extension of <dynamics> that other readers ignore: \
+                 their {quantity} differs from mozzi's\n"
+            ));
+        }
+    }
+}
+
+/// The names of some joints, the first of them if there are many.
+fn names(robot: &Description, is_one: impl Fn(&Joint) -> bool) -> Option<String> {
+    const SHOWN: usize = 4;
+    let all: Vec<String> = robot.joints.iter().filter(|j| is_one(j)).map(|j| format!("`{}`", j.name)).collect();
+    let shown = all.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+    match all.len() {
+        0 => None,
+        count if count > SHOWN => Some(format!("{count} joints ({shown}, …)")),
+        _ => Some(shown),
+    }
+}

@@ -1,0 +1,110 @@
+//! A value of a file of JSON with its path, read as a text, a number, a vector, a pose.
+
+use crate::json_file::{JsonFile, Misplaced, Step, unknown_key};
+use mozzi::SE3;
+use serde_json::Value;
+use std::fmt::Display;
+
+pub type Read<T> = std::result::Result<T, Misplaced>;
+
+/// A value and its path in its file.
+pub struct At<'v> {
+    file: &'v JsonFile,
+    pub value: &'v Value,
+    path: Vec<Step<'v>>,
+}
+
+impl<'v> At<'v> {
+    pub fn root(file: &'v JsonFile) -> Self {
+        At { file, value: &file.value, path: Vec::new() }
+    }
+
+    fn entry(&self, step: Step<'v>, value: &'v Value) -> At<'v> {
+        At { value, path: [self.path.as_slice(), &[step]].concat(), file: self.file }
+    }
+
+    /// The value of a key; null if there is no such key.
+    pub fn get(&self, key: &'v str) -> At<'v> {
+        self.entry(Step::Key(key), self.value.get(key).unwrap_or(&Value::Null))
+    }
+
+    fn keys(&self) -> impl Iterator<Item = &'v str> {
+        self.value.as_object().into_iter().flatten().map(|(key, _)| key.as_str())
+    }
+
+    /// An error for each key that is not known.
+    pub fn unknown(&self, known: &[&str]) -> Vec<Misplaced> {
+        let error = |key| {
+            let path = [self.path.as_slice(), &[Step::Key(key)]].concat();
+            self.file.wrong(&path, unknown_key(key, &self.name(), known))
+        };
+        self.keys().filter(|key| !known.contains(key)).map(error).collect()
+    }
+
+    /// An error for each required key that is missing.
+    pub fn missing(&self, required: &[&str]) -> Vec<Misplaced> {
+        let error = |key: &&str| self.file.wrong(&self.path, format!("`{key}` is missing in {}", self.name()));
+        required.iter().filter(|key| self.value.get(**key).is_none()).map(error).collect()
+    }
+
+    /// "joints[1].mimic", or "the robot".
+    pub fn name(&self) -> String {
+        let mut name = String::new();
+        for step in &self.path {
+            match step {
+                Step::Key(key) if name.is_empty() => name += key,
+                Step::Key(key) => name += &format!(".{key}"),
+                Step::Index(index) => name += &format!("[{index}]"),
+            }
+        }
+        if name.is_empty() { "the robot".to_string() } else { name }
+    }
+
+    pub fn error<T>(&self, message: impl Display) -> Read<T> {
+        Err(self.file.wrong(&self.path, message.to_string()))
+    }
+
+    pub fn wrong<T>(&self, expected: impl Display) -> Read<T> {
+        let found: String = self.value.to_string().chars().take(60).collect();
+        self.error(format_args!("{} is {found}, expected {expected}", self.name()))
+    }
+
+    pub fn text(&self) -> Read<String> {
+        self.value.as_str().map_or_else(|| self.wrong("a text"), |text| Ok(text.to_string()))
+    }
+
+    pub fn number(&self) -> Read<f64> {
+        self.value.as_f64().map_or_else(|| self.wrong("a number"), Ok)
+    }
+
+    pub fn is_true(&self) -> Read<bool> {
+        self.value.as_bool().map_or_else(|| self.wrong("true or false"), Ok)
+    }
+
+    pub fn list(&self) -> Read<Vec<At<'v>>> {
+        let Some(all) = self.value.as_array() else { return self.wrong("a list") };
+        Ok(all.iter().enumerate().map(|(k, value)| self.entry(Step::Index(k), value)).collect())
+    }
+
+    pub fn numbers(&self) -> Read<Vec<f64>> {
+        self.list()?.iter().map(At::number).collect()
+    }
+
+    pub fn vector<const N: usize>(&self) -> Read<[f64; N]> {
+        self.numbers()?.try_into().or_else(|_| self.wrong(format_args!("{N} numbers")))
+    }
+
+    pub fn matrix<const N: usize>(&self) -> Read<[[f64; N]; N]> {
+        let all: Vec<[f64; N]> = self.list()?.iter().map(At::vector).collect::<Read<_>>()?;
+        all.try_into().or_else(|_| self.wrong(format_args!("{N} rows")))
+    }
+
+    pub fn pose(&self) -> Read<SE3> {
+        SE3::from_matrix(self.matrix()?).or_else(|why| self.wrong(format_args!("a configuration: {why}")))
+    }
+
+    /// `None` if it is null or there is no such key.
+    pub fn some<T>(&self, read: impl Fn(&Self) -> Read<T>) -> Read<Option<T>> {
+        if self.value.is_null() { Ok(None) } else { read(self).map(Some) }
+    }
+}

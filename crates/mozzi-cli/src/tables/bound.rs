@@ -1,0 +1,76 @@
+//! Bounds for what a damaged or hostile file may cost: memory, and the panics of other crates' readers.
+
+use crate::failure::{Failure, Result};
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Once;
+
+/// Bytes to which a compressed table of any size may unpack.
+const UNPACKED: u64 = 1 << 30;
+/// A larger table may unpack to this multiple of its size.
+const RATIO: u64 = 16;
+
+/// Bytes that are left of those to which a compressed table may unpack.
+pub struct Unpacked {
+    most: u64,
+    left: u64,
+}
+
+impl Unpacked {
+    /// Of a file of this length.
+    pub fn of(length: u64) -> Self {
+        let most = UNPACKED.max(length.saturating_mul(RATIO));
+        Unpacked { most, left: most }
+    }
+
+    /// Takes these bytes, or says why not.
+    pub fn take(&mut self, bytes: u64) -> std::result::Result<(), String> {
+        self.left = self.left.checked_sub(bytes).ok_or_else(|| {
+            let most = self.most >> 20;
+            format!("it unpacks to more than {most} MiB, expected at most these; write it without compression")
+        })?;
+        Ok(())
+    }
+}
+
+thread_local! {
+    static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
+}
+static HOOK: Once = Once::new();
+
+/// Runs another crate's reader: if it panics on damaged bytes, that is an error of the file.
+pub fn caught<T>(file: &str, read: impl FnOnce() -> Result<T>) -> Result<T> {
+    HOOK.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !IS_CAUGHT.get() {
+                before(panic);
+            }
+        }));
+    });
+    let outside = IS_CAUGHT.replace(true);
+    let found = catch_unwind(AssertUnwindSafe(read));
+    IS_CAUGHT.set(outside);
+    found.unwrap_or_else(|_| Err(Failure::wrong(format!("{file} is damaged: its content contradicts itself"))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_of_the_file() {
+        let Err(Failure::Wrong(said)) = caught::<()>("a.arrow", || panic!("not printed")) else { panic!("an error") };
+        assert!(said.starts_with("a.arrow is damaged"), "{said}");
+        assert_eq!(caught("a.arrow", || Ok(1)).expect("no panic"), 1);
+    }
+
+    #[test]
+    fn what_unpacks_is_bounded_by_a_constant_and_by_the_file() {
+        assert!(Unpacked::of(10).take(UNPACKED).is_ok());
+        let mut unpacked = Unpacked::of(UNPACKED);
+        assert!(unpacked.take(RATIO * UNPACKED).is_ok());
+        assert!(unpacked.take(1).expect_err("no more").contains("more than 16384 MiB"));
+        assert!(Unpacked::of(u64::MAX).take(u64::MAX).is_ok());
+    }
+}

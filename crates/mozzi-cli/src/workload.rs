@@ -1,0 +1,83 @@
+//! What a computation will cost, announced if it is much and refused if it is too much.
+
+use crate::failure::{self, Failure, Result};
+
+/// More steps, rows or bytes need a flag.
+const STEPS: f64 = 1e9;
+const BYTES: f64 = 16e9;
+/// From here on they are announced.
+const ANNOUNCED: f64 = 0.01;
+
+/// Bytes of a number in memory and binary files, and about those of one in a text.
+pub const BINARY: f64 = 8.0;
+pub const TEXT: f64 = 20.0;
+
+pub struct Workload {
+    /// The flag with its value, such as "--step 1e-12".
+    pub cause: String,
+    pub steps: f64,
+    pub rows: f64,
+    pub bytes: f64,
+    /// Where the bytes go: "motion.csv", "memory".
+    pub place: String,
+    /// The flag that allows it.
+    pub flag: Option<&'static str>,
+}
+
+impl Workload {
+    /// Announces it, or refuses it unless it is allowed.
+    pub fn check(&self, is_allowed: bool) -> Result<()> {
+        let share = (self.steps / STEPS).max(self.bytes / BYTES);
+        if share > 1.0 && !is_allowed {
+            let remedy = self.flag.map(|flag| format!("; {flag} allows more")).unwrap_or_default();
+            return Err(Failure::wrong(format!(
+                "{} gives {}, expected at most {} steps and {}{remedy}",
+                self.cause,
+                self.cost(),
+                count(STEPS),
+                size(BYTES)
+            )));
+        }
+        if share > ANNOUNCED {
+            failure::note(&self.cost());
+        }
+        Ok(())
+    }
+
+    /// "2e12 steps, 2e12 rows, about 700 TB of memory"
+    fn cost(&self) -> String {
+        let steps = format!("{} steps", count(self.steps));
+        let bytes = size(self.bytes);
+        match self.place.as_str() {
+            _ if self.bytes == 0.0 => steps,
+            "memory" => format!("{steps}, {} rows, about {bytes} of memory", count(self.rows)),
+            file => format!("{steps}, {} rows, about {bytes} in {file}", count(self.rows)),
+        }
+    }
+}
+
+pub fn count(x: f64) -> String {
+    let short: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    if x < 1e6 { format!("{x:.0}") } else { format!("{short:e}") }
+}
+
+/// "1.5 GB"
+pub fn size(bytes: f64) -> String {
+    let units = ["B", "kB", "MB", "GB", "TB", "PB", "EB"];
+    let power = (bytes.max(1.0).log10() / 3.0).floor().clamp(0.0, 6.0);
+    let scaled = bytes / 1000_f64.powf(power);
+    let unit = units[power as usize];
+    if scaled < 10.0 && power > 0.0 { format!("{scaled:.1} {unit}") } else { format!("{scaled:.0} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_short() {
+        let found = [0.0, 999.0, 1500.0, 16e9, 7.04e14, 1e20].map(size);
+        assert_eq!(found, ["0 B", "999 B", "1.5 kB", "16 GB", "704 TB", "100 EB"]);
+        assert_eq!([12.0, 2e12, 1.25e9, 1.5e8].map(count), ["12", "2e12", "1.25e9", "1.5e8"]);
+    }
+}

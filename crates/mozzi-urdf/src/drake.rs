@@ -1,0 +1,177 @@
+//! Drake's joints and rotors in a URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw
+//! and universal; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator.
+
+use crate::axis;
+use crate::context::Context;
+use crate::element::Element;
+use crate::extension;
+use crate::finding::Finding;
+use crate::places::Places;
+use crate::spelling::did_you_mean;
+use crate::vocabulary::shown;
+use core::f64::consts::TAU;
+use mozzi::{Description, ScrewAxis, Vec3};
+
+/// The types of a `<drake:joint>` that mozzi computes.
+pub(crate) const JOINT_TYPES: [&str; 4] = ["ball", "planar", "screw", "universal"];
+
+/// The helical joint of a screw: its pitch is the travel per revolution, in metres.
+pub(crate) fn screw(joint: &Element, direction: Option<&Element>, cx: &mut Context) -> Option<ScrewAxis> {
+    let turn = axis::read("revolute", direction, joint, cx);
+    let Some(pitch) = child(joint, "drake:screw_thread_pitch") else {
+        let message = format!("{}: has no <drake:screw_thread_pitch>, expected the travel per turn", joint.subject);
+        let help = "write <drake:screw_thread_pitch value=\"…\"/>, in metres per revolution";
+        cx.findings.add(Finding::error("missing_element", joint.span(), message).help(help));
+        return None;
+    };
+    let [travel] = value(&pitch, cx)?;
+    let w = turn?.twist().w;
+    let line = ScrewAxis::from_line(w.0, [0.0; 3], travel / TAU);
+    if line.is_err() {
+        let message = format!("{}: is {travel}, expected a finite travel per turn", pitch.subject);
+        cx.findings.error("not_finite", pitch.span(), message);
+    }
+    line.ok()
+}
+
+/// The damping of a planar joint's two slides and its turn.
+pub(crate) fn planar_damping(dynamics: Option<&Element>, cx: &mut Context) -> Option<[f64; 3]> {
+    let Some(dynamics) = dynamics else { return Some([0.0; 3]) };
+    let Some(value) = dynamics.attribute("damping") else { return Some([0.0; 3]) };
+    let damping = dynamics.vector::<3>("damping", &value, cx)?;
+    if damping.iter().all(|x| *x >= 0.0) {
+        return Some(damping);
+    }
+    let message = format!("{}: damping: is `{}`, expected numbers of at least 0", dynamics.subject, shown(value.text));
+    cx.findings.error("negative_friction", value.span, message);
+    None
+}
+
+/// Drake's universal joint turns about the x-axis of its frame, whatever its `<axis>` is.
+pub(crate) fn check_universal(direction: Option<&Element>, cx: &mut Context) {
+    let Some(direction) = direction else { return };
+    let given = direction.attribute("xyz").and_then(|value| direction.vector::<3>("xyz", &value, cx));
+    if given.is_some_and(|xyz| Vec3(xyz) != Vec3([1.0, 0.0, 0.0])) {
+        let message = format!("{}: is ignored: a universal joint turns about x, then y", direction.subject);
+        cx.findings.add(Finding::warning("ignored_property", direction.span(), message));
+    }
+}
+
+/// Adds the rotors of all actuators to their joints: the armature is ratio² × inertia.
+pub(crate) fn rotors(root: &Element, description: &mut Description, places: &mut Places, cx: &mut Context) {
+    for element in root.elements() {
+        match element.written_name() {
+            "transmission" => transmission(&element, description, places, cx),
+            "joint" | "drake:joint" => {
+                let Some(name) = element.attribute("name") else { continue };
+                let joint = element.called(format!("joint `{}`", shown(name.text)));
+                // Drake's documentation has them in an actuator of the joint
+                for holder in joint.elements().filter(|child| child.written_name() == "actuator").chain([joint.clone()])
+                {
+                    if holder.name() == "actuator" {
+                        check_words(&holder, cx);
+                    }
+                    add(&holder, name.text, description, places, cx);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn transmission(element: &Element, description: &mut Description, places: &mut Places, cx: &mut Context) {
+    let named = element.attribute("name").map_or_else(String::new, |name| format!(" `{}`", shown(name.text)));
+    let element = element.called(format!("transmission{named}"));
+    let Some(actuator) = child(&element, "actuator") else { return };
+    check_words(&actuator, cx);
+    if rotor(&actuator).is_none() {
+        return;
+    }
+    let kind = child(&element, "type")
+        .map_or_else(|| element.attribute("type").map_or("", |value| value.text), |kind| kind.text());
+    if !kind.contains("SimpleTransmission") {
+        let message = format!(
+            "{}: its rotor is ignored: the type is `{}`, expected a SimpleTransmission",
+            element.subject,
+            shown(kind.trim())
+        );
+        cx.findings.add(Finding::warning("ignored_property", actuator.span(), message));
+        return;
+    }
+    let Some(joint) = child(&element, "joint") else {
+        let message = format!("{}: has a rotor and no <joint> that turns it", element.subject);
+        cx.findings.error("missing_element", element.span(), message);
+        return;
+    };
+    let Some(name) = joint.required_name("name", cx) else { return };
+    if find(description, name.text).is_none() && !description.joints.iter().any(|joint| is_part(&joint.name, name.text))
+    {
+        let message = format!("{}: joint: there is no joint `{}`", element.subject, shown(name.text));
+        let help = did_you_mean(name.text, description.joints.iter().map(|joint| joint.name.as_str()).take(1000));
+        cx.findings.add(Finding::error("unknown_joint", name.span, message).maybe_help(help));
+        return;
+    }
+    if find(description, name.text).is_some_and(|i| description.joints[i].limits.effort == Some(0.0)) {
+        let message = format!(
+            "{}: its rotor is ignored: joint `{}` has the effort limit 0, and Drake gives it no actuator",
+            element.subject,
+            shown(name.text)
+        );
+        cx.findings.add(Finding::warning("ignored_property", actuator.span(), message));
+        return;
+    }
+    add(&actuator, name.text, description, places, cx);
+}
+
+/// Reports what else Drake's words in an actuator change.
+fn check_words(actuator: &Element, cx: &mut Context) {
+    for word in actuator.elements().filter(|child| child.written_name().starts_with("drake:")) {
+        extension::element(&word, actuator, cx);
+    }
+}
+
+/// Whether a joint is one of those that a joint of several axes became.
+fn is_part(name: &str, whole: &str) -> bool {
+    name.strip_prefix(whole).is_some_and(|rest| rest.starts_with('.'))
+}
+
+fn find(description: &Description, name: &str) -> Option<usize> {
+    description.joints.iter().position(|joint| joint.name == name)
+}
+
+/// The inertia of a rotor in an actuator.
+fn rotor<'a>(holder: &Element<'a>) -> Option<Element<'a>> {
+    child(holder, "drake:rotor_inertia")
+}
+
+/// Adds the rotor of an actuator, if it has one, to its joint.
+fn add(holder: &Element, joint: &str, description: &mut Description, places: &mut Places, cx: &mut Context) {
+    let Some(inertia) = rotor(holder) else { return };
+    let ratio = child(holder, "drake:gear_ratio").map_or(Some([1.0]), |ratio| value(&ratio, cx));
+    let (Some([armature]), Some([ratio])) = (value(&inertia, cx), ratio) else { return };
+    let armature = ratio * ratio * armature;
+    let moving = find(description, joint)
+        .filter(|&i| matches!(description.joints[i].kind.name(), "revolute" | "prismatic" | "helical"));
+    match moving {
+        Some(i) => {
+            description.joints[i].armature += armature;
+            places.joints[i].set("armature", inertia.span());
+        }
+        None if armature != 0.0 => {
+            let message = format!("{}: is ignored: joint `{}` has not one axis", inertia.subject, shown(joint));
+            cx.findings.add(Finding::warning("ignored_property", inertia.span(), message));
+        }
+        None => {}
+    }
+}
+
+/// The first child of a name, with its prefix.
+fn child<'a>(element: &Element<'a>, name: &str) -> Option<Element<'a>> {
+    element.elements().find(|child| child.written_name() == name)
+}
+
+/// The number in the attribute `value`.
+fn value(element: &Element, cx: &mut Context) -> Option<[f64; 1]> {
+    let value = element.required("value", cx)?;
+    element.vector::<1>("value", &value, cx)
+}

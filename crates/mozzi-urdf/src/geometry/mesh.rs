@@ -1,0 +1,161 @@
+//! Is this file a mesh? A page embeds nothing else, whatever the file is called.
+
+use crate::bytes;
+use crate::dialect::Dialect;
+use crate::source::Source;
+use crate::syntax;
+
+/// What an OBJ's lines begin with (Wavefront's specification, version 3.0).
+const WORDS: &str = "v vt vn vp deg bmat step cstype p l f curv curv2 surf parm trim hole scrv sp end con g s mg o \
+                     bevel c_interp d_interp lod usemtl mtllib usemap maplib shadow_obj trace_obj ctech stech";
+
+/// Reads a file by its format, "stl", "obj" or "dae".
+///
+/// # Errors
+/// The first thing that is not of a mesh.
+pub fn check_mesh(format: &str, file: &[u8]) -> Result<(), String> {
+    match format {
+        "stl" if is_binary_stl(file) => Ok(()),
+        "stl" => ascii_stl(text(file)?),
+        "obj" => obj(text(file)?),
+        "dae" => collada(text(file)?),
+        other => Err(format!("`{other}` is no format of meshes, expected stl, obj or dae")),
+    }
+}
+
+fn text(file: &[u8]) -> Result<&str, String> {
+    bytes::to_text(file).map_err(|(_, finding)| finding.message)
+}
+
+/// 80 bytes, the number of triangles, 50 bytes for each: twelve floats and two more bytes.
+fn is_binary_stl(file: &[u8]) -> bool {
+    let Some((count, rest)) = file.get(80..).and_then(<[u8]>::split_first_chunk::<4>) else { return false };
+    let count = u32::from_le_bytes(*count) as usize;
+    let corner = |bytes: &[u8]| bytes.first_chunk().copied().map(f32::from_le_bytes).is_some_and(f32::is_finite);
+    let is_triangle = |triangle: &[u8]| triangle[12..48].chunks_exact(4).all(corner);
+    count > 0 && rest.len() / 50 == count && rest.len() % 50 < 4 && rest.chunks_exact(50).all(is_triangle)
+}
+
+/// solid NAME, then of each triangle: facet normal, outer loop, three vertices, endloop, endfacet; endsolid NAME.
+fn ascii_stl(text: &str) -> Result<(), String> {
+    // the line of a triangle that is next; none outside of a solid
+    let (mut next, mut triangles) = (None, 0);
+    for (k, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let line = line.to_ascii_lowercase();
+        let mut words = line.split_whitespace();
+        let first = words.next().unwrap_or_default();
+        let expected = next.map_or("solid", |next: usize| FACET[next]);
+        next = match next {
+            None if first == "solid" => Some(0),
+            Some(0) if first == "endsolid" => None,
+            Some(at) if is_line(expected, first, words) => {
+                triangles += usize::from(at + 1 == FACET.len());
+                Some((at + 1) % FACET.len())
+            }
+            _ => return Err(format!("line {}: expected `{expected}` of an STL", k + 1)),
+        };
+    }
+    if triangles > 0 && next.is_none() { Ok(()) } else { Err("it has no triangles, or ends within them".into()) }
+}
+
+/// Do the words of a line begin as expected, three numbers for a 3?
+fn is_line<'t>(expected: &str, first: &'t str, rest: impl Iterator<Item = &'t str>) -> bool {
+    let words: Vec<&str> = std::iter::once(first).chain(rest).collect();
+    let (start, count) = expected.strip_suffix(" 3").map_or((expected, 0), |start| (start, 3));
+    let start: Vec<&str> = start.split(' ').collect();
+    let numbers = words.strip_prefix(start.as_slice());
+    numbers.is_some_and(|numbers| numbers.len() == count && numbers.iter().all(|word| word.parse::<f64>().is_ok()))
+}
+
+/// The lines of a triangle; 3 means three numbers.
+const FACET: [&str; 7] = ["facet normal 3", "outer loop", "vertex 3", "vertex 3", "vertex 3", "endloop", "endfacet"];
+
+/// Known words with numbers; at least a vertex and a face.
+fn obj(text: &str) -> Result<(), String> {
+    let (mut vertices, mut faces, mut is_continued) = (0, 0, false);
+    for (k, line) in text.lines().enumerate() {
+        let wrong = |expected: &str| Err(format!("line {}: expected {expected} of an OBJ", k + 1));
+        let line = line.split('#').next().unwrap_or_default().trim();
+        let was_continued = std::mem::replace(&mut is_continued, line.ends_with('\\'));
+        let mut words = line.trim_end_matches('\\').split_whitespace();
+        let numbers = |mut words: std::str::SplitWhitespace<'_>| words.all(|word| word.parse::<f64>().is_ok());
+        let indices = |word: &str| word.split('/').all(|index| index.is_empty() || index.parse::<i64>().is_ok());
+        match words.next() {
+            None => {}
+            Some(_) if was_continued => {}
+            Some("v" | "vt" | "vn" | "vp") if !numbers(words.clone()) => return wrong("numbers"),
+            Some("f" | "l" | "p") if !words.clone().all(indices) => return wrong("indices"),
+            Some("v") => vertices += 1,
+            Some("f") => faces += 1,
+            Some(word) if WORDS.split_whitespace().any(|known| known == word) => {}
+            Some(_) => return wrong("a word"),
+        }
+    }
+    if vertices > 0 && faces > 0 { Ok(()) } else { Err("it has no faces".into()) }
+}
+
+/// XML with a mesh of Collada.
+fn collada(text: &str) -> Result<(), String> {
+    let source = Source::new("mesh", text);
+    let document = syntax::parse(&source, Dialect::Urdf).map_err(|_| "it is not XML that can be read".to_string())?;
+    let root = document.root_element();
+    let is_mesh = |node: roxmltree::Node| node.tag_name().name() == "mesh";
+    match root.tag_name().name() == "COLLADA" && root.descendants().any(is_mesh) {
+        true => Ok(()),
+        false => Err("it is not Collada with a mesh".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STL: &str = "solid a b\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e-3 0\n\
+                       \x20 endloop\n endfacet\nendsolid a b\n";
+    const OBJ: &str =
+        "# a\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0 \\\n 1\nv 0 1 0\nvn 0 0 1\nusemtl x\ns off\nf 1//1 2//1 3//1\n";
+    const DAE: &str = "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema'>\
+                       <library_geometries><geometry><mesh/></geometry></library_geometries></COLLADA>";
+
+    fn binary(triangles: u32, corner: f32) -> Vec<u8> {
+        let triangle = [[0; 12].to_vec(), corner.to_le_bytes().repeat(9), vec![0; 2]].concat();
+        [vec![b's'; 80], triangles.to_le_bytes().to_vec(), triangle.repeat(2)].concat()
+    }
+
+    #[test]
+    fn meshes_are_known_by_their_content() {
+        for (format, file) in [("stl", STL), ("obj", OBJ), ("dae", DAE)] {
+            assert_eq!(check_mesh(format, file.as_bytes()), Ok(()), "{format}");
+            for other in ["stl", "obj", "dae"].into_iter().filter(|other| *other != format) {
+                assert!(check_mesh(other, file.as_bytes()).is_err(), "{format} as {other}");
+            }
+        }
+        assert_eq!(check_mesh("stl", STL.repeat(2).replace('\n', "\r\n").as_bytes()), Ok(()));
+        assert_eq!(check_mesh("stl", &binary(2, 0.5)), Ok(()));
+        assert!(check_mesh("stl", &binary(3, 0.5)).is_err() && check_mesh("stl", &binary(2, f32::NAN)).is_err());
+    }
+
+    #[test]
+    fn other_files_are_none() {
+        let secrets = [
+            "root:x:0:0:root:/root:/bin/sh\n",
+            "-----BEGIN OPENSSH PRIVATE KEY-----\nb3BlbnNzaC1rZXktdjEAAAAA\n-----END OPENSSH PRIVATE KEY-----\n",
+            "solid a\nendsolid a\n",
+            "solid a\npassword 1\nendsolid a\n",
+            "solid a\n facet normal 0 0 1\nendsolid\n",
+            "v 0 0 0\nf 1 1 1\npassword = x\n",
+            "v 0 0 0\nv a b c\nf 1 1 1\n",
+            "# only remarks\n",
+            "<config><password>x</password></config>",
+            "<COLLADA/>",
+            "",
+            "\u{0}\u{1}",
+        ];
+        for secret in secrets {
+            for format in ["stl", "obj", "dae"] {
+                let why = check_mesh(format, secret.as_bytes()).expect_err(secret);
+                assert!(!why.contains("password") && !why.contains("root"), "{why}");
+            }
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The shapes of geoms, which are drawn and do not affect the dynamics.
+
+use super::Model;
+use super::attributes::Item;
+use super::class::{Class, Classes};
+use super::contents::Inside;
+use super::geom::TYPES;
+use super::orientation::pose;
+use crate::context::Context;
+use crate::element::Element;
+use crate::finding::Finding;
+use crate::geometry::{Form, Purpose, Shape};
+use crate::vocabulary::shown;
+use mozzi::{SE3, SO3, Solid, Vec3};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Attributes of a default class that only shapes take.
+pub(crate) const LOOKS: [&str; 2] = ["rgba", "material"];
+/// MuJoCo does not draw groups from this one on; by convention they have the shapes for contacts.
+const FIRST_HIDDEN_GROUP: f64 = 3.0;
+
+/// A mesh of `<asset>`.
+#[derive(Clone)]
+struct Mesh {
+    file: String,
+    scale: [f64; 3],
+    /// The frame in the file's coordinates that becomes the geom's frame.
+    reference: SE3,
+}
+
+/// What the geoms of a model name, and the shapes found so far.
+#[derive(Default)]
+pub(crate) struct Shapes {
+    meshes: BTreeMap<String, Mesh>,
+    colors: BTreeMap<String, [f64; 4]>,
+    /// With the index of their link.
+    found: Vec<(usize, Shape)>,
+    /// Its own findings: they are warnings, as shapes do not affect the dynamics.
+    pub cx: Context,
+}
+
+impl Shapes {
+    /// The meshes and colours of the assets.
+    pub fn new<'a>(sections: &[Element<'a>], classes: &Classes<'a>) -> Self {
+        let mut shapes = Shapes::default();
+        let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
+        let (mut folder, mut strips) = (String::new(), false);
+        for compiler in of("compiler") {
+            let text = |name| compiler.attribute(name).map(|value| value.text);
+            folder = text("meshdir").or(text("assetdir")).map_or(folder, str::to_string);
+            strips = text("strippath").map_or(strips, |text| text == "true");
+        }
+        for asset in of("asset").flat_map(Element::elements) {
+            match asset.name() {
+                "mesh" => shapes.mesh(classes, asset, &folder, strips),
+                "material" => {
+                    let Some(name) = asset.attribute("name") else { continue };
+                    let item = classes.item(asset, "material", Class::MAIN, &mut shapes.cx);
+                    let color = item.vector::<4>("rgba", &mut shapes.cx).unwrap_or([1.0; 4]);
+                    shapes.colors.insert(name.text.to_string(), color);
+                }
+                _ => {}
+            }
+        }
+        shapes
+    }
+
+    /// A mesh without a name is called after its file; one without a file is given by vertices, and is not drawn.
+    fn mesh<'a>(&mut self, classes: &Classes<'a>, element: Element<'a>, folder: &str, strips: bool) {
+        let Some(file) = element.attribute("file").map(|value| value.text) else { return };
+        let path =
+            if strips { Path::new(file).file_name().map_or(Path::new(file), Path::new) } else { Path::new(file) };
+        let name = element.attribute("name").map(|value| value.text.to_string());
+        let stem = || Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let Some(name) = name.or_else(stem) else { return };
+        let item = classes.item(element, "mesh", Class::MAIN, &mut self.cx);
+        let scale = item.vector::<3>("scale", &mut self.cx).unwrap_or([1.0; 3]);
+        let p = Vec3(item.vector::<3>("refpos", &mut self.cx).unwrap_or_default());
+        let [w, x, y, z] = item.vector::<4>("refquat", &mut self.cx).unwrap_or([1.0, 0.0, 0.0, 0.0]);
+        let length = (w * w + x * x + y * y + z * z).sqrt();
+        let R = if length > 0.0 {
+            SO3::from_quaternion(w / length, Vec3([x / length, y / length, z / length]))
+        } else {
+            SO3::identity()
+        };
+        let file = Path::new(folder).join(path).to_string_lossy().into_owned();
+        self.meshes.insert(name, Mesh { file, scale, reference: SE3 { R, p } });
+    }
+
+    /// The shapes, by the names of their links.
+    pub fn named(self, links: &[mozzi::model::description::Link]) -> (Vec<Shape>, Context) {
+        let name = |(link, shape): (usize, Shape)| Some(Shape { link: links.get(link)?.name.clone(), ..shape });
+        (self.found.into_iter().filter_map(name).collect(), self.cx)
+    }
+
+    /// Keeps the shapes of some links, which get other numbers.
+    pub fn renumber(&mut self, stays: &[bool], numbers: &[usize]) {
+        self.found.retain(|(link, _)| stays[*link]);
+        self.found.iter_mut().for_each(|(link, _)| *link = numbers[*link]);
+    }
+}
+
+impl<'a> Model<'a> {
+    /// Adds the shapes of a body's geoms, if shapes are asked for.
+    pub fn draw(&mut self, geoms: &[Inside<'a>], link: usize) {
+        let Some(mut shapes) = self.shapes.take() else { return };
+        for geom in geoms {
+            let subject = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
+            let element = geom.item.element.called(subject.unwrap_or_else(|| "geom".to_string()));
+            let item = Item { element, ..geom.item.clone() };
+            if let Some(shape) = self.shape(&item, geom.T, &mut shapes) {
+                shapes.found.push((link, shape));
+            }
+        }
+        self.shapes = Some(shapes);
+    }
+
+    /// Nothing for planes, height fields, and what is fully transparent.
+    fn shape(&self, item: &Item<'a>, T: SE3, shapes: &mut Shapes) -> Option<Shape> {
+        let kind = item.word("type", &TYPES, &mut shapes.cx).unwrap_or("sphere");
+        let material = || item.value("material").and_then(|value| shapes.colors.get(value.text).copied());
+        let color = if item.has("rgba") { item.vector::<4>("rgba", &mut shapes.cx) } else { material() };
+        if matches!(kind, "plane" | "hfield") || color.is_some_and(|[.., opacity]| opacity <= 0.0) {
+            return None;
+        }
+        let is_hidden = item.number("group", 0.0, &mut shapes.cx) >= FIRST_HIDDEN_GROUP;
+        let (form, frame) = match item.value("mesh") {
+            Some(mesh) => {
+                let Some(mesh) = shapes.meshes.get(mesh.text).cloned() else {
+                    let message = format!("{}: mesh: `{}` has no file", item.element.subject, shown(mesh.text));
+                    let help = "it is not drawn: meshes of <asset> are drawn from their files";
+                    shapes.cx.findings.add(Finding::warning("ignored_mesh", mesh.span, message).help(help));
+                    return None;
+                };
+                let (form, shift) = mesh_form(mesh);
+                (form, pose(item, &self.compiler, &mut shapes.cx) * shift)
+            }
+            None => {
+                let (solid, frame) = self.solid(item, kind, &mut shapes.cx)?;
+                (solid_form(solid), frame)
+            }
+        };
+        let purpose = if is_hidden { Purpose::Collision } else { Purpose::Visual };
+        Some(Shape { link: String::new(), purpose, T: T * frame, form, color })
+    }
+}
+
+/// v' = S Rᵀ(v − p) of a vertex v: a scale of the file's coordinates, then a rigid motion. If S is not the same in all
+/// directions, R has to be the identity, as it is in published models.
+fn mesh_form(Mesh { file, scale, reference }: Mesh) -> (Form, SE3) {
+    let inverse = reference.R.inverse();
+    let [x, y, z] = (inverse.matrix() * reference.p).0;
+    let p = Vec3([-scale[0] * x, -scale[1] * y, -scale[2] * z]);
+    (Form::Mesh { file, scale }, SE3 { R: inverse, p })
+}
+
+fn solid_form(solid: Solid) -> Form {
+    match solid {
+        Solid::Sphere { radius } => Form::Sphere { radius },
+        Solid::Capsule { radius, length } => Form::Capsule { radius, length },
+        Solid::Cylinder { radius, length } => Form::Cylinder { radius, length },
+        Solid::Ellipsoid(radii) => Form::Ellipsoid { radii },
+        Solid::Box(size) => Form::Box { size },
+    }
+}

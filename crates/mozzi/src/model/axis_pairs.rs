@@ -1,0 +1,76 @@
+//! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame: of s the
+//! angular part, what its linear one multiplies being 0. The axis is along z; a rate of it has no part along z.
+
+use crate::lie::SO3;
+use crate::linalg::Vec3;
+use crate::scalar::Scalar;
+use crate::spatial::{AxisRate, CoriolisFactor, JointAxis, SpatialInertia, Twist, Wrench};
+
+/// Of ∂τ/∂θ: (Ä, Ȧ).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ByTheta<S> {
+    pub r: Twist<S>,
+    /// Along x and y.
+    pub s: [S; 2],
+}
+
+/// Of ∂τ/∂θ̇, (D, A), and of C, (`[ad_𝒱]` A, ½ A).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ByRates<S> {
+    pub r: AxisRate<S>,
+    /// Along z.
+    pub s: S,
+}
+
+impl<S: Scalar> ByTheta<S> {
+    pub fn zero() -> Self {
+        ByTheta { r: Twist::zero(), s: [S::zero(); 2] }
+    }
+
+    /// 𝒢r + 𝓑s.
+    #[inline(always)]
+    pub fn column(self, G: SpatialInertia<S>, B: CoriolisFactor<S>) -> Wrench<S> {
+        G * self.r + B * self.s
+    }
+}
+
+impl<S: Scalar> ByRates<S> {
+    pub fn zero() -> Self {
+        ByRates { r: AxisRate::zero(), s: S::zero() }
+    }
+
+    /// 𝒢r + 𝓑s.
+    #[inline(always)]
+    pub fn column(self, G: SpatialInertia<S>, B: CoriolisFactor<S>) -> Wrench<S> {
+        G * self.r + B * JointAxis { a: self.s, b: S::zero() }
+    }
+}
+
+/// What the composite-body pass asks of a link, in the base's axes, about the link's origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turned<S> {
+    /// R_0i.
+    pub R: SO3<S>,
+    /// From the link's origin to the parent's.
+    pub p: Vec3<S>,
+    pub A: Twist<S>,
+    /// ĜA/d, where articulated bodies are solved for.
+    pub U: Wrench<S>,
+    /// (r, s).
+    pub by_theta: (Twist<S>, Vec3<S>),
+    pub by_rates: (Twist<S>, Vec3<S>),
+}
+
+impl<S: Scalar> Turned<S> {
+    pub fn zero() -> Self {
+        let none = (Twist::zero(), Vec3::zero());
+        Turned {
+            R: SO3::identity(),
+            p: Vec3::zero(),
+            A: Twist::zero(),
+            U: Wrench::zero(),
+            by_theta: none,
+            by_rates: none,
+        }
+    }
+}
