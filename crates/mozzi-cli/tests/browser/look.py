@@ -62,7 +62,7 @@ def look(browser, job):
     page.evaluate("mozzi.show('axes', true)")
     for _ in range(600):  # a busy machine paints late
         found["painted"] = page.evaluate(PAINTED)
-        if found["painted"] > 20:
+        if found["painted"] > 5:
             break
         page.wait_for_timeout(100)
     found["width"] = page.evaluate("document.documentElement.scrollWidth")
