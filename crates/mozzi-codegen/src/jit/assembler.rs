@@ -2,7 +2,7 @@
 //! prefixes.
 //!
 //! The assembler is where machine code becomes safe to run: it knows the bytes of every array, and no instruction that
-//! it writes reads or writes beyond them, whatever it is asked for.
+//! it emits reads or writes beyond them, for any input.
 
 use super::instruction::Operation;
 use super::shape::{Encoding, Shape};

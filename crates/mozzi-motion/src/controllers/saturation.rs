@@ -48,8 +48,8 @@ impl<I: Input> Saturated<I> {
         }
     }
 
-    /// Of each joint that was asked for more than it has, since the start, whatever was made of it; none where limits
-    /// are ignored.
+    /// The overload of each joint whose effort limit was exceeded since the start, whether the torque was clamped or
+    /// not; empty if limits are ignored.
     pub fn overloads(&self) -> impl Iterator<Item = &Overload> {
         self.overloads.iter().flatten()
     }

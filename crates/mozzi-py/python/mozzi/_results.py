@@ -73,13 +73,13 @@ class Overload(NamedTuple):
 
     joint: str
     largest: float
-    """The largest |τ| that was asked for: N m or N."""
+    """The largest |τ| that the controller demanded: N m or N."""
     limit: float
     """The joint's effort limit: N m or N."""
     first: float
-    """When it was first asked for more, s."""
+    """Time of the first demand beyond the limit, s."""
     last: float
-    """When it was last asked for more, s."""
+    """Time of the last demand beyond the limit, s."""
 
 
 class TrackingError(NamedTuple):
