@@ -12,7 +12,7 @@ use crate::threads::Threads;
 use crate::{BatchEnvironment, Error, InstructionSet, Number};
 use mozzi::quantities::Query;
 use mozzi::{Environment, FrameId, Model};
-use mozzi_codegen::{Arguments, Refusal};
+use mozzi_codegen::{Arguments, Refusal, is_too_long};
 use std::sync::Arc;
 
 /// A chunk's tables fill about half of a core's second cache.
@@ -75,10 +75,11 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// On this many threads; on one, on the caller's. Results are the same to the bit for any number.
+    /// On at most this many threads, never more than a call has pieces of work, or eight for each core; on one, on the
+    /// caller's. Results are the same to the bit for any number.
     ///
     /// # Errors
-    /// [`Error::Threads`] for 0 threads, or if the system cannot start them.
+    /// [`Error::Threads`] for 0 threads.
     pub fn with_threads(self, threads: usize) -> Result<Self, Error> {
         Ok(Batch { threads: Threads::new(threads)?, ..self })
     }
@@ -273,6 +274,10 @@ impl<T: Number> Batch<T> {
         let mut compiled = Vec::clone(&self.compiled);
         for query in queries {
             let arguments = alone(query);
+            query.check_subject(&self.model)?;
+            if is_too_long(&self.model, *query) {
+                continue; // to the kernels on registers, or a program when it is called
+            }
             let programmed = Programmed::new::<T>(&self.model, *query, arguments, self.set)?;
             compiled.push((Key::new(query, &arguments), Arc::new(programmed)));
         }
@@ -286,7 +291,10 @@ impl<T: Number> Batch<T> {
         match find(&self.compiled, query, arguments) {
             Some(programmed) if has_registers(query.index()) => Engine::of(&programmed.code),
             Some(programmed) => Engine::of_program(&programmed.code),
-            None if has_registers(query.index()) => Engine::Kernels(Refusal::NotAsked),
+            None if has_registers(query.index()) => {
+                let is_long = query.check_subject(&self.model).is_ok() && is_too_long(&self.model, *query);
+                Engine::Kernels(if is_long { Refusal::Long } else { Refusal::NotAsked })
+            }
             None => match self.program(query, arguments) {
                 Ok(programmed) => Engine::of_program(&programmed.code),
                 Err(_) => Engine::Kernels(Refusal::NotAsked), // of another model's frame: nothing computes it

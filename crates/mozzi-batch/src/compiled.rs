@@ -4,7 +4,7 @@ use crate::{Batch, Engine, Layout};
 use mozzi::quantities::{ForwardDynamics, Of, Query};
 use mozzi::simulation::{self, Input, Options, Simulation};
 use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
-use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
+use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, is_too_long, pivot_names, record_quantity};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest,
@@ -36,7 +36,14 @@ struct Machine {
 
 impl Machine {
     fn new(model: &Model, query: Query) -> Result<Self, Error> {
-        let program = record_quantity(model, query, Arguments::default())?;
+        query.check_subject(model)?;
+        let code = if is_too_long(model, query) {
+            Err(Refusal::Long)
+        } else {
+            let program = record_quantity(model, query, Arguments::default())?;
+            let own = program.outputs().len() - pivot_names(&query).len();
+            Kernel::condensing(&program, Shape::OneF64, own)
+        };
         let pivots = pivot_names(&query).len();
         let subject = query.subject;
         Ok(Machine {
@@ -44,7 +51,7 @@ impl Machine {
             is_of_robot: query.declaration().of == Of::Robot,
             rows: subject.rows.to_vec(),
             subject: (subject.frame, subject.coordinates, subject.point),
-            code: Kernel::condensing(&program, Shape::OneF64, program.outputs().len() - pivots),
+            code,
             pivots,
         })
     }
@@ -107,10 +114,10 @@ impl Compiled {
         &self.batch
     }
 
-    /// On this many threads; by default on all cores.
+    /// As [`Batch::with_threads`]; by default on all cores.
     ///
     /// # Errors
-    /// [`Error::Threads`](crate::Error::Threads) for none, or where the system gives no more.
+    /// [`Error::Threads`](crate::Error::Threads) for 0 threads.
     pub fn with_threads(self, threads: usize) -> Result<Self, crate::Error> {
         Ok(Compiled { batch: self.batch.with_threads(threads)?, ..self })
     }

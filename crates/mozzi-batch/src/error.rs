@@ -56,7 +56,7 @@ pub enum Error {
     Threads {
         /// As many as were asked for.
         threads: usize,
-        /// The system's words.
+        /// What was expected.
         reason: String,
     },
 }

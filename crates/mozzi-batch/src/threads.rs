@@ -2,7 +2,7 @@
 
 use crate::Error;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Threads of a batch.
 #[derive(Clone, Debug)]
@@ -11,19 +11,26 @@ pub(crate) enum Threads {
     All,
     /// The caller's.
     One,
-    Pool(Arc<rayon::ThreadPool>),
+    Pool {
+        most: usize,
+        started: Started,
+    },
 }
 
+/// The threads that calls have needed so far.
+type Started = Arc<Mutex<Option<Arc<rayon::ThreadPool>>>>;
+
+/// More threads than this for each core only wait for each other.
+const PER_CORE: usize = 8;
+
 impl Threads {
+    /// At most so many, started when a call has pieces of work for them.
     pub fn new(threads: usize) -> Result<Self, Error> {
-        let failed = |reason| Error::Threads { threads, reason };
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         match threads {
-            0 => Err(failed("expected at least one".into())),
+            0 => Err(Error::Threads { threads, reason: "expected at least one".into() }),
             1 => Ok(Threads::One),
-            _ => {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                Ok(Threads::Pool(Arc::new(pool.map_err(|error| failed(error.to_string()))?)))
-            }
+            _ => Ok(Threads::Pool { most: threads.min(PER_CORE * cores), started: Started::default() }),
         }
     }
 
@@ -31,7 +38,7 @@ impl Threads {
         match self {
             Threads::All => rayon::current_num_threads(),
             Threads::One => 1,
-            Threads::Pool(pool) => pool.current_num_threads(),
+            Threads::Pool { most, .. } => *most,
         }
     }
 
@@ -51,7 +58,40 @@ impl Threads {
             _ if pieces.len() <= 1 => one(pieces),
             Threads::One => one(pieces),
             Threads::All => many(pieces),
-            Threads::Pool(pool) => pool.install(|| many(pieces)),
+            Threads::Pool { most, started } => match pool(started, pieces.len().min(*most)) {
+                Some(pool) => pool.install(|| many(pieces)),
+                None => one(pieces),
+            },
         }
+    }
+}
+
+/// At least so many threads if the system gives them; what it gave before, or none, if not.
+fn pool(started: &Started, threads: usize) -> Option<Arc<rayon::ThreadPool>> {
+    let mut started = started.lock().unwrap_or_else(PoisonError::into_inner);
+    if started.as_ref().is_none_or(|pool| pool.current_num_threads() < threads) {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        *started = pool.ok().map(Arc::new).or(started.take());
+    }
+    started.clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_are_not_more_than_pieces() {
+        let threads = Threads::new(5000).expect("some");
+        let Threads::Pool { most, started } = &threads else { panic!("one thread") };
+        let running = || started.lock().expect("sound").as_ref().map_or(0, |pool| pool.current_num_threads());
+        assert_eq!((threads.count(), running()), (*most, 0));
+        for (pieces, expected) in [(1, 0), (3, 3), (2, 3), (4, 4)] {
+            let found = threads.map((0..pieces).collect(), || (), |(), k: usize| 2 * k);
+            assert_eq!(found, (0..pieces).map(|k| 2 * k).collect::<Vec<_>>());
+            assert_eq!(running(), expected);
+        }
+        let many = threads.map((0..10_000).collect(), || (), |(), k: usize| k);
+        assert!(many.len() == 10_000 && running() == *most);
     }
 }

@@ -1,12 +1,9 @@
 //! Ctrl-C: the first stops the computation and keeps the results so far; the second ends the program.
 
-use crate::failure;
+use crate::{exit, failure};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
-
-/// What a shell expects of a program that SIGINT ended.
-pub const EXIT_CODE: u8 = 130;
 
 static LISTENING: Once = Once::new();
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -67,13 +64,13 @@ fn answer() {
     let file = unfinished(); // held, so that it is not finished meanwhile
     match (&*file, again) {
         (None, false) => {}
-        (None, true) => std::process::exit(i32::from(EXIT_CODE)),
+        (None, true) => std::process::exit(i32::from(exit::STOPPED)),
         (Some(Unfinished { file, .. }), false) => {
             failure::note(&format!("finishing {file}; press Ctrl-C again to abandon it"));
         }
         (Some(unfinished), true) => {
             give_up(unfinished);
-            std::process::exit(i32::from(EXIT_CODE));
+            std::process::exit(i32::from(exit::STOPPED));
         }
     }
 }

@@ -6,6 +6,7 @@ mod commands;
 mod conditions;
 mod controller;
 mod csv;
+mod exit;
 mod failure;
 mod goals;
 mod input;
@@ -23,6 +24,7 @@ mod quantity;
 mod report;
 mod robot;
 mod robot_json;
+mod sarif;
 mod serve;
 mod state;
 mod table;
@@ -195,19 +197,19 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| is_odd(&word.to_string_lossy())) => {
             failure::write(&error.render().to_string()); // without colours
-            return ExitCode::from(2);
+            return ExitCode::from(exit::USAGE);
         }
         Err(error) => error.exit(),
     };
     let answer = run(&arguments);
     let (text, code) = match answer {
-        Ok(text) => (text, ExitCode::SUCCESS),
+        Ok(text) => (text, ExitCode::from(exit::SUCCESS)),
         Err(failure) => {
             failure.say();
             match failure {
-                Failure::Answered(text) => (text, ExitCode::from(1)),
-                Failure::Stopped(text) => (text, ExitCode::from(interrupt::EXIT_CODE)),
-                _ => (String::new(), ExitCode::from(1)),
+                Failure::Answered(text) => (text, ExitCode::from(exit::FAILED)),
+                Failure::Stopped(text) => (text, ExitCode::from(exit::STOPPED)),
+                _ => (String::new(), ExitCode::from(exit::FAILED)),
             }
         }
     };
@@ -218,7 +220,7 @@ fn main() -> ExitCode {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => code,
         Err(error) => {
             Failure::wrong(format!("standard output cannot be written: {error}")).say();
-            ExitCode::from(1)
+            ExitCode::from(exit::FAILED)
         }
     }
 }

@@ -53,7 +53,8 @@ impl PolicyArguments {
         Ok(Loaded { description: self.freed(loaded.description), ..loaded })
     }
 
-    fn freed(&self, robot: Description) -> Description {
+    /// With its base freed by `--floating`.
+    pub fn freed(&self, robot: Description) -> Description {
         if self.floating { robot.floating() } else { robot }
     }
 

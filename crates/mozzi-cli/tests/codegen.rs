@@ -47,6 +47,35 @@ fn files_of_each_language() {
 }
 
 #[test]
+fn a_program_that_would_be_too_long_is_declined_at_once() {
+    let mut urdf = String::from("<robot name='snake'><link name='l0'/>");
+    for k in 1..=2000 {
+        let axis = if k % 2 == 0 { "0 1 0" } else { "0.6 0 0.8" };
+        urdf += &format!(
+            "<link name='l{k}'><inertial><origin xyz='0.1 0.02 0.3'/><mass value='1'/>\
+             <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j{k}' type='continuous'>\
+             <parent link='l{}'/><child link='l{k}'/><origin xyz='0.1 0.2 0.3'/><axis xyz='{axis}'/></joint>",
+            k - 1
+        );
+    }
+    let robot = common::file(&folder("snake"), "snake.urdf", &(urdf + "</robot>"));
+    for quantity in ["inverse-dynamics", "forward-dynamics", "mass-matrix"] {
+        let begin = std::time::Instant::now();
+        let out = folder("snake_out");
+        let arguments =
+            ["codegen", &robot, "--quantity", quantity, "--lang", "c", "--out", out.to_str().expect("text")];
+        let (code, said) = complaint(&arguments);
+        assert_eq!(code, 1);
+        let words = [quantity, "`snake`", "operations", "expected at most 150000", "--allow-large"];
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+        assert!(begin.elapsed().as_secs() < 20, "{quantity}");
+    }
+    let run = mozzi(&["simulate", &robot, "--compiled", "--time", "0.001", "--method", "euler"]);
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success() && said.contains("longer than the instruction cache"), "{said}");
+}
+
+#[test]
 fn explain_tells_the_work() {
     let all = json(&["codegen", "panda", "--explain", "--end-effector", "panda_hand_tcp"]);
     let work = all["work"].as_array().expect("a list");

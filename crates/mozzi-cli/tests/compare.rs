@@ -43,6 +43,25 @@ fn a_python_that_gives_no_answer() {
         "bare",
         r#"cat > /dev/null; echo '{"library": "mujoco", "version": null, "attempts": [], "error": {"stage": "import", "message": "No module named x"}}'"#,
     );
+    let hangs = fake("hangs", "exec sleep 1000");
+    let begin = std::time::Instant::now();
+    says(
+        &["compare", "ur5", "--python", &hangs, "--time-limit", "0.5"],
+        &["no answer within 0.5 s, it was ended", "the program called as Python"],
+    );
+    assert!(begin.elapsed().as_secs() < 20);
+    says(&["compare", "ur5", "--time-limit", "0"], &["--time-limit is 0 s, expected more than 0"]);
+    let crashes = fake("crashes", "cat > /dev/null; kill -SEGV $$");
+    says(&["compare", "ur5", "--python", &crashes], &["MuJoCo returned no result", "the fault is MuJoCo's"]);
+    let computes = fake(
+        "computes",
+        r#"if grep -q '"library":"mujoco"'; then echo '{"library": "mujoco", "version": "9", "attempts": [], "error": {"stage": "compute", "message": "IndexError: too far", "fault": "mozzi"}}'; else echo '{"library": "pinocchio", "version": "9", "attempts": [], "error": {"stage": "load", "message": "too red"}}'; fi"#,
+    );
+    let report: Value =
+        serde_json::from_slice(&mozzi(&["compare", "ur5", "--python", &computes, "--json"]).stdout).unwrap();
+    let of = |k: usize, key: &str| report["libraries"][k][key].as_str().map(str::to_string);
+    assert_eq!((of(0, "status"), of(0, "fault")), (Some("refused".into()), None), "{report}");
+    assert_eq!((of(1, "status"), of(1, "fault")), (Some("no answer".into()), Some("mozzi".into())), "{report}");
     says(
         &["compare", "ur5", "--python", &bare],
         &["MuJoCo not installed: No module named x", "pip install pin mujoco"],
@@ -84,6 +103,16 @@ fn with_the_real_libraries() {
         assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "explained".into(), "explained".into()));
         assert_eq!(report["libraries"][0]["comparison"]["causes"].as_array().unwrap().len(), kinds, "{report}");
     }
+    // of one joint Pinocchio's Jacobian is a vector
+    for kind in ["revolute", "continuous", "prismatic"] {
+        let one = format!(
+            "<robot name='one'><link name='a'/><link name='b'><inertial><origin xyz='0.4 0.1 0'/><mass value='3'/>\
+             <inertia ixx='0.2' iyy='0.3' izz='0.4' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j' type='{kind}'>\
+             <parent link='a'/><child link='b'/><axis xyz='0 -1 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>"
+        );
+        let (code, report) = run(&file(&folder(&format!("one_{kind}")), "one.urdf", &one));
+        assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "agrees".into(), "agrees".into()), "{report}");
+    }
     let (code, report) = run(&format!("{PEERS}/floating.urdf"));
     assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "agrees".into(), "agrees".into()), "{report}");
     // JSON is handed over as URDF; a file that mozzi refuses is shown to the others
@@ -97,7 +126,12 @@ fn with_the_real_libraries() {
 }
 
 #[test]
-fn a_base_that_the_file_bolts_down_is_not_compared_as_free() {
-    let (_, message) = common::complaint(&["compare", "ur5", "--floating"]);
-    assert!(message.contains("--floating is not for compare: other libraries read the file as it stands"), "{message}");
+fn a_base_that_is_freed_is_free_in_the_libraries() {
+    // it is freed for the libraries, too; a spatial robot whose base hangs in the air
+    let Some(python) = python() else {
+        says(&["compare", "ur5", "--floating", "--python", "no/such/python"], &["did not start"]);
+        return;
+    };
+    let report = common::text(&["compare", "ur5", "--floating", "--python", &python, "--states", "3"]);
+    assert!(report.contains("ur5: a floating base"), "{report}");
 }

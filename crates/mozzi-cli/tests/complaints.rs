@@ -31,6 +31,24 @@ fn wrong_robots() {
         assert_eq!((&found["severity"], &found["line"], &found["column"]), (&"error".into(), &2.into(), &17.into()));
         assert_eq!(found["code"], "mozzi::urdf::misspelled_element");
     }
+    let sarif = |robot: &str| -> (Option<i32>, serde_json::Value) {
+        let output = mozzi(&["check", robot, "--format", "sarif"]);
+        (output.status.code(), serde_json::from_slice(&output.stdout).expect("JSON"))
+    };
+    let (code, found) = sarif(&robot);
+    let result = &found["runs"][0]["results"][0];
+    assert_eq!((code, &found["version"], &result["level"]), (Some(1), &"2.1.0".into(), &"error".into()), "{found}");
+    let place = &result["locations"][0]["physicalLocation"];
+    assert_eq!((&place["region"]["startLine"], &place["region"]["startColumn"]), (&2.into(), &17.into()));
+    assert!(place["artifactLocation"]["uri"].as_str().expect("a reference").ends_with("/arm.urdf"));
+    assert_eq!(result["ruleId"], "mozzi::urdf::misspelled_element");
+    assert_eq!(found["runs"][0]["tool"]["driver"]["rules"][0]["id"], result["ruleId"]);
+    let (code, found) = sarif("ur5");
+    assert_eq!((code, found["runs"][0]["results"].as_array().map(Vec::len)), (Some(0), Some(0)), "{found}");
+    let (code, found) = sarif("nowhere.urdf");
+    let place = &found["runs"][0]["results"][0]["locations"][0]["physicalLocation"];
+    assert_eq!((code, &place["artifactLocation"]["uri"]), (Some(1), &"nowhere.urdf".into()), "{found}");
+    assert!(place["region"].is_null());
     let nowhere = mozzi(&["check", "nowhere.urdf", "--json"]);
     let found: serde_json::Value = serde_json::from_slice(&nowhere.stdout).expect("one line of JSON");
     assert_eq!(
@@ -156,7 +174,24 @@ fn wrong_frames_and_tasks() {
     wrong(&["screws", "panda", "--python"], &["serial chains"]);
     wrong(&["screws", "panda", "--python", "--end-effector", "panda_hand_tcp"], &["serial chains"]);
     wrong(&["terms", "ur5", "--task", "vx,vw"], &["no row `vw`", "wx, wy, wz"]);
-    wrong(&["terms", "ur5", "--task", "wx,vx"], &["singular"]);
+    // of a singular task a note; all other terms are there
+    let output = mozzi(&["terms", "ur5", "--task", "wx,vx"]);
+    let (page, said) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && said.contains("note: Λ and η are omitted: the task is singular"), "{said}");
+    assert!(page.contains("left out: the task is singular in this state") && page.contains("∂θ̈/∂τ = M⁻¹"), "{page}");
+}
+
+#[test]
+fn a_motion_that_does_not_advance_is_an_error() {
+    let folder = folder("stuck");
+    let slide = "<robot name='slide'><link name='rail'/><link name='cart'><inertial><mass value='2'/>\
+        <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+        <joint name='slope' type='prismatic'><parent link='rail'/><child link='cart'/><axis xyz='0.8 0 0.6'/>\
+        <limit lower='-9' upper='9' effort='0' velocity='0'/><dynamics damping='0' friction='15'/></joint></robot>";
+    let robot = file(&folder, "slide.urdf", slide);
+    let start = ["simulate", &robot, "--method", "dopri", "--dtheta", "0.5"];
+    wrong(&start, &["does not advance at t = 0.", "joint `slope`", "Coulomb", "smooth"]);
+    assert!(mozzi(&[&start[..], &["--slip-speed", "0.01"]].concat()).status.success());
 }
 
 #[test]

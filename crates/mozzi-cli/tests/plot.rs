@@ -38,6 +38,13 @@ fn every_kind_of_figure_is_written() {
     assert!(svg.contains("step h [s]") && svg.contains("evaluations of θ̈"), "{svg:.400}");
     let (_, svg) =
         drawn(&["ellipsoids", "ur5", "--theta", "0,-1.2,1.5,0.3,1.1,0", "--theta=0,-2,1,0,1,0", "--plane", "xz"]);
+    let found = common::json(&["plot", "ellipsoids", "ur5", "--floating", "--out", &figure]);
+    assert_eq!(found["out"], *figure);
+    let arguments =
+        ["plot", "convergence", "furuta_pendulum", "--theta", "0.3,0.5", "--time", "0.5", "--halvings", "2"];
+    let methods = common::json(&[&arguments[..], &["--out", &figure]].concat())["methods"].clone();
+    let order = methods[4]["measured_order"].as_f64().expect("Dormand-Prince's");
+    assert!((order - 5.0).abs() < 0.5, "{methods}");
     assert!(svg.contains("velocities at") && svg.contains("forces at"));
 }
 

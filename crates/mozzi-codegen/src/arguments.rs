@@ -1,5 +1,6 @@
 //! A robot's quantities as programs.
 
+use crate::estimate::is_deep;
 use crate::program::Program;
 use crate::record::record;
 use crate::traced::Traced;
@@ -63,7 +64,11 @@ pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments
     arguments.wrenches.iter().try_for_each(|&frame| model.check_frame(frame))?;
     let by = |kernel: Query| recorded(model, query, kernel, arguments);
     if query == ForwardDynamics.into() && !model.has_coupled_joints() {
-        let (bodies, matrix) = (by(query), by(ForwardDynamicsByMassMatrix.into()));
+        let bodies = by(query);
+        if is_deep(model) {
+            return Ok(bodies);
+        }
+        let matrix = by(ForwardDynamicsByMassMatrix.into());
         return Ok(if work(&matrix) < work(&bodies) { matrix } else { bodies });
     }
     Ok(by(query))

@@ -28,6 +28,7 @@
 mod arguments;
 mod count;
 mod emit;
+mod estimate;
 mod function;
 mod jit;
 mod program;
@@ -39,6 +40,7 @@ mod traced;
 pub use arguments::{Arguments, pivot_names, record_quantity};
 pub use count::Count;
 pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
+pub use estimate::{LONGEST_TEXT, estimate, is_too_long};
 pub use function::Function;
 pub use jit::{Kernel, LONGEST_CODE, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};

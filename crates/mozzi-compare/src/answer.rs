@@ -25,8 +25,32 @@ pub enum Workaround {
 pub enum Unavailable {
     NotInstalled(String),
     Refuses(String),
-    /// The script ended without an answer.
-    Died(String),
+    /// The script ended without an answer, or was ended after the time limit.
+    Died(String, Fault),
+}
+
+/// Whose fault a missing answer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The library's own code, or its installation.
+    Library,
+    /// The program that was called as Python.
+    Python,
+    /// mozzi's script.
+    Mozzi,
+}
+
+impl Fault {
+    pub const ALL: [(Fault, &'static str); 3] =
+        [(Fault::Library, "library"), (Fault::Python, "python"), (Fault::Mozzi, "mozzi")];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(fault, _)| *fault == self).map_or("", |(_, name)| name)
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|(fault, _)| *fault)
+    }
 }
 
 /// A library that has the robot.
@@ -80,6 +104,9 @@ impl Answer {
         let error = &value["error"];
         let robot = match error["stage"].as_str() {
             None => Ok(robot(value)?),
+            Some("compute") => {
+                Err(Unavailable::Died(error["message"].as_str()?.to_string(), Fault::named(error["fault"].as_str()?)?))
+            }
             Some("import") => Err(Unavailable::NotInstalled(error["message"].as_str()?.to_string())),
             Some(_) => Err(Unavailable::Refuses(error["message"].as_str()?.to_string())),
         };

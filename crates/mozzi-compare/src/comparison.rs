@@ -10,6 +10,10 @@ use mozzi::Model;
 use mozzi_text::Page;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Importing a library takes seconds, a robot's states fractions of one.
+pub const TIME_LIMIT: Duration = Duration::from_secs(60);
 
 /// How a robot is compared.
 #[derive(Clone, Debug)]
@@ -20,11 +24,13 @@ pub struct Options {
     pub states: usize,
     /// Seed of the random states; 1 by default.
     pub seed: u64,
+    /// A library that has not answered by then is ended; [`TIME_LIMIT`] by default.
+    pub time_limit: Duration,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { python: python::find(None), states: 10, seed: 1 }
+        Options { python: python::find(None), states: 10, seed: 1, time_limit: TIME_LIMIT }
     }
 }
 
@@ -49,7 +55,7 @@ pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Compa
     if model.has_mimic_joints() && question.source.language != "mjcf" {
         peers.push(Peer::PinocchioMimic);
     }
-    let mut answers = python::ask(&options.python, &question, &peers)?;
+    let mut answers = python::ask(&options.python, &question, &peers, options.time_limit)?;
     let coupled = answers.drain(2..).next();
     somebody(&options.python, &answers)?;
     let verdict = |answer: &Answer, coupled: bool| -> Result<Option<Verdict>> {
@@ -75,14 +81,14 @@ pub fn compare(model: &Model, source: Source, options: &Options) -> Result<Compa
 /// See [`Error`].
 pub fn ask(source: Source, options: &Options) -> Result<Comparison> {
     let question = Question::of_file(source);
-    let answers = python::ask(&options.python, &question, &[Peer::Pinocchio, Peer::MuJoCo])?;
+    let answers = python::ask(&options.python, &question, &[Peer::Pinocchio, Peer::MuJoCo], options.time_limit)?;
     somebody(&options.python, &answers)?;
     let findings = answers.into_iter().map(|answer| Finding { answer, verdict: None, coupled: None }).collect();
     Ok(Comparison { question, seed: options.seed, joints: None, findings })
 }
 
 fn somebody(python: &Path, answers: &[Answer]) -> Result<()> {
-    let silent = |answer: &Answer| matches!(answer.robot, Err(Unavailable::NotInstalled(_) | Unavailable::Died(_)));
+    let silent = |answer: &Answer| matches!(answer.robot, Err(Unavailable::NotInstalled(_) | Unavailable::Died(..)));
     if !answers.iter().all(silent) {
         return Ok(());
     }
@@ -90,7 +96,11 @@ fn somebody(python: &Path, answers: &[Answer]) -> Result<()> {
         Err(unavailable) => format!("{} {}", answer.library, vocabulary::unavailable(unavailable, answer.library)),
         Ok(_) => String::new(),
     };
-    let reasons = answers.iter().map(reason).collect::<Vec<_>>().join("; ");
+    let mut reasons: Vec<String> = answers.iter().map(reason).collect();
+    if answers.iter().any(|answer| matches!(answer.robot, Err(Unavailable::NotInstalled(_)))) {
+        reasons.push("`pip install pin mujoco` gives it both".into());
+    }
+    let reasons = reasons.join("; ");
     Err(Error::NoLibrary { python: python.to_path_buf(), reasons })
 }
 
@@ -105,9 +115,14 @@ impl Comparison {
         self.verdicts_are(Verdict::agrees)
     }
 
-    /// Whether at least one library computed results, and every difference is explained.
+    /// Whether at least one library computed results, every difference is explained, and no library that is installed
+    /// failed to answer.
     pub fn is_explained(&self) -> bool {
-        self.verdicts_are(Verdict::is_explained)
+        let answers = self.findings.iter().flat_map(|finding| {
+            [Some(&finding.answer), finding.coupled.as_ref().map(|(answer, _)| answer)].into_iter().flatten()
+        });
+        let mut died = answers.filter(|answer| matches!(answer.robot, Err(Unavailable::Died(..))));
+        self.verdicts_are(Verdict::is_explained) && died.next().is_none()
     }
 
     /// The report as text: for each library whether it agrees, and the causes.

@@ -33,7 +33,7 @@ pub enum Error {
         error: std::io::Error,
     },
     /// No library returned results.
-    #[error("`{}` has no library to compare with: {reasons}; `pip install pin mujoco` gives it both", python.display())]
+    #[error("`{}` has no library to compare with: {reasons}", python.display())]
     NoLibrary {
         /// The program.
         python: PathBuf,

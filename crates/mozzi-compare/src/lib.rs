@@ -33,7 +33,7 @@ mod tests;
 mod verdict;
 mod vocabulary;
 
-pub use comparison::{Comparison, Options, ask, compare};
+pub use comparison::{Comparison, Options, TIME_LIMIT, ask, compare};
 pub use error::Error;
 pub use numbers::BOUND;
 pub use python::find as find_python;

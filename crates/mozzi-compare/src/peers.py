@@ -32,7 +32,8 @@ def attempt(load):
 
 
 def numbers(vector):
-    return [float(x) if abs(x) < float("inf") else None for x in vector]  # JSON has no word for NaN
+    flat = vector.ravel() if hasattr(vector, "ravel") else vector  # a column, or of one number a scalar
+    return [float(x) if abs(x) < float("inf") else None for x in flat]  # JSON has no word for NaN
 
 
 def rows(matrix):
@@ -149,7 +150,7 @@ class Pinocchio:
     def state(self, theta, dtheta, ddtheta):
         pin, model, data = self.pin, self.model, self.data
         q, v, a = self.configuration(theta), self.velocity(dtheta), self.velocity(ddtheta)
-        M = self.np.triu(pin.crba(model, data, q))
+        M = self.np.triu(self.np.reshape(pin.crba(model, data, q), (model.nv, model.nv)))
         return {
             "M": rows(M + self.np.triu(M, 1).T),
             "g": numbers(pin.computeGeneralizedGravity(model, data, q)),
@@ -381,13 +382,25 @@ def answer(question):
             robot = MuJoCo(library, np, question, result["attempts"])
     except Refused as error:
         return {**result, "error": {"stage": "load", "message": str(error)}}
+    try:
+        result.update(computed(robot, question))
+    except Exception as error:
+        # a mistake of this script, or what the library raises
+        own = isinstance(error, (IndexError, KeyError, TypeError, AttributeError, NameError))
+        message = f"{type(error).__name__}: {one_line(error)}"
+        fault = "mozzi" if own else "library"
+        return {**result, "error": {"stage": "compute", "message": message, "fault": fault}}
+    return result
+
+
+def computed(robot, question):
     joints = [joint for joint in robot.joints() if joint["nv"] > 0]
     base = joints[:1] if question["floating"] and joints and joints[0]["nv"] == 6 else []
     for joint in base:
         joint.update(base=True, called=joint["name"])
     rename(joints[len(base):], question["joints"])
     theirs = {joint["name"]: joint["called"] for joint in joints}
-    result.update(robot.about(), joints=joints, states=[])
+    result = {**robot.about(), "joints": joints, "states": []}
     for state in question["states"]:
         values = [
             {theirs[name]: x for name, x in zip(question["names"], state[key]) if name in theirs}

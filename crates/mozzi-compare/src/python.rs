@@ -1,11 +1,14 @@
 //! Asking the libraries: the script in a Python, a question in, an answer out.
 
-use crate::answer::{Answer, Unavailable, name_of};
+use crate::answer::{Answer, Fault, Unavailable, name_of};
 use crate::question::Question;
 use crate::{Error, Result};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
 
 const SCRIPT: &str = include_str!("peers.py");
 
@@ -35,14 +38,15 @@ pub fn find(named: Option<&str>) -> PathBuf {
 }
 
 /// Each in a process of its own, at the same time: one that dies takes no other along.
-pub fn ask(python: &Path, question: &Question, peers: &[Peer]) -> Result<Vec<Answer>> {
+pub fn ask(python: &Path, question: &Question, peers: &[Peer], limit: Duration) -> Result<Vec<Answer>> {
     let running: Vec<(Peer, Child)> = peers.iter().map(|&peer| Ok((peer, start(python)?))).collect::<Result<_>>()?;
-    let answers = std::thread::scope(|scope| {
+    let answers = thread::scope(|scope| {
         let threads: Vec<_> = running
             .into_iter()
-            .map(|(peer, child)| (peer, scope.spawn(move || answer(child, question, peer))))
+            .map(|(peer, child)| (peer, scope.spawn(move || answer(child, question, peer, limit))))
             .collect();
-        let died = |peer: Peer| Answer::silent(peer.key(), Unavailable::Died("its answer was not read".into()));
+        let died =
+            |peer: Peer| Answer::silent(peer.key(), Unavailable::Died("its answer was not read".into(), Fault::Mozzi));
         threads.into_iter().map(|(peer, thread)| thread.join().unwrap_or_else(|_| died(peer))).collect()
     });
     Ok(answers)
@@ -54,39 +58,88 @@ fn start(python: &Path) -> Result<Child> {
     command.spawn().map_err(|error| Error::Python { python: python.to_path_buf(), error })
 }
 
-fn answer(child: Child, question: &Question, peer: Peer) -> Answer {
+fn answer(child: Child, question: &Question, peer: Peer, limit: Duration) -> Answer {
     let read = |value: serde_json::Value| {
         let answer = Answer::read(&value).filter(|answer| answer.library == name_of(peer.key()));
         answer.ok_or_else(|| not_written(&value.to_string()))
     };
-    let answer = value(child, question, peer).and_then(read);
-    answer.unwrap_or_else(|why| Answer::silent(peer.key(), Unavailable::Died(why)))
+    let answer = value(child, question, peer, limit).and_then(read);
+    answer.unwrap_or_else(|(why, fault)| Answer::silent(peer.key(), Unavailable::Died(why, fault)))
 }
 
 /// One answer as JSON, to be kept.
 #[cfg(test)]
 pub fn raw(python: &Path, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
-    value(start(python).map_err(|error| error.to_string())?, question, peer)
+    let child = start(python).map_err(|error| error.to_string())?;
+    value(child, question, peer, crate::TIME_LIMIT).map_err(|(why, _)| why)
 }
 
-fn not_written(text: &str) -> String {
+/// Why there is no answer, and whose fault that is.
+type Missing = (String, Fault);
+
+fn not_written(text: &str) -> Missing {
     let start: String = text.chars().take(60).collect();
-    format!("its answer is not what the script writes: `{start}`")
+    (format!("its answer is not what the script writes: `{start}`"), Fault::Python)
 }
 
 /// What the script prints, or why there is none.
-fn value(mut child: Child, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
-    let text = question.json(peer.key(), peer == Peer::PinocchioMimic).map_err(|error| error.to_string())?.to_string();
+fn value(
+    mut child: Child,
+    question: &Question,
+    peer: Peer,
+    limit: Duration,
+) -> std::result::Result<serde_json::Value, Missing> {
+    let of_mozzi = |why: String| (why, Fault::Mozzi);
+    let asked = question.json(peer.key(), peer == Peer::PinocchioMimic).map_err(|error| of_mozzi(error.to_string()))?;
     if let Some(mut stdin) = child.stdin.take() {
         // a script that ends before it has read says why by its exit
-        let _ = stdin.write_all(text.as_bytes());
+        thread::spawn(move || drop(stdin.write_all(asked.to_string().as_bytes())));
     }
-    let output = child.wait_with_output().map_err(|error| format!("its answer cannot be read: {error}"))?;
-    let said = String::from_utf8_lossy(&output.stderr);
+    let (out, err) = (text_of(child.stdout.take()), text_of(child.stderr.take()));
+    let deadline = Instant::now() + limit;
+    let late = || (format!("no answer within {} s, it was ended", limit.as_secs_f64()), Fault::Python);
+    let (text, status) = match (received(&out, deadline), ended(&mut child, deadline)) {
+        (Some(text), Some(status)) => (text, status),
+        _ => {
+            // the threads that read it end with its pipes
+            let _ = child.kill().and_then(|()| child.wait());
+            return Err(late());
+        }
+    };
+    let said = received(&err, deadline).unwrap_or_default();
     let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing").trim();
-    if !output.status.success() {
-        return Err(format!("Python ended with {}: {last}", output.status));
+    if !status.success() {
+        // by a signal: the library's own code
+        let fault = if status.code().is_none() { Fault::Library } else { Fault::Python };
+        return Err((format!("Python ended with {status}: {last}"), fault));
     }
-    let text = String::from_utf8_lossy(&output.stdout);
     serde_json::from_str(&text).map_err(|_| not_written(&text))
+}
+
+/// A pipe's text, when it is closed.
+fn text_of(pipe: Option<impl Read + Send + 'static>) -> Receiver<String> {
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut pipe) = pipe {
+            let _ = pipe.read_to_end(&mut bytes);
+        }
+        let _ = sender.send(String::from_utf8_lossy(&bytes).into_owned());
+    });
+    receiver
+}
+
+fn received(text: &Receiver<String>, deadline: Instant) -> Option<String> {
+    text.recv_timeout(deadline.saturating_duration_since(Instant::now())).ok()
+}
+
+/// How it ended, if it did in time.
+fn ended(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) => return Some(status),
+            Ok(None) if Instant::now() < deadline => thread::sleep(Duration::from_millis(5)),
+            _ => return None,
+        }
+    }
 }

@@ -19,6 +19,10 @@ pub fn object(finding: &Finding) -> Value {
             Err(unavailable) => Value::from(vocabulary::unavailable(unavailable, answer.library)),
             Ok(_) => Value::Null,
         },
+        "fault": match &answer.robot {
+            Err(Unavailable::Died(_, fault)) => Value::from(fault.name()),
+            _ => Value::Null,
+        },
         "refusals": answer.attempts.iter().map(|(message, workaround)| json!({
             "message": message, "then": vocabulary::workaround(*workaround),
         })).collect::<Value>(),
@@ -51,7 +55,7 @@ pub fn status(finding: &Finding) -> &'static str {
     match (&finding.answer.robot, &finding.verdict) {
         (Err(Unavailable::NotInstalled(_)), _) => "not installed",
         (Err(Unavailable::Refuses(_)), _) => "refused",
-        (Err(Unavailable::Died(_)), _) => "no answer",
+        (Err(Unavailable::Died(..)), _) => "no answer",
         (Ok(_), None) => "loaded",
         (Ok(_), Some(verdict)) if verdict.agrees() => "agrees",
         (Ok(_), Some(verdict)) if verdict.is_explained() => "explained",

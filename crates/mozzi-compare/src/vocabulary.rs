@@ -1,6 +1,6 @@
 //! Causes in words.
 
-use crate::answer::{Answer, Unavailable, Workaround};
+use crate::answer::{Answer, Fault, Unavailable, Workaround};
 use crate::bodies::{BodyChange, Reason};
 use crate::cause::{Cause, Change};
 use mozzi_text::{about, scalar, tuple};
@@ -144,6 +144,13 @@ pub fn unavailable(unavailable: &Unavailable, library: &str) -> String {
     match unavailable {
         Unavailable::NotInstalled(message) => format!("not installed: {message}; pip install {package}"),
         Unavailable::Refuses(message) => format!("refuses the file: {message}"),
-        Unavailable::Died(message) => format!("returned no result: {message}"),
+        Unavailable::Died(message, fault) => {
+            let whose = match fault {
+                Fault::Library => format!("the fault is {library}'s, or that of its installation"),
+                Fault::Python => "the fault is that of the program called as Python".to_string(),
+                Fault::Mozzi => "the fault is that of mozzi's script; please report it".to_string(),
+            };
+            format!("returned no result: {message}; {whose}")
+        }
     }
 }

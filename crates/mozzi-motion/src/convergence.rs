@@ -1,15 +1,16 @@
 //! How exact each method of a simulation is, and at what cost.
 
 use crate::error::check;
-use mozzi::simulation::{Method, Options, Policy, Simulation, torque};
+use mozzi::simulation::{Method, Options, Policy, Simulation, dormand_prince_by_equal_steps, torque};
 use mozzi::{Error, Model, difference};
 use std::cell::Cell;
-use std::ops::ControlFlow;
 
-/// The reference takes so many times as many steps as the finest that is compared with it, by Runge-Kutta 4.
+/// The reference takes so many times as many steps as the finest that is compared with it, by Dormand-Prince.
 const FINER: usize = 4;
-/// Smaller errors, in rad or m, tell nothing of a method.
-const ROUNDING: f64 = 1e-13;
+/// For Dormand-Prince's order, steps are doubled so often from the longest on.
+const COARSER: u32 = 4;
+/// Smaller errors, in rad or m, are close to rounding, and tell nothing of a method.
+const ROUNDING: f64 = 1e-12;
 
 /// Motions by one method compared with the reference.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Convergence {
     pub order: u32,
     /// From the coarsest to the finest; those that left the numbers, or had no solution, are left out.
     pub measured: Vec<Measured>,
+    /// Dormand-Prince only: the same by equal steps, without a tolerance, for its order.
+    pub equal_steps: Vec<Measured>,
 }
 
 /// One of them.
@@ -34,14 +37,14 @@ pub struct Measured {
 }
 
 impl Convergence {
-    /// The order that errors show: of given steps the last two, by the steps; of Dormand-Prince the last and the one in
-    /// the middle, by the evaluations. None where they are rounding.
+    /// The order that errors of equal steps show: d ln(error)/d ln(step) of the two finest whose errors are not
+    /// rounding.
     pub fn measured_order(&self) -> Option<f64> {
-        let (many, fine) = (self.measured.len(), self.measured.last()?);
-        let coarse = if self.is_adaptive() { self.measured[many / 2] } else { self.measured[many.checked_sub(2)?] };
-        let work = |of: &Measured| if self.is_adaptive() { of.evaluations as f64 } else { 1.0 / of.step };
-        let order = (coarse.error / fine.error).ln() / (work(fine) / work(&coarse)).ln();
-        Some(order).filter(|order| order.is_finite() && fine.error > ROUNDING)
+        let points = if self.is_adaptive() { &self.equal_steps } else { &self.measured };
+        let pair = points.windows(2).rfind(|pair| pair[1].error > ROUNDING)?;
+        let (coarse, fine) = (pair[0], pair[1]);
+        let order = (coarse.error / fine.error).ln() / (coarse.step / fine.step).ln();
+        Some(order).filter(|order| order.is_finite())
     }
 
     /// Are its steps found by a tolerance?
@@ -52,7 +55,7 @@ impl Convergence {
 
 /// The error of every method at the end of a motion with motors off. Fixed-step methods begin with the given number of
 /// steps, which is doubled for each further error; adaptive ones take as many tolerances, each a tenth of the one
-/// before, from 10⁻³ on. The reference is Runge-Kutta 4 with a quarter of the shortest step. `progress(done, all)`
+/// before, from 10⁻³ on. The reference is Dormand-Prince with a quarter of the shortest step. `progress(done, all)`
 /// counts evaluations of θ̈; `all` is an estimate.
 ///
 /// # Errors
@@ -69,23 +72,34 @@ pub fn convergence(
     check(coarsest >= 1, "the number of steps", coarsest, "at least 1")?;
     let finest = coarsest << halvings;
     let counted = Cell::new(0_usize);
-    // Runge-Kutta's four a step of the reference are most of them; the others are of some 20 a step, twice the finest's
-    let all = 4 * FINER * finest + 40 * finest;
-    let mut end = |method, steps| {
+    // the reference's six a step are most of them; the others are of some 30 a step, twice the finest's
+    let all = 6 * FINER * finest + 60 * finest;
+    let mut end = |method, steps, is_equal| {
         let before = counted.get();
-        let count = torque(|_, _, _, _| counted.set(counted.get() + 1));
+        let count = torque(|_, _, _, _| {
+            counted.set(counted.get() + 1);
+            progress(counted.get().min(all), all);
+        });
         let rows =
             Options { method, record_every: steps, joint_limits: Policy::Ignore, ..Options::new(duration, steps) };
-        let run = Simulation::new(rows).run_with_progress(model, theta, dtheta, count, |_| {
-            progress(counted.get().min(all), all);
-            ControlFlow::Continue(())
-        })?;
+        if is_equal && matches!(method, Method::DormandPrince { .. }) {
+            let end = dormand_prince_by_equal_steps(model, [theta, dtheta], count, &rows)?;
+            return Ok((end, counted.get() - before));
+        }
+        let run = Simulation::new(rows).run(model, theta, dtheta, count)?;
         Ok::<_, Error>((run.motion.last().theta.to_vec(), counted.get() - before))
     };
-    let (reference, _) = end(Method::RungeKutta4, FINER * finest)?;
+    let (reference, _) = end(Method::DormandPrince { tolerance: 1.0 }, FINER * finest, true)?;
     let of_method = |method: Method| {
         let steps = (0..=halvings).map(|halving| coarsest << halving);
         steps.map(|steps| (duration / steps as f64, method, steps)).collect::<Vec<_>>()
+    };
+    // its errors are rounding at the finest steps of the others
+    let coarse = |method: Method| {
+        let mut steps = of_method(method);
+        let longer = (1..=COARSER).map(|k| coarsest >> k).take_while(|&steps| steps > 0);
+        longer.for_each(|count| steps.insert(0, (duration / count as f64, method, count)));
+        steps
     };
     let tolerances = (0..=halvings).map(|k| 10_f64.powi(-3 - k as i32));
     let ways = [
@@ -95,23 +109,28 @@ pub fn convergence(
         of_method(Method::RungeKutta4),
         tolerances.map(|tolerance| (tolerance, Method::DormandPrince { tolerance }, 1)).collect(),
     ];
-    let mut found = Vec::new();
-    for each in ways {
-        let (_, method, _) = each[0];
+    let mut measure = |each: Vec<(f64, Method, usize)>, is_equal| {
         let mut measured = Vec::new();
         for (step, method, steps) in each {
-            let (theta, evaluations) = match end(method, steps) {
+            let (theta, evaluations) = match end(method, steps, is_equal) {
                 Ok(end) => end,
                 // too long a step for this one: no point of the curve
-                Err(Error::Diverged { .. } | Error::NoConvergence { .. } | Error::TooStiff { .. }) => continue,
-                Err(other) => return Err(other.into()),
+                Err(Error::Diverged { .. } | Error::NoConvergence { .. } | Error::Stalled { .. }) => continue,
+                Err(other) => return Err(other),
             };
             let mut apart = vec![0.0; model.n()];
             difference(model, &reference, &theta, &mut apart);
             let error = apart.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             measured.push(Measured { step, evaluations, error });
         }
-        found.push(Convergence { name: method.name(), order: method.order(), measured });
+        Ok::<_, Error>(measured)
+    };
+    let mut found = Vec::new();
+    for each in ways {
+        let (_, method, _) = each[0];
+        let measured = measure(each, !method.is_adaptive())?;
+        let equal_steps = if method.is_adaptive() { measure(coarse(method), true)? } else { Vec::new() };
+        found.push(Convergence { name: method.name(), order: method.order(), measured, equal_steps });
     }
     Ok(found)
 }
@@ -126,13 +145,23 @@ mod tests {
         let found = convergence(&model, [&[1.0, 0.3], &[0.0; 2]], 0.5, 8, 6, |_, _| ()).expect("errors");
         assert_eq!(found.len(), 5);
         for each in &found {
-            let order = each.measured_order().expect("four errors");
-            // of tolerances the number of steps is rounded
-            let margin = if each.is_adaptive() { 1.5 } else { 0.5 };
-            assert!((order - f64::from(each.order)).abs() < margin, "{order} {each:?}");
+            let order = each.measured_order().expect("errors");
+            assert!((order - f64::from(each.order)).abs() < 0.4, "{order} {each:?}");
         }
         let of = |k: usize| found[k].measured[0];
         // 8 steps: an evaluation each and one at the start; four of each
         assert_eq!((of(0).evaluations, of(3).evaluations), (9, 33));
+        // six of each step by Dormand-Prince, whose last is the next one's first
+        assert_eq!(found[4].equal_steps[3].evaluations, 6 * 8 + 1);
+    }
+
+    #[test]
+    fn the_order_does_not_depend_on_the_motion() {
+        for (name, theta, step) in [("double_pendulum", [0.2, -1.0], 50), ("furuta_pendulum", [0.3, 0.5], 50)] {
+            let model = mozzi_urdf::open(name).and_then(mozzi_urdf::Loaded::build).expect("embedded");
+            let found = convergence(&model, [&theta, &[0.0; 2]], 1.0, step, 5, |_, _| ()).expect("errors");
+            let order = found[4].measured_order().expect("errors");
+            assert!((order - 5.0).abs() < 0.4, "{name}: {order} {:?}", found[4].equal_steps);
+        }
     }
 }

@@ -27,7 +27,7 @@ pub fn _compare(
     python: PathBuf,
     policy: &str,
 ) -> PyResult<(String, String, bool, bool)> {
-    let options = Options { python, states, seed };
+    let options = Options { python, states, seed, time_limit: mozzi_compare::TIME_LIMIT };
     let report = |c: &Comparison| (c.text(), c.json().to_string(), c.agrees(), c.is_explained());
     if let Ok(model) = robot.cast::<PyModel>() {
         let model = &model.get().robot().model;

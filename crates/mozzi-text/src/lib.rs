@@ -26,8 +26,13 @@ pub fn pad(text: &str, to: usize, align: char) -> String {
 pub struct Decimals {
     places: usize,
     scientific: bool,
+    /// Constants keep their digits: what the decimals would cut is written with an exponent.
+    is_constant: bool,
     rounding: f64,
 }
+
+/// A number shown with a larger relative error has lost its digits.
+const LOST: f64 = 0.01;
 
 impl Decimals {
     /// About five digits for the largest number, fewer where all are short.
@@ -37,7 +42,7 @@ impl Decimals {
 
     /// About eight digits: for constants.
     pub fn long<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
-        Self::with_digits(values, 7)
+        Decimals { is_constant: true, ..Self::with_digits(values, 7) }
     }
 
     fn with_digits<'a>(values: impl IntoIterator<Item = &'a f64>, digits: i32) -> Self {
@@ -45,7 +50,12 @@ impl Decimals {
         let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let exponent = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
         if !(-4..=7).contains(&exponent) {
-            return Decimals { places: digits as usize, scientific: true, rounding: 1e-12 * largest };
+            return Decimals {
+                places: digits as usize,
+                scientific: true,
+                is_constant: false,
+                rounding: 1e-12 * largest,
+            };
         }
         let most = if exponent >= 0 { (digits - exponent).max(1) } else { digits - 1 - exponent } as usize;
         let rounding = 1e-12 * largest;
@@ -56,7 +66,21 @@ impl Decimals {
             })
         };
         let places = (0..most).find(|&places| exact(places)).unwrap_or(most);
-        Decimals { places, scientific: false, rounding }
+        Decimals { places, scientific: false, is_constant: false, rounding }
+    }
+
+    /// For a computed matrix: with exponents where an entry of its diagonal would lose its digits, such as a small
+    /// joint's in M.
+    fn of_matrix(M: &DMatrix<f64>) -> Self {
+        let decimals = Self::of(M.iter());
+        let is_lost = M.is_square() && M.diagonal().iter().any(|&x| decimals.loses(x));
+        if is_lost { Decimals { places: 4, scientific: true, ..decimals } } else { decimals }
+    }
+
+    /// Would it be shown with too few digits?
+    fn loses(self, x: f64) -> bool {
+        let shown: f64 = format!("{x:.*}", self.places).parse().unwrap_or(f64::NAN);
+        x.is_finite() && x.abs() > self.rounding && !self.scientific && (shown - x).abs() > LOST * x.abs()
     }
 
     /// A number of the table.
@@ -69,6 +93,9 @@ impl Decimals {
             "0".to_string() + &" ".repeat(if places > 0 { tail + 1 } else { 0 })
         } else if self.scientific {
             format!("{x:.places$e}")
+        } else if self.is_constant && self.loses(x) {
+            let short = format!("{x:e}");
+            if short.len() <= 10 { short } else { format!("{x:.4e}") }
         } else {
             let text = format!("{x:.places$}");
             let zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
@@ -169,7 +196,7 @@ pub fn rows_of(columns: Vec<Vec<String>>) -> Vec<Vec<String>> {
 
 /// A matrix that was computed, in brackets; one that is too wide in groups of columns, which are then numbered.
 pub fn matrix(M: &DMatrix<f64>) -> Vec<String> {
-    matrix_with(M, Decimals::of(M.iter()))
+    matrix_with(M, Decimals::of_matrix(M))
 }
 
 /// A matrix of constants, with their digits.
@@ -265,5 +292,32 @@ impl Page {
     /// The text.
     pub fn end(&mut self) -> String {
         std::mem::take(&mut self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_numbers_keep_their_digits() {
+        assert_eq!(column(&[1.0, 1e-9, 2.5e-4]), ["1.0000000", "1e-9", "0.0002500"]);
+        assert_eq!(column(&[2.0, 1.23456789e-8, 0.0]).map_trimmed(), ["2.0000000", "1.2346e-8", "0"]);
+        // rounding of a larger number is 0
+        assert_eq!(column(&[1.0, 1e-17]).map_trimmed(), ["1", "0"]);
+        let small = DMatrix::from_row_slice(2, 2, &[0.5, 2e-7, 2e-7, 3.1e-7]);
+        assert!(matrix(&small).concat().contains("3.1000e-7"), "{:?}", matrix(&small));
+        let usual = DMatrix::from_row_slice(2, 2, &[0.5123, 1e-9, 1e-9, 0.0312]);
+        assert!(!matrix(&usual).concat().contains('e'), "{:?}", matrix(&usual));
+    }
+
+    trait Trimmed {
+        fn map_trimmed(&self) -> Vec<&str>;
+    }
+
+    impl Trimmed for Vec<String> {
+        fn map_trimmed(&self) -> Vec<&str> {
+            self.iter().map(|text| text.trim()).collect()
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::info;
 use crate::failure::{self, Failure, Result};
 use crate::json_file::Misplaced;
 use crate::robot::PolicyArguments;
-use crate::{input, robot_json};
+use crate::{input, json as pretty, robot_json, sarif};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_urdf::{Consequence, Diagnostic, Severity};
@@ -14,7 +14,8 @@ use serde_json::{Value, json};
 pub struct CheckArguments {
     /// A robot's file (URDF, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
-    /// Text with excerpts on standard error, or one JSON object per diagnostic and line on standard output
+    /// Text with excerpts on standard error, or on standard output one JSON object per diagnostic and line,
+    /// or one log in SARIF 2.1.0
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// The same as --format json
@@ -28,6 +29,13 @@ pub struct CheckArguments {
 enum Format {
     Text,
     Json,
+    Sarif,
+}
+
+impl CheckArguments {
+    fn format(&self) -> Format {
+        if self.json { Format::Json } else { self.format }
+    }
 }
 
 pub fn run(arguments: &CheckArguments) -> Result<String> {
@@ -36,13 +44,14 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
         return json_robot(arguments);
     }
     let answer = arguments.policy.open(name);
-    if arguments.json || arguments.format == Format::Json {
+    let format = arguments.format();
+    if format != Format::Text {
         return match answer {
-            Ok(loaded) => Ok(lines(&loaded.warnings) + &lines(&loaded.unused)),
+            Ok(loaded) => Ok(print(format, &objects(loaded.warnings.iter().chain(&loaded.unused)))),
             Err(error) if error.diagnostics().is_empty() => {
-                Err(Failure::Answered(placeless(name, "error", None, &error.to_string())))
+                Err(Failure::Answered(print(format, &[placeless(name, "error", None, &error.to_string())])))
             }
-            Err(error) => Err(Failure::Answered(lines(error.diagnostics()))),
+            Err(error) => Err(Failure::Answered(print(format, &objects(error.diagnostics())))),
         };
     }
     let loaded = answer?;
@@ -55,17 +64,20 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
 /// A robot of JSON: the same checks, each problem by its element, as there is no text to point at.
 fn json_robot(arguments: &CheckArguments) -> Result<String> {
     let name = input::name(&arguments.model);
-    let is_lines = arguments.json || arguments.format == Format::Json;
+    let (format, is_object) = (arguments.format(), arguments.format() != Format::Text);
     let robot = match robot_json::read(&arguments.model) {
-        Err(errors) if is_lines => {
-            return Err(Failure::Answered(errors.iter().map(|error| misplaced(name, error)).collect()));
+        Err(errors) if is_object => {
+            let errors: Vec<Value> = errors.iter().map(|error| misplaced(name, error)).collect();
+            return Err(Failure::Answered(print(format, &errors)));
         }
-        other => other?,
+        other => arguments.policy.freed(other?),
     };
     let (errors, warnings) = arguments.policy.problems(&robot);
     let all = || errors.iter().map(|e| ("error", e)).chain(warnings.iter().map(|w| ("warning", w)));
-    if is_lines {
-        let text = all().map(|(severity, p)| placeless(name, severity, Some(p.code), &p.to_string())).collect();
+    if is_object {
+        let found: Vec<Value> =
+            all().map(|(severity, p)| placeless(name, severity, Some(p.code), &p.to_string())).collect();
+        let text = print(format, &found);
         return if errors.is_empty() { Ok(text) } else { Err(Failure::Answered(text)) };
     }
     all().for_each(|(severity, problem)| failure::write(&format!("{name}: {severity}: {problem}\n")));
@@ -87,14 +99,15 @@ fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
     Ok(String::new())
 }
 
-fn lines(diagnostics: &[Diagnostic]) -> String {
-    let line = |found: &Diagnostic| {
+/// Each with its severity (error, warning, note) and its place.
+fn objects<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Value> {
+    let object = |found: &Diagnostic| {
         let severity = match found.severity() {
             _ if found.consequence() == Consequence::Unused => "note",
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        line(json!({
+        json!({
             "severity": severity,
             "code": found.code(),
             "message": found.message(),
@@ -102,14 +115,14 @@ fn lines(diagnostics: &[Diagnostic]) -> String {
             "line": found.line(),
             "column": found.column(),
             "help": found.help(),
-        }))
+        })
     };
-    diagnostics.iter().map(line).collect()
+    diagnostics.into_iter().map(object).collect()
 }
 
 /// There is no text to point at.
-fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> String {
-    line(json!({
+fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> Value {
+    json!({
         "severity": severity,
         "code": code.map(|code| format!("mozzi::urdf::{code}")),
         "message": message,
@@ -117,18 +130,21 @@ fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> S
         "line": null,
         "column": null,
         "help": code.and_then(mozzi_urdf::remedy),
-    }))
+    })
 }
 
 /// The text of JSON itself is wrong.
-fn misplaced(name: &str, error: &Misplaced) -> String {
+fn misplaced(name: &str, error: &Misplaced) -> Value {
     let (row, column) = error.position.unzip();
-    line(json!({
+    json!({
         "severity": "error", "code": null, "message": error.message,
         "file": name, "line": row, "column": column, "help": null,
-    }))
+    })
 }
 
-fn line(object: Value) -> String {
-    format!("{object}\n")
+fn print(format: Format, diagnostics: &[Value]) -> String {
+    match format {
+        Format::Sarif => pretty::print(&sarif::log(diagnostics)),
+        _ => diagnostics.iter().map(|object| format!("{object}\n")).collect(),
+    }
 }

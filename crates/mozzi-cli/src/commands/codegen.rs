@@ -7,11 +7,15 @@ use crate::quantity::{hyphenated, is_of_a_frame, of_end_effector, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use crate::state::check_frames;
 use crate::text::{Page, table};
+use crate::workload::count;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
 use mozzi::quantities::{LIST, Query};
-use mozzi_codegen::{Arguments, Count, Kernel, Language, Precision, Refusal, Shape, SourceFile, emit, record_quantity};
+use mozzi_codegen::{
+    Arguments, Count, Kernel, LONGEST_TEXT, Language, Precision, Refusal, Shape, SourceFile, emit, estimate,
+    record_quantity,
+};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +40,9 @@ pub struct CodegenArguments {
     /// effector) or wrench=FRAME; may be repeated
     #[arg(long, value_name = "WHAT", value_parser = argument)]
     argument: Vec<Argument>,
+    /// Allow programs of more than 150000 operations
+    #[arg(long)]
+    allow_large: bool,
     /// Print the number of operations before and after folding constants, and the length of the machine code
     #[arg(long)]
     explain: bool,
@@ -112,6 +119,9 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         queries = (0..LIST.len()).map(Query::at).filter(|query| has_end || !is_of_a_frame(*query)).collect();
     }
     let queries = queries.into_iter().map(|query| of_end_effector(query, &model)).collect::<Result<Vec<Query>>>()?;
+    if !arguments.allow_large {
+        queries.iter().try_for_each(|&query| check_length(&model, query))?;
+    }
     let precision = arguments.precision;
     let files = match (arguments.lang, &arguments.out) {
         (Some(language), Some(folder)) => {
@@ -137,6 +147,22 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         explain(&mut page, &model, &works);
     }
     Ok(page.end())
+}
+
+/// Recording a long program takes minutes and gigabytes, and so does compiling its text.
+fn check_length(model: &Model, query: Query) -> Result<()> {
+    query.check_subject(model)?;
+    let operations = estimate(model, query);
+    if operations <= LONGEST_TEXT {
+        return Ok(());
+    }
+    Err(Failure::wrong(format!(
+        "{} of `{}` would be about {} operations without loops, expected at most {}; --allow-large allows more",
+        hyphenated(query.name()),
+        model.description().name,
+        count(operations),
+        count(LONGEST_TEXT)
+    )))
 }
 
 /// Their paths and lengths.

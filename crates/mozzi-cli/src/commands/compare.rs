@@ -3,12 +3,14 @@
 use super::info;
 use crate::failure::{Failure, Result};
 use crate::json;
+use crate::numbers::number;
 use crate::robot::PolicyArguments;
 use crate::{input, robot_json};
 use clap::Args;
 use mozzi::Description;
 use mozzi_compare::{Options, Source, ask, compare, find_python};
 use std::path::Path;
+use std::time::Duration;
 
 #[derive(Args, Debug)]
 pub struct CompareArguments {
@@ -23,6 +25,9 @@ pub struct CompareArguments {
     /// Seed of the random states
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    /// A library that has not answered by then is ended, and counts as one without an answer
+    #[arg(long, value_name = "SECONDS", default_value = "60", allow_hyphen_values = true)]
+    time_limit: String,
     /// Print one JSON object instead of text
     #[arg(long)]
     json: bool,
@@ -31,17 +36,12 @@ pub struct CompareArguments {
 }
 
 pub fn run(arguments: &CompareArguments) -> Result<String> {
-    if arguments.policy.frees() {
-        return Err(Failure::wrong(
-            "--floating is not for compare: other libraries read the file as it stands; free its base there, by a floating joint at \
-             the root (URDF) or a freejoint (MJCF)",
-        ));
-    }
     let python = find_python(arguments.python.as_deref());
-    let options = Options { python, states: arguments.states.into(), seed: arguments.seed };
+    let (states, seed) = (arguments.states.into(), arguments.seed);
+    let options = Options { python, states, seed, time_limit: arguments.time_limit()? };
     let (headline, comparison) = match arguments.policy.model(&arguments.model) {
         Ok(model) => {
-            let comparison = compare(&model, source(&arguments.model, model.description())?, &options)?;
+            let comparison = compare(&model, arguments.source(model.description())?, &options)?;
             (info::headline(&model) + "\n", comparison)
         }
         Err(refusal) => {
@@ -55,6 +55,24 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
     };
     let text = if arguments.json { json::print(&comparison.json()) } else { headline + &comparison.text() };
     if comparison.is_explained() { Ok(text) } else { Err(Failure::Answered(text)) }
+}
+
+impl CompareArguments {
+    fn time_limit(&self) -> Result<Duration> {
+        let seconds = number("--time-limit", &self.time_limit)?;
+        if !(seconds > 0.0 && seconds <= 1e6) {
+            return Err(Failure::wrong(format!("--time-limit is {seconds} s, expected more than 0 and at most 1e6 s")));
+        }
+        Ok(Duration::from_secs_f64(seconds))
+    }
+
+    /// The file as it stands; with its base freed, the robot written as URDF.
+    fn source(&self, robot: &Description) -> Result<Source> {
+        if self.policy.frees() {
+            return Ok(Source::written(input::name(&self.model), robot)?);
+        }
+        source(&self.model, robot)
+    }
 }
 
 /// What the libraries read: the file, or the text that a pipe held.

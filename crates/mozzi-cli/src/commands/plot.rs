@@ -2,6 +2,7 @@
 
 use crate::columns;
 use crate::failure::{Failure, Result};
+use crate::json::print;
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::report;
@@ -15,6 +16,7 @@ use mozzi_motion::convergence::{self, Measured};
 use mozzi_report::Motion;
 use mozzi_report::figure::Figure;
 use mozzi_report::pictures::{self, Convergence, Plane};
+use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct PlotArguments {
@@ -117,7 +119,7 @@ fn of_motion(
     let file = &arguments.trajectory;
     let motion = Motion { title: model.description().name.clone(), ..report::read(file, &model)? };
     let figure = draw(&model, &motion).map_err(|error| Failure::wrong(format!("{file}: {error}")))?;
-    save(figure, &arguments.out)
+    Ok(told(&save(figure, &arguments.out)?, &arguments.robot, ""))
 }
 
 fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
@@ -142,9 +144,11 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     };
     let title = format!("{}, {} s", model.description().name, scalar(time));
     let figure = Convergence::figure(title, &found.iter().map(curve).collect::<Vec<_>>());
-    let mut text = save(figure, &arguments.out)?;
+    let mut object = save(figure, &arguments.out)?;
+    object["methods"] = found.iter().map(method).collect();
+    let mut text = String::new();
     for each in &found {
-        let by = if each.is_adaptive() { " by its evaluations" } else { "" };
+        let by = if each.is_adaptive() { " by equal steps" } else { "" };
         let order = each
             .measured_order()
             .map_or("unknown: too few motions succeeded, or all errors are rounding".into(), |order| {
@@ -152,7 +156,7 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
             });
         text += &format!("{}: order {}, measured {order}\n", each.name, each.order);
     }
-    Ok(text)
+    Ok(told(&object, &arguments.robot, &text))
 }
 
 fn ellipsoids(arguments: &EllipsoidArguments) -> Result<String> {
@@ -169,11 +173,33 @@ fn ellipsoids(arguments: &EllipsoidArguments) -> Result<String> {
         View::Xz => Plane::Xz,
         View::Yz => Plane::Yz,
     };
-    save(pictures::ellipsoids(&model, &configurations, model.end_effector()?, plane)?, &arguments.out)
+    let figure = pictures::ellipsoids(&model, &configurations, model.end_effector()?, plane)?;
+    Ok(told(&save(figure, &arguments.out)?, &arguments.robot, ""))
 }
 
-fn save(figure: Figure, out: &OutArguments) -> Result<String> {
+/// A method's errors, by its given steps or tolerances.
+fn method(each: &convergence::Convergence) -> Value {
+    let points = |list: &[Measured]| -> Value {
+        let point = |of: &Measured| json!({ "step": of.step, "evaluations": of.evaluations, "error": of.error });
+        list.iter().map(point).collect()
+    };
+    json!({
+        "method": each.name, "order": each.order, "measured_order": each.measured_order(),
+        "adaptive": each.is_adaptive(), "measured": points(&each.measured), "equal_steps": points(&each.equal_steps),
+    })
+}
+
+/// What was written, in words or as JSON.
+fn told(object: &Value, robot: &RobotArguments, more: &str) -> String {
+    match robot.json {
+        true => print(object),
+        false => format!("wrote a figure to {}\n{more}", object["out"].as_str().unwrap_or_default()),
+    }
+}
+
+fn save(figure: Figure, out: &OutArguments) -> Result<Value> {
     let title = out.title.clone().unwrap_or(figure.title);
+    let object = json!({ "out": out.out, "title": title });
     let svg = Figure { title, ..figure }.svg();
     let file = &out.out;
     let bytes = match std::path::Path::new(file).extension().and_then(|ending| ending.to_str()) {
@@ -182,7 +208,7 @@ fn save(figure: Figure, out: &OutArguments) -> Result<String> {
         _ => return Err(Failure::wrong(format!("--out is {file}, expected a file that ends in .svg or .png"))),
     };
     columns::save(file, bytes)?;
-    Ok(format!("wrote a figure to {file}\n"))
+    Ok(object)
 }
 
 /// The figure at twice its size in points, with the fonts of this machine.

@@ -11,10 +11,11 @@ pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
     };
     let poses: Vec<String> = lists.M_relative.iter().chain([&last]).map(|T| nested(&T.to_matrix())).collect();
     let inertias: Vec<String> = lists.G.iter().map(|G| nested(&G.to_matrix())).collect();
-    let names: Vec<String> = lists.joints.iter().map(|name| format!("{name:?}")).collect();
+    let names: Vec<String> = lists.joints.iter().map(|name| literal(name)).collect();
     let mut lines = vec![
         format!(
-            "# {robot}: the lists of Modern Robotics, chapter 8; angular first, SI units, frames at centres of mass"
+            "# {}: the lists of Modern Robotics, chapter 8; angular first, SI units, frames at centres of mass",
+            escaped(robot)
         ),
         "import numpy as np".to_string(),
         String::new(),
@@ -47,6 +48,24 @@ pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
     lines.join("\n")
 }
 
+/// A name as a string of Python.
+fn literal(name: &str) -> String {
+    format!("\"{}\"", escaped(name).replace('"', "\\\""))
+}
+
+/// Backslashes, and characters that cannot be seen, as Python escapes them: a line break would end a comment.
+fn escaped(name: &str) -> String {
+    let one = |c: char| match c {
+        '\\' => "\\\\".to_string(),
+        '\'' | '"' => c.to_string(),
+        // Rust writes \u{…} for what is not printable
+        _ if c.escape_debug().len() == 1 => c.to_string(),
+        _ if u32::from(c) < 0x1_0000 => format!("\\u{:04x}", u32::from(c)),
+        _ => format!("\\U{:08x}", u32::from(c)),
+    };
+    name.chars().map(one).collect()
+}
+
 fn flat(values: &[f64]) -> String {
     // {:?} is the shortest text that reads back as the same number
     format!("[{}]", values.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "))
@@ -58,4 +77,17 @@ fn nested<const C: usize>(rows: &[[f64; C]]) -> String {
 
 fn axes(list: &[ScrewAxis]) -> String {
     list.iter().map(|A| format!("    {}", flat(&A.twist().to_array()))).collect::<Vec<_>>().join(",\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_strings_of_python() {
+        assert_eq!(literal("joint_1"), r#""joint_1""#);
+        assert_eq!(literal("größe 関節 class"), r#""größe 関節 class""#);
+        assert_eq!(literal("a\"b'c\\d"), r#""a\"b'c\\d""#);
+        assert_eq!(literal("x\u{200b}y\n\u{1}\u{e0001}"), r#""x\u200by\u000a\u0001\U000e0001""#);
+    }
 }

@@ -1,10 +1,13 @@
 //! `mozzi view`: the robot to look at, still or moving, in a file or served to this machine's browser.
 
 use crate::failure::{self, Failure, Result};
+use crate::json::print;
 use crate::report::{self, PageArguments};
 use crate::robot::RobotArguments;
 use crate::serve;
 use clap::Args;
+use serde_json::json;
+use std::io::Write;
 
 #[derive(Args, Debug)]
 pub struct ViewArguments {
@@ -37,7 +40,9 @@ pub fn run(arguments: &ViewArguments) -> Result<String> {
         (motion, rows)
     });
     if let Some(file) = &arguments.out {
-        return Ok(arguments.page.write(file, &arguments.robot.model, &model, motion)? + "\n");
+        let said = arguments.page.write(file, &arguments.robot.model, &model, motion)?;
+        let object = json!({ "robot": model.description().name, "out": file });
+        return Ok(if arguments.robot.json { print(&object) } else { said + "\n" });
     }
     let (page, size) = arguments.page.page(&arguments.robot.model, &model, motion)?;
     let cannot = |error: std::io::Error| Failure::wrong(format!("the page cannot be served on 127.0.0.1: {error}"));
@@ -47,6 +52,12 @@ pub fn run(arguments: &ViewArguments) -> Result<String> {
         "{} is at http://{address}/ on this machine only ({size}); Ctrl-C ends it\n",
         model.description().name
     ));
+    if arguments.robot.json {
+        // before the page is served, which takes until Ctrl-C
+        let object = json!({ "robot": model.description().name, "address": format!("http://{address}/") });
+        let mut output = std::io::stdout().lock();
+        output.write_all(print(&object).as_bytes()).and_then(|()| output.flush()).map_err(cannot)?;
+    }
     server.run(page).map_err(cannot)?;
     Ok(String::new())
 }

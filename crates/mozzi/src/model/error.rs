@@ -111,23 +111,24 @@ pub enum Error {
         /// Seconds.
         step_size: f64,
     },
-    /// The steps that a tolerance asks for are too small for numbers.
-    #[error(
-        "the motion is too stiff, or jumps, at t = {time} s: a tolerance of {tolerance:e} asks for steps below {step:e} s"
-    )]
-    TooStiff {
+    /// A simulation takes steps so short that it would practically never end.
+    #[error("the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")]
+    Stalled {
         /// Seconds.
         time: f64,
-        /// Seconds.
-        step: f64,
-        /// What was asked for.
-        tolerance: f64,
+        /// The joint whose motion asks for the shortest steps.
+        joint: String,
+        /// The steps, their reason, and a remedy.
+        cause: String,
     },
     /// An implicit step has no solution that iteration finds.
     #[error(
-        "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations; a smaller step may help"
+        "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations at joint `{joint}`, which is stiff, \
+         or jumps; a smaller step or smooth friction may help"
     )]
     NoConvergence {
+        /// The joint whose velocity changes most between iterations.
+        joint: String,
         /// Seconds.
         time: f64,
         /// Seconds.

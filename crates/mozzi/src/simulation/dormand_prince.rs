@@ -3,9 +3,11 @@
 
 use super::dense::{Dense, rate};
 use super::driven::Driven;
+use super::stall::{Trouble, too_short};
 use super::state::State;
+use super::{Equation, Input, Motion, Options};
 use crate::kinematics::integrate;
-use crate::model::Error;
+use crate::model::{Error, Model};
 use crate::scalar::Scalar;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -40,6 +42,7 @@ pub(super) struct DormandPrince {
     tolerance: f64,
     /// What the next step may be.
     h: f64,
+    pub trouble: Trouble,
     /// Rates of (u, θ̇, w) at the stages; memory.
     k: [Vec<f64>; 7],
     y: Vec<f64>,
@@ -50,7 +53,7 @@ impl DormandPrince {
     pub fn new(n: usize, nq: usize, tolerance: f64) -> Self {
         let zeros = vec![0.0; 2 * n + 3];
         let k = core::array::from_fn(|_| zeros.clone());
-        DormandPrince { tolerance, h: 1e-3, k, y: zeros, theta: vec![0.0; nq] }
+        DormandPrince { tolerance, h: 1e-3, trouble: Trouble::new(n), k, y: zeros, theta: vec![0.0; nq] }
     }
 
     /// A step to `until` at most.
@@ -62,15 +65,17 @@ impl DormandPrince {
             let room = until - from.t;
             // no crumb is left for a last step
             let h = if self.h >= 0.99 * room { room } else { self.h };
-            if !(h > 1e-13 * from.t.abs().max(1e-3)) && room > h {
-                return Err(Error::TooStiff { time: from.t, step: h, tolerance: self.tolerance });
+            if !(h > 1e-13 * from.t.abs().max(1e-3).max(1e-6 * until)) && room > h {
+                return Err(too_short(model, driven.options(), [from.t, h], self.tolerance, self.trouble.sensitive));
             }
+            let mut changes = vec![false; n];
             for stage in 1..7 {
                 for i in 0..self.y.len() {
                     self.y[i] = start[i] + h * (0..stage).map(|r| A[stage][r] * self.k[r][i]).sum::<f64>();
                 }
                 let (u, rest) = self.y.split_at(n);
                 let dtheta = &rest[..n];
+                (0..n).for_each(|j| changes[j] |= dtheta[j] * from.dtheta[j] < 0.0);
                 self.theta.copy_from_slice(&from.theta);
                 integrate(model, &mut self.theta, u, 1.0);
                 let k = &mut self.k[stage];
@@ -85,6 +90,8 @@ impl DormandPrince {
                 let size = if i < n { 0.0 } else { start[i].abs().max(self.y[i].abs()) };
                 estimate / (self.tolerance * (1.0 + size))
             };
+            self.trouble.changes.iter_mut().zip(changes).for_each(|(count, change)| *count += usize::from(change));
+            self.trouble.sensitive = (0..n).max_by(|&i, &j| error(n + i).abs().total_cmp(&error(n + j).abs()));
             let mean = (0..2 * n).map(|i| squared(error(i))).sum::<f64>() / (2 * n).max(1) as f64;
             let mean = Scalar::sqrt(mean);
             let factor = if mean > 0.0 { (0.9 * power(mean, -0.2)).clamp(0.2, 5.0) } else { 5.0 };
@@ -115,6 +122,33 @@ impl DormandPrince {
         };
         (state, Dense::new(from, h, [start, way, bend, twist, fourth]))
     }
+}
+
+/// θ at the end of N equal steps of this method, whatever their errors: what its order is measured by. Of the options,
+/// the duration, the steps, gravity and friction count.
+///
+/// # Errors
+/// Those of [`Model::simulate`].
+pub fn dormand_prince_by_equal_steps(
+    model: &Model,
+    [theta, dtheta]: [&[f64]; 2],
+    mut input: impl Input,
+    options: &Options,
+) -> Result<Vec<f64>, Error> {
+    options.check()?;
+    model.check_lengths(theta, [("dtheta", dtheta)])?;
+    let input: &mut dyn Input = &mut input;
+    let mut driven = Driven::new(Equation::new(model, input, options));
+    let motion =
+        Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+    let mut state = State::of(&motion);
+    let mut method = DormandPrince::new(model.n(), model.nq(), f64::MAX);
+    for k in 1..=options.steps {
+        driven.at_step(k, options.step());
+        method.h = f64::INFINITY; // until the step's end
+        (state, _) = method.step(&state, options.time(k), &mut driven)?;
+    }
+    Ok(state.theta)
 }
 
 fn squared(x: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! The equation of motion, with joints that rest against their stops.
 
 use super::state::State;
-use super::{Energy, Equation, Input, Powers};
+use super::{Energy, Equation, Input, Options, Powers};
 use crate::dynamics::mass_matrix;
 use crate::model::{Error, Model, Workspace};
 use alloc::format;
@@ -38,6 +38,10 @@ impl<'m> Driven<'m> {
     /// For errors.
     pub fn at_step(&mut self, step: usize, step_size: f64) {
         self.equation.at_step(step, step_size);
+    }
+
+    pub fn options(&self) -> &Options {
+        &self.equation.options
     }
 
     pub fn tau(&self) -> &[f64] {

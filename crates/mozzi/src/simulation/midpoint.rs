@@ -11,6 +11,7 @@
 //! > p_b[k+1] = `[Ad_e^{hv}]`ᵀP
 
 use super::driven::Driven;
+use super::stall::velocity;
 use super::state::State;
 use crate::dynamics::mass_matrix_rate;
 use crate::kinematics::integrate;
@@ -55,6 +56,7 @@ impl Midpoint {
         let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
         let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
         let curved = || model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One);
+        let mut worst = None;
         let (mut powers, mut M, mut after) = ([0.0; 3], DMatrix::zeros(0, 0), DVector::zeros(n));
         for _ in 0..ITERATIONS {
             theta.copy_from_slice(&from.theta);
@@ -78,7 +80,9 @@ impl Midpoint {
             if !driven.held.is_empty() {
                 driven.bring_to_rest(&factors, next.as_mut_slice());
             }
-            let change = (&next - &v).amax() / (1.0 + next.amax());
+            let differences = &next - &v;
+            worst = (n > 0).then(|| differences.iamax());
+            let change = differences.amax() / (1.0 + next.amax());
             v = next;
             if done || change == 0.0 {
                 done = true;
@@ -89,7 +93,12 @@ impl Midpoint {
             last = change;
         }
         if !done {
-            return Err(Error::NoConvergence { time: from.t, step: h, iterations: ITERATIONS });
+            return Err(Error::NoConvergence {
+                joint: velocity(model, worst),
+                time: from.t,
+                step: h,
+                iterations: ITERATIONS,
+            });
         }
         let mut p = M * &v * 2.0 - p;
         for place in curved() {

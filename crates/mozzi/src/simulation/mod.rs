@@ -30,6 +30,7 @@ mod policy;
 mod recorder;
 mod run;
 mod sensitivity;
+mod stall;
 mod state;
 mod stops;
 mod table;
@@ -44,6 +45,7 @@ mod free_base;
 #[cfg(test)]
 mod robots;
 
+pub use dormand_prince::dormand_prince_by_equal_steps;
 pub use equation::{Equation, ForwardDynamics, Powers};
 pub use events::{Direction, Event, EventFunction, Occurrence};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
@@ -93,7 +95,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`] or [`Error::BadArgument`] for a start or options that make no sense, or an
     /// input that is not finite; [`Error::SingularMassMatrix`]; [`Error::Diverged`] if the state becomes infinite or
-    /// NaN; [`Error::TooStiff`], [`Error::NoConvergence`]; what the input answers.
+    /// NaN; [`Error::Stalled`], [`Error::NoConvergence`]; what the input answers.
     pub fn simulate(
         &self,
         theta: &[f64],

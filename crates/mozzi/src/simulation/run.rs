@@ -6,6 +6,7 @@ use super::driven::Driven;
 use super::events::{Event, Occurrence, first_zero};
 use super::midpoint::Midpoint;
 use super::options::check;
+use super::stall::{Stall, Trouble};
 use super::state::State;
 use super::stops::{Stopped, Stops};
 use super::{Equation, Explicit, ForwardDynamics, Input, Method, Motion, Options, Recorder, Sample, Trajectory};
@@ -139,6 +140,11 @@ impl Integrator {
         })
     }
 
+    /// What makes steps short, if the method knows it.
+    fn trouble(&mut self) -> Option<&mut Trouble> {
+        if let Integrator::DormandPrince(method) = self { Some(&mut method.trouble) } else { None }
+    }
+
     /// The state was changed from outside.
     fn restart(&mut self) {
         if let Integrator::Midpoint(method) = self {
@@ -154,6 +160,7 @@ struct Course<'r> {
     integrator: Integrator,
     driven: Driven<'r>,
     stops: Stops,
+    stall: Stall,
     motion: Motion<f64, 3>,
     /// Where the step began; kept where something may happen within it.
     from: State,
@@ -198,6 +205,7 @@ impl<'r> Course<'r> {
             integrator,
             driven,
             stops,
+            stall: Stall::new(&options),
             from: State::of(&motion),
             motion,
             next: options.record_every,
@@ -281,6 +289,7 @@ impl<'r> Course<'r> {
             Some((_, k, side)) => self.stops.impact(&mut state, k, side, &mut self.driven)?,
             None => self.driven.release(&mut state)?,
         }
+        self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
         state.copy_to(&mut self.motion);
         if end != dense.t + dense.h || happens {
             self.integrator.restart();

@@ -102,7 +102,7 @@ impl Job<'_> {
             None if robot.json => json::print(&object(query, model, &states, &results)),
             _ => results::write(output.unwrap_or("-"), query, model, &states, &results)?,
         };
-        let (registers, threads) = (batch.instruction_set().name(), batch.threads());
+        let (registers, threads) = (batch.instruction_set().name(), batch.threads().min(count.max(1)));
         let rate = count as f64 / seconds.max(1e-9);
         let text = match output {
             Some(output) if robot.json => {

@@ -94,7 +94,7 @@ impl<'m> Terms<'m> {
         Some(self.matrix(jacobian, 0)? * DVector::from_column_slice(&self.dtheta))
     }
 
-    /// Λ and η; a singular task is an error where it was asked for by name, else a note.
+    /// Λ and η; a singular task is a note, all else is computed.
     pub fn add_task(&mut self, arguments: &TaskArguments, environment: &Environment) -> Result<()> {
         (self.task_rows, self.task_frame) = (arguments.rows()?, arguments.coordinates());
         let is_named = arguments.task.is_some();
@@ -106,13 +106,17 @@ impl<'m> Terms<'m> {
         let still = Environment { applied: &[], ..*environment };
         match self.model.task_space_dynamics(&self.theta, &self.dtheta, task, &still) {
             Ok(dynamics) => self.task = Some(dynamics),
-            Err(error) if is_named => return Err(error.into()),
-            Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 => failure::note(&format!(
+            Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 && !is_named => failure::note(&format!(
                 "Λ and η are omitted: {} joints cannot move in all six directions; choose some, such as --task vx,vz",
                 self.model.n()
             )),
+            Err(error) if is_named && !is_singular(&error) => return Err(error.into()),
             Err(error) => failure::note(&format!("Λ and η are omitted: {error}")),
         }
         Ok(())
     }
+}
+
+fn is_singular(error: &mozzi::Error) -> bool {
+    matches!(error, mozzi::Error::SingularTask { .. } | mozzi::Error::SingularMassMatrix { .. })
 }

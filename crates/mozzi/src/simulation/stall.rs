@@ -1,0 +1,186 @@
+//! Detection of a simulation that stops to advance: many steps, and hardly any time.
+//!
+//! The steps of an integrator are counted in windows of a fixed number. If a window covers less time than
+//!
+//! > window / 10⁸ · t_f (adaptive: the whole motion would take 10⁸ steps),  window / 1000 · δt (steps of given length)
+//!
+//! the simulation would practically never end, and is stopped with an error. Adaptive steps around rest under Coulomb
+//! friction, where sgn θ̇ jumps from stage to stage, are stopped from a million steps on.
+
+use super::{Friction, Options};
+use crate::model::{Error, Model};
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// Steps of a window.
+const WINDOW: usize = 20_000;
+/// Adaptive steps of a whole motion: at most, and at most of those that chatter.
+const MOST: f64 = 1e8;
+const MOST_CHATTER: f64 = 1e6;
+/// Steps of a window, taken or rejected, in which a velocity changes its sign that are chatter.
+const CHATTER: usize = WINDOW / 20;
+
+/// What makes the steps of an adaptive method short.
+#[derive(Clone, Debug)]
+pub(super) struct Trouble {
+    /// The velocity with the largest error of the last estimate.
+    pub sensitive: Option<usize>,
+    /// Velocity by velocity, the steps of this window, taken or rejected, in which it changes its sign.
+    pub changes: Vec<usize>,
+}
+
+impl Trouble {
+    pub fn new(n: usize) -> Self {
+        Trouble { sensitive: None, changes: vec![0; n] }
+    }
+
+    /// The velocity that changes its sign most often, if that is chatter.
+    fn chatter(&self) -> Option<usize> {
+        let most = (0..self.changes.len()).max_by_key(|&j| self.changes[j]);
+        most.filter(|&j| self.changes[j] > CHATTER)
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Stall {
+    /// The least time of a window, s: for any motion, and for one that chatters.
+    least: [f64; 2],
+    steps: usize,
+    /// When the window began.
+    start: f64,
+}
+
+impl Stall {
+    pub fn new(options: &Options) -> Self {
+        let window = WINDOW as f64;
+        let least = if options.method.is_adaptive() {
+            [window / MOST * options.duration, window / MOST_CHATTER * options.duration]
+        } else {
+            [1e-3 * window * options.step(), 0.0]
+        };
+        Stall { least, steps: 0, start: 0.0 }
+    }
+
+    /// After each step, with what an adaptive method knows.
+    pub fn check(
+        &mut self,
+        model: &Model,
+        options: &Options,
+        t: f64,
+        known: Option<&mut Trouble>,
+    ) -> Result<(), Error> {
+        self.steps += 1;
+        if self.steps < WINDOW {
+            return Ok(());
+        }
+        let (advance, steps) = (t - self.start, self.steps);
+        (self.steps, self.start) = (0, t);
+        let chatter = known.as_ref().and_then(|known| known.chatter());
+        let is_dry = |j: Option<usize>| j.is_some_and(|j| is_dry(model, options, j));
+        if advance < self.least[0] || (advance < self.least[1] && is_dry(chatter)) {
+            let j = chatter.or(known.and_then(|known| known.sensitive));
+            let cause = cause(is_dry(j), chatter.is_some());
+            let cause = format!("{steps} steps advanced by {advance:e} s only; {cause}");
+            return Err(Error::Stalled { time: t, joint: velocity(model, j), cause });
+        }
+        if let Some(known) = known {
+            known.changes.fill(0);
+        }
+        Ok(())
+    }
+}
+
+/// The error of an adaptive step that would be below rounding of t.
+pub(super) fn too_short(
+    model: &Model,
+    options: &Options,
+    [time, step]: [f64; 2],
+    tolerance: f64,
+    j: Option<usize>,
+) -> Error {
+    let has_friction = j.is_some_and(|j| is_dry(model, options, j));
+    let cause = format!("a tolerance of {tolerance:e} asks for steps below {step:e} s; {}", cause(has_friction, false));
+    Error::Stalled { time, joint: velocity(model, j), cause }
+}
+
+/// Has this velocity Coulomb friction that jumps?
+fn is_dry(model: &Model, options: &Options, j: usize) -> bool {
+    options.friction == Friction::Coulomb && model.friction[j] != 0.0
+}
+
+/// The name of a velocity, such as its joint's; of none where the robot has none.
+pub(super) fn velocity(model: &Model, j: Option<usize>) -> String {
+    j.and_then(|j| model.velocity_names().nth(j)).unwrap_or_default().to_string()
+}
+
+fn cause(has_friction: bool, chatters: bool) -> &'static str {
+    match (has_friction, chatters) {
+        (true, true) => {
+            "its velocity changes its sign again and again under dry (Coulomb) friction, which jumps there; smooth friction \
+             (slip speed) or a method of fixed steps computes this motion"
+        }
+        (false, true) => "its velocity changes its sign again and again; the input or a stop jumps there",
+        (true, false) => {
+            "the motion is stiff, or jumps, as dry (Coulomb) friction does where the velocity changes its sign; smooth \
+             friction (slip speed) or a method of fixed steps may help"
+        }
+        (false, false) => {
+            "the motion is stiff, or its input jumps; a larger tolerance or a method of fixed steps may help"
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::robots::pendulum;
+    use super::super::{Method, Policy, Simulation, Zero, torque};
+    use super::*;
+
+    fn options(tolerance: f64, duration: f64) -> Options {
+        Options { method: Method::DormandPrince { tolerance }, ..Options::new(duration, 100) }
+    }
+
+    #[test]
+    fn dry_friction_that_should_stick_ends_with_an_error() {
+        let model = pendulum(0.0, 8.0); // gravity's moment is 6.6 N m at 0.5 rad
+        for (tolerance, duration) in [(1e-8, 2.0), (1e-9, 2.0), (1e-12, 1.0), (1e-9, 1e4)] {
+            let error = model.simulate(&[0.5], &[1.0], Zero, &options(tolerance, duration)).expect_err("chatter");
+            let Error::Stalled { time, joint, .. } = &error else { panic!("{error}") };
+            assert!(*time > 0.0 && *time < 0.5 && joint == "pivot", "{error}");
+            assert!(error.to_string().contains("Coulomb"), "{error}");
+        }
+        let smooth = Options { friction: Friction::Smooth { slip_speed: 1e-2 }, ..options(1e-9, 2.0) };
+        assert!(model.simulate(&[0.5], &[1.0], Zero, &smooth).expect("a motion").complete);
+        // friction that only changes its sign twice a period is no chatter
+        assert!(pendulum(0.0, 0.1).simulate(&[1.0], &[0.0], Zero, &options(1e-9, 4.0)).expect("a motion").complete);
+    }
+
+    #[test]
+    fn an_input_that_jumps_ends_with_an_error() {
+        let bang = torque(|_, theta, dtheta, tau| tau[0] = -50.0 * (theta[0] + dtheta[0]).signum());
+        let error = pendulum(0.0, 0.0).simulate(&[0.5], &[0.0], bang, &options(1e-10, 5.0)).expect_err("sliding");
+        assert!(matches!(&error, Error::Stalled { joint, .. } if joint == "pivot"), "{error}");
+    }
+
+    #[test]
+    fn steps_that_do_not_advance_are_counted() {
+        let model = pendulum(0.0, 0.0);
+        let options = Options::new(1.0, 1000);
+        let mut stall = Stall::new(&options);
+        let mut window = |t: f64| -> Vec<Error> {
+            (0..WINDOW).filter_map(|_| stall.check(&model, &options, t, None).err()).collect()
+        };
+        // the first window has advanced to 0.25 s, the second by nothing
+        assert!(window(0.25).is_empty());
+        assert!(matches!(&window(0.25)[..], [Error::Stalled { time: 0.25, .. }]));
+    }
+
+    #[test]
+    fn a_stop_under_dry_friction_ends() {
+        let model = pendulum(0.0, 8.0);
+        let run = Simulation::new(Options { joint_limits: Policy::Respect, ..options(1e-9, 1.0) });
+        assert!(matches!(run.run(&model, &[0.5], &[0.0], Zero), Err(Error::Stalled { .. })));
+    }
+}
