@@ -126,7 +126,7 @@ class Pinocchio:
     def joints(self):
         model, data, pin = self.model, self.data, self.pin
         neutral = self.configuration({})
-        J = pin.computeJointJacobians(model, data, neutral).reshape(6, model.nv)  # of one velocity it is a list
+        J = pin.computeJointJacobians(model, data, neutral).reshape(6, -1)  # of one velocity it is a list
         friction = getattr(model, "upperDryFrictionLimit", getattr(model, "friction", self.np.zeros(model.nv)))
         last, result = {0: None}, []
         for i, parts in self.parts:
