@@ -3,6 +3,7 @@
 #include "peer.hpp"
 #include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/constrained-dynamics.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
@@ -14,6 +15,8 @@ using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 struct Robot {
     pin::Model model;
     pin::Data data;
+    std::vector<pin::RigidConstraintModel> pins;
+    std::vector<pin::RigidConstraintData> pins_data;
 };
 
 std::string version() { return "Pinocchio " PINOCCHIO_VERSION ", compiled by " __VERSION__; }
@@ -91,9 +94,17 @@ void aba_derivatives(Robot& r, const State& s) {
     keep(r.data.ddq_dq.data());
 }
 
+void constraint_dynamics(Robot& r, const State& s) {
+    View x(r, s);
+    keep(pin::constraintDynamics(r.model, r.data, x.q, x.v, x.tau, r.pins, r.pins_data).data());
+}
+
 } // namespace
 
-std::vector<Algorithm> algorithms(const Robot&) {
+std::vector<Algorithm> algorithms(const Robot& robot) {
+    if (!robot.pins.empty())
+        return {{"constrained_forward_dynamics", "constraintDynamics", constraint_dynamics,
+                 [](Robot& r, double* out) { put(r.data.ddq, out); }}};
     return {
         {"inverse_dynamics", "rnea", rnea, [](Robot& r, double* out) { put(r.data.tau, out); }},
         {"forward_dynamics", "aba, WORLD", aba<pin::Convention::WORLD>, [](Robot& r, double* out) { put(r.data.ddq, out); }},
@@ -128,7 +139,19 @@ Robot* make_robot(const Description& description) {
         model.appendBodyToJoint(joint, {body.mass, Vector3d(body.center), Matrix3d(body.inertia)}, pin::SE3::Identity());
     }
     model.armature.setZero();
-    return new Robot{model, pin::Data(model)};
+    return new Robot{model, pin::Data(model), {}, {}};
 }
 
 void free_robot(Robot* robot) { delete robot; }
+
+// Pins a point of a body (3 numbers, in the body's frame) to the place in the world where it is at some state.
+extern "C" void peer_pin(Loaded* loaded, int body, const double* point, const double* place) {
+    auto& r = *loaded->robot;
+    pin::JointIndex joint = body + (loaded->description.is_floating ? 1 : 0);
+    r.pins.emplace_back(pin::CONTACT_3D, r.model, joint, pin::SE3(Matrix3d::Identity(), Vector3d(point)), 0,
+                        pin::SE3(Matrix3d::Identity(), Vector3d(place)), pin::LOCAL);
+    r.pins_data.clear();
+    for (const auto& pin : r.pins) r.pins_data.emplace_back(pin);
+    pin::initConstraintDynamics(r.model, r.data, r.pins, r.pins_data);
+    loaded->list = algorithms(r);
+}

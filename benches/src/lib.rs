@@ -6,7 +6,7 @@ mod states;
 pub use states::{State, States, inputs};
 
 /// The quantities of the tables, in their order.
-pub const QUANTITIES: [&str; 7] = [
+pub const QUANTITIES: [&str; 8] = [
     "inverse_dynamics",
     "forward_dynamics",
     "mass_matrix",
@@ -14,4 +14,5 @@ pub const QUANTITIES: [&str; 7] = [
     "bias_forces",
     "inverse_dynamics_derivatives",
     "forward_dynamics_derivatives",
+    "constrained_forward_dynamics",
 ];

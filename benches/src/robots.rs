@@ -1,6 +1,6 @@
 //! The robots: two arms, a body with a head and four limbs, a long chain, and two that walk.
 
-use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
 use mozzi::testing::Random;
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 use std::path::Path;
@@ -31,6 +31,25 @@ pub fn legged(folder: &Path) -> Result<[(&'static str, Model); 2], String> {
         ("ANYmal, floating base", read("anymal_b_simple_description/robots/anymal.urdf")?),
         ("Talos, floating base", read("talos_data/robots/talos_reduced.urdf")?),
     ])
+}
+
+/// ANYmal on its four feet, whose points are pinned to where they are in the neutral configuration of the legs.
+///
+/// # Errors
+/// When its feet are not there.
+pub fn on_four_feet(anymal: &Model) -> Result<Model, String> {
+    let theta: Vec<f64> = anymal.neutral_configuration();
+    let mut robot = merged(anymal);
+    let whole = anymal.description();
+    let moving: Vec<&Joint> = anymal.moving_joints().collect();
+    for foot in ["LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"] {
+        let frame = anymal.frame(foot).map_err(|error| error.to_string())?;
+        let pose = anymal.forward_kinematics(&theta, frame).map_err(|error| error.to_string())?;
+        let (body, T) = place(whole, &moving, foot);
+        let on = Anchor::frame(body.to_string()).at(SE3::translation(T.p.0));
+        robot = robot.constraint(Constraint::point(foot, Anchor::world(SE3::translation(pose.p.0)), on));
+    }
+    robot.build().map_err(|error| error.to_string())
 }
 
 /// The Panda arm: 7 joints, the fingers closed and locked.

@@ -53,6 +53,7 @@ export function readMotion(raw, robot) {
     ddtheta: rows(raw.ddtheta, robot.n),
     tau: rows(raw.tau, robot.n),
     tip: rows(raw.tip_wrench, 6),
+    loops: rows(raw.constraint_wrenches, 6 * robot.constraints.length),
     kinetic: list(raw.kinetic_energy),
     potential: list(raw.potential_energy),
     drift: list(raw.drift),
@@ -82,6 +83,6 @@ export function stateAt(motion, time) {
   const mixed = (from, to) => from.map((x, k) => x + part * (to[k] - x));
   const between = (rows) => rows && mixed(rows[low], rows[high]);
   const theta = normalized(robot, mixed(motion.theta[low], nearer(robot, motion.theta[low], motion.theta[high])));
-  const [dtheta, ddtheta, tau, tip] = [motion.dtheta, motion.ddtheta, motion.tau, motion.tip].map(between);
-  return { theta, dtheta, ddtheta, tau, tip, low, part };
+  const [dtheta, ddtheta, tau, tip, loops] = [motion.dtheta, motion.ddtheta, motion.tau, motion.tip, motion.loops].map(between);
+  return { theta, dtheta, ddtheta, tau, tip, loops, low, part };
 }

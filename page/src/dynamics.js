@@ -84,8 +84,9 @@ export function twists(robot, T, dtheta) {
 }
 
 // The wrench that each joint transmits to its body, in {s}, and on the base: F_i = Σ 𝒢V̇ − ad_Vᵀ𝒢V + F over all that it carries,
-// gravity as an upward acceleration of the base. `tip` is what the end effector applies, in its own frame.
-export function wrenches(robot, T, dtheta, ddtheta, tip) {
+// gravity as an upward acceleration of the base. `tip` is what the end effector applies, in its own frame, `loops` what anchor b of
+// each constraint applies to a, in {s}.
+export function wrenches(robot, T, dtheta, ddtheta, tip, loops) {
   const V = twists(robot, T, dtheta);
   const upward = [0, 0, 0, ...scaled(robot.gravity, -1)];
   const [relative, dV] = [along(robot, T, dtheta), along(robot, T, ddtheta)];
@@ -98,6 +99,12 @@ export function wrenches(robot, T, dtheta, ddtheta, tip) {
     const frame = robot.frames[robot.endEffector];
     F[frame.body] = add(F[frame.body], wrenchFrom(compose(T[frame.body], frame.T), tip));
   }
+  robot.constraints.forEach(({ a, b }, k) => {
+    if (!loops) return;
+    const W = loops.slice(6 * k, 6 * k + 6);
+    if (b.body !== null) F[b.body] = add(F[b.body], W);
+    if (a.body !== null) F[a.body] = add(F[a.body], scaled(W, -1));
+  });
   for (let k = robot.bodies.length; k > 0; k--) F[parentOf(robot, k)] = add(F[parentOf(robot, k)], F[k]);
   return F;
 }

@@ -27,7 +27,7 @@ const asked = new URLSearchParams(location.hash.slice(1)); // #t=1.2&show=axes,t
 const jointColour = (j) => seriesColour(j, robot.n);
 
 const neutral = robot.allJoints.flatMap(atZero);
-const still = () => ({ theta: [...robot.start], dtheta: null, ddtheta: null, tip: null });
+const still = () => ({ theta: [...robot.start], dtheta: null, ddtheta: null, tip: null, loops: null });
 let state = motion ? stateAt(motion, motion.t[0]) : still();
 
 find("name").textContent = robot.name;
@@ -63,7 +63,9 @@ const possible = {
   shapes: robot.shapes.length > 0,
   glass: robot.shapes.length > 0,
   twists: Boolean(motion?.dtheta),
-  wrenches: !motion || Boolean(motion.dtheta && motion.ddtheta),
+  // with loops also what they carry has to be known
+  wrenches: robot.constraints.length > 0 ? Boolean(motion?.loops) : !motion || Boolean(motion.dtheta && motion.ddtheta),
+  constraints: robot.constraints.length > 0,
   path: Boolean(motion),
   mass: robot.n > 0,
 };

@@ -39,7 +39,12 @@ export class Overlays {
     this.manipulability = this.put("manipulability", new Ellipsoid(KINDS.manipulability.colour));
     this.forceEllipsoid = this.put("torque", new Ellipsoid(KINDS.torque.colour));
     this.total = this.put("masses", massMark(0.028 * reach, "#e5484d"));
-    this.longest = { spin: 1, speed: 1, moment: 1, force: 1 };
+    this.lines = robot.constraints.map(() => {
+      const material = new THREE.LineBasicMaterial({ color: KINDS.constraints.colour, depthTest: false, transparent: true });
+      return this.put("constraints", new THREE.Line(new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]), material));
+    });
+    this.carried = robot.constraints.map(() => this.put("constraints", new Arrow(KINDS.constraints.colour, thickness)));
+    this.longest = { carried: 1, spin: 1, speed: 1, moment: 1, force: 1 };
   }
 
   put(kind, object) {
@@ -110,7 +115,7 @@ export class Overlays {
 
   // The longest arrow of each kind over some states is drawn three tenths of the robot long.
   measure(states) {
-    const longest = { spin: 0, speed: 0, moment: 0, force: 0 };
+    const longest = { carried: 0, spin: 0, speed: 0, moment: 0, force: 0 };
     for (const state of states) {
       const found = this.vectors(state, poses(this.robot, state.theta));
       for (const kind of Object.keys(longest))
@@ -120,16 +125,19 @@ export class Overlays {
   }
 
   // ω and v at each centre of mass, m and f at each joint.
-  vectors({ dtheta, ddtheta, tip }, T) {
+  vectors({ dtheta, ddtheta, tip, loops }, T) {
     const { robot } = this;
     const still = new Array(robot.n).fill(0);
     const centers = this.inertias.map((inertia, k) => moved(T[k], center(inertia)));
     const V = twists(robot, T, dtheta ?? still);
-    const F = wrenches(robot, T, dtheta ?? still, ddtheta ?? still, tip);
+    const F = wrenches(robot, T, dtheta ?? still, ddtheta ?? still, tip, loops);
+    const anchors = robot.constraints.map(({ a, b }) => [a, b].map(({ body, p }) => (body === null ? p : moved(T[body], p))));
     const joints = T.map((pose, k) => (k === 0 ? pose.p : moved(pose, pointOf(robot.bodies[k - 1]))));
     return {
       centers,
       joints,
+      anchors,
+      carried: robot.constraints.map((_, k) => (loops ? loops.slice(6 * k + 3, 6 * k + 6) : [0, 0, 0])),
       spin: V.map(angular),
       speed: V.map((twist, k) => add(linear(twist), cross(angular(twist), centers[k]))),
       moment: F.map((wrench, k) => add(angular(wrench), scaled(cross(joints[k], linear(wrench)), -1))),
@@ -139,9 +147,10 @@ export class Overlays {
 
   update(state, T) {
     const { layers } = this;
-    if (layers.twists.visible || layers.wrenches.visible) {
+    if (layers.twists.visible || layers.wrenches.visible || layers.constraints.visible) {
       const found = this.vectors(state, T);
-      for (const [kind, from] of [["spin", found.centers], ["speed", found.centers], ["moment", found.joints], ["force", found.joints]]) {
+      found.anchors.forEach((ends, k) => this.lines[k].geometry.setFromPoints(ends.map((end) => new THREE.Vector3(...end))));
+      for (const [kind, from] of [["spin", found.centers], ["speed", found.centers], ["moment", found.joints], ["force", found.joints], ["carried", found.anchors.map(([, b]) => b)]]) {
         const scale = this.longest[kind] > 0 ? (0.3 * this.reach) / this.longest[kind] : 0;
         this[kind].forEach((arrow, k) => arrow.set(from[k], scaled(found[kind][k], scale)));
       }

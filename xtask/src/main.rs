@@ -42,7 +42,7 @@ usage: cargo xtask COMMAND
   page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` checks that it is current
           --check                                     build it elsewhere and compare
   bench   compare with Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
-          --robots ur5,panda,anymal,talos,tree,chain  only these robots, into target/bench/RESULTS.md
+          --robots ur5,panda,anymal,talos,tree,chain,feet  only these robots, into target/bench/RESULTS.md
           --peers pinocchio,mujoco,kdl,dynibo,casadi  only these libraries, likewise
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first

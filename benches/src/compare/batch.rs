@@ -24,9 +24,9 @@ impl Batched {
     pub fn new(model: &Model, states: &States, set: InstructionSet, layout: Layout, is_compiled: bool) -> Option<Self> {
         let batch = Batch::new(model).with_instruction_set(set).and_then(|batch| batch.with_threads(1)).ok()?;
         let mut batch = batch.with_layout(layout);
-        let mut quantities: Vec<_> = quantity::all().map(|query| (query, None)).collect();
+        let mut quantities: Vec<_> = quantity::of(model).map(|query| (query, None)).collect();
         if is_compiled {
-            batch = batch.compile(&quantity::all().collect::<Vec<_>>()).ok()?;
+            batch = batch.compile(&quantity::of(model).collect::<Vec<_>>()).ok()?;
             quantities = compiled::quantities(model, |query| batch.engine(query));
         }
         let mut tables: [Vec<f64>; 4] = Default::default();

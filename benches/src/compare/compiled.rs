@@ -16,7 +16,7 @@ pub fn quantities(model: &Model, engine: impl Fn(Query) -> Engine) -> Vec<(Query
         let program = record_quantity(model, query, Arguments::default()).ok()?;
         Some((query, Some(Kernel::new(&program, shape).ok()?.flops())))
     };
-    quantity::all().filter_map(with_flops).collect()
+    quantity::of(model).filter_map(with_flops).collect()
 }
 
 /// Milliseconds from a model to its first inverse dynamics by machine code, the least of a few.

@@ -53,7 +53,9 @@ fn chosen(arguments: &Arguments) -> Result<Vec<Robot>, String> {
     ];
     if let Some(folder) = &arguments.models {
         let [(anymal, a), (talos, t)] = robots::legged(folder.as_ref())?;
+        let standing = robots::on_four_feet(&a)?;
         list.splice(2..2, [(anymal, "anymal", a), (talos, "talos", t)]);
+        list.push(("ANYmal on four feet", "feet", standing));
     }
     if let Some(names) = &arguments.robots {
         let known: Vec<_> = list.iter().map(|&(_, slug, _)| slug).collect();
@@ -63,6 +65,9 @@ fn chosen(arguments: &Arguments) -> Result<Vec<Robot>, String> {
         list.retain(|(_, slug, _)| names.iter().any(|name| name == slug));
     }
     let merged = list.into_iter().map(|(title, slug, model)| {
+        if model.constraint_rows() > 0 {
+            return Ok((title, slug, model)); // merged already
+        }
         let model = robots::merged(&model).build().map_err(|error| format!("{title}: {error}"))?;
         Ok((title, slug, model))
     });

@@ -16,13 +16,13 @@ use std::hint::black_box;
 pub fn all<'a>(model: &'a Model, states: &'a States) -> Result<Vec<Entry<'a>>, String> {
     let mut entries = Vec::new();
     for (name, mut workspace) in [("mozzi", Workspace::new(model)), ("portable", Workspace::portable(model))] {
-        let (environment, quantities) = (model.environment(), quantity::all().map(|query| (query, None)).collect());
+        let (environment, quantities) = (model.environment(), quantity::of(model).map(|query| (query, None)).collect());
         let one = OneState::new(model, states, quantities, move |query, inputs, outputs| {
             fast::evaluate(query, model, inputs, &environment, &mut workspace, outputs);
         });
         entries.push(Entry { name: name.into(), width: Some(Width::Scalar), contestant: Box::new(one) });
     }
-    let queries: Vec<Query> = quantity::all().collect();
+    let queries: Vec<Query> = quantity::of(model).collect();
     let robot = compile(model, &queries).map_err(|error| error.to_string())?;
     let quantities = compiled::quantities(model, |query| robot.engine(query));
     let one = OneState::new(model, states, quantities, move |query, inputs, outputs| {

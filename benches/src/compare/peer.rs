@@ -5,7 +5,7 @@ use crate::convention::Convention;
 use crate::quantity;
 use crate::simulation::{BRAKE, STEP, STEPS};
 use libloading::{Library, Symbol};
-use mozzi::model::description::JointKind;
+use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, JointKind};
 use mozzi::quantities::Query;
 use mozzi::simulation::Method;
 use mozzi::{Description, Model, SE3};
@@ -45,6 +45,8 @@ type Free = unsafe extern "C" fn(*mut Opaque);
 type SetStates = unsafe extern "C" fn(*mut Opaque, *const f64, c_int);
 type Run = unsafe extern "C" fn(*mut Opaque, c_int);
 type Simulate = unsafe extern "C" fn(*mut Opaque, c_int, c_int, c_int, f64, f64, *mut f64, *mut f64);
+/// The robot, the number of a body, a point in its frame, its place in {s}.
+type Pin = unsafe extern "C" fn(*mut Opaque, c_int, *const f64, *const f64);
 type GetResult = unsafe extern "C" fn(*mut Opaque, c_int, c_int, *mut f64);
 
 /// A function of the library.
@@ -124,6 +126,14 @@ impl Peer {
                 return Ok(None);
             }
             set(this, numbers.as_ptr(), states.count() as c_int);
+            for (body, point, place) in pins(description) {
+                // a library without it has no constraints
+                let Ok(pin) = function::<Pin>(library, "peer_pin") else {
+                    function::<Free>(library, "peer_free")?(this);
+                    return Ok(None);
+                };
+                pin(this, body, point.as_ptr(), place.as_ptr());
+            }
             let run = *function::<Run>(library, "peer_run")?;
             Ok(Some(Robot { library, this, run, model, states, convention, algorithms: algorithms(library, this)? }))
         }
@@ -185,7 +195,9 @@ impl Drop for Robot<'_> {
 
 /// The URDF of the robot, its base fixed, for a library that reads nothing else. It has no words for gravity.
 pub fn urdf(description: &Description) -> Result<String, String> {
-    let standard = Description { gravity: [0.0, 0.0, -9.81], base: mozzi::Base::Fixed, ..description.clone() };
+    let constraints = Vec::new();
+    let standard =
+        Description { constraints, gravity: [0.0, 0.0, -9.81], base: mozzi::Base::Fixed, ..description.clone() };
     mozzi_urdf::write(&standard).map_err(|error| error.to_string())
 }
 
@@ -212,6 +224,18 @@ pub fn bodies(description: &Description) -> Vec<Body> {
         rows.push(std::array::from_fn(|i| row[i]));
     }
     rows
+}
+
+/// Points of bodies that are pinned to {s}: the body's number, the point in its frame, its place.
+fn pins(description: &Description) -> Vec<(c_int, [f64; 3], [f64; 3])> {
+    let pin = |constraint: &Constraint| match &constraint.kind {
+        ConstraintKind::Frames { a: Anchor { frame: None, T: place }, b, closure: Closure::Point } => {
+            let body = description.links.iter().position(|link| Some(&link.name) == b.frame.as_ref()).expect("a link");
+            (body as c_int, b.T.p.0, place.p.0)
+        }
+        _ => panic!("`{}` pins no point to {{s}}", constraint.name),
+    };
+    description.constraints.iter().map(pin).collect()
 }
 
 /// The rotation by rows, then the translation.

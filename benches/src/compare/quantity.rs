@@ -1,12 +1,18 @@
 //! What is computed.
 
 use mozzi::Model;
-use mozzi::quantities::{MOST_OUTPUTS, Query};
+use mozzi::quantities::{ConstrainedForwardDynamics, MOST_OUTPUTS, Query};
 use mozzi_benches::QUANTITIES;
 
 /// The quantities of the tables, in their order.
 pub fn all() -> impl Iterator<Item = Query<'static>> {
     QUANTITIES.into_iter().map(|name| Query::named(name).expect("one of mozzi's"))
+}
+
+/// Those of a robot: of one with constraints only the constrained dynamics.
+pub fn of(model: &Model) -> impl Iterator<Item = Query<'static>> {
+    let is_constrained = model.constraint_rows() > 0;
+    all().filter(move |&query| (query == ConstrainedForwardDynamics.into()) == is_constrained)
 }
 
 /// Is it by matrices?
@@ -17,7 +23,9 @@ pub fn has_matrices(query: Query) -> bool {
 /// The places of the outputs that are compared: where there are matrices, these, which are all that peers give.
 pub fn compared(query: Query) -> impl Iterator<Item = usize> {
     let (outputs, is_matrix) = (query.declaration().outputs, has_matrices(query));
-    (0..outputs.len()).filter(move |&place| (outputs[place].dims.len() == 2) == is_matrix)
+    // λ differs in signs and axes
+    (0..outputs.len())
+        .filter(move |&place| (outputs[place].dims.len() == 2) == is_matrix && outputs[place].name != "multipliers")
 }
 
 /// How many numbers those are, matrices by rows.
@@ -47,7 +55,11 @@ pub struct Outputs {
 
 impl Outputs {
     pub fn new(model: &Model, states: usize) -> Self {
-        Outputs { states, arrays: [(); MOST_OUTPUTS].map(|()| vec![0.0; states * model.n() * model.n()]) }
+        Outputs {
+            states,
+            arrays: [(); MOST_OUTPUTS]
+                .map(|()| vec![0.0; states * (model.n() * model.n()).max(model.constraint_rows())]),
+        }
     }
 
     /// In their order.

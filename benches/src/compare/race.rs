@@ -96,7 +96,7 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
         }
     }
     let state = states.iter().next().ok_or("no states")?;
-    let rows = quantity::all().map(|quantity| Row {
+    let rows = quantity::of(model).map(|quantity| Row {
         quantity,
         count: count(quantity, model, state),
         times: (0..entries.len()).map(|entry| fastest(&runners, entry, quantity)).collect(),
@@ -109,7 +109,7 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
 /// The columns, once every algorithm gave the first one's numbers at every state.
 fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -> Result<Vec<Column>, String> {
     let mut differences = vec![0.0_f64; entries.len()];
-    for query in quantity::all() {
+    for query in quantity::of(model) {
         for state in 0..states.count() {
             let reference = entries[0].contestant.result(of(&entries[0], query)[0], state)?;
             for (entry, worst) in entries.iter_mut().zip(&mut differences) {

@@ -3,8 +3,10 @@
 use crate::machine;
 use crate::peak::Width;
 use crate::peer::Peer;
+use crate::quantity;
 use crate::race::{Row, Table, Time};
 use crate::simulation::{BRAKE, METHODS, STEP, STEPS, Simulated};
+use mozzi::quantities::Query;
 use std::fmt::Write;
 
 /// Everything, with where and how it was measured.
@@ -85,15 +87,23 @@ const WAYS: [(&str, &str); 6] = [
     ("compiled avx512", "Many states, compiled, AVX-512"),
 ];
 
+/// Those of any table: a robot with constraints has its own.
+fn quantities(tables: &[Table]) -> impl Iterator<Item = Query<'static>> {
+    quantity::all().filter(|&query| tables.iter().any(|table| row_of(table, query).is_some()))
+}
+
+fn row_of<'t>(table: &'t Table, quantity: Query<'static>) -> Option<&'t Row> {
+    table.rows.iter().find(|row| row.quantity == quantity)
+}
+
 /// Of each robot and quantity the fastest of the peers over one of ours, libraries or generated code.
 fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool, ours: &str) {
     let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
     line(text, &format!("\n| | {} |", head.join(" | ")));
     line(text, &format!("|---|{}", "---|".repeat(tables.len())));
-    let Some(first) = tables.first() else { return };
-    for (k, Row { quantity, .. }) in first.rows.iter().enumerate() {
+    for quantity in quantities(tables) {
         let cells = tables.iter().map(|table| {
-            let row = &table.rows[k];
+            let Some(row) = row_of(table, quantity) else { return "–".into() };
             let columns = table.columns.iter().zip(&row.times);
             let peers = columns.filter(|(c, _)| c.width.is_none() && (c.name == GENERATED) == is_generated);
             let timed = peers.filter_map(|(column, time)| Some((&column.name, time.as_ref()?)));
@@ -208,10 +218,9 @@ instructions that a way runs on, for each of mozzi's columns; of compiled ones t
 ";
     let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
     line(text, &format!("| | {} |\n|---|{}", head.join(" | "), "---|".repeat(tables.len())));
-    let Some(first) = tables.first() else { return };
-    for (k, Row { quantity, .. }) in first.rows.iter().enumerate() {
+    for quantity in quantities(tables) {
         let cells = tables.iter().map(|table| {
-            let c = table.rows[k].count;
+            let Some(Row { count: c, .. }) = row_of(table, quantity) else { return "–".into() };
             format!("{} + {} + {} + {}, ({})", c.sums, c.products, c.fused, c.divisions, c.sin_cos)
         });
         line(text, &format!("| {} | {} |", quantity.name(), cells.collect::<Vec<_>>().join(" | ")));
@@ -231,11 +240,12 @@ fn functions(text: &mut String, tables: &[Table]) {
         return line(text, "No peer.");
     }
     line(text, &format!("| | {} |\n|---|{}", peers.join(" | "), "---|".repeat(peers.len())));
-    for (k, Row { quantity, .. }) in tables[0].rows.iter().enumerate() {
+    for quantity in quantities(tables) {
         let cells = peers.iter().map(|peer| {
             let mut names: Vec<&str> = Vec::new();
             for table in tables {
-                let columns = table.columns.iter().zip(&table.rows[k].times);
+                let Some(row) = row_of(table, quantity) else { continue };
+                let columns = table.columns.iter().zip(&row.times);
                 for (_, time) in columns.filter(|(column, _)| column.name == *peer) {
                     names.extend(time.iter().map(|time| time.algorithm.as_str()));
                 }

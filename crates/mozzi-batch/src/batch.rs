@@ -34,7 +34,7 @@ pub struct Batch<T: Number = f64> {
     threads: Threads,
     /// Workers of earlier calls.
     pool: Pool,
-    /// The quantities that were asked for as machine code.
+    /// The quantities compiled to machine code.
     compiled: Arc<Programs>,
     /// Programs of earlier calls.
     programs: Cache,

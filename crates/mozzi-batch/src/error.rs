@@ -54,7 +54,7 @@ pub enum Error {
     /// Threads could not be started.
     #[error("{threads} threads could not be started: {reason}")]
     Threads {
-        /// As many as were asked for.
+        /// The requested number of threads.
         threads: usize,
         /// What was expected.
         reason: String,

@@ -48,9 +48,8 @@ impl<'a, T: Number> Request<'a, T> {
         is_alike && at_rest && its.gravity == own.gravity && its.applied.is_empty()
     }
 
-    /// What a program must leave open to compute this, with `frames` as memory; and the numbers that are the same for
-    /// all states, in the order in which the program takes them. None of them where the robot's own environment is
-    /// asked for.
+    /// The arguments of a program that computes this, with `frames` as memory; none if the environment is the robot's
+    /// own.
     pub fn arguments<'f>(&self, frames: &'f mut Vec<FrameId>) -> Arguments<'f> {
         let own = self.model.environment::<f64>();
         let environment = &self.environment;

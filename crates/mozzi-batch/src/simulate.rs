@@ -31,6 +31,11 @@ impl<T: Number> Batch<T> {
         steps: usize,
     ) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n());
+        let m = self.model().constraint_rows();
+        if m > 0 {
+            let (found, expected) = (format!("one with {m} constraint rows"), "a robot without constraints");
+            return Err(mozzi::Error::BadArgument { what: "the robot of a batch's simulation", found, expected }.into());
+        }
         let table = |name, numbers, width| Table { name, numbers, width };
         let mut inputs = vec![table("theta", &*theta, nq), table("dtheta", &*dtheta, n), table("tau", tau, n)];
         inputs.extend(Request::new(ForwardDynamics.into(), self.model(), environment).further());

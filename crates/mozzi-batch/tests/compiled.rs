@@ -53,7 +53,7 @@ fn panda() -> (mozzi::Model, Compiled) {
 fn what_computes_is_told() {
     let (_, robot) = panda();
     assert_eq!(robot.engine(MassMatrix), Engine::Kernels(Refusal::NotAsked));
-    assert_eq!(robot.engine(MassMatrix).to_string(), "kernels: nobody asked for machine code");
+    assert_eq!(robot.engine(MassMatrix).to_string(), "kernels: machine code was not requested");
     let engine = robot.engine(InverseDynamics);
     match Shape::OneF64.is_supported() {
         true => assert!(matches!(engine, Engine::MachineCode(Shape::OneF64, 1000..=20_000)), "{engine}"),

@@ -7,13 +7,18 @@ pub const USAGE: u8 = 2;
 pub const STOPPED: u8 = 130;
 
 /// Each code with its meaning, as in docs/command-line.md.
-#[cfg(test)]
 const MEANINGS: [(u8, &str); 4] = [
     (SUCCESS, "the result is complete; there may be warnings and notes on standard error"),
     (FAILED, "invalid input, no result, or an answer that something is wrong (`check`, `compare`)"),
     (USAGE, "the command line is wrong: an unknown command or flag, or a missing value"),
     (STOPPED, "stopped by Ctrl-C; results computed so far are written"),
 ];
+
+/// The list for `mozzi --help`.
+pub fn help() -> String {
+    let row = |(code, meaning): (u8, &str)| format!("\n  {code:<5}{meaning}");
+    String::from("Exit codes:") + &MEANINGS.map(row).concat()
+}
 
 #[cfg(test)]
 mod tests {

@@ -78,6 +78,12 @@ impl From<mozzi_motion::Error> for Failure {
     }
 }
 
+impl From<mozzi_urdf::constraints::ConstraintsError> for Failure {
+    fn from(error: mozzi_urdf::constraints::ConstraintsError) -> Self {
+        Failure::Wrong(error.to_string().replace('\n', "\nerror: "))
+    }
+}
+
 impl From<LoadError> for Failure {
     fn from(error: LoadError) -> Self {
         Failure::Load(Box::new(error))

@@ -3,12 +3,15 @@
 use crate::columns::save;
 use crate::failure::{self, Failure, Result};
 use crate::input;
+use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use clap::{Args, ValueEnum};
 use mozzi::simulation::Input;
 use mozzi::{Model, Trajectory, Wrench};
 use mozzi_report::{Drawing, Meshes, Motion};
+use mozzi_urdf::expanded;
 use std::fmt::{self, Display, Formatter};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// More are counted: the page lists them.
@@ -22,6 +25,10 @@ pub struct PageArguments {
     /// Which meshes of the robot's file go into the page, where they are at hand
     #[arg(long, value_name = "WHICH", default_value = "visual")]
     meshes: Which,
+    /// A folder above the meshes of the robot's file that lie outside of its own folder and package; they go into the
+    /// page, too
+    #[arg(long, value_name = "FOLDER")]
+    mesh_root: Option<PathBuf>,
     /// At most so many rows of the motion go into the page, at equal times; or "all"
     #[arg(long, value_name = "N", default_value_t = Rows(mozzi_report::ROWS))]
     page_rows: Rows,
@@ -66,7 +73,13 @@ impl PageArguments {
     }
 
     /// The page of a robot, by its name or its file, with a motion and the number of rows that it had.
-    pub fn page(&self, name_or_path: &str, model: &Model, motion: Option<(Motion, usize)>) -> Result<(String, String)> {
+    pub fn page(
+        &self,
+        robot: &RobotArguments,
+        model: &Model,
+        motion: Option<(Motion, usize)>,
+    ) -> Result<(String, String)> {
+        let name_or_path = robot.model.as_str();
         let motion = motion.map(|(motion, all)| (motion.thinned(self.page_rows.0), all));
         let rows = motion.as_ref().map(|(motion, all)| format!("{} of {all} rows, ", motion.t.len()));
         let motion = motion.as_ref().map(|(motion, _)| motion);
@@ -75,11 +88,16 @@ impl PageArguments {
             Which::Collision => Meshes::Collision,
             Which::None => Meshes::None,
         };
+        if let Some(folder) = self.mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
+            return Err(Failure::wrong(format!("--mesh-root is `{}`, expected a folder", folder.display())));
+        }
         let drawing = if name_or_path == "-" {
             let text = input::robot_text().map_err(|error| input::cannot(name_or_path, &error))?;
+            let expansion = expanded(input::name(name_or_path), text, robot.settings())?;
+            let text = expansion.as_ref().map_or(text, |expansion| expansion.as_bytes());
             Drawing::of_text(input::name(name_or_path), text, meshes)
         } else {
-            Drawing::of_file(name_or_path, meshes)?
+            Drawing::of_file_below(name_or_path, &robot.settings().xacro, meshes, self.mesh_root.as_deref())?
         };
         drawing.notes.iter().take(NOTES).for_each(|note| failure::note(note));
         if drawing.notes.len() > NOTES {
@@ -102,11 +120,11 @@ impl PageArguments {
     pub fn write(
         &self,
         file: &str,
-        name_or_path: &str,
+        robot: &RobotArguments,
         model: &Model,
         motion: Option<(Motion, usize)>,
     ) -> Result<String> {
-        let (page, size) = self.page(name_or_path, model, motion)?;
+        let (page, size) = self.page(robot, model, motion)?;
         save(file, &page)?;
         Ok(format!("{size}, written to {file}"))
     }

@@ -2,16 +2,20 @@
 
 use crate::failure::{self, Failure, Result};
 use crate::numbers::array;
+use crate::xacro_arguments::XacroArguments;
 use crate::{input, robot_json};
 use clap::Args;
 use mozzi::model::Problem;
 use mozzi::quantities::INPUTS;
 use mozzi::{Description, FrameId, Model};
-use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Severity};
-use std::path::Path;
+use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Settings, Severity, constraints};
+use std::path::{Path, PathBuf};
 
 /// Of warnings that do not change the motion so many are printed; `mozzi check` prints all.
 const WARNINGS: usize = 3;
+
+/// A file of constraints that often lies next to a robot's.
+const BESIDE: &str = "robot.yaml";
 
 /// How the robot's file is read.
 #[derive(Args, Debug)]
@@ -26,6 +30,12 @@ pub struct PolicyArguments {
     /// on it
     #[arg(long)]
     floating: bool,
+    /// Add the constraints of this file, which close loops or pin frames, and its motors: mozzi's JSON or YAML, or
+    /// robot.yaml with `closed_loop`
+    #[arg(long, value_name = "FILE")]
+    constraints: Option<PathBuf>,
+    #[command(flatten)]
+    xacro: XacroArguments,
 }
 
 impl PolicyArguments {
@@ -34,18 +44,24 @@ impl PolicyArguments {
         self.floating
     }
 
-    /// A file, standard input for `-`, or an embedded robot by its name.
-    pub fn open(&self, name_or_path: &str) -> std::result::Result<Loaded, LoadError> {
+    /// How a robot's file is read.
+    pub fn settings(&self) -> Settings {
         let policy = match (self.strict, self.lenient) {
             (true, _) => Policy::Strict,
             (_, true) => Policy::Lenient,
             _ => Policy::Default,
         };
+        Settings { policy, xacro: self.xacro.arguments() }
+    }
+
+    /// A file, standard input for `-`, or an embedded robot by its name.
+    pub fn open(&self, name_or_path: &str) -> std::result::Result<Loaded, LoadError> {
+        let settings = self.settings();
         let loaded = if name_or_path == "-" {
             let cannot = |source| LoadError::File { path: input::name(name_or_path).into(), source };
-            mozzi_urdf::parse_with(input::name(name_or_path), input::robot_text().map_err(cannot)?, policy)?
+            mozzi_urdf::parse_with(input::name(name_or_path), input::robot_text().map_err(cannot)?, settings)?
         } else {
-            mozzi_urdf::open_with(name_or_path, policy)?
+            mozzi_urdf::open_with(name_or_path, settings)?
         };
         if mozzi_urdf::embedded::text(name_or_path).is_some_and(|_| Path::new(name_or_path).is_file()) {
             failure::note(&format!("`{name_or_path}` is a file here and an embedded robot; the file is read"));
@@ -68,12 +84,26 @@ impl PolicyArguments {
         Ok(loaded)
     }
 
+    /// With the constraints of `--constraints`. Without them, a note of a `robot.yaml` next to the robot's file.
+    pub fn constrained(&self, name_or_path: &str, robot: Description) -> Result<Description> {
+        if let Some(file) = &self.constraints {
+            return Ok(constraints::read(file, robot)?);
+        }
+        let beside = Path::new(name_or_path).with_file_name(BESIDE);
+        if Path::new(name_or_path).is_file() && beside.is_file() {
+            let beside = beside.display();
+            failure::note(&format!("{beside} is not read; --constraints {beside} adds its constraints"));
+        }
+        Ok(robot)
+    }
+
     /// The robot of a file of any kind.
     pub fn model(&self, name_or_path: &str) -> Result<Model> {
         if !robot_json::is_json(name_or_path) {
-            return Ok(self.load(name_or_path)?.build()?);
+            let robot = self.load(name_or_path)?.description;
+            return Ok(self.constrained(name_or_path, robot)?.build()?);
         }
-        let robot = self.freed(robot_json::read(name_or_path)?);
+        let robot = self.constrained(name_or_path, self.freed(robot_json::read(name_or_path)?))?;
         let (errors, warnings) = self.problems(&robot);
         if self.strict && !errors.is_empty() {
             return Err(Failure::wrong(format!("{name_or_path} is refused: {}", errors[0])));
@@ -104,7 +134,7 @@ fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence,
 
 #[derive(Args, Debug)]
 pub struct RobotArguments {
-    /// A file (URDF, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
+    /// A file (URDF, xacro, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
     /// double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
@@ -121,6 +151,11 @@ pub struct RobotArguments {
 }
 
 impl RobotArguments {
+    /// How its file is read.
+    pub fn settings(&self) -> Settings {
+        self.policy.settings()
+    }
+
     /// Another robot, read by the same policy and under the same gravity.
     pub fn load_other(&self, name_or_path: &str) -> Result<Model> {
         self.under_gravity(self.policy.model(name_or_path)?)

@@ -9,10 +9,12 @@ use crate::{input, json};
 use entry::{At, Read};
 use mozzi::model::description::{FreeJoint, Gear, Joint, JointKind, Limits, Mimic, NamedFrame, Rotor};
 use mozzi::{Base, Description, Model, ScrewAxis, SpatialInertia, Vec3};
+use mozzi_urdf::constraints;
 use serde_json::{Value, json};
 
 pub fn write(model: &Model) -> String {
     let robot = model.description();
+    let closing: Value = serde_json::from_str(&constraints::write(robot)).unwrap_or_default();
     let joint = |joint: &Joint| {
         json!({
             "name": joint.name, "parent": joint.parent, "child": joint.child,
@@ -50,6 +52,8 @@ pub fn write(model: &Model) -> String {
         "frames": robot.frames.iter().map(|frame| json!({
             "name": frame.name, "link": frame.link, "T": json::pose(frame.T),
         })).collect::<Value>(),
+        "constraints": closing["constraints"],
+        "motors": robot.motors,
         "states": robot.states.iter().map(states::write).collect::<Value>(),
         "start": robot.start,
         "lists": model.screws().ok().map(|lists| json::screws(&lists)), // of joints of one axis
@@ -89,6 +93,8 @@ fn description(at: &At) -> Read<Description> {
     }
     robot.rotors = all(&at.get("rotors"), rotor)?;
     robot.frames = all(&at.get("frames"), frame)?;
+    robot.constraints = all(&at.get("constraints"), |at: &At| constraints::constraint(at))?;
+    robot.motors = constraints::motors(&at.get("motors"))?;
     robot.states = all(&at.get("states"), states::read)?;
     robot.start = at.get("start").some(At::text)?;
     lists_agree(&at.get("lists"), &robot)?;

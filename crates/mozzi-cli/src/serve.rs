@@ -1,14 +1,15 @@
 //! One page over HTTP, on 127.0.0.1 alone. Each connection has a thread and deadlines, so that none holds up another.
 
+pub mod request;
+
 use crate::interrupt;
+use request::{Head, Reply};
 use std::io::{ErrorKind, Read, Result, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Longest head of a request, bytes; a browser sends a tenth of it.
-const LONGEST_HEAD: usize = 16 << 10;
 /// Time in which the head arrives.
 const FOR_HEAD: Duration = Duration::from_secs(5);
 /// Time in which a piece of the answer is taken, and all of it.
@@ -56,7 +57,16 @@ impl Server {
 
 /// One request and its answer.
 fn visit(stream: &TcpStream, port: u16, page: &str) -> Result<()> {
-    let head = match head(stream)? {
+    let end = Instant::now() + FOR_HEAD;
+    let head = request::head(|piece| {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        stream.set_read_timeout(Some(left))?;
+        (&mut &*stream).read(piece)
+    })?;
+    let head = match head {
         Head::Whole(head) => head,
         Head::Late => return answer(stream, "408 Request Timeout", "text/plain", Some("the request took too long")),
         Head::Long => {
@@ -64,71 +74,13 @@ fn visit(stream: &TcpStream, port: u16, page: &str) -> Result<()> {
             return rest(stream);
         }
     };
-    let head = String::from_utf8_lossy(&head);
-    let mut lines = head.lines();
-    let mut words = lines.next().unwrap_or_default().split(' ');
-    let hosts: Vec<&str> = lines
-        .filter_map(|line| line.split_once(':'))
-        .filter(|(name, _)| name.eq_ignore_ascii_case("host"))
-        .map(|(_, value)| value.trim())
-        .collect();
-    // a page from elsewhere whose name was made to mean 127.0.0.1 says that name here
-    let is_us = matches!(hosts[..], [host] if is_here(host, port));
-    let method = words.next();
-    let (status, body) = match (is_us, method, words.next()) {
-        (false, ..) => ("403 Forbidden", "this page is for 127.0.0.1"),
-        (_, Some("GET" | "HEAD"), Some("/")) => ("200 OK", page),
-        (_, Some("GET" | "HEAD"), _) => ("404 Not Found", "the only page is /"),
-        _ => ("405 Method Not Allowed", "only GET and HEAD are allowed"),
-    };
-    let kind = if status == "200 OK" { "text/html" } else { "text/plain" };
-    if method == Some("HEAD") {
+    let Reply { status, kind, body, is_head } = request::reply(&head, port, page);
+    if is_head {
         start(stream, status, kind, body.len())?;
     } else {
         answer(stream, status, kind, Some(body))?;
     }
     rest(stream)
-}
-
-fn is_here(host: &str, port: u16) -> bool {
-    let names = ["127.0.0.1", "localhost"];
-    let is = |name: &str| host.eq_ignore_ascii_case(name);
-    names.iter().any(|name| is(&format!("{name}:{port}")) || port == 80 && is(name))
-}
-
-enum Head {
-    Whole(Vec<u8>),
-    Late,
-    Long,
-}
-
-/// The request up to its empty line.
-fn head(mut stream: &TcpStream) -> Result<Head> {
-    let end = Instant::now() + FOR_HEAD;
-    let (mut head, mut piece) = (Vec::new(), [0; 4096]);
-    loop {
-        let left = end.saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return Ok(Head::Late);
-        }
-        stream.set_read_timeout(Some(left))?;
-        let count = match stream.read(&mut piece) {
-            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
-            Ok(count) => count,
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => return Ok(Head::Late),
-            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-            Err(error) => return Err(error),
-        };
-        let begin = head.len().saturating_sub(3); // the empty line may have begun
-        head.extend_from_slice(&piece[..count]);
-        let is_end = |at: usize| head[at..].starts_with(b"\r\n\r\n") || head[at..].starts_with(b"\n\n");
-        if let Some(at) = (begin..head.len()).find(|&at| is_end(at)) {
-            head.truncate(at);
-        } else if head.len() <= LONGEST_HEAD {
-            continue;
-        }
-        return Ok(if head.len() > LONGEST_HEAD { Head::Long } else { Head::Whole(head) });
-    }
 }
 
 fn start(mut stream: &TcpStream, status: &str, kind: &str, length: usize) -> Result<()> {
@@ -173,6 +125,7 @@ fn rest(mut stream: &TcpStream) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::request::LONGEST_HEAD;
     use super::*;
 
     fn serve(page: &str) -> SocketAddr {

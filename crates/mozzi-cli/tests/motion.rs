@@ -159,6 +159,50 @@ fn methods_and_limits() {
     assert!(!text(&flags).contains("joint limit"));
 }
 
+/// A rod on a ball that turns by 0.7 rad at most, in a file.
+fn cone(name: &str) -> String {
+    let robot = "<mujoco><compiler angle='radian'/><worldbody><body name='rod'>\
+                 <joint name='pivot' type='ball' range='0 0.7'/>\
+                 <geom type='capsule' fromto='0 0 0 0 0 -0.8' size='0.05' mass='2'/></body></worldbody></mujoco>";
+    file(&folder(name), "cone.xml", robot)
+}
+
+#[test]
+fn a_ball_comes_to_rest_at_its_limit() {
+    let robot = cone("cone_limits");
+    let angle = |q: &[f64]| 2.0 * q[1].hypot(q[2]).hypot(q[3]).atan2(q[0].abs());
+    for (policy, word) in [("report", "beyond"), ("respect", "came to rest")] {
+        let flags = ["simulate", &robot, "--dtheta=2,3.5,0.4", "--time", "1", "--joint-limits", policy];
+        let page = text(&flags);
+        assert!(page.contains("joint limit: `pivot`") && page.contains(word), "{page}");
+        let most = rows(&json(&flags)["theta"]).iter().map(|q| angle(q)).fold(0.0, f64::max);
+        assert_eq!(most <= 0.7 + 1e-15, policy == "respect", "{most}");
+    }
+}
+
+#[test]
+fn balls_go_through_points_to_the_end() {
+    let robot = cone("cone_motions");
+    let turned = |x: f64| [(0.5 * x).cos(), (0.5 * x).sin(), 0.0, 0.0];
+    let list = |q: [f64; 4]| q.map(|x| format!("{x:?}")).join(",");
+    let [from, to] = [list(turned(-0.3)), list(turned(0.9))];
+    let flags = ["trajectory", &robot, "--from", &from, "--to", &to, "--time", "1", "--step", "0.25"];
+    let found = json(&flags);
+    assert_close(&rows(&found["theta"])[0], &turned(-0.3), 1e-15);
+    assert_close(&rows(&found["theta"])[4], &turned(0.9), 1e-15);
+    assert_close(&rows(&found["dtheta"])[2], &[1.875 * 1.2, 0.0, 0.0], 1e-12); // the quintic's largest rate
+    assert!(text(&flags).contains("joint limit: `pivot` reaches 0.9, beyond its limit 0.7"), "{}", text(&flags));
+    // at rest at both ends: about one axis the cubic spline of the angle
+    let mut table = String::from("t,theta_1,theta_2,theta_3,theta_4\n");
+    for (t, x) in [(0.0, 0.0), (1.0, 0.5), (2.0, 0.0)] {
+        table += &format!("{t},{}\n", list(turned(x)));
+    }
+    let via = file(&folder("cone_via"), "via.csv", &table);
+    let found = json(&["trajectory", &robot, "--via", &via, "--step", "0.5"]);
+    assert_close(&rows(&found["theta"])[1], &turned(0.25), 1e-12); // 3x² − 2x³ at ½
+    assert_close(&rows(&found["dtheta"])[1], &[0.75, 0.0, 0.0], 1e-12);
+}
+
 #[test]
 fn wrong_motions() {
     let folder = folder("wrong_motions");

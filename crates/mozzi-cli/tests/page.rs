@@ -131,6 +131,7 @@ fn assert_usable(found: &Value, width: u64) {
     assert!(found["toggles"].as_object().is_some_and(|all| all.len() >= 9), "{}", found["toggles"]);
     assert_ne!(found["themes"][0], found["themes"][1]);
     assert!(found["painted"].as_u64().expect("a count") > 5, "the scene is empty");
+    assert_eq!(found["covered"].as_f64(), Some(0.0), "M(θ) is shown, and covers nothing of the scene");
     assert!(found["width"].as_u64().expect("a width") <= width, "wider than the screen: {}", found["width"]);
 }
 

@@ -1,4 +1,4 @@
-//! What a recording keeps: each different operation once, in the order in which it was first asked for.
+//! What a recording keeps: each different operation once, in the order in which it first occurred.
 //!
 //! Folded away are operations on constants, x + 0, x − x, x · 0, x · 1 and −(−x). x · 0 is 0 for finite x alone: a NaN
 //! or ∞ goes nowhere where the robot's numbers have a zero. Signs are kept beside nodes ([`Traced`]), so that x and −x,
@@ -27,7 +27,7 @@ pub(crate) enum Node {
 pub(crate) struct Tape {
     pub nodes: Vec<Node>,
     places: HashMap<Node, u32, BuildHasherDefault<MixHasher>>,
-    /// What was asked for, before anything was folded.
+    /// Operations of the kernel, before any was folded.
     pub asked: Count,
 }
 

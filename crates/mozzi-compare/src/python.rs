@@ -10,7 +10,13 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-const SCRIPT: &str = include_str!("peers.py");
+/// One text: the parts use names of those before them.
+const SCRIPT: &str = concat!(
+    include_str!("peers/common.py"),
+    include_str!("peers/pinocchio.py"),
+    include_str!("peers/mujoco.py"),
+    include_str!("peers/answer.py")
+);
 
 /// What is asked, and of whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -49,7 +49,7 @@ pub enum Error {
         s: f64,
         /// ‖log(T⁻¹T_d)‖, rad and m.
         deviation: f64,
-        /// What was asked for.
+        /// The tolerance of the path.
         tolerance: f64,
     },
     /// A motor cannot carry the robot along its path.
@@ -91,25 +91,16 @@ pub(crate) fn check(
     if fine { Ok(()) } else { Err(mozzi::Error::BadArgument { what, found: found.to_string(), expected }.into()) }
 }
 
+/// Has the robot no constraints?
+pub(crate) fn check_open(model: &Model, what: &'static str) -> Result<(), Error> {
+    let m = model.constraint_rows();
+    check(m == 0, what, format!("with {m} constraint rows"), "a robot without constraints")
+}
+
 /// Has every velocity a motor? A floating base and a free joint have none.
 pub(crate) fn check_driven(model: &Model, what: &'static str) -> Result<(), Error> {
     check(!model.is_floating(), what, "on a free base", "a fixed base: no motor moves a free one")?;
-    only(model, what, |freedom| freedom != Freedom::Free, "joints that motors move")
-}
-
-/// Are positions numbers that can be added?
-pub(crate) fn check_flat(model: &Model, what: &'static str) -> Result<(), Error> {
-    check(!model.is_floating(), what, "on a free base", "a fixed base: positions that can be added")?;
-    only(model, what, |freedom| freedom == Freedom::One, "joints of one axis: positions that can be added")
-}
-
-fn only(
-    model: &Model,
-    what: &'static str,
-    fits: impl Fn(Freedom) -> bool,
-    expected: &'static str,
-) -> Result<(), Error> {
-    let other = model.joints().zip(model.places()).find(|(_, place)| !fits(place.freedom));
-    let found = other.map(|(joint, _)| format!("with `{}`, a {} joint", joint.name, joint.kind.name()));
-    check(found.is_none(), what, found.unwrap_or_default(), expected)
+    let free = model.joints().zip(model.places()).find(|(_, place)| place.freedom == Freedom::Free);
+    let found = free.map(|(joint, _)| format!("with `{}`, a free joint", joint.name));
+    check(found.is_none(), what, found.unwrap_or_default(), "joints that motors move")
 }

@@ -4,12 +4,15 @@
 //! Not published: it depends on `mozzi` alone, whose crates depend on it in tests.
 
 pub mod bodies;
+mod constraints;
+mod given;
 mod linear;
 mod second_way;
 mod urdf;
 pub mod wide;
 
+pub use given::Given;
 pub use linear::{inverse, solve};
-pub use second_way::{Given, SecondWay, second_way};
+pub use second_way::{SecondWay, second_way};
 pub use urdf::{NotRead, read_urdf};
 pub use wide::{Double, Octuple, Wide};

@@ -22,7 +22,7 @@ type Numbers = (Vec<f64>, Vec<f64>);
 /// Name and time, the base's pose and twist, each joint's positions and velocities.
 type StateState = ((String, f64), Option<([f64; 7], [f64; 6])>, Vec<(String, Numbers)>);
 
-/// Everything of a [`Description`].
+/// Everything of a [`Description`]; at last its constraints and motors, as JSON.
 pub type State = (
     String,
     Vec<LinkState>,
@@ -33,6 +33,7 @@ pub type State = (
     Option<(String, String)>,
     Vec<RotorState>,
     (Vec<StateState>, Option<String>),
+    Option<String>,
 );
 
 const FIXED: &str = "fixed";
@@ -84,13 +85,14 @@ pub fn to_state(robot: &Description) -> State {
         free,
         robot.rotors.iter().map(rotor).collect(),
         (robot.states.iter().map(state).collect(), robot.start.clone()),
+        (!robot.constraints.is_empty() || robot.motors.is_some()).then(|| mozzi_urdf::constraints::write(robot)),
     )
 }
 
 /// # Errors
 /// `ValueError` for matrices that are no configurations, and axes that are no screws.
 pub fn from_state(
-    (name, links, joints, frames, end_effector, gravity, free, rotors, (states, start)): State,
+    (name, links, joints, frames, end_effector, gravity, free, rotors, (states, start), closing): State,
 ) -> PyResult<Description> {
     let mut robot = Description::new(name).with_gravity(gravity);
     for (name, parameters) in links {
@@ -135,7 +137,10 @@ pub fn from_state(
     };
     robot.states = states.into_iter().map(state).collect();
     robot.start = start;
-    Ok(robot)
+    match closing {
+        Some(text) => mozzi_urdf::constraints::parse("constraints", &text, robot).map_err(refused),
+        None => Ok(robot),
+    }
 }
 
 /// # Errors

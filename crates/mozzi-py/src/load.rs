@@ -5,10 +5,10 @@ use crate::describe::{pose, refused};
 use crate::failure::{DynamicsWarning, LoadWarning, of_loader, of_model};
 use mozzi::model::Base;
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
-use mozzi_urdf::{Consequence, LoadError, Loaded, Policy};
+use mozzi_urdf::{Consequence, LoadError, Loaded, Policy, Settings, XacroArguments};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyString};
+use pyo3::types::{PyBytes, PyDict, PyString};
 use std::ffi::CString;
 use std::path::PathBuf;
 
@@ -42,28 +42,48 @@ pub fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) 
     if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }
 }
 
+/// What a xacro file is expanded with: values as text, as Python prints them, and folders.
+#[derive(Default)]
+pub struct Xacro<'py> {
+    pub values: Option<Bound<'py, PyDict>>,
+    pub packages: Option<Bound<'py, PyDict>>,
+}
+
+impl Xacro<'_> {
+    fn arguments(&self) -> PyResult<XacroArguments> {
+        let mut arguments = XacroArguments::default();
+        for (name, value) in self.values.iter().flatten() {
+            arguments.values.push((name.extract()?, value.str()?.extract()?));
+        }
+        for (name, folder) in self.packages.iter().flatten() {
+            arguments.packages.push((name.extract()?, folder.extract()?));
+        }
+        Ok(arguments)
+    }
+}
+
 /// A path, or an object with `read`.
-pub fn file(given: &Bound<'_, PyAny>, how: &str, floating: bool) -> PyResult<Model> {
-    let (py, policy) = (given.py(), policy(how)?);
+pub fn file(given: &Bound<'_, PyAny>, how: &str, floating: bool, xacro: &Xacro) -> PyResult<Model> {
+    let (py, settings) = (given.py(), Settings { policy: policy(how)?, xacro: xacro.arguments()? });
     if let Ok(read) = given.getattr("read") {
         let name = given.getattr("name").and_then(|name| name.extract::<String>());
-        return self::text(&read.call0()?, &name.unwrap_or_else(|_| "robot".into()), how, floating);
+        return self::text(&read.call0()?, &name.unwrap_or_else(|_| "robot".into()), how, floating, xacro);
     }
     let path: PathBuf = given.extract().map_err(|_| {
         let kind = given.get_type();
         PyTypeError::new_err(format!("the file is a {kind}, expected a path, or a file to read"))
     })?;
-    let loaded = py.detach(|| mozzi_urdf::load_with(path, policy));
+    let loaded = py.detach(|| mozzi_urdf::load_with(path, settings));
     build(py, loaded, floating)
 }
 
 /// A str or bytes.
-pub fn text(given: &Bound<'_, PyAny>, name: &str, how: &str, floating: bool) -> PyResult<Model> {
-    let (py, policy) = (given.py(), policy(how)?);
+pub fn text(given: &Bound<'_, PyAny>, name: &str, how: &str, floating: bool, xacro: &Xacro) -> PyResult<Model> {
+    let (py, settings) = (given.py(), Settings { policy: policy(how)?, xacro: xacro.arguments()? });
     let loaded = if let Ok(text) = given.cast::<PyString>() {
-        mozzi_urdf::parse_with(name, text.to_cow()?.as_bytes(), policy)
+        mozzi_urdf::parse_with(name, text.to_cow()?.as_bytes(), settings)
     } else if let Ok(bytes) = given.cast::<PyBytes>() {
-        mozzi_urdf::parse_with(name, bytes.as_bytes(), policy)
+        mozzi_urdf::parse_with(name, bytes.as_bytes(), settings)
     } else {
         return Err(PyTypeError::new_err(format!("the text is a {}, expected str or bytes", given.get_type())));
     };

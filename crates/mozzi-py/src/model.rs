@@ -14,7 +14,7 @@ use mozzi_batch::Engine;
 use mozzi_codegen::Refusal;
 use mozzi_text::scalar;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyDict, PyString};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by
@@ -89,26 +89,44 @@ pub fn array<'py>(
 
 #[pymethods]
 impl PyModel {
-    /// The robot of a URDF or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd, 'lenient'
-    /// repairs inertias and says so; `floating` frees the base.
+    /// The robot of a URDF, xacro or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd,
+    /// 'lenient' repairs inertias and says so; `floating` frees the base. A xacro file is expanded with `xacro_args`
+    /// (the values of its arguments by name) and `packages` (the folders of `$(find name)`).
     #[staticmethod]
-    #[pyo3(signature = (path_or_file, *, policy="default", floating=false))]
-    fn from_urdf(path_or_file: &Bound<'_, PyAny>, policy: &str, floating: bool) -> PyResult<Self> {
-        load::file(path_or_file, policy, floating).map(Self::of)
+    #[pyo3(signature = (path_or_file, *, policy="default", floating=false, xacro_args=None, packages=None))]
+    fn from_urdf(
+        path_or_file: &Bound<'_, PyAny>,
+        policy: &str,
+        floating: bool,
+        xacro_args: Option<Bound<'_, PyDict>>,
+        packages: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let xacro = load::Xacro { values: xacro_args, packages };
+        load::file(path_or_file, policy, floating, &xacro).map(Self::of)
     }
 
     /// As `from_urdf`: the language is told by the file's first element.
     #[staticmethod]
     #[pyo3(signature = (path_or_file, *, policy="default", floating=false))]
     fn from_mjcf(path_or_file: &Bound<'_, PyAny>, policy: &str, floating: bool) -> PyResult<Self> {
-        load::file(path_or_file, policy, floating).map(Self::of)
+        load::file(path_or_file, policy, floating, &load::Xacro::default()).map(Self::of)
     }
 
-    /// The robot of a text of URDF or MJCF, str or bytes.
+    /// The robot of a text of URDF, xacro or MJCF, str or bytes; the rest as for `from_urdf`.
     #[staticmethod]
-    #[pyo3(signature = (text, *, name="robot.urdf", policy="default", floating=false))]
-    fn from_urdf_string(text: &Bound<'_, PyAny>, name: &str, policy: &str, floating: bool) -> PyResult<Self> {
-        load::text(text, name, policy, floating).map(Self::of)
+    #[pyo3(signature = (
+        text, *, name="robot.urdf", policy="default", floating=false, xacro_args=None, packages=None
+    ))]
+    fn from_urdf_string(
+        text: &Bound<'_, PyAny>,
+        name: &str,
+        policy: &str,
+        floating: bool,
+        xacro_args: Option<Bound<'_, PyDict>>,
+        packages: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let xacro = load::Xacro { values: xacro_args, packages };
+        load::text(text, name, policy, floating, &xacro).map(Self::of)
     }
 
     /// A serial chain of the book's lists: n + 1 home frames (4, 4), each seen from the one before ('relative', as of
@@ -204,7 +222,7 @@ impl PyModel {
     /// --------
     /// >>> import mozzi
     /// >>> mozzi.models.ur5().engine("mass_matrix").one
-    /// 'kernels: nobody asked for machine code'
+    /// 'kernels: machine code was not requested'
     #[pyo3(signature = (quantity, frame=None))]
     fn engine<'py>(&self, py: Python<'py>, quantity: &str, frame: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
         let query = self.query(quantity, frame)?;

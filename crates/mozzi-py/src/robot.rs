@@ -23,7 +23,7 @@ pub struct Robot {
 /// The quantities that are machine code.
 pub struct Machine {
     pub code: Compiled,
-    /// As they were asked for.
+    /// The requested quantities.
     pub names: Vec<Asked>,
     /// For calls without `threads`.
     pub threads: Option<usize>,

@@ -1,7 +1,7 @@
 //! The arguments of a quantity's method, made from its declaration: their order, defaults, types and documentation.
 //! Without Python, so that `tests/stubs.rs` writes the stubs from it.
 
-use mozzi::quantities::{Declaration, Dim, Input, Of, Uses};
+use mozzi::quantities::{Declaration, Dim, Input, Of, Output, Uses};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
 
@@ -142,11 +142,13 @@ fn state((input, slot): (&Input, Slot)) -> Argument {
     Argument { slot, name: input.name, default: None, stub: "ArrayLike", about: [""; 2] }
 }
 
-/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, nor do forces of wrenches
-/// alone, nor what multiplies the parameters.
+/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, the constraints' own included, nor
+/// do forces of wrenches alone, nor what multiplies the parameters.
 fn depends_on_parameters(declaration: &Declaration) -> bool {
     let free_of_them = |dim: &Dim| matches!(dim, Dim::Frames | Dim::Parameters);
+    let of_constraints = |output: &Output| output.dims.iter().any(|dim| matches!(dim, Dim::Constraints));
     declaration.of != Of::Frame
+        && !declaration.outputs.iter().all(of_constraints)
         && declaration.uses != Uses::WRENCHES
         && !declaration.outputs.iter().any(|output| output.dims.iter().any(free_of_them))
 }

@@ -106,3 +106,86 @@ def test_pinocchio(robot, random):
         damping = np.diag([0.0] * 6 + [0.2] * 3 + [0.0])
         for found, theirs in ((d_theta, data.dtau_dq), (d_dtheta - damping, data.dtau_dv)):
             assert_close(bridge.mass_matrix(found), theirs, 10 * np.abs(theirs).max())
+
+
+CONE = """
+<mujoco><compiler angle="radian"/><worldbody><body name="top">
+  <joint name="pivot" type="ball" range="0 0.7"/><geom type="capsule" fromto="0 0 0 0 0 -0.8" size="0.05" mass="2"/>
+  <body name="tip" pos="0 0 -0.8"><joint name="slide" type="slide" axis="0 0 1" range="-0.1 0.1" stiffness="300" damping="1"/>
+    <geom size="0.05" mass="0.2"/></body>
+</body></worldbody></mujoco>"""
+
+
+def angle(q):
+    return 2 * np.arctan2(np.linalg.norm(q[..., 1:], axis=-1), np.abs(q[..., 0]))
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri", "midpoint"])
+def test_the_limit_of_a_ball(tmp_path, method):
+    robot = load_mjcf(tmp_path, CONE)
+    start, thrown = [np.cos(0.15), np.sin(0.15), 0, 0, 0], [0.5, 3.5, 0.8, 0]
+    options = dict(duration=2.0, steps=2000, method=method)
+    free = robot.simulate(start, thrown, **options)
+    kept = robot.simulate(start, thrown, joint_limits="respect", **options)
+    assert free.joint_limits[0].joint == "pivot" and abs(free.joint_limits[0].beyond - (angle(free.theta[:, :4]).max() - 0.7)) < 1e-9
+    assert angle(kept.theta[:, :4]).max() <= 0.7 + 1e-15
+    (stop,) = [stop for stop in kept.joint_limits if stop.joint == "pivot"]
+    assert stop.limit == 0.7 and stop.beyond == 0 and stop.times >= 1
+    total = kept.kinetic_energy + kept.potential_energy
+    # the body spins fast about its thin axis: of the methods with 1 ms steps, their own error
+    error = 1e-8 if method == "dopri" else 5e-3
+    assert np.diff(total).max() < error * kept.kinetic_energy.max()
+    assert kept.friction_loss[-1] == pytest.approx(0.08596, rel=2e-3)
+
+
+def difference(first, second):
+    """θ₂ ⊖ θ₁ of a ball and a slide."""
+    (w1, *v1), (w2, *v2) = first[:4], second[:4]
+    w, v = w1 * w2 + np.dot(v1, v2), w1 * np.array(v2) - w2 * np.array(v1) - np.cross(v1, v2)
+    sin = np.linalg.norm(v)
+    turn = 2 * np.arctan2(sin, abs(w)) * np.sign(w) * v / sin if sin > 0 else 2 * v
+    return np.append(turn, second[4] - first[4])
+
+
+def test_trajectories_of_a_ball(tmp_path, random):
+    robot = load_mjcf(tmp_path, CONE)
+    points = np.hstack([quaternions(random, 5), random.uniform(-0.1, 0.1, (5, 1))])
+    s, e = [0, 0.2, 0.5, 0.6, 1], 1e-5
+    for path in (mozzi.trajectories.Spline(robot, points, s), mozzi.trajectories.Line(robot, points[0], points[4])):
+        for end, point in ((0, points[0]), (1, points[4])):
+            assert_close(difference(point, path.at(end).theta), np.zeros(4), 1, 1e-13)
+        motion = mozzi.trajectories.Timed(path, mozzi.trajectories.Profile.quintic(2.0))
+        for t in np.linspace(0.11, 1.93, 13):
+            before, now, after = (motion.at(x) for x in (t - e, t, t + e))
+            moved = difference(before.theta, after.theta) / (2 * e)
+            assert_close(moved, now.dtheta, 1 + np.abs(moved).max(), 1e-6)
+            rate = (after.dtheta - before.dtheta) / (2 * e)
+            assert_close(rate, now.ddtheta, 1 + np.abs(rate).max(), 1e-6)
+    spline = mozzi.trajectories.Spline(robot, points, s)
+    for place, point in zip(s, points):
+        assert_close(difference(point, spline.at(place).theta), np.zeros(4), 1, 1e-13)
+    fastest = spline.time_optimal(velocity=3.0, acceleration=30.0, torque=np.inf)
+    motion = mozzi.trajectories.Timed(spline, fastest).at(np.linspace(0, fastest.duration, 400))
+    assert 0.99 < np.abs(motion.dtheta).max() / 3.0 < 1.001 or 0.99 < np.abs(motion.ddtheta).max() / 30.0 < 1.001
+    # the motion's own rows, as a table
+    t = np.linspace(0, 2, 41)
+    rows = mozzi.trajectories.Timed(spline, mozzi.trajectories.Profile.quintic(2.0)).at(t)
+    table = mozzi.trajectories.Recorded(robot, t, rows.theta, rows.dtheta, rows.ddtheta)
+    for time, theta in zip(t, rows.theta):
+        assert_close(difference(theta, table.at(time).theta), np.zeros(4), 1, 1e-12)
+
+
+def test_inverse_kinematics_within_a_cone(tmp_path, random):
+    robot = load_mjcf(tmp_path, CONE)
+    guess = [1, 0, 0, 0, 0]
+    for _ in range(10):
+        axis = random.normal(size=3)
+        half = random.uniform(0, 0.35)
+        theta = np.concatenate([[np.cos(half)], np.sin(half) * axis / np.linalg.norm(axis), random.uniform(-0.1, 0.1, 1)])
+        goal = robot.forward_kinematics(theta, frame="tip")
+        found = mozzi.InverseKinematics(robot, "tip").solve(guess, pose=goal)
+        assert_close(robot.forward_kinematics(found.theta, frame="tip"), goal, 1, 1e-7)
+        assert angle(found.theta[:4]) <= 0.7 + 1e-15
+    beyond = robot.forward_kinematics([np.cos(0.5), np.sin(0.5), 0, 0, 0], frame="tip")
+    with pytest.raises(mozzi.MotionError, match="`pivot`"):
+        mozzi.InverseKinematics(robot, "tip", starts=3).solve(guess, pose=beyond, must_reach=True)

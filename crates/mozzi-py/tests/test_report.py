@@ -26,6 +26,40 @@ def test_a_motion_becomes_a_page(ur5, tmp_path):
     assert '"motion":null' in alone and '"motion":null' not in page
 
 
+def test_a_full_disk_leaves_the_older_page(ur5, tmp_path):
+    resource = pytest.importorskip("resource")
+    signal = pytest.importorskip("signal")
+    path = tmp_path / "old.html"
+    path.write_text("older")
+    limits, handler = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, limits[1]))
+    try:
+        with pytest.raises(OSError, match="old.html"):
+            ur5.report(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert path.read_text() == "older" and list(tmp_path.iterdir()) == [path]
+
+
+def test_meshes_beside_the_robots_folder_need_a_root(ur5, tmp_path):
+    for folder in ("urdf", "stls"):
+        (tmp_path / folder).mkdir()
+    robot = tmp_path / "urdf" / "a.urdf"
+    robot.write_text('<robot name="a"><link name="b"><visual><geometry><mesh filename="../stls/b.stl"/></geometry></visual></link></robot>')
+    (tmp_path / "stls" / "b.stl").write_text(
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+    )
+    page = tmp_path / "a.html"
+    with pytest.warns(mozzi.LoadWarning, match="outside of the robot's folder"):
+        ur5.report(page, shapes=robot)
+    without = page.read_text(encoding="utf-8")
+    ur5.report(page, shapes=robot, mesh_root=tmp_path)
+    assert '"format":"stl"' not in without and '"format":"stl"' in page.read_text(encoding="utf-8")
+    with pytest.raises(ValueError, match="mesh_root is .*, expected a folder"):
+        ur5.report(page, shapes=robot, mesh_root=tmp_path / "none")
+
+
 def test_what_is_wrong_is_named(ur5, tmp_path):
     path = tmp_path / "x.html"
     with pytest.raises(ValueError, match="meshes is 'all', expected 'visual', 'collision' or 'none'"):

@@ -3,8 +3,8 @@
 use crate::base64;
 use crate::robot::rows;
 use flate2::{Compression, write::GzEncoder};
-use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry, locate, parse};
-use mozzi_urdf::{LoadError, visible};
+use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry_with, locate, parse};
+use mozzi_urdf::{LoadError, XacroArguments, visible};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
@@ -51,7 +51,21 @@ impl Drawing {
     /// # Errors
     /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
     pub fn of_file(name_or_path: &str, meshes: Meshes) -> Result<Self, LoadError> {
-        Ok(Self::new(geometry(name_or_path)?, Path::new(name_or_path), meshes))
+        Self::of_file_below(name_or_path, &XacroArguments::default(), meshes, None)
+    }
+
+    /// The same with arguments of xacro; meshes may also lie in the folder `mesh_root`, such as one that contains the
+    /// robot's folder and a folder of meshes next to it.
+    ///
+    /// # Errors
+    /// As [`of_file`](Self::of_file); [`LoadError::Refused`] if xacro cannot expand the file.
+    pub fn of_file_below(
+        name_or_path: &str,
+        arguments: &XacroArguments,
+        meshes: Meshes,
+        mesh_root: Option<&Path>,
+    ) -> Result<Self, LoadError> {
+        Ok(Self::new(geometry_with(name_or_path, arguments)?, Path::new(name_or_path), meshes, mesh_root))
     }
 
     /// The drawing of a text, such as that of a pipe: without meshes, since it has no folder.
@@ -60,7 +74,7 @@ impl Drawing {
         let all = shapes.len();
         shapes.retain(|shape| !matches!(shape.form, Form::Mesh { .. }));
         let meshless = all - shapes.len();
-        let mut drawing = Self::new(Geometry { shapes, left_out }, Path::new(file_name), meshes);
+        let mut drawing = Self::new(Geometry { shapes, left_out }, Path::new(file_name), meshes, None);
         if meshless > 0 && meshes != Meshes::None {
             drawing
                 .notes
@@ -69,10 +83,10 @@ impl Drawing {
         drawing
     }
 
-    fn new(Geometry { shapes, left_out }: Geometry, file: &Path, meshes: Meshes) -> Self {
+    fn new(Geometry { shapes, left_out }: Geometry, file: &Path, meshes: Meshes, root: Option<&Path>) -> Self {
         let mut drawing = Drawing { notes: left_out.iter().map(ToString::to_string).collect(), ..Drawing::default() };
         for shape in chosen(shapes, meshes) {
-            if drawing.has_mesh(&shape.form, file) {
+            if drawing.has_mesh(&shape.form, file, root) {
                 drawing.shapes.push(shape);
             }
         }
@@ -80,12 +94,12 @@ impl Drawing {
     }
 
     /// Reads the mesh of a form, if it has one; false and noted where that fails.
-    fn has_mesh(&mut self, form: &Form, robot_file: &Path) -> bool {
+    fn has_mesh(&mut self, form: &Form, robot_file: &Path, root: Option<&Path>) -> bool {
         let Form::Mesh { file, .. } = form else { return true };
         if self.meshes.iter().any(|mesh| mesh.address == *file) {
             return true;
         }
-        match read(robot_file, file) {
+        match read(robot_file, file, root) {
             Ok((format, gzip)) => {
                 self.meshes.push(Mesh { address: file.clone(), format, gzip });
                 true
@@ -150,12 +164,12 @@ fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
 }
 
 /// The format of a mesh and its gzipped file, or the reason why it is omitted.
-fn read(robot_file: &Path, address: &str) -> Result<(&'static str, Vec<u8>), String> {
+fn read(robot_file: &Path, address: &str, root: Option<&Path>) -> Result<(&'static str, Vec<u8>), String> {
     let ending = Path::new(address).extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let Some(&format) = FORMATS.iter().find(|format| ending.as_deref() == Some(**format)) else {
         return Err(format!("mesh {}: is no .stl, .obj or .dae", visible(address)));
     };
-    let path = locate(robot_file, address).map_err(|error| error.to_string())?;
+    let path = locate(robot_file, address, root).map_err(|error| error.to_string())?;
     let place = visible(&format!("mesh {address}: {}", path.display()));
     let cannot = |error: std::io::Error| format!("{place} cannot be read: {error}");
     let bytes = small(&path).map_err(cannot)?;
@@ -205,6 +219,10 @@ mod tests {
         for note in &drawing.notes[1..] {
             assert!(note.contains("secret.stl, outside of the robot's folder"), "{note}");
         }
+        let below =
+            Drawing::of_file_below(&file.to_string_lossy(), &XacroArguments::default(), Meshes::Visual, Some(&folder))
+                .expect("read");
+        assert!(below.meshes.len() == 2 && below.notes.len() == 1, "{:?}", below.notes);
         let piped = Drawing::of_text("standard input", robot.as_bytes(), Meshes::Visual);
         assert!(piped.notes[0].starts_with("4 meshes: standard input has no folder"), "{:?}", piped.notes);
         std::fs::remove_dir_all(&folder).expect("removed");

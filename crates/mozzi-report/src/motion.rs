@@ -2,7 +2,7 @@
 
 use crate::base64;
 use crate::error::Error;
-use mozzi::{Model, Trajectory, Wrench};
+use mozzi::{Environment, Model, Trajectory, Wrench};
 use serde_json::{Value, json};
 
 /// What is known of a motion: a row for each time, row-major lists. What is `None` is not shown.
@@ -108,6 +108,32 @@ impl Motion {
         Ok(())
     }
 
+    /// For each row and constraint the wrench in {s} about its origin, (m, f), that anchor {b} applies to {a}. None where
+    /// rates or torques are not known, or nothing is constrained.
+    fn constraint_wrenches(&self, model: &Model) -> Result<Option<Vec<f64>>, Error> {
+        let (Some(dtheta), Some(ddtheta), Some(tau)) = (&self.dtheta, &self.ddtheta, &self.tau) else {
+            return Ok(None);
+        };
+        if model.constraint_rows() == 0 {
+            return Ok(None);
+        }
+        let (nq, n, mut found) = (model.nq(), model.n(), Vec::new());
+        for (k, theta) in self.theta.chunks(nq).enumerate() {
+            let row = |list: &'_ Vec<f64>| list[k * n..][..n].to_vec();
+            let tip = self.tip_wrench.as_ref().map(|list| list[k]).zip(model.end_effector().ok());
+            let applied: Vec<_> = tip.map(|(F, frame)| (frame, F)).into_iter().collect();
+            let environment = Environment { applied: &applied, ..model.environment() };
+            let motion = [theta, &row(dtheta), &row(ddtheta)];
+            let lambda = model.constraint_forces(motion, &row(tau), &environment)?;
+            let wrenches = model.constraint_wrenches(theta, lambda.as_slice())?;
+            for ((_, F), [a, b]) in wrenches.into_iter().zip(model.constraint_anchors(theta)?) {
+                let (m, f) = (a.R * F.m, a.R * F.f);
+                found.extend(Wrench { m: m + b.p.cross(f), f }.to_array());
+            }
+        }
+        Ok(Some(found))
+    }
+
     pub(crate) fn to_json(&self, model: &Model) -> Result<Value, Error> {
         self.check(model)?;
         let list = |values: &Option<Vec<f64>>| values.as_deref().map(singles);
@@ -120,6 +146,7 @@ impl Motion {
             "ddtheta": list(&self.ddtheta),
             "tau": list(&self.tau),
             "tip_wrench": list(&wrenches),
+            "constraint_wrenches": list(&self.constraint_wrenches(model)?),
             "kinetic_energy": list(&self.kinetic_energy),
             "potential_energy": list(&self.potential_energy),
             "drift": list(&self.drift),

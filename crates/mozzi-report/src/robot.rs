@@ -1,7 +1,7 @@
 //! The robot as the page reads it: each body in the frame of its link in the file.
 
 use crate::drawing::Drawing;
-use mozzi::model::description::{JointKind, Source};
+use mozzi::model::description::{Anchor, ConstraintKind, JointKind, Source};
 use mozzi::{Error, Model, SE3, Twist};
 use serde_json::{Value, json};
 
@@ -27,6 +27,21 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
             json!({ "name": name, "body": body, "T": rows(home(body).inverse() * poses[k]) })
         })
         .collect();
+
+    // the body that carries each anchor, and its place there; none for {s}
+    let anchor = |anchor: &Anchor| match &anchor.frame {
+        None => json!({ "body": null, "p": anchor.T.p.0 }),
+        Some(name) => {
+            let k = frame_of(name).unwrap_or(0);
+            let body = carrier(k, name);
+            json!({ "body": body, "p": (home(body).inverse() * poses[k] * anchor.T).p.0 })
+        }
+    };
+    let constraints = model.constraints().iter().filter_map(|constraint| match &constraint.kind {
+        ConstraintKind::Frames { a, b, .. } => Some(json!({ "name": constraint.name, "a": anchor(a), "b": anchor(b) })),
+        ConstraintKind::Joint { .. } => None,
+    });
+    let constraints: Value = constraints.collect();
 
     // ten numbers for each body; those of the joints follow
     let parameters = model.parameters();
@@ -76,6 +91,7 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         "bodies": bodies,
         "baseInertia": base_inertia,
         "armature": armature.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
+        "constraints": constraints,
         "frames": named,
         "endEffector": model.end_effector().ok().and_then(|frame| frame_of(model.frame_name(frame))),
         "shapes": drawing.shapes_to_json(&|link| frame_of(link)),

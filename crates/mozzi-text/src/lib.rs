@@ -1,4 +1,7 @@
-//! Numbers and tables as text for a terminal: aligned at the decimal point, not wider than the page where that can be.
+//! Numbers and tables as text for a terminal: aligned at the decimal point, not wider than the page where that can be;
+//! and files that are written whole.
+
+pub mod whole_file;
 
 use mozzi::Twist;
 use nalgebra::DMatrix;

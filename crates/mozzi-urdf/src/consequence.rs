@@ -27,7 +27,7 @@ const MOTION: [&str; 6] = [
     "unknown_element",
 ];
 
-const REMARKS: [&str; 11] = [
+const REMARKS: [&str; 12] = [
     "continuous_limits",
     "contradictory_limits",
     "ignored_limit",
@@ -39,6 +39,7 @@ const REMARKS: [&str; 11] = [
     "reversed_limits",
     "stray_text",
     "undeclared_prefix",
+    "xacro_warning",
 ];
 
 /// What a warning of this code means for the results.

@@ -22,6 +22,7 @@ pub struct Diagnostic {
     help: Option<String>,
     topic: Option<Topic>,
     source: Source,
+    calls: String,
 }
 
 impl Diagnostic {
@@ -29,7 +30,17 @@ impl Diagnostic {
         let Finding { severity, code, span, message, help, topic } = finding;
         let code = format!("{}{code}", dialect.prefix());
         let help = help.or_else(|| remedy(&code).map(str::to_string));
-        Diagnostic { severity, code, message, position, span, help, topic, source }
+        Diagnostic { severity, code, message, position, span, help, topic, source, calls: String::new() }
+    }
+
+    /// Without lines of the file.
+    pub(crate) fn hidden(self) -> Self {
+        Diagnostic { source: self.source.hidden(), ..self }
+    }
+
+    /// In a macro of xacro's, which these calls lead to: `, from ur.urdf.xacro:40 (prefix = "left_")`.
+    pub(crate) fn from_calls(self, calls: String) -> Self {
+        Diagnostic { calls, ..self }
     }
 
     /// Error (the file is refused) or warning (it is loaded).
@@ -74,6 +85,12 @@ impl Diagnostic {
         self.position.column
     }
 
+    /// The calls of xacro's macros that lead to the place, innermost first: `, from ur.urdf.xacro:40 (prefix =
+    /// "left_")` for each. Empty outside of macros.
+    pub fn calls(&self) -> &str {
+        &self.calls
+    }
+
     /// The byte range in the text (without its byte order mark).
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
@@ -110,7 +127,7 @@ impl fmt::Display for Diagnostic {
             Severity::Warning => "warning",
         };
         let (file, message) = (visible(self.file()), visible(&self.message));
-        write!(f, "{file}:{}:{}: {severity}: {message}", self.line(), self.column())
+        write!(f, "{file}:{}:{}{}: {severity}: {message}", self.line(), self.column(), visible(&self.calls))
     }
 }
 

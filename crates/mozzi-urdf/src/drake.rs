@@ -1,16 +1,17 @@
-//! Drake's joints and rotors in a URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw
-//! and universal; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator.
+//! Drake's words in a URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw and universal;
+//! `drake:rotor_inertia` and `drake:gear_ratio` of an actuator; `<drake:ball_constraint>`.
 
 use crate::axis;
 use crate::context::Context;
 use crate::element::Element;
 use crate::extension;
 use crate::finding::Finding;
-use crate::places::Places;
+use crate::places::{Place, Places};
 use crate::spelling::did_you_mean;
 use crate::vocabulary::shown;
 use core::f64::consts::TAU;
-use mozzi::{Description, ScrewAxis, Vec3};
+use mozzi::model::description::{Anchor, Constraint};
+use mozzi::{Description, SE3, ScrewAxis, Vec3};
 
 /// The types of a `<drake:joint>` that mozzi computes.
 pub(crate) const JOINT_TYPES: [&str; 4] = ["ball", "planar", "screw", "universal"];
@@ -121,6 +122,40 @@ fn transmission(element: &Element, description: &mut Description, places: &mut P
         return;
     }
     add(&actuator, name.text, description, places, cx);
+}
+
+/// `<drake:ball_constraint>`: point P of body A and point Q of body B coincide.
+pub(crate) fn ball_constraint(element: &Element, description: &mut Description, places: &mut Places, cx: &mut Context) {
+    const PREFIX: &str = "drake:ball_constraint";
+    let mut place = Place::new(element.span());
+    let number = description.constraints.len();
+    let name = format!("ball_constraint{number}");
+    let element = element.called(format!("{} `{name}`", element.subject));
+    let part = |suffix: &str, cx: &mut Context| {
+        let found = child(&element, &format!("{PREFIX}_{suffix}"));
+        if found.is_none() {
+            let message = format!("{}: has no <{PREFIX}_{suffix}>", element.subject);
+            cx.findings.error("missing_element", element.span(), message);
+        }
+        found
+    };
+    let mut anchor = |[body, point]: [&str; 2], attribute, cx: &mut Context| {
+        let (body, point) = (part(body, cx), part(point, cx));
+        let body = body.and_then(|body| body.required_name("name", cx));
+        let point = point.and_then(|point| {
+            let value = point.required("value", cx)?;
+            point.vector::<3>("value", &value, cx)
+        });
+        let (body, point) = (body?, point?);
+        place.set(attribute, body.span);
+        Some(Anchor::frame(body.text).at(SE3::translation(point)))
+    };
+    let a = anchor(["body_A", "p_AP"], "a", cx);
+    let b = anchor(["body_B", "p_BQ"], "b", cx);
+    if let (Some(a), Some(b)) = (a, b) {
+        description.constraints.push(Constraint::point(name, a, b));
+        places.constraints.push(place);
+    }
 }
 
 /// Reports what else Drake's words in an actuator change.

@@ -4,6 +4,7 @@
 mod element;
 mod joint;
 mod link;
+mod transmission;
 
 use crate::write::{NotUrdf, escaped, free};
 use crate::{LoadError, Policy, parse_with};
@@ -12,6 +13,8 @@ use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description};
 use roxmltree::Document;
 use std::fmt;
+
+pub use transmission::drives_of_fixed_joints;
 
 /// Why a text was not edited.
 #[derive(Debug)]
@@ -89,6 +92,8 @@ fn unsupported(a: &Description, b: &Description) -> Vec<String> {
     differ(a.base == Base::Floating && b.base == Base::Fixed, "its base is fixed".into());
     differ(a.name != b.name, format!("its name is `{}`", b.name));
     differ(a.gravity != b.gravity, format!("gravity is {:?}", b.gravity));
+    differ(a.constraints != b.constraints, "its constraints are others".into());
+    differ(a.motors != b.motors, "its motors are others".into());
     for (old, new) in a.joints.iter().zip(&b.joints).filter(|(old, new)| old != new) {
         let locked = Joint { kind: JointKind::Fixed, origin: new.origin, mimic: None, ..old.clone() };
         differ(locked != *new, format!("joint `{}` differs in other things than being locked", old.name));

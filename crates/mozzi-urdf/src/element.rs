@@ -187,6 +187,12 @@ impl<'a> Element<'a> {
             let language = cx.dialect.name();
             let message = format!("{subject}: has an attribute `{}`, which {language} does not define", shown(name));
             match cx.unknown(self.name(), name, "attribute", words.attributes.iter().copied()) {
+                // the two halves of a symmetric matrix
+                Unknown::Misspelled(near) if self.contradicts(name, &near) => {
+                    let message = format!("{message}, with another value than `{near}`");
+                    let help = format!("the inertia is symmetric: remove `{}`, or correct one of them", shown(name));
+                    cx.findings.add(Finding::error("contradictory_attribute", span, message).help(help));
+                }
                 // of a word that is given as well nothing is lost: `k_velocity` next to `velocity`
                 Unknown::Misspelled(near) if self.attribute(&near).is_some() => {
                     let message = format!("{message}, next to `{near}`");
@@ -205,6 +211,13 @@ impl<'a> Element<'a> {
                 Unknown::Again => {}
             }
         }
+    }
+
+    /// Is it the transposed entry, such as `iyx` of `ixy`, and not the same number?
+    fn contradicts(&self, name: &str, near: &str) -> bool {
+        let transposed: String = ["i", near.get(2..3).unwrap_or_default(), near.get(1..2).unwrap_or_default()].concat();
+        let value = |name: &str| self.attribute(name).map(|value| numbers::<1>(value.text).ok());
+        near.len() == 3 && name == transposed && value(name) != value(near)
     }
 
     /// The children that may stand once, by name. Duplicates are errors; so are near misses of words; other unknown

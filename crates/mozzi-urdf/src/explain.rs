@@ -7,13 +7,17 @@ use crate::spelling::nearest;
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // code, meaning, remedy
-const CODES: [Entry; 66] = [
+const CODES: [Entry; 71] = [
     ("circular_mimic",
         "A mimic joint follows itself, directly or over other mimic joints. Its position is then undefined.",
         "remove one of the <mimic> elements"),
     ("continuous_limits",
         "A continuous joint turns without bounds; its lower and upper limits are ignored.",
         "a joint with bounds is of type `revolute`"),
+    ("contradictory_attribute",
+        "An inertia has an entry on both sides of its diagonal, such as `ixy` and `iyx`, with different values. The \
+         matrix is symmetric, so one of them is wrong.",
+        "keep the right one, under the name that URDF defines: `ixy`, `ixz`, `iyz`"),
     ("contradictory_limits",
         "A mimic joint and its source joint have limits that no position satisfies together. mozzi computes the \
          coupling as given; limits do not enter the dynamics.",
@@ -49,8 +53,8 @@ const CODES: [Entry; 66] = [
         "A mimic joint follows a fixed joint, which never moves.",
         "follow a joint that moves, or make this joint fixed, too"),
     ("ignored_force",
-        "Something acts on the robot that mozzi does not compute: a spring, a bushing, a tendon, a tie that closes a \
-         loop, a controller in Drake's words; gravity that is switched off, or a spring, in Gazebo's settings; gravity, a \
+        "Something acts on the robot that mozzi does not compute: a spring, a bushing, a tendon, a \
+         controller in Drake's words; gravity that is switched off, or a spring, in Gazebo's settings; gravity, a \
          fluid or changed masses in MuJoCo's. The robot is computed without it.",
         "add its effect to the joint torques or applied wrenches; or remove it"),
     ("ignored_property",
@@ -92,8 +96,9 @@ const CODES: [Entry; 66] = [
         "A name is longer than 256 bytes.",
         "choose a shorter name; names are repeated in every message"),
     ("loop_closure",
-        "A link is the child of two joints, or a joint closes a loop. mozzi supports trees only.",
-        "cut the loop by removing one of its joints, if you want to compute the tree"),
+        "A link is the child of two joints, or a joint closes a loop. The joints of a robot form a tree; constraints \
+         close its loops.",
+        "cut the loop at one joint, and close it by a constraint: <drake:ball_constraint>, or `--constraints FILE`"),
     ("massless_leaf",
         "The last link of a branch moves but has no inertia about its joint's axis. Inverse dynamics works; \
          forward dynamics would divide by zero and returns an error that names the joint.",
@@ -163,6 +168,10 @@ const CODES: [Entry; 66] = [
         "The lower limit of a joint is above the upper one. Limits do not enter the dynamics; the joint is treated as \
          unlimited.",
         "exchange `lower` and `upper`"),
+    ("self_constraint",
+        "A constraint is between a frame and itself, between two frames that are fixed to each other, or between a joint and \
+         itself.",
+        "constrain two frames, or joints, that can move relative to each other"),
     ("self_parent",
         "A joint's parent and child are the same link.",
         "the parent is the link that carries the joint, the child the link that it moves"),
@@ -207,6 +216,9 @@ const CODES: [Entry; 66] = [
         "Neither URDF nor a known extension defines this element, nor one with a similar name. It is ignored; \
          reported once per kind.",
         "remove it, or give it a namespace prefix of its own"),
+    ("unknown_frame",
+        "A constraint names a link or frame that does not exist. In MJCF: a body or site.",
+        "use the frame's name, with the same spelling"),
     ("unknown_joint",
         "A mimic joint follows a joint that does not exist. Ignoring the coupling would give wrong results, so \
          the file is refused.",
@@ -228,6 +240,10 @@ const CODES: [Entry; 66] = [
     ("unreachable_link",
         "A link is part of a ring of joints that is not connected to the base.",
         "correct the parent of one joint of the ring"),
+    ("unsupported_constraint",
+        "The robot has a <constraint>. It is a proposal for URDF that no version defines; ignoring it would give wrong \
+         results, so the file is refused.",
+        "write a <drake:ball_constraint>, or the constraints in a file of their own (`--constraints FILE`)"),
     ("unsupported_joint",
         "A joint is a ball, which URDF does not define and other readers do not support; or a planar or floating \
          joint is a mimic joint.",
@@ -245,14 +261,16 @@ const CODES: [Entry; 66] = [
         "The root element of a URDF must be <robot>.",
         "check that this is the right file; a URDF begins with <robot name=\"…\">"),
     ("xacro",
-        "The file is a xacro program, which generates a URDF when it is run: it has elements such as \
-         `<xacro:macro>`, or values such as `${mass}`. mozzi reads the generated URDF and does not run xacro \
-         itself, because the Rust implementations of xacro silently compute wrong numbers for some expressions. \
-         PyPI's xacro needs no ROS: `pip install xacro`, then `xacro robot.xacro name:=value > robot.urdf`. A \
-         file that contains `$(find package)`, or includes one that does, needs ROS, or xacrodoc: `pip install \
-         xacrodoc`, then `xacrodoc robot.xacro name:=value --pkg-dir DIR -o robot.urdf`, with the packages' \
-         folders in DIR.",
-        "expand it first: `pip install xacro; xacro robot.xacro > robot.urdf`"),
+        "A xacro file cannot be expanded: a name is not defined, a macro is called with other parameters than it has, an \
+         expression is not one of the supported part of Python, or the expansion exceeds a bound. The place is in the \
+         file that was written, followed by the calls of macros that lead there. A file is expanded if its name ends \
+         in .xacro, or if its root declares xmlns:xacro; `--xacro-arg name:=value` gives an argument, `--package \
+         name=folder` the folder of `$(find name)`. docs/xacro.md has the language and the bounds.",
+        "correct the file at this place; `mozzi xacro robot.xacro name:=value -o robot.urdf` shows the expansion"),
+    ("xacro_warning",
+        "A message of a xacro file (`xacro.warning`), or a word in it that has no effect, such as an attribute that \
+         xacro does not define.",
+        "correct the word, or remove it"),
     ("zero_axis",
         "The axis of a moving joint, or a quaternion, has length 0.",
         "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`; `0 0 0 1` is the quaternion of no \

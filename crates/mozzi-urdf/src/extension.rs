@@ -7,8 +7,9 @@ use crate::finding::Finding;
 use crate::vocabulary::shown;
 
 /// Elements of Drake that are read, or that concern contacts and looks only.
-const DRAKE: [&str; 5] = [
+const DRAKE: [&str; 6] = [
     "drake:joint",
+    "drake:ball_constraint",
     "drake:screw_thread_pitch",
     "drake:rotor_inertia",
     "drake:gear_ratio",
@@ -16,8 +17,7 @@ const DRAKE: [&str; 5] = [
 ];
 
 /// Elements of Drake that act on the robot, and how.
-const FORCES: [(&str, &str); 5] = [
-    ("drake:ball_constraint", "ties a point of one body to a point of another, which closes a loop"),
+const FORCES: [(&str, &str); 4] = [
     ("drake:linear_bushing_rpy", "is a bushing: springs and dampers between two frames"),
     ("drake:linear_spring_damper", "is a spring and a damper between two points"),
     ("drake:tendon_constraint", "is a tendon: it limits a sum of joint positions, or is a spring and a damper on it"),

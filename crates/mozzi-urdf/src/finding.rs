@@ -2,6 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
+use crate::expansion;
 use crate::source::{Source, Walker};
 use mozzi::model::Severity;
 use std::ops::Range;
@@ -132,6 +133,10 @@ impl Findings {
                 finding = if source.is_shown { finding } else { finding.without_content() };
                 let local = |place: usize| place.saturating_sub(source.base);
                 let span = source.in_file(local(finding.span.start)..local(finding.span.end));
+                if let Some(expansion) = &source.expansion {
+                    diagnostics.push(expansion::placed(expansion, finding, span, dialect));
+                    continue;
+                }
                 finding.span = file.clamp(span);
                 let position = walker.advance(finding.span.start);
                 diagnostics.push(Diagnostic::new(finding, position, file.clone(), dialect));

@@ -17,12 +17,15 @@
 //!   warning that it is ignored before.
 //! - Drake's words: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint (`screw`), or,
 //!   if `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator
-//!   are the armature ratio² × inertia. Its other forces and ties are warnings that name them.
+//!   are the armature ratio² × inertia; `<drake:ball_constraint>` is a constraint. Its forces are warnings that name them.
+//! - Constraints, which close loops, may also come from a file of their own: see [`constraints`]. urdfdom's proposal
+//!   `<constraint>` is refused by name.
 //! - Probable misspellings of URDF elements and attributes are errors, unless the right word is there as well. Known
 //!   extensions (gazebo, transmission, ros2_control) are skipped, except for what changes the motion, such as a link
 //!   without gravity. Other unknown words, of any namespace, give one warning per kind.
-//! - A file that xacro has not expanded is an error, with the command that expands it. Meshes do not affect the
-//!   dynamics; only [`geometry`] locates them.
+//! - A file of xacro is expanded ([`mozzi_xacro`]), by its name or if its root declares xacro's namespace; places are
+//!   those of the xacro files, with the calls of macros. Meshes do not affect the dynamics; only [`geometry`] locates
+//!   them.
 //! - Only the direction of an axis is used, with a warning if its length differs from 1 by more than 10⁻³; positions
 //!   stay radians or metres.
 //! - A missing limit is a warning and means unlimited, and so are reversed limits; limits do not enter the dynamics.
@@ -52,6 +55,7 @@
 mod axis;
 mod bytes;
 mod consequence;
+pub mod constraints;
 mod context;
 mod diagnostic;
 mod dialect;
@@ -60,6 +64,7 @@ mod edit;
 mod element;
 pub mod embedded;
 mod error;
+mod expansion;
 mod explain;
 mod expressible;
 mod extension;
@@ -81,6 +86,7 @@ mod repair;
 mod robot;
 mod scan;
 mod series;
+mod settings;
 mod source;
 mod spelling;
 mod syntax;
@@ -92,12 +98,15 @@ mod xacro;
 
 pub use consequence::{Consequence, consequence, unused};
 pub use diagnostic::Diagnostic;
-pub use edit::{EditError, edit};
+pub use edit::{EditError, drives_of_fixed_joints, edit};
 pub use error::LoadError;
+pub use expansion::expanded;
 pub use explain::{codes, explain, nearest_code, remedy};
 pub use expressible::expressible;
 pub use mozzi::model::Severity;
+pub use mozzi_xacro::Arguments as XacroArguments;
 pub use pretty::Style;
+pub use settings::{Policy, Settings};
 pub use spelling::did_you_mean;
 pub use visible::visible;
 pub use write::{NotUrdf, write};
@@ -133,18 +142,6 @@ impl Loaded {
     }
 }
 
-/// How strictly a file is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Policy {
-    /// Warnings are errors.
-    Strict,
-    /// Errors refuse the file; warnings are reported.
-    #[default]
-    Default,
-    /// Unphysical inertias are replaced by the nearest physical ones, with a warning.
-    Lenient,
-}
-
 /// Reads a file.
 ///
 /// # Errors
@@ -153,13 +150,13 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, LoadError> {
     load_with(path, Policy::Default)
 }
 
-/// Reads a file under a policy.
+/// Reads a file under a policy, or with other settings, such as arguments of xacro.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with(path: impl AsRef<Path>, policy: Policy) -> Result<Loaded, LoadError> {
+pub fn load_with(path: impl AsRef<Path>, settings: impl Into<Settings>) -> Result<Loaded, LoadError> {
     let path = path.as_ref();
-    parse_in(path.parent(), &path.to_string_lossy(), &file_bytes(path)?, policy)
+    parse_in(path.parent(), &path.to_string_lossy(), &file_bytes(path)?, &settings.into())
 }
 
 fn file_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
@@ -182,18 +179,20 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, LoadErro
     parse_with(file_name, text, Policy::Default)
 }
 
-/// Reads a text under a policy.
+/// Reads a text under a policy, or with other settings.
 ///
 /// # Errors
 /// As [`parse`].
-pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, policy: Policy) -> Result<Loaded, LoadError> {
-    parse_in(None, file_name, text.as_ref(), policy)
+pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, settings: impl Into<Settings>) -> Result<Loaded, LoadError> {
+    parse_in(None, file_name, text.as_ref(), &settings.into())
 }
 
 /// Reads a text; what it includes is searched in a folder.
-fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], policy: Policy) -> Result<Loaded, LoadError> {
+fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Settings) -> Result<Loaded, LoadError> {
+    let policy = settings.policy;
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text, &mut findings));
+    let (source, notes) = expansion::prepare(source, &settings.xacro)?;
     let dialect = Dialect::of(&source.text);
     let source = syntax::mended(source, dialect, &mut findings);
     let (mut sources, mut description) = (vec![source], None);
@@ -207,6 +206,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], policy: Policy)
         description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));
     }
     let Placed { mut diagnostics, errors, is_cut } = findings.place(&sources, dialect);
+    diagnostics.extend(notes);
     let is_unused = |found: &Diagnostic| found.consequence() == Consequence::Unused;
     // a site with another name is the file's robot
     let is_refused =
@@ -247,10 +247,10 @@ pub fn open(name_or_path: &str) -> Result<Loaded, LoadError> {
 ///
 /// # Errors
 /// As there; under [`Policy::Strict`] warnings too.
-pub fn open_with(name_or_path: &str, policy: Policy) -> Result<Loaded, LoadError> {
+pub fn open_with(name_or_path: &str, settings: impl Into<Settings>) -> Result<Loaded, LoadError> {
     match embedded::unless_file(name_or_path) {
-        Some(text) => parse_with(&format!("{name_or_path}.urdf"), text, policy),
-        None if Path::new(name_or_path).exists() => load_with(name_or_path, policy),
+        Some(text) => parse_with(&format!("{name_or_path}.urdf"), text, settings),
+        None if Path::new(name_or_path).exists() => load_with(name_or_path, settings),
         None => Err(LoadError::NoSuchRobot { name: name_or_path.to_string() }),
     }
 }

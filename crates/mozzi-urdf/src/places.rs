@@ -59,6 +59,7 @@ pub(crate) struct Places {
     pub joints: Vec<Place>,
     pub frames: Vec<Place>,
     pub rotors: Vec<Place>,
+    pub constraints: Vec<Place>,
     pub states: Vec<Place>,
     /// Links or joints are missing, for a reason that was reported.
     pub is_partial: bool,
@@ -71,6 +72,7 @@ impl Places {
             Element::Joint(i) => self.joints.get(i),
             Element::Frame(i) => self.frames.get(i),
             Element::Rotor(i) => self.rotors.get(i),
+            Element::Constraint(i) => self.constraints.get(i),
             Element::State(i) => self.states.get(i),
             Element::Robot => None,
         };

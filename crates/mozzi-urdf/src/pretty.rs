@@ -105,7 +105,8 @@ impl<'d> View<'d> {
 
 impl fmt::Display for View<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&visible(self.diagnostic.message()))
+        f.write_str(&visible(self.diagnostic.message()))?;
+        f.write_str(&visible(self.diagnostic.calls()))
     }
 }
 

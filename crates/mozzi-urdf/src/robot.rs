@@ -9,7 +9,8 @@ use crate::version::Version;
 use crate::vocabulary::{ROBOT, shown};
 use crate::{drake, floating, joint, link, series};
 use joint::Freedoms;
-use mozzi::Description;
+use mozzi::model::description::ConstraintKind;
+use mozzi::{Base, Description};
 
 /// Links and joints in the order of the file, and their places. None when the file is no URDF at all, or
 /// wrong throughout.
@@ -47,10 +48,20 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
                 places.joints.push(place);
             }
             "loop_joint" => {
-                let message = format!("{}: closes a loop of links, which mozzi does not compute", child.subject);
-                let help = "expected a tree: remove this joint, if you want to compute the tree without it";
+                let message = format!("{}: is not an element of URDF", child.subject);
+                let help = "expected a tree of joints: replace it by a <drake:ball_constraint> or by constraints in a \
+                            file of their own";
                 cx.findings.add(Finding::error("loop_closure", child.span(), message).help(help));
             }
+            "constraint" => {
+                let message = format!(
+                    "{}: is a proposal for URDF that no version defines, and that readers ignore or refuse",
+                    child.subject
+                );
+                let help = "write a <drake:ball_constraint>, or the constraints in a file of their own";
+                cx.findings.add(Finding::error("unsupported_constraint", child.span(), message).help(help));
+            }
+            "drake:ball_constraint" => drake::ball_constraint(&child, &mut description, &mut places, cx),
             _ => {}
         }
     }
@@ -60,6 +71,15 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
     places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
     cx.report_repeated();
     floating::free_base(&floating_joints, &mut description, &mut places);
+    // the link from which the base is freed is {s}
+    if description.base == Base::Floating {
+        for one in &mut description.constraints {
+            if let ConstraintKind::Frames { a, b, .. } = &mut one.kind {
+                let parent = &description.free_joint.parent;
+                [a, b].into_iter().for_each(|anchor| anchor.frame = anchor.frame.take().filter(|name| name != parent));
+            }
+        }
+    }
     Some((description, places))
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Source {
     inserted: (usize, usize),
     /// Whether diagnostics may show lines of it.
     pub is_shown: bool,
+    /// What wrote the text, if it is not a file's: its places are those of other files.
+    pub expansion: Option<Arc<mozzi_xacro::Expansion>>,
 }
 
 /// A place in a text, both counted from 1, columns in characters.
@@ -28,7 +30,8 @@ pub(crate) struct Position {
 
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
-        Source { name: name.into(), text: text.into(), base: 0, original: None, inserted: (0, 0), is_shown: true }
+        let (name, text, original, inserted) = (name.into(), text.into(), None, (0, 0));
+        Source { name, text, base: 0, original, inserted, is_shown: true, expansion: None }
     }
 
     /// The same file, parsed as a text whose places are the same.
@@ -108,7 +111,7 @@ impl<'t> Walker<'t> {
         Walker { text, at: 0, position: Position { line: 1, column: 1 } }
     }
 
-    /// The position of a byte on a character's boundary, not before the last one asked for.
+    /// The position of a byte on a character's boundary, not before that of the call before.
     pub fn advance(&mut self, offset: usize) -> Position {
         let passed = self.text.get(self.at..offset).unwrap_or_default();
         match passed.rfind('\n') {

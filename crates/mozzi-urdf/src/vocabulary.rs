@@ -18,8 +18,8 @@ pub(crate) const NOTHING: Vocabulary = Vocabulary { attributes: &[], once: &[], 
 pub(crate) const ROBOT: Vocabulary = Vocabulary {
     attributes: &["name", "version"],
     many: &["link", "joint"],
-    // a loop_joint is refused where links and joints are read
-    silent: &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco", "loop_joint"],
+    // a loop_joint and a constraint are refused where links and joints are read
+    silent: &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco", "loop_joint", "constraint"],
     ..NOTHING
 };
 pub(crate) const LINK: Vocabulary = Vocabulary {

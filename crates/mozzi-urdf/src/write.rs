@@ -3,7 +3,7 @@
 use crate::floating::frees_the_base;
 use crate::limit::UNLIMITED;
 use crate::xacro::has_expression;
-use mozzi::model::description::{Joint, JointKind, Limits, Link};
+use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Joint, JointKind, Limits, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::fmt::{self, Write};
 
@@ -31,8 +31,9 @@ impl std::error::Error for NotUrdf {}
 ///
 /// # Errors
 /// [`NotUrdf`] with everything that would be lost: balls, helical joints, axes that miss the child's frame, rotors of
-/// several joints, further frames, a named end effector, gravity other than (0, 0, −9.81), control characters in names,
-/// names that xacro would evaluate. [`expressible`](crate::expressible) replaces most of them.
+/// several joints, further frames, constraints, a list of motors, a named end effector, gravity other than (0, 0, −9.81),
+/// control characters in names, names that xacro would evaluate. [`expressible`](crate::expressible) replaces most of
+/// them. A constraint that was a `<drake:ball_constraint>` is written as one.
 pub fn write(description: &Description) -> Result<String, NotUrdf> {
     let reasons = not_urdf(description);
     if !reasons.is_empty() {
@@ -81,6 +82,11 @@ fn not_urdf(d: &Description) -> Vec<String> {
     reasons.extend(names.filter(is_lost).map(|name| format!("the name {name:?}")));
     reasons.extend(d.frames.iter().map(|frame| format!("frame `{}`", frame.name)));
     reasons.extend(d.rotors.iter().map(|rotor| format!("rotor `{}`", rotor.name)));
+    let lost = d.constraints.iter().enumerate().filter(|(i, one)| ball_constraint(d, *i, one).is_none());
+    reasons.extend(lost.map(|(_, one)| format!("constraint `{}`", one.name)));
+    if d.motors.is_some() {
+        reasons.push("the list of motors".to_string());
+    }
     reasons.extend(d.end_effector.iter().map(|name| format!("the end effector `{name}`")));
     if d.gravity != [0.0, 0.0, -9.81] {
         reasons.push(format!("gravity {:?}", d.gravity));
@@ -89,7 +95,8 @@ fn not_urdf(d: &Description) -> Vec<String> {
 }
 
 fn robot(text: &mut String, d: &Description) -> fmt::Result {
-    writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\">", escaped(&d.name))?;
+    let drake = if d.constraints.is_empty() { "" } else { " xmlns:drake=\"https://drake.mit.edu\"" };
+    writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\"{drake}>", escaped(&d.name))?;
     // the base is freed from an empty link
     let taken = |name: &str| d.links.iter().any(|link| link.name == name);
     let space = free(&d.free_joint.parent, taken);
@@ -114,7 +121,29 @@ fn robot(text: &mut String, d: &Description) -> fmt::Result {
     for each in &d.joints {
         joint(text, each)?;
     }
+    for (i, each) in d.constraints.iter().enumerate() {
+        const TAG: &str = "drake:ball_constraint";
+        let Some(ends) = ball_constraint(d, i, each) else { continue }; // it was refused
+        writeln!(text, "  <{TAG}>")?;
+        for ([body, point], (link, p)) in [["A", "p_AP"], ["B", "p_BQ"]].into_iter().zip(ends) {
+            writeln!(text, "    <{TAG}_body_{body} name=\"{}\"/>", escaped(link))?;
+            writeln!(text, "    <{TAG}_{point} value=\"{}\"/>", triple(p))?;
+        }
+        writeln!(text, "  </{TAG}>")?;
+    }
     text.write_str("</robot>\n")
+}
+
+/// The links and points of a constraint that Drake's element describes exactly, its name included.
+fn ball_constraint<'d>(d: &Description, i: usize, constraint: &'d Constraint) -> Option<[(&'d str, Vec3); 2]> {
+    let ConstraintKind::Frames { a, b, closure: Closure::Point } = &constraint.kind else { return None };
+    let end = |anchor: &'d Anchor| {
+        let name = anchor.frame.as_deref()?;
+        let is_link = d.links.iter().any(|link| link.name == name);
+        (is_link && anchor.T.R == SE3::identity().R).then_some((name, anchor.T.p))
+    };
+    let ends = [end(a)?, end(b)?];
+    (constraint.name == format!("ball_constraint{i}")).then_some(ends)
 }
 
 /// The name, or one like it that is not taken.

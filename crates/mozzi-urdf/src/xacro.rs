@@ -1,5 +1,5 @@
-//! xacro: files that are programs, and write a URDF when they are run. They are refused, with the command that runs
-//! them.
+//! xacro: files that are programs, and write a URDF when they are run. Which files are; what is left of it in a text
+//! that was not expanded is refused, with the command that expands it.
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
@@ -21,7 +21,7 @@ const EXPRESSIONS: [&str; 9] =
 /// What was expected instead.
 const EXPECTED: &str = "expected a file that xacro has expanded";
 
-/// More arguments than these are not asked for in a command.
+/// The most arguments listed in a suggested command.
 const MOST_ARGUMENTS: usize = 8;
 
 /// Does the text hold something that xacro evaluates?
@@ -66,17 +66,30 @@ fn is_read(node: Node) -> bool {
     node.ancestors().filter(Node::is_element).all(|ancestor| READ.contains(&ancestor.tag_name().name()))
 }
 
-/// How to expand the file: PyPI's xacro finds no packages without ROS, xacrodoc does.
+/// How to expand the file.
 fn command(document: &Document, file: &str, dialect: Dialect) -> String {
     let (input, output) = (quoted(file), quoted(&expanded(file, dialect)));
     let values: String = arguments(document).map(|name| format!(" {name}:=VALUE")).collect();
-    if document.input_text().contains("$(find ") {
-        return format!(
-            "`pip install xacrodoc; xacrodoc {input}{values} --pkg-dir DIR -o {output}` expands it, DIR holding the \
-             folders of the packages"
-        );
-    }
-    format!("`pip install xacro; xacro {input}{values} > {output}` expands it")
+    format!(
+        "`mozzi xacro {input}{values} -o {output}` expands it; it is expanded at once if its name ends in .xacro, or if \
+         its root declares xmlns:xacro=\"http://www.ros.org/wiki/xacro\""
+    )
+}
+
+/// Is the file to be expanded before it is read: by its name, or because its root declares xacro's namespace and
+/// something is left to expand?
+pub(crate) fn is_program(text: &str, file: &str, parse: impl FnOnce() -> Option<bool>) -> bool {
+    let is_named = file.ends_with(".xacro") && text.contains('<');
+    is_named || text.contains("xacro") && parse() == Some(true)
+}
+
+/// Does the root declare the namespace, and is something left to expand?
+pub(crate) fn is_unexpanded(document: &Document, dialect: Dialect) -> bool {
+    let declares = document
+        .root_element()
+        .namespaces()
+        .any(|space| space.name() == Some("xacro") || space.uri().ends_with("/xacro"));
+    declares && refuse(document, "", dialect).is_some()
 }
 
 /// The names of arguments that have no default.
@@ -175,7 +188,11 @@ mod tests {
 
     #[test]
     fn commands() {
-        let plain = |input: &str, output: &str| format!("`pip install xacro; xacro {input} > {output}` expands it");
+        let plain = |input: &str, output: &str| format!("`mozzi xacro {input} -o {output}` expands it");
+        let begins = |file: &str, text: &str, start: &str| {
+            let help = help(file, text);
+            assert!(help.starts_with(start), "{help}");
+        };
         for (file, input, output) in [
             ("arm.xacro", "arm.xacro", "arm.urdf"),
             ("robots/arm.urdf.xacro", "robots/arm.urdf.xacro", "robots/arm.urdf"),
@@ -185,19 +202,12 @@ mod tests {
             ("-arm.xacro", "./-arm.xacro", "./-arm.urdf"),
             ("a\nb.xacro", "'a?b.xacro'", "'a?b.urdf'"),
         ] {
-            assert_eq!(help(file, MACRO), plain(input, output));
+            begins(file, MACRO, &plain(input, output));
         }
         let model = "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm/></mujoco>";
-        assert_eq!(help("arm.xml.xacro", model), plain("arm.xml.xacro", "arm.xml"));
+        begins("arm.xml.xacro", model, &plain("arm.xml.xacro", "arm.xml"));
         let arguments = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arg name='side'/>\
             <xacro:arg name='gripper' default='none'/><xacro:arg name='$(rm)'/><link name='a'/></robot>";
-        assert_eq!(help("arm.xacro", arguments), plain("arm.xacro side:=VALUE", "arm.urdf"));
-        let packages =
-            "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:include filename='$(find p)/a.xacro'/></robot>";
-        assert_eq!(
-            help("arm.xacro", packages),
-            "`pip install xacrodoc; xacrodoc arm.xacro --pkg-dir DIR -o arm.urdf` expands it, DIR holding the folders of \
-             the packages"
-        );
+        begins("arm.xacro", arguments, &plain("arm.xacro side:=VALUE", "arm.urdf"));
     }
 }

@@ -1,7 +1,7 @@
 //! A URDF's text is edited in place: lines that do not change stay as they are.
 
 use mozzi::{Description, Model, SpatialInertia, Vec3};
-use mozzi_urdf::{edit, parse};
+use mozzi_urdf::{drives_of_fixed_joints, edit, parse};
 
 const ARM: &str = include_str!("convert/arm.urdf");
 
@@ -79,6 +79,20 @@ fn a_locked_joint_is_fixed_with_its_mimic_joints() {
     let (text, new, _) = edited(&plain, robot.description());
     assert!(new[1].starts_with("    <origin xyz=\"0.2 0 0\" rpy=\"0.0 0.5"), "{new:?}");
     assert_describes(&text, &robot, &[0.3]);
+}
+
+#[test]
+fn drives_of_a_locked_joint_are_named() {
+    let drives = "<transmission name=\"t1\"><joint name=\"elbow\"/><actuator name=\"m\"/></transmission>\n\
+                  <transmission name=\"t2\"><joint name=\"shoulder\"/></transmission>\n\
+                  <ros2_control name=\"rc\" type=\"system\"><joint name=\"elbow\"/></ros2_control>\n</robot>";
+    let text = ARM.replace("</robot>", drives);
+    let robot = parse("arm.urdf", &text).expect("sound").build().expect("sound");
+    assert!(drives_of_fixed_joints(&text, robot.description()).is_empty());
+    let locked = robot.with_locked_joints(&[("elbow", 0.5)]).expect("a joint");
+    let found = drives_of_fixed_joints(&edited(&text, locked.description()).0, locked.description());
+    let of = |drive: &str| format!("{drive} drives joint `elbow`, which is fixed");
+    assert_eq!(found, [of("<transmission> `t1`"), of("<ros2_control> `rc`")]);
 }
 
 #[test]

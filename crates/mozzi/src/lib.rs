@@ -38,6 +38,7 @@ extern crate alloc;
 
 pub mod accuracy;
 mod api;
+pub mod constraints;
 pub mod conventions;
 pub mod dynamics;
 pub mod fast;
@@ -53,7 +54,11 @@ pub mod simulation;
 pub mod spatial;
 pub mod testing;
 
-pub use api::{BodyFrame, ForwardDynamicsDerivatives, InverseDynamicsDerivatives, NewtonEuler, TaskSpaceDynamics};
+pub use api::{
+    BodyFrame, ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, ForwardDynamicsDerivatives,
+    InverseDynamicsDerivatives, NewtonEuler, Reduction, TaskSpaceDynamics,
+};
+pub use constraints::*;
 pub use dynamics::*;
 pub use kinematics::*;
 pub use lie::{SE3, SO3};

@@ -2,8 +2,9 @@
 
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
-use crate::model::description::{Gear, Joint, JointKind, Mimic, Rotor};
+use crate::model::description::{Anchor, Closure, Constraint, Gear, Joint, JointKind, Mimic, Rotor};
 use crate::model::{Base, Description, Freedom, Model};
+use crate::spatial::solids::Solid;
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
 
@@ -147,4 +148,73 @@ pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {
         theta[place.positions()].copy_from_slice(&pose[..place.freedom.positions()]);
     }
     [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
+}
+
+/// A planar four-bar linkage in the x-z plane: ground 0.9 m, crank 0.3 m, coupler 0.8 m, rocker 0.6 m, uniform rods of 1
+/// kg a metre. The loop is closed by a hinge, five rows of which three are redundant. θ = 0 is not closed.
+pub fn four_bar() -> Model {
+    let rod = |length: f64| Solid::Box([length, 0.02, 0.02]).inertia(length);
+    let along = |x: f64| SE3::translation([x, 0.0, 0.0]);
+    let pivot = |x: f64| JointKind::Screw(ScrewAxis::from_line([0.0, -1.0, 0.0], [x, 0.0, 0.0], 0.0).expect("unit"));
+    // a link's frame is in the middle of its rod
+    let joint = |name: &str, parent: &str, at: f64, child: &str, half: f64| {
+        Joint::new(name, parent, child, along(at + half), pivot(-half))
+    };
+    let upright = SE3::exp(Twist { w: Vec3([core::f64::consts::FRAC_PI_2, 0.0, 0.0]), v: Vec3::zero() });
+    let end = |link: &str, half: f64| Anchor::frame(link).at(along(half) * upright);
+    Description::new("four-bar")
+        .link("ground", SpatialInertia::zero())
+        .link("crank", rod(0.3))
+        .link("coupler", rod(0.8))
+        .link("rocker", rod(0.6))
+        .joint(joint("crank_pivot", "ground", 0.0, "crank", 0.15))
+        .joint(joint("coupler_pivot", "crank", 0.15, "coupler", 0.4))
+        .joint(joint("rocker_pivot", "ground", 0.9, "rocker", 0.3))
+        .constraint(Constraint::hinge("loop", end("coupler", 0.4), end("rocker", 0.3)))
+        .build()
+        .expect("a sound robot")
+}
+
+/// The same robot with constraints that hold at θ, each between random anchors; on a floating base every second
+/// one is between a link and {s}.
+pub fn closed(model: &Model, theta: &[f64], closures: &[Closure], seed: u64) -> Model {
+    let mut random = Random(seed + 5000);
+    let bodies: alloc::vec::Vec<usize> = core::iter::once(0).chain(model.moving_slots()).collect();
+    let others = bodies.len() - 1;
+    let constraint = |(k, &closure): (usize, &Closure)| {
+        let mut pick = |below: usize| (((random.next() + 1.0) * 0.5 * below as f64) as usize).min(below - 1);
+        let to_world = k % 2 == 1;
+        let a = pick(others + 1);
+        let b = (a + 1 + pick(others)) % (others + 1); // another one
+        let (a, b) = (bodies[a], bodies[b]);
+        let name = |slot: usize| {
+            let found = model.frames().find(|(id, _)| model.frames[id.0].slot == slot);
+            found.map_or_else(|| alloc::string::String::from("link0"), |(_, name)| name.into())
+        };
+        let pose = |name: &str| {
+            let frame = model.frame(name).expect("a link");
+            model.forward_kinematics(theta, frame).expect("lengths")
+        };
+        let mut offset = || SE3::exp(Twist::from_array(random.array()));
+        let (from, relative) = (offset(), offset());
+        let (from, T_sa) = match to_world && model.is_floating() {
+            true => (Anchor::world(from), from),
+            false => (Anchor::frame(name(a)).at(from), pose(&name(a)) * from),
+        };
+        let T_ab = match closure {
+            Closure::Weld => SE3::identity(),
+            Closure::Point => SE3 { p: Vec3::zero(), ..relative },
+            Closure::Hinge => SE3::exp(Twist { w: Vec3([0.0, 0.0, 0.7]), v: Vec3::zero() }),
+            Closure::Distance(length) => SE3 { p: relative.p * (length / relative.p.norm()), ..relative },
+            Closure::Rolling(radius) => {
+                let z = relative.R.matrix().z.0[2]; // n·z of the wheel
+                let [x, y, _] = relative.p.0;
+                SE3 { p: Vec3([x, y, radius * (1.0 - z * z).sqrt()]), ..relative }
+            }
+        };
+        let to = Anchor::frame(name(b)).at(pose(&name(b)).inverse() * T_sa * T_ab);
+        Constraint::new(format!("constraint{k}"), from, to, closure)
+    };
+    let constraints: alloc::vec::Vec<_> = closures.iter().enumerate().map(constraint).collect();
+    model.with_constraints(constraints).expect("anchors on different links")
 }

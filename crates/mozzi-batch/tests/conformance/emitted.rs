@@ -11,7 +11,9 @@ pub fn every_quantity_as_c(case: &Case) {
         eprintln!("emitted C is skipped: there is no gcc");
         return;
     }
-    let queries: Vec<Query> = (0..LIST.len()).map(|index| case.query(Query::at(index))).collect();
+    let all = (0..LIST.len()).map(|index| case.query(Query::at(index)));
+    // without constraints there is nothing to write
+    let queries: Vec<Query> = all.filter(|query| query.output_lengths(case.model).all(|length| length > 0)).collect();
     let slug: String = case.name.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("conformance_{slug}"));
     std::fs::create_dir_all(&folder).expect("a folder");

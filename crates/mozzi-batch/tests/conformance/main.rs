@@ -8,9 +8,10 @@ mod allocations;
 mod emitted;
 
 use allocations::allocations;
+use mozzi::model::description::{Closure, Constraint};
 use mozzi::quantities::*;
-use mozzi::testing::{floating_mixed_tree, floating_tree, mixed_tree, state, tree, twist, wrench};
-use mozzi::{Dual, Environment, Error, FrameId, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
+use mozzi::testing::{closed, floating_mixed_tree, floating_tree, mixed_tree, state, tree, twist, wrench};
+use mozzi::{Dual, Environment, Error, FrameId, Freedom, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
 use mozzi_batch::{Batch, BatchEnvironment, Compiled, InstructionSet, Number, compile};
 use mozzi_codegen::{Arguments, record_quantity};
 use mozzi_oracle::{Given, SecondWay};
@@ -24,9 +25,38 @@ fn robots() -> Vec<(&'static str, Model)> {
         ("floating, mimic joints", floating_tree(4, 6, 2)),
         ("balls and a free joint, mimic joints", mixed_tree(4, 5, 1)),
         ("floating, balls and a free joint", floating_mixed_tree(8, 3, 0)),
+        ("a loop and a rope", closed_at_a_state(&tree(9, 8, 0), &[Closure::Point, Closure::Distance(0.6)])),
+        (
+            "floating, a wheel and a weld",
+            closed_at_a_state(&floating_tree(7, 9, 1), &[Closure::Rolling(0.3), Closure::Weld]),
+        ),
+        ("balls, a hinge and a cam", with_a_cam(&closed_at_a_state(&mixed_tree(6, 8, 0), &[Closure::Hinge]))),
         ("one joint", tree(5, 1, 0)),
         ("no joints", tree(6, 0, 0)),
     ]
+}
+
+/// With independent constraints that hold at one state, and not at the others: the equations are the same.
+fn closed_at_a_state(model: &Model, closures: &[Closure]) -> Model {
+    let theta = &state(model, 1)[0];
+    let found = (0..100).map(|seed| closed(model, theta, closures, seed));
+    found.into_iter().find(are_independent).expect("one of a hundred")
+}
+
+fn are_independent(model: &Model) -> bool {
+    (0..5).all(|seed| model.constraint_rank(&state(model, seed)[0]).expect("lengths").redundant.is_empty())
+}
+
+fn with_a_cam(model: &Model) -> Model {
+    let one_axis: Vec<String> = (model.joints().zip(model.places()))
+        .filter(|(_, place)| place.freedom == Freedom::One)
+        .map(|(joint, _)| joint.name.clone())
+        .collect();
+    let cam = |k: usize| {
+        let cam = Constraint::joint("cam", &one_axis[0], &one_axis[k], [0.1, 0.5, -0.2, 0.1, 0.05]);
+        model.with_constraints([cam]).expect("joints of one axis")
+    };
+    (1..one_axis.len()).map(cam).find(are_independent).expect("another joint")
 }
 
 /// A robot at a few states, in an environment with everything in it.

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct CheckArguments {
-    /// A robot's file (URDF, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
+    /// A robot's file (URDF, xacro, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
     /// Text with excerpts on standard error, or on standard output one JSON object per diagnostic and line,
     /// or one log in SARIF 2.1.0
@@ -58,7 +58,7 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
     loaded.warnings.iter().for_each(failure::say);
     mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
     let count = loaded.warnings.len();
-    sound(input::name(name), count, &loaded.build()?)
+    sound(input::name(name), count, &arguments.policy.constrained(name, loaded.description)?.build()?)
 }
 
 /// A robot of JSON: the same checks, each problem by its element, as there is no text to point at.
@@ -70,7 +70,7 @@ fn json_robot(arguments: &CheckArguments) -> Result<String> {
             let errors: Vec<Value> = errors.iter().map(|error| misplaced(name, error)).collect();
             return Err(Failure::Answered(print(format, &errors)));
         }
-        other => arguments.policy.freed(other?),
+        other => arguments.policy.constrained(&arguments.model, arguments.policy.freed(other?))?,
     };
     let (errors, warnings) = arguments.policy.problems(&robot);
     let all = || errors.iter().map(|e| ("error", e)).chain(warnings.iter().map(|w| ("warning", w)));
@@ -107,7 +107,7 @@ fn objects<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Val
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        json!({
+        let mut object = json!({
             "severity": severity,
             "code": found.code(),
             "message": found.message(),
@@ -115,7 +115,12 @@ fn objects<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Val
             "line": found.line(),
             "column": found.column(),
             "help": found.help(),
-        })
+        });
+        // in a macro of xacro's: the calls that lead there
+        if !found.calls().is_empty() {
+            object["calls"] = found.calls().trim_start_matches(", ").into();
+        }
+        object
     };
     diagnostics.into_iter().map(object).collect()
 }

@@ -9,12 +9,13 @@ use crate::{input, robot_json};
 use clap::Args;
 use mozzi::Description;
 use mozzi_compare::{Options, Source, ask, compare, find_python};
+use mozzi_urdf::expanded;
 use std::path::Path;
 use std::time::Duration;
 
 #[derive(Args, Debug)]
 pub struct CompareArguments {
-    /// A robot's file (URDF, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
+    /// A robot's file (URDF, xacro, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
     /// Python interpreter with pin or mujoco installed [default: that of the active virtual environment, else python3]
     #[arg(long, value_name = "PATH")]
@@ -50,7 +51,7 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
                 return Err(refusal);
             }
             refusal.say();
-            (String::new(), ask(source(&arguments.model, &Description::new("refused"))?, &options)?)
+            (String::new(), ask(source(arguments, &Description::new("refused"))?, &options)?)
         }
     };
     let text = if arguments.json { json::print(&comparison.json()) } else { headline + &comparison.text() };
@@ -71,20 +72,28 @@ impl CompareArguments {
         if self.policy.frees() {
             return Ok(Source::written(input::name(&self.model), robot)?);
         }
-        source(&self.model, robot)
+        source(self, robot)
     }
 }
 
 /// What the libraries read: the file, or the text that a pipe held.
-fn source(name: &str, robot: &Description) -> Result<Source> {
+fn source(arguments: &CompareArguments, robot: &Description) -> Result<Source> {
+    let name = arguments.model.as_str();
     if name != "-" {
-        return Ok(Source::read(name, robot)?);
+        // other libraries read no xacro
+        let text = Path::new(name).is_file().then(|| std::fs::read(name)).and_then(|text| text.ok());
+        let text = text.filter(|_| !robot_json::is_json(name));
+        return match text.map(|text| expanded(name, text, arguments.policy.settings())).transpose()?.flatten() {
+            Some(text) => Ok(Source::of_text(name, &text)),
+            None => Ok(Source::read(name, robot)?),
+        };
     }
     if robot_json::is_json(name) {
         return Ok(Source::written(input::name(name), robot)?);
     }
     let text = input::robot_text().map_err(|error| input::cannot(name, &error))?;
-    Ok(Source::of_text(input::name(name), &String::from_utf8_lossy(text)))
+    let expansion = expanded(input::name(name), text, arguments.policy.settings())?;
+    Ok(Source::of_text(input::name(name), &expansion.unwrap_or_else(|| String::from_utf8_lossy(text).into_owned())))
 }
 
 impl From<mozzi_compare::Error> for Failure {

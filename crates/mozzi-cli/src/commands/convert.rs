@@ -15,7 +15,7 @@ use urdf::LeftOut;
 
 #[derive(Args, Debug)]
 pub struct ConvertArguments {
-    /// A robot's file (URDF, MJCF, or JSON that this command wrote), or the name of an embedded robot
+    /// A robot's file (URDF, xacro, MJCF, or JSON that this command wrote), or the name of an embedded robot
     #[arg(value_name = "IN")]
     input: String,
     /// Output file; its ending chooses the format: .urdf, .json (links, joints, the book's lists), .py (lists for
@@ -25,7 +25,7 @@ pub struct ConvertArguments {
     /// Allow OUT to be the file IN, which is overwritten
     #[arg(long)]
     in_place: bool,
-    /// Leave out of a URDF what it cannot express (gravity, rotors), or what other readers ignore (armature, springs)
+    /// Leave out of a URDF what it cannot express (gravity, rotors, constraints), or what other readers ignore (armature, springs)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
     leave_out: Vec<LeftOut>,
     #[command(flatten)]
@@ -45,7 +45,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<String> {
     }
     let model = arguments.edits.apply(arguments.policy.model(input)?)?;
     let text = match suffix {
-        "urdf" => urdf::text(input, output, model.description(), &arguments.leave_out)?,
+        "urdf" => urdf::text(input, output, model.description(), &arguments.leave_out, arguments.policy.settings())?,
         "json" => robot_json::write(&model),
         _ => screws::python(&model)?,
     };

@@ -1,13 +1,14 @@
 //! `mozzi info`: joints, limits, links, masses and frames of a robot.
 
+use super::assemble;
 use crate::failure::Result;
 use crate::json;
 use crate::robot::{RobotArguments, Units};
 use crate::text::{Page, column, column_of_some, column_within, largest, rows_of, scalar, table, tuple};
 use clap::Args;
 use mozzi::model::State;
-use mozzi::model::description::{Gear, Joint, JointKind, Rotor};
-use mozzi::{Description, Error, Model, SE3, SpatialInertia};
+use mozzi::model::description::{Anchor, Constraint, ConstraintKind, Gear, Joint, JointKind, Rotor};
+use mozzi::{ConstraintRank, Description, Error, Model, SE3, SpatialInertia};
 use mozzi::{Freedom, Place};
 use serde_json::{Value, json};
 
@@ -80,6 +81,10 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     let rotors = rotors(robot);
     if !rotors.is_empty() {
         page.title("rotors that several joints turn: inertia [kg m² or kg], gears").lines(&rotors);
+    }
+    let constraints = constraints(model);
+    if !constraints.is_empty() {
+        page.title("constraints").lines(&constraints);
     }
     let states = states(model);
     if !states.is_empty() {
@@ -179,6 +184,41 @@ fn rotors(robot: &Description) -> Vec<String> {
     };
     let row = |rotor: &Rotor| vec![rotor.name.clone(), scalar(rotor.armature), gears(rotor)];
     table(&robot.rotors.iter().map(row).collect::<Vec<_>>(), "lrl")
+}
+
+/// Each constraint, and the rank of all where the start is assembled.
+fn constraints(model: &Model) -> Vec<String> {
+    let anchor = |anchor: &Anchor| anchor.frame.clone().unwrap_or_else(|| "{s}".to_string());
+    let row = |constraint: &Constraint| {
+        let (what, length) = match &constraint.kind {
+            ConstraintKind::Frames { a, b, closure } => (
+                format!("{} and {}", anchor(a), anchor(b)),
+                closure.length().map_or_else(String::new, |length| format!("{} m", scalar(*length))),
+            ),
+            ConstraintKind::Joint { joint, source, polynomial } => {
+                let powers = ["", " x", " x²", " x³", " x⁴"];
+                let terms = polynomial.iter().zip(powers).filter(|(c, _)| **c != 0.0);
+                let terms: Vec<String> = terms.map(|(c, power)| format!("{}{power}", scalar(*c))).collect();
+                let sum = if terms.is_empty() { "0".to_string() } else { terms.join(" + ") };
+                let of = source.as_ref().map_or_else(String::new, |source| format!(", x = {source}"));
+                (format!("{joint} = {sum}{of}"), String::new())
+            }
+        };
+        vec![constraint.name.clone(), constraint.kind_name().to_string(), what, length]
+    };
+    let mut lines = table(&model.constraints().iter().map(row).collect::<Vec<_>>(), "l");
+    if model.constraint_rows() > 0 {
+        lines.push(match rank(model) {
+            Ok(rank) => assemble::summary(&rank),
+            Err(error) => error.to_string(),
+        });
+    }
+    lines
+}
+
+/// Where the start is assembled.
+fn rank(model: &Model) -> std::result::Result<ConstraintRank, Error> {
+    model.constraint_rank(&model.assemble(&model.start().theta, &[])?)
 }
 
 /// Positions of a state that a line has room for.
@@ -314,6 +354,10 @@ fn object(model: &Model, poses: &[SE3]) -> Value {
             "name": rotor.name, "armature": rotor.armature,
             "gears": rotor.gears.iter().map(|gear| json!({ "joint": gear.joint, "ratio": gear.ratio })).collect::<Value>(),
         })).collect::<Value>(),
+        "constraints": model.constraints().iter().map(|constraint| json!({
+            "name": constraint.name, "kind": constraint.kind_name(), "rows": constraint.row_names(),
+        })).collect::<Value>(),
+        "constraint_rank": (model.constraint_rows() > 0).then(|| rank(model).ok().map(|rank| assemble::object(&rank))).flatten(),
         "end_effector": model.end_effector().ok().map(|frame| model.frame_name(frame)),
         "states": model.state_names().filter_map(state).collect::<Value>(),
         "start": robot.start,

@@ -1,5 +1,6 @@
 //! One file for each subcommand: convert, check, call, name the error.
 
+pub mod assemble;
 pub mod bench;
 pub mod check;
 pub mod codegen;
@@ -19,3 +20,4 @@ pub mod terms;
 pub mod tour;
 pub mod trajectory;
 pub mod view;
+pub mod xacro;

@@ -1,7 +1,7 @@
 //! The outcome of `mozzi simulate`.
 
 use mozzi::Trajectory;
-use mozzi::simulation::{Account, Method, Occurrence, Stopped};
+use mozzi::simulation::{Account, Closing, Method, Occurrence, Stopped};
 use mozzi_motion::controllers::{Overload, TrackingError};
 
 /// A motion and its notes.
@@ -17,6 +17,8 @@ pub struct Outcome {
     pub motors: String,
     pub overloads: Vec<Overload>,
     pub stops: Vec<Stopped>,
+    /// Of a robot with constraints, how far the steps left them.
+    pub closing: Option<Closing>,
     /// What `--until` and `--report-event` found, in the order of time.
     pub events: Vec<Occurrence>,
     /// The conditions that did not become true.

@@ -1,5 +1,6 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
+use super::assemble::assembled;
 use super::outcome::Outcome;
 use super::simulate_page::{object, page, told};
 use crate::conditions::{EventArguments, happened};
@@ -128,6 +129,7 @@ impl SimulateArguments {
                 dtheta.clone_from(&start[1]);
             }
         }
+        let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());
         let controller = self.motors.controller(&self.robot)?;
         let end = match (&self.time, &followed) {
@@ -142,7 +144,7 @@ impl SimulateArguments {
         self.workload(model, end)?.check(self.allow_large)?;
         let options = self.options(end)?;
         let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
-        let (motion, account, Ending { events, stops, .. }) =
+        let (motion, account, Ending { events, stops, closing, .. }) =
             self.integrate(model, [&theta, &dtheta], input, options, events, &mut tracking)?;
         Ok(Outcome {
             method: options.method,
@@ -153,6 +155,7 @@ impl SimulateArguments {
             motors: controller.as_ref().map_or_else(|| self.motors.torque.clone(), Controller::name),
             overloads: motors.overloads().cloned().collect(),
             stops,
+            closing: (model.constraint_rows() > 0).then_some(closing),
             missed: self.events.missed(&events),
             events,
             tracking: tracking.map(|tracking| tracking.error()),
@@ -160,9 +163,15 @@ impl SimulateArguments {
         })
     }
 
-    /// Where it was asked for; what it will not compute is said.
+    /// Machine code, with --compiled; reports what it does not compute.
     fn machine_code(&self, model: &Model) -> Result<Option<Compiled>> {
         if !self.compiled {
+            return Ok(None);
+        }
+        if model.constraint_rows() > 0 {
+            failure::note(
+                "--compiled: machine code is not used: the robot has constraints; the kernels compute the steps",
+            );
             return Ok(None);
         }
         let robot = compile(model, &[ForwardDynamics.into()])?;
@@ -180,7 +189,7 @@ impl SimulateArguments {
         let (time, happened) = (scalar(motion.last().t), happened.join("; "));
         let title = format!("{method}, {time} s in {} steps, motors: {motors}{happened}", motion.steps);
         let motion = report::simulated(title, motion, self.motors.wrench(model, outcome.duration)?)?;
-        self.page.write(file, &self.robot.model, model, Some((motion, outcome.account.rows)))
+        self.page.write(file, &self.robot, model, Some((motion, outcome.account.rows)))
     }
 
     fn options(&self, end: f64) -> Result<Options> {

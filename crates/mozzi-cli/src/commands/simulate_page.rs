@@ -5,7 +5,7 @@ use crate::conditions::happened;
 use crate::json;
 use crate::robot::Units;
 use crate::text::{Decimals, Page, about, scalar, table};
-use mozzi::simulation::{Energy, Stopped};
+use mozzi::simulation::{Closing, Energy, Stopped};
 use mozzi::{Model, Trajectory};
 use mozzi_motion::controllers::Overload;
 use serde_json::{Value, json};
@@ -39,6 +39,7 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
             "friction_loss": friction,
             "applied_work": applied,
             "largest_drift": outcome.account.largest_drift,
+            "constraints": outcome.closing.map(|c| json!({ "corrected": c.corrected, "residual": c.residual })),
             "complete": motion.complete,
             "events": outcome.events.iter().map(|e| json!({
                 "condition": e.name, "t": e.t, "theta": json::vector(&e.theta), "dtheta": json::vector(&e.dtheta), "end": e.stop,
@@ -166,5 +167,10 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
         let (asked, limit, first) = (scalar(overload.largest), scalar(overload.limit), scalar(overload.first));
         format!("effort limit: `{}` needed up to {asked} of its {limit}, first at t = {first} s", overload.joint)
     };
+    let closing = |closing: &Closing| {
+        let (corrected, residual) = (about(closing.corrected), about(closing.residual));
+        format!("constraints: violated by at most {corrected} after a step, {residual} once corrected (rad, m)")
+    };
+    let events = events.chain(outcome.closing.iter().map(closing));
     events.chain(outcome.stops.iter().map(stop)).chain(outcome.overloads.iter().map(overload)).collect()
 }

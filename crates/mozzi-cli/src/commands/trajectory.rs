@@ -14,7 +14,6 @@ use crate::tables::read as table_file;
 use crate::text::{Decimals, Page, about, scalar, table};
 use crate::workload::{self, BINARY, TEXT};
 use clap::{Args, ValueEnum};
-use mozzi::Freedom;
 use mozzi::{Model, SE3};
 use mozzi_motion::Goal;
 use mozzi_motion::trajectories::{
@@ -245,26 +244,29 @@ fn columns(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Columns 
 /// torque.
 fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits) -> Vec<String> {
     let mut told = Vec::new();
-    for (joint, place) in model.joints().zip(model.places()).filter(|(_, place)| place.freedom == Freedom::One) {
-        let (q, v) = (place.q, place.j);
-        let [low, high] = joint.limits.position.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        let mut say = |what: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
-            let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
-            let worst = (0..rows.len()).max_by(|&a, &b| excess(a).total_cmp(&excess(b))).unwrap_or(0);
-            // what keeps a limit may pass it by rounding
-            let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
-            if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
-                let (name, x, limit, t) = (&joint.name, scalar(x), scalar(limit), scalar(rows[worst].0));
-                told.push(format!("{what} limit: `{name}` reaches {x}, beyond its limit {limit}, at t = {t} s"));
+    let mut say = |what: &str, name: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
+        let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
+        let worst = (0..rows.len()).max_by(|&a, &b| excess(a).total_cmp(&excess(b))).unwrap_or(0);
+        // what keeps a limit may pass it by rounding
+        let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
+        if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
+            let (x, limit, t) = (scalar(x), scalar(limit), scalar(rows[worst].0));
+            told.push(format!("{what} limit: `{name}` reaches {x}, beyond its limit {limit}, at t = {t} s"));
+        }
+    };
+    let names: Vec<&str> = model.velocity_names().collect();
+    for (joint, place) in model.joints().zip(model.places()) {
+        if let Some(limits) = joint.limits.position {
+            say("joint", &joint.name, &|row| place.bounded_value(&rows[row].1.theta), limits);
+        }
+        for v in place.velocities() {
+            for (what, asked, limit) in [
+                ("velocity", &(|row: usize| rows[row].1.dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),
+                ("acceleration", &|row| rows[row].1.ddtheta[v], limits.acceleration[v]),
+                ("effort", &|row| tau[row][v], limits.torque[v]),
+            ] {
+                say(what, names[v], asked, [-limit, limit]);
             }
-        };
-        say("joint", &|row| rows[row].1.theta[q], [low, high]);
-        for (what, asked, limit) in [
-            ("velocity", &(|row: usize| rows[row].1.dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),
-            ("acceleration", &|row| rows[row].1.ddtheta[v], limits.acceleration[v]),
-            ("effort", &|row| tau[row][v], limits.torque[v]),
-        ] {
-            say(what, asked, [-limit, limit]);
         }
     }
     told

@@ -40,11 +40,11 @@ pub fn run(arguments: &ViewArguments) -> Result<String> {
         (motion, rows)
     });
     if let Some(file) = &arguments.out {
-        let said = arguments.page.write(file, &arguments.robot.model, &model, motion)?;
+        let said = arguments.page.write(file, &arguments.robot, &model, motion)?;
         let object = json!({ "robot": model.description().name, "out": file });
         return Ok(if arguments.robot.json { print(&object) } else { said + "\n" });
     }
-    let (page, size) = arguments.page.page(&arguments.robot.model, &model, motion)?;
+    let (page, size) = arguments.page.page(&arguments.robot, &model, motion)?;
     let cannot = |error: std::io::Error| Failure::wrong(format!("the page cannot be served on 127.0.0.1: {error}"));
     let server = serve::Server::new(arguments.port.unwrap_or(0)).map_err(cannot)?;
     let address = server.address().map_err(cannot)?;

@@ -2,6 +2,7 @@
 
 use crate::json_file::{JsonFile, Misplaced, Step, unknown_key};
 use mozzi::SE3;
+use mozzi_urdf::constraints::Entry;
 use serde_json::Value;
 use std::fmt::Display;
 
@@ -106,5 +107,50 @@ impl<'v> At<'v> {
     /// `None` if it is null or there is no such key.
     pub fn some<T>(&self, read: impl Fn(&Self) -> Read<T>) -> Read<Option<T>> {
         if self.value.is_null() { Ok(None) } else { read(self).map(Some) }
+    }
+}
+
+/// What a reader of constraints needs.
+impl Entry for At<'_> {
+    type Error = Misplaced;
+
+    fn get(&self, key: &'static str) -> Self {
+        At::get(self, key)
+    }
+
+    fn keys(&self) -> Vec<String> {
+        At::keys(self).map(str::to_string).collect()
+    }
+
+    fn is_null(&self) -> bool {
+        self.value.is_null()
+    }
+
+    fn is_map(&self) -> bool {
+        self.value.is_object()
+    }
+
+    fn name(&self) -> String {
+        At::name(self)
+    }
+
+    fn text(&self) -> Read<String> {
+        At::text(self)
+    }
+
+    fn number(&self) -> Read<f64> {
+        At::number(self)
+    }
+
+    fn list(&self) -> Read<Vec<Self>> {
+        At::list(self)
+    }
+
+    fn wrong<T>(&self, expected: &str) -> Read<T> {
+        At::wrong(self, expected)
+    }
+
+    fn error<T>(&self, message: String) -> Read<T> {
+        At::error(self, message)
     }
 }

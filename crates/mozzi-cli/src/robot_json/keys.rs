@@ -17,7 +17,18 @@ const fn object(required: &'static [&'static str]) -> Object {
 /// Optional are quantities that most robots lack.
 pub const ROBOT: Object = Object {
     required: &["robot", "gravity", "links", "joints"],
-    optional: &["base", "free_joint", "end_effector", "rotors", "frames", "states", "start", "lists"],
+    optional: &[
+        "base",
+        "free_joint",
+        "end_effector",
+        "rotors",
+        "frames",
+        "constraints",
+        "motors",
+        "states",
+        "start",
+        "lists",
+    ],
     children: &[
         ("free_joint", object(&["name", "parent"])),
         ("links", object(&["name", "G"])),

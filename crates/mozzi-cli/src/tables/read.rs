@@ -25,7 +25,8 @@ pub fn read(file: &str, model: &Model) -> Result<Samples> {
     read_by(file, &|_| model)
 }
 
-/// As of a robot or, where there are as many positions as joints, as of the same robot on a fixed base. Was it that?
+/// Reads the columns of a robot or, if there are as many positions as joints, those of the same robot on a fixed base;
+/// returns `true` for the latter.
 pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Samples, bool)> {
     let is_of_joints = Cell::new(false);
     let choose = |names: &[String]| {

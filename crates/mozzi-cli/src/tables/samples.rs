@@ -9,12 +9,15 @@ use std::collections::BTreeMap;
 /// Numbers by name: those of the inputs, `wrench` of the tip; of .npz also `gravity`, `parameters` and `wrench_FRAME`.
 #[derive(Debug, Default)]
 pub struct Samples {
+    /// Its name in messages.
     pub file: String,
     /// Rows.
     pub count: usize,
     /// The line of each row in a CSV file.
     pub lines: Vec<u64>,
+    /// Times, s.
     pub t: Option<Vec<f64>>,
+    /// By name, each by rows.
     pub tables: BTreeMap<String, Vec<f64>>,
 }
 

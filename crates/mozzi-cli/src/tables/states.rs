@@ -59,13 +59,16 @@ impl<T: Precision> States<T> {
         let mut wrenches = Vec::new();
         let tables = std::mem::take(&mut samples.tables);
         let (mut gravity, mut parameters) = (None, None);
+        let of = |name: &str, frame: Result<FrameId, mozzi::Error>| {
+            frame.map_err(|error| Failure::wrong(format!("{file}: `{name}`: {error}")))
+        };
         for (name, table) in tables {
             match (name.as_str(), name.strip_prefix("wrench_")) {
                 ("gravity", _) => gravity = Some(to_T(table)),
                 ("parameters", _) => parameters = Some(to_T(table)),
                 _ if !declaration.uses.has(Uses::WRENCHES) => {}
-                ("wrench", _) => wrenches.push((model.end_effector()?, to_T(table))),
-                (_, Some(frame)) => wrenches.push((model.frame(frame)?, to_T(table))),
+                ("wrench", _) => wrenches.push((of(&name, model.end_effector())?, to_T(table))),
+                (_, Some(frame)) => wrenches.push((of(&name, model.frame(frame))?, to_T(table))),
                 _ => {}
             }
         }

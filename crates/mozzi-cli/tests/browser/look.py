@@ -65,6 +65,13 @@ def look(browser, job):
         if found["painted"] > 5:
             break
         page.wait_for_timeout(100)
+    # what of the scene the picture of M covers, in pixels
+    found["covered"] = page.evaluate("""() => {
+      window.mozzi.show("mass", true);
+      const [a, b] = ["matrix", "scene"].map((id) => document.getElementById(id).getBoundingClientRect());
+      const shared = (from, to) => Math.max(Math.min(a[to], b[to]) - Math.max(a[from], b[from]), 0);
+      return a.width * a.height > 0 ? shared("left", "right") * shared("top", "bottom") : -1;
+    }""")
     found["width"] = page.evaluate("document.documentElement.scrollWidth")
     if job.get("times"):
         found["scrubbed"] = scrub(page)

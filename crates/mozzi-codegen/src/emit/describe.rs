@@ -1,4 +1,4 @@
-//! What emitted text says of its robot, its functions and their arrays.
+//! Comments of emitted text: the robot, the functions and their arrays.
 
 use super::Precision;
 use super::names::in_comment;
@@ -12,7 +12,7 @@ use mozzi::{FrameId, Model};
 pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -> Vec<String> {
     let mut lines = vec![
         format!("The dynamics of the robot `{}` as straight-line code.", in_comment(&model.description().name)),
-        format!("Made by mozzi {}; make it anew instead of changing it.", env!("CARGO_PKG_VERSION")),
+        format!("Made by mozzi {}; do not edit; generate it again.", env!("CARGO_PKG_VERSION")),
         String::new(),
     ];
     let numbers = if precision.is_f64() { "64-bit" } else { "32-bit" };
@@ -21,7 +21,7 @@ pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -
     ));
     lines.push("Arrays must not overlap. Matrices are by rows.".to_string());
     lines.push(
-        "Frames: {s} is where the robot is fixed to, or what a floating base is seen from; a link's frame is its file's."
+        "Frames: {s} is the frame of the fixed base, or the world of a floating one; a link's frame is that of the file."
             .to_string(),
     );
     let gravity = match arguments.gravity {
@@ -33,7 +33,7 @@ pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -
     };
     lines.push(format!("In these functions gravity is {gravity}, in {{s}}."));
     match arguments.wrenches {
-        [] => lines.push("The robot touches nothing.".to_string()),
+        [] => lines.push("No wrenches are applied.".to_string()),
         frames => {
             let names: Vec<String> = frames.iter().map(|&frame| format!("`{}`", frame_name(model, frame))).collect();
             lines.push(format!("Wrenches that these frames apply are arguments: {}.", names.join(", ")));
@@ -84,12 +84,13 @@ fn frame_name(model: &Model, frame: FrameId) -> String {
     in_comment(model.frame_name(frame))
 }
 
-/// A quantity in words, and how much of it was left.
+/// The formula of a quantity, and the cost of the recursive algorithm.
 pub(super) fn quantity(model: &Model, query: Query, program: &Program) -> Vec<String> {
     let frame = query.subject.frame.map(|frame| format!(" Frame: `{}`.", frame_name(model, frame)));
     let words = format!("{}.{}", ascii(query.declaration().formula), frame.unwrap_or_default());
-    let before =
-        program.count_before_folding().map(|count| format!("Of {} flops of the recursive algorithm:", count.flops()));
+    let before = program
+        .count_before_folding()
+        .map(|count| format!("The recursive algorithm takes {} flops; of these remain:", count.flops()));
     [words].into_iter().chain(before).collect()
 }
 
@@ -109,8 +110,8 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
     let twist = |what: &str| format!("6; the {what} of {{s}}, in its own coordinates, angular first");
     match name {
         "pivots" | "task_pivots" => {
-            "what was divided by. One that is not positive, or below 4e-9 of their sum: the matrix may be \
-             singular, and results mean nothing"
+            "the pivots of the factorization. If one is not positive, or below 4e-9 of their sum, the matrix may be \
+             singular and the results are meaningless"
                 .to_string()
         }
         "parameters" => format!(

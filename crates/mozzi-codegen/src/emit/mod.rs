@@ -89,7 +89,7 @@ impl SourceFile {
 /// Errors of emitting source text.
 #[derive(Debug)]
 pub enum EmitError {
-    /// No quantity was asked for.
+    /// No quantity was given.
     Nothing,
     /// A frame of another model.
     Frame(mozzi::Error),

@@ -1,8 +1,8 @@
 //! Memory that holds machine code, and its calls: the one place of this crate where safety is argued.
 //!
 //! What is run is made by [`allocate`](super::allocate()) alone. Its assembler knows how many bytes each array has and
-//! refuses an instruction that would read or write beyond one of them, so that a fault in what it is asked for (a wrong
-//! program, a wrong register) gives wrong numbers, and never a wrong address. What remains to be trusted are the
+//! refuses an instruction that would read or write beyond one of them, so that a fault in its input (a wrong program,
+//! a wrong register) gives wrong numbers, and never a wrong address. What remains to be trusted are the
 //! assembler's few forms, each of which the tests compare with a disassembler, and its frame, which is on the stack,
 //! touched page by page. The code calls nothing, does not branch, and restores the registers that System V says are the
 //! caller's.

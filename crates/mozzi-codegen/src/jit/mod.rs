@@ -19,7 +19,7 @@ use mozzi::scalar::Float;
 /// Reasons why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// Nobody asked for it.
+    /// It was not requested.
     NotAsked,
     /// The processor has not the instructions, or is no x86-64.
     Processor,
@@ -35,7 +35,7 @@ pub enum Refusal {
 impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Refusal::NotAsked => "nobody asked for machine code",
+            Refusal::NotAsked => "machine code was not requested",
             Refusal::Processor => "the processor has not the instructions",
             Refusal::Program => "the program has a function without machine code, or too many arrays",
             Refusal::Long => "the code would be longer than the instruction cache is wide",

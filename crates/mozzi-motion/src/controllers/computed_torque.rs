@@ -10,6 +10,9 @@ use mozzi::{Model, fast};
 
 /// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot
 /// that is as modelled, ë + K_d ė + K_p e = 0.
+///
+/// Of a robot with constraints θ̈ is the nearest that they allow, and τ that of the motors that exist: see
+/// [`Model::constrained_inverse_dynamics`]. The reference should satisfy the constraints.
 pub struct ComputedTorque<'m, R> {
     model: &'m Model,
     /// What is followed.
@@ -48,6 +51,12 @@ impl<R: Reference> Input for ComputedTorque<'_, R> {
         }
         self.model.check_lengths(theta, [("the reference's ddtheta", &ddtheta)])?;
         let environment = self.model.environment();
+        if self.model.constraint_rows() > 0 {
+            let ddtheta = self.model.assemble_accelerations(theta, dtheta, &ddtheta, &[])?;
+            let found = self.model.constrained_inverse_dynamics(theta, dtheta, &ddtheta, &environment, None)?;
+            tau.iter_mut().zip(found.tau.iter()).for_each(|(sum, tau)| *sum += tau);
+            return Ok(());
+        }
         let (query, state) = (Query::from(InverseDynamics), [theta, dtheta, &ddtheta]);
         fast::evaluate(&query, self.model, &state, &environment, &mut self.workspace, &mut [&mut self.tau]);
         tau.iter_mut().zip(&self.tau).for_each(|(sum, tau)| *sum += tau);

@@ -9,13 +9,13 @@ use mozzi::{Error, FrameId, Model, Wrench};
 pub struct Overload {
     /// The joint.
     pub joint: String,
-    /// The largest |τ| that was asked for, N m or N.
+    /// The largest demanded |τ|, N m or N.
     pub largest: f64,
-    /// What there is.
+    /// The effort limit, N m or N.
     pub limit: f64,
-    /// When it was first asked for more, s.
+    /// When the demand first exceeded the limit, s.
     pub first: f64,
-    /// When it was last asked for more, s.
+    /// When the demand last exceeded the limit, s.
     pub last: f64,
 }
 

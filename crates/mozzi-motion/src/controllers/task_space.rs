@@ -3,7 +3,7 @@
 
 use super::Gains;
 use crate::Error;
-use crate::error::{check, check_driven};
+use crate::error::{check, check_driven, check_open};
 use crate::trajectories::Reference;
 use mozzi::nalgebra::{DVector, Vector6};
 use mozzi::simulation::Input;
@@ -68,6 +68,7 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
             check(fine, what, format!("{list:?}"), "finite numbers that are not negative")?;
         }
         check_driven(model, "a robot under task-space control")?;
+        check_open(model, "a robot under task-space control")?;
         Ok(TaskSpace { model, reference, frame, law, posture })
     }
 

@@ -2,14 +2,13 @@
 
 use mozzi::model::Bounds;
 use mozzi::random::Random;
-use mozzi::{Freedom, Place, SE3, SO3, Vec3};
+use mozzi::{Freedom, SO3, Vec3};
 use std::f64::consts::PI;
 
 /// What a search under bounds needs.
 pub(crate) trait Within {
-    /// The joint, if it is one of one axis, of velocity j, at its lower (−1) or upper (1) bound: 0 where it is at
-    /// neither.
-    fn side(&self, theta: &[f64], j: usize) -> f64;
+    /// −1 where joint k is at its lower bound, 1 at its upper one, 0 between; of a ball its largest angle is the upper.
+    fn side(&self, theta: &[f64], k: usize) -> f64;
 
     /// Puts each joint that is beyond a bound onto it.
     fn clamp(&self, theta: &mut [f64]);
@@ -20,27 +19,21 @@ pub(crate) trait Within {
 }
 
 impl Within for Bounds {
-    fn side(&self, theta: &[f64], j: usize) -> f64 {
-        let is_it = |place: &Place| place.freedom == Freedom::One && place.j == j;
-        let Some(joint) = self.places.iter().position(is_it) else { return 0.0 };
-        let ([low, high], q) = (self.joints[joint], self.value(theta, joint));
-        if q <= low {
-            -1.0
-        } else if q >= high {
-            1.0
-        } else {
-            0.0
+    fn side(&self, theta: &[f64], k: usize) -> f64 {
+        let ([low, high], place) = (self.joints[k], &self.places[k]);
+        match place.freedom {
+            Freedom::Free => 0.0,
+            Freedom::Ball => f64::from(place.bounded_value(theta) >= high - 1e-12),
+            Freedom::One if theta[place.q] <= low => -1.0,
+            Freedom::One => f64::from(theta[place.q] >= high),
         }
     }
 
     fn clamp(&self, theta: &mut [f64]) {
-        for (k, (&Place { freedom, q, .. }, &[low, high])) in self.places.iter().zip(&self.joints).enumerate() {
-            match freedom {
-                Freedom::One => theta[q] = theta[q].clamp(low, high),
-                Freedom::Ball if self.value(theta, k) > high => {
-                    let turn = SO3::from_quaternion(theta[q], vector(&theta[q + 1..])).log();
-                    turn_to(&mut theta[q..], turn * (high / turn.norm()));
-                }
+        for (place, &[low, high]) in self.places.iter().zip(&self.joints) {
+            match place.freedom {
+                Freedom::One => theta[place.q] = theta[place.q].clamp(low, high),
+                Freedom::Ball if place.bounded_value(theta) > high => place.put_at_limit(theta, high),
                 _ => {}
             }
         }
@@ -68,11 +61,8 @@ impl Within for Bounds {
     }
 }
 
-fn vector(list: &[f64]) -> Vec3 {
-    Vec3([list[0], list[1], list[2]])
-}
-
 /// The quaternion of e^{`[turn]`}.
 fn turn_to(theta: &mut [f64], turn: Vec3) {
-    theta[..4].copy_from_slice(&SE3 { R: SO3::exp(turn), p: Vec3([0.0; 3]) }.to_pose()[..4]);
+    let (w, v) = SO3::exp(turn).quaternion();
+    theta[..4].copy_from_slice(&[w, v.0[0], v.0[1], v.0[2]]);
 }

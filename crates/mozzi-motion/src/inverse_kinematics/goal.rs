@@ -30,7 +30,7 @@ impl Goal {
         }
     }
 
-    /// The rows of (ω, v) that are asked for.
+    /// The rows of (ω, v) that the goal fixes.
     pub fn rows(&self) -> Range<usize> {
         match self {
             Goal::Pose(_) => 0..6,
@@ -39,7 +39,7 @@ impl Goal {
         }
     }
 
-    /// Angle and distance of a twist of [`error`](Self::error), each `None` where it was not asked for.
+    /// Angle and distance of a twist of [`error`](Self::error), each `None` if the goal leaves it free.
     pub(super) fn residual(&self, error: Twist) -> Residual {
         let rows = self.rows();
         let size = |v: Vec3| v.dot(v).sqrt();
@@ -56,7 +56,7 @@ impl Goal {
     }
 }
 
-/// How far a frame is from its goal; `None` of what was not asked for.
+/// How far a frame is from its goal; `None` if the goal leaves it free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// ‖ω‖ of the [error](Goal::error), rad.

@@ -75,7 +75,7 @@ impl<'m> InverseKinematics<'m> {
             bounds.joints.fill([f64::NEG_INFINITY, f64::INFINITY]);
         }
         let n = model.n();
-        let step = Step { columns: vec![Twist::zero(); n], held: vec![false; n], rows: 0..6 };
+        let step = Step { columns: vec![Twist::zero(); n], held: vec![false; n], cones: Vec::new(), rows: 0..6 };
         Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0 })
     }
 
@@ -117,12 +117,12 @@ impl<'m> InverseKinematics<'m> {
             }
         }
         let theta = best.map_or_else(|| guess.to_vec(), |(_, theta)| theta);
-        let names: Vec<&str> = self.model.velocity_names().collect();
-        let at_limit = |&j: &usize| self.bounds.side(&theta, j) != 0.0;
+        let joints = self.model.joint_names().enumerate();
+        let at_limit = joints.filter(|&(k, _)| self.bounds.side(&theta, k) != 0.0);
         Err(Error::NotReached {
             frame: self.model.frame_name(self.frame).to_string(),
             residual: goal.residual(self.error(&goal, &theta)),
-            limits: (0..self.model.n()).filter(at_limit).map(|j| names[j].to_string()).collect(),
+            limits: at_limit.map(|(_, name)| name.to_string()).collect(),
             theta,
             starts: self.options.starts,
             iterations: self.iterations,
@@ -148,7 +148,7 @@ impl<'m> InverseKinematics<'m> {
         body_jacobian(self.model, theta, self.frame, &mut self.step.columns);
         let one_over = 1.0 / self.options.length;
         self.step.columns.iter_mut().for_each(|column| column.v = column.v * one_over);
-        self.step.held.fill(false);
+        self.step.let_go();
     }
 
     /// Steps towards the goal until it is reached, or no more is gained; leaves the best θ on the way and returns ‖e‖

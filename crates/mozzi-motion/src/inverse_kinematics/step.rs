@@ -2,9 +2,9 @@
 //! there are.
 
 use super::bounds::Within;
-use mozzi::Twist;
 use mozzi::model::Bounds;
 use mozzi::nalgebra::{Matrix6, SymmetricEigen, Vector6};
+use mozzi::{Freedom, Place, Twist};
 use std::ops::Range;
 
 /// How a step is damped.
@@ -26,8 +26,10 @@ const NEGLIGIBLE: f64 = 1e-12;
 pub(super) struct Step {
     /// J with its v in lengths, one column for each velocity.
     pub columns: Vec<Twist>,
-    /// Joints that stay.
+    /// Velocities that are 0.
     pub held: Vec<bool>,
+    /// Balls at their largest angle, which turn no further: nᵀω = 0.
+    pub cones: Vec<(Place, [f64; 3])>,
     pub rows: Range<usize>,
 }
 
@@ -69,8 +71,15 @@ impl Step {
         self.transpose_mul(&y, delta);
     }
 
+    /// No joint is held.
+    pub fn let_go(&mut self) {
+        self.held.fill(false);
+        self.cones.clear();
+    }
+
     /// z less what of it would move the frame: (I − J⁺J)z of the joints that move.
     pub fn within_null_space(&self, z: &mut [f64]) {
+        self.cones.iter().for_each(|(place, n)| remove_along(n, &mut z[place.velocities()]));
         let moved = self.moving().fold(Vector6::zeros(), |V, (j, column)| V + column * z[j]);
         let y = pseudo_inverse(self.gram()) * moved;
         let mut back = vec![0.0; z.len()];
@@ -80,16 +89,36 @@ impl Step {
         }
     }
 
-    /// Holds the joints at a bound that δ would take beyond it; were there any?
+    /// Holds the joints at a bound that δ would take beyond it; were there any? A ball's columns lose their part along
+    /// n, J ← J(I − nnᵀ), and so does δ = Jᵀy.
     pub fn hold_at_bounds(&mut self, bounds: &Bounds, theta: &[f64], delta: &[f64]) -> bool {
         let mut found = false;
-        for j in 0..delta.len() {
-            if !self.held[j] && bounds.side(theta, j) * delta[j] > 0.0 {
-                (self.held[j], found) = (true, true);
+        for (k, place) in bounds.places.iter().enumerate() {
+            let side = bounds.side(theta, k);
+            match place.freedom {
+                Freedom::One if !self.held[place.j] && side * delta[place.j] > 0.0 => self.held[place.j] = true,
+                Freedom::Ball if side > 0.0 && self.cones.iter().all(|(held, _)| held != place) => {
+                    let n = place.bounded_gradient(theta);
+                    if delta[place.velocities()].iter().zip(n).map(|(x, n)| x * n).sum::<f64>() <= 0.0 {
+                        continue;
+                    }
+                    let columns = &mut self.columns[place.velocities()];
+                    let along = columns.iter().zip(n).fold(Twist::zero(), |sum, (column, n)| sum + *column * n);
+                    columns.iter_mut().zip(n).for_each(|(column, n)| *column = *column - along * n);
+                    self.cones.push((*place, n));
+                }
+                _ => continue,
             }
+            found = true;
         }
         found
     }
+}
+
+/// x ← (I − nnᵀ)x.
+fn remove_along(n: &[f64; 3], x: &mut [f64]) {
+    let along: f64 = x.iter().zip(n).map(|(x, n)| x * n).sum();
+    x.iter_mut().zip(n).for_each(|(x, n)| *x -= along * n);
 }
 
 /// A⁺ of a symmetric positive semi-definite matrix.

@@ -1,8 +1,9 @@
 //! Against forward kinematics; the embedded robots, and random ones.
 
 use super::*;
+use mozzi::model::description::{Joint, JointKind};
 use mozzi::testing::{floating_tree, state, tree, twist};
-use mozzi::{SE3, Vec3, difference};
+use mozzi::{Description, SE3, SpatialInertia, Vec3, difference};
 
 fn robot(name: &str, frame: &str) -> (Model, FrameId) {
     let model = mozzi_urdf::open(name).expect("embedded").build().expect("sound");
@@ -187,6 +188,74 @@ fn a_free_base_moves_along() {
     let found = InverseKinematics::new(&model, frame).expect("fine").solve(Goal::Pose(goal), &theta).expect("reached");
     assert!((forward_kinematics(&model, &found.theta, frame).inverse() * goal).log().norm() < 1e-7);
     assert!((found.theta[..4].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-14);
+}
+
+/// A ball with a tip 0.4 m along z, and where `wrist` says so another one there, 0.3 m from the tip then.
+fn on_balls(limit: f64, wrist: bool) -> Model {
+    let ball = |name: &str, parent: &str, child: &str, z: f64| {
+        let origin = SE3::new(mozzi::SO3::identity(), Vec3([0.0, 0.0, z]));
+        let mut joint = Joint::new(name, parent, child, origin, JointKind::Ball(Vec3([0.0; 3])));
+        joint.limits.position = Some([0.0, limit]);
+        joint
+    };
+    let body = SpatialInertia::point_mass(1.0, Vec3([0.0, 0.0, 0.2]));
+    let robot = Description::new("arm").link("base", SpatialInertia::zero()).link("upper", body);
+    let robot = robot.joint(ball("shoulder", "base", "upper", 0.0));
+    let (robot, last) = match wrist {
+        true => (robot.link("lower", body).joint(ball("wrist", "upper", "lower", 0.4)), "lower"),
+        false => (robot, "upper"),
+    };
+    let tip = SE3::new(mozzi::SO3::identity(), Vec3([0.0, 0.0, 0.4]));
+    robot.frame("tip", last, tip).build().expect("sound")
+}
+
+#[test]
+fn balls_stay_within_their_cones() {
+    let model = on_balls(0.6, true);
+    let frame = model.frame("tip").expect("named");
+    let mut solver = InverseKinematics::new(&model, frame).expect("a frame");
+    let (mut random, guess) = (Random(5), model.neutral_configuration::<f64>());
+    for _ in 0..40 {
+        let T = forward_kinematics(&model, &within(&model, &mut random), frame);
+        for goal in [Goal::Pose(T), Goal::Position(T.p), Goal::Orientation(T.R)] {
+            let found = solver.solve(goal, &guess).unwrap_or_else(|error| panic!("{error}"));
+            assert_within(&model, &found.theta);
+        }
+    }
+    // an orientation beyond both cones, by 0.2 rad
+    let goal = Goal::Orientation(mozzi::SO3::exp(Vec3([1.4, 0.0, 0.0])));
+    let Err(Error::NotReached { theta, residual, limits, .. }) = solver.solve(goal, &guess) else {
+        panic!("it is not to be reached")
+    };
+    assert_within(&model, &theta);
+    assert!((residual.angle.expect("of an orientation") - 0.2).abs() < 1e-6, "{residual}");
+    assert_eq!(limits, ["shoulder", "wrist"]);
+}
+
+#[test]
+fn a_secondary_goal_follows_a_cone() {
+    // the tip fixes the ball but for its turn ψ about z, which is to be 2 rad: as much as the cone lets it
+    let model = on_balls(0.8, false);
+    let frame = model.frame("tip").expect("named");
+    let tilt = mozzi::SO3::exp(Vec3([0.3, 0.4, 0.0]));
+    let turned = |psi: f64| {
+        let (w, v) = (tilt * mozzi::SO3::exp(Vec3([0.0, 0.0, psi]))).quaternion();
+        vec![w, v.0[0], v.0[1], v.0[2]]
+    };
+    let reference = turned(2.0);
+    let goal = Goal::Position(forward_kinematics(&model, &turned(0.0), frame).p);
+    let mut solver = InverseKinematics::new(&model, frame).expect("a frame");
+    let found = solver.solve_with(goal, &turned(0.1), &Secondary::Near(&reference)).expect("reached");
+    let distance = |theta: &[f64]| {
+        let mut way = [0.0; 3];
+        difference(&model, theta, &reference, &mut way);
+        Vec3(way).norm()
+    };
+    let bounds = Bounds::of(&model);
+    let turns = (0..=20_000).map(|k| turned(1e-4 * f64::from(k))).filter(|theta| bounds.value(theta, 0) <= 0.8);
+    let nearest = turns.map(|theta| distance(&theta)).fold(f64::INFINITY, f64::min);
+    assert_within(&model, &found.theta);
+    assert!((distance(&found.theta) - nearest).abs() < 1e-4, "{} {nearest}", distance(&found.theta));
 }
 
 #[test]

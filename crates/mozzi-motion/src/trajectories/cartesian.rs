@@ -60,7 +60,7 @@ impl Cartesian {
         tolerance: f64,
     ) -> Result<Self, Error> {
         error::check(tolerance > 0.0, "the tolerance of a path", tolerance, "a positive number")?;
-        error::check_flat(model, "a robot on a Cartesian path")?;
+        error::check_driven(model, "a robot on a Cartesian path")?;
         let start = model.forward_kinematics(from, frame)?;
         let pose = |s: f64| shape.at(start, goal, s);
         let options = Options { starts: 1, angle: 1e-10, distance: 1e-10, ..Options::default() };

@@ -18,6 +18,7 @@
 //! ```
 
 mod cartesian;
+mod chart;
 mod demands;
 mod limits;
 mod linear_program;
@@ -39,5 +40,7 @@ pub use spline::{Ends, Spline};
 pub use stretch::stretched;
 pub use time_optimal::time_optimal;
 
+#[cfg(test)]
+mod on_the_group;
 #[cfg(test)]
 mod tests;

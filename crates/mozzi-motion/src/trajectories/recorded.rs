@@ -1,17 +1,20 @@
 //! A motion from a table of times: what a file says.
 
-use super::path::Path;
+use super::chart::{State, between};
+use super::path::{Path, Point};
 use super::reference::{Desired, Reference};
 use super::spline::{Ends, Spline};
 use crate::Error;
 use crate::error::check;
-use mozzi::Model;
+use mozzi::{ConfigurationSpace, Model};
 
 /// Rows of θ at increasing times, and of θ̇ and θ̈ where they are known. In between: with θ̈ the quintic that meets θ,
 /// θ̇ and θ̈ of both rows, with θ̇ alone the cubic that meets θ and θ̇, with neither the cubic spline at rest at both
-/// ends.
+/// ends. On balls, free joints and floating bases the polynomials are those of u in θ = θ[k] ⊕ u.
 #[derive(Clone, Debug)]
 pub struct Recorded {
+    space: ConfigurationSpace,
+    n: usize,
     times: Vec<f64>,
     rows: Rows,
     end: Vec<f64>,
@@ -28,8 +31,8 @@ impl Recorded {
     /// From rows at these times, in seconds, the first not below 0.
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] for times that do not increase, numbers that are not finite, θ̈ without θ̇, or a
-    /// floating base; [`mozzi::Error::WrongLength`].
+    /// [`mozzi::Error::BadArgument`] for times that do not increase, numbers that are not finite, or θ̈ without θ̇;
+    /// [`mozzi::Error::WrongLength`].
     pub fn new(
         model: &Model,
         times: &[f64],
@@ -58,7 +61,8 @@ impl Recorded {
             (Some(rates), second) => Rows::Hermite([theta.to_vec(), rates.to_vec()], second.map(<[_]>::to_vec)),
             (None, _) => Rows::Spline(spline),
         };
-        Ok(Recorded { times: times.to_vec(), rows, end: theta[theta.len() - 1].clone() })
+        let space = model.configuration_space().clone();
+        Ok(Recorded { space, n: model.n(), times: times.to_vec(), rows, end: theta[theta.len() - 1].clone() })
     }
 }
 
@@ -69,8 +73,7 @@ impl Reference for Recorded {
 
     fn at(&self, t: f64) -> Desired {
         let (first, last) = (self.times[0], self.duration());
-        let still =
-            |theta: Vec<f64>| Desired { dtheta: vec![0.0; theta.len()], ddtheta: vec![0.0; theta.len()], theta };
+        let still = |theta: Vec<f64>| Desired { dtheta: vec![0.0; self.n], ddtheta: vec![0.0; self.n], theta };
         if t > last {
             return still(self.end.clone());
         }
@@ -89,43 +92,12 @@ impl Reference for Recorded {
                 }
                 let k = self.times.partition_point(|&begin| begin <= t).clamp(1, self.times.len() - 1) - 1;
                 let (h, x) = (self.times[k + 1] - self.times[k], t - self.times[k]);
-                let mut now = still(theta[k].clone());
-                for j in 0..now.theta.len() {
-                    let ends = |k: usize| [theta[k][j], dtheta[k][j]];
-                    let second = ddtheta.as_ref().map(|rows| [rows[k][j], rows[k + 1][j]]);
-                    [now.theta[j], now.dtheta[j], now.ddtheta[j]] = hermite(h, x, [ends(k), ends(k + 1)], second);
-                }
-                now
+                let second = ddtheta.as_ref();
+                let end =
+                    |k: usize| State { theta: &theta[k], rate: &dtheta[k], second: second.map(|rows| &rows[k][..]) };
+                let Point { theta, slope, curvature } = between(&self.space, h, x, [end(k), end(k + 1)]);
+                Desired { theta, dtheta: slope, ddtheta: curvature }
             }
         }
     }
-}
-
-/// y, y′ and y″ at x of the polynomial on [0, h] that has these values and slopes at its ends, and these second
-/// derivatives.
-fn hermite(h: f64, x: f64, [[y0, v0], [y1, v1]]: [[f64; 2]; 2], second: Option<[f64; 2]>) -> [f64; 3] {
-    let rest = y1 - y0 - v0 * h;
-    let c = match second {
-        None => {
-            let (p, q) = (rest / (h * h), (v1 - v0) / h);
-            [3.0 * p - q, (q - 2.0 * p) / h, 0.0, 0.0]
-        }
-        Some([a0, a1]) => {
-            let p = (rest - 0.5 * a0 * h * h) / (h * h * h);
-            let q = (v1 - v0 - a0 * h) / (h * h);
-            let r = (a1 - a0) / h;
-            [
-                0.5 * a0,
-                10.0 * p - 4.0 * q + 0.5 * r,
-                (-15.0 * p + 7.0 * q - r) / h,
-                (6.0 * p - 3.0 * q + 0.5 * r) / (h * h),
-            ]
-        }
-    };
-    let [a, b, c, d] = c;
-    [
-        y0 + x * (v0 + x * (a + x * (b + x * (c + x * d)))),
-        v0 + x * (2.0 * a + x * (3.0 * b + x * (4.0 * c + x * 5.0 * d))),
-        2.0 * a + x * (6.0 * b + x * (12.0 * c + x * 20.0 * d)),
-    ]
 }

@@ -5,7 +5,7 @@ use super::limits::Limits;
 use super::path::Path;
 use super::profile::Profile;
 use crate::Error;
-use crate::error::{check, check_driven};
+use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
 
 /// The profile, run through in the shortest time that keeps the limits at N + 1 equal times: with y the old duration
@@ -24,6 +24,7 @@ pub fn stretched(
     limits.check(model)?;
     check(samples >= 2, "the number of samples", samples, "at least 2")?;
     check_driven(model, "a robot on a timed path")?;
+    check_open(model, "a robot on a timed path")?;
     let times: Vec<f64> = (0..=samples).map(|k| profile.duration() * k as f64 / samples as f64).collect();
     let progress: Vec<_> = times.iter().map(|&t| profile.at(t)).collect();
     let demands = demands_of_a_motion(model, path, &progress.iter().map(|p| p.s).collect::<Vec<_>>())?;

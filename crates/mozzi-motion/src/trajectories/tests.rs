@@ -30,7 +30,7 @@ fn via_points(seed: u64, count: usize) -> Vec<Vec<f64>> {
 }
 
 /// θ̇ and θ̈ of a motion against differences of θ and θ̇.
-fn assert_rates(model: &Model, motion: &impl Reference, tolerance: f64) {
+pub(super) fn assert_rates(model: &Model, motion: &impl Reference, tolerance: f64) {
     let (T, e, n) = (motion.duration(), 1e-5, model.n());
     for k in 0..20 {
         let t = T * (k as f64 + 0.37) / 20.3;
@@ -169,7 +169,7 @@ fn the_hand_stays_on_its_path() {
 }
 
 /// The largest share of a limit that a motion uses, at N + 1 times: velocity, acceleration, torque.
-fn used(model: &Model, motion: &impl Reference, limits: &Limits, steps: usize) -> [f64; 3] {
+pub(super) fn used(model: &Model, motion: &impl Reference, limits: &Limits, steps: usize) -> [f64; 3] {
     let mut largest = [0.0_f64; 3];
     for (_, now) in motion.sampled(steps) {
         let tau = model.inverse_dynamics(&now.theta, &now.dtheta, &now.ddtheta, &model.environment()).expect("lengths");
@@ -304,7 +304,7 @@ fn what_makes_no_sense_is_refused() {
     words(Spline::through(&ur5, &points[..1], Ends::Natural).expect_err("one"), "at least 2");
     let twice = [points[0].clone(), points[1].clone(), points[1].clone()];
     words(Spline::through(&ur5, &twice, Ends::Natural).expect_err("twice"), "in row 3, as in the one before it");
-    words(Spline::through(&free, &points, Ends::Natural).expect_err("free"), "fixed base");
+    words(Spline::through(&free, &points, Ends::Natural).expect_err("free"), "6 entries, expected 13");
     words(Line::new(&ur5, &[0.0; 6], &[0.0; 5]).expect_err("five"), "5 entries, expected 6");
     words(Recorded::new(&ur5, &[0.0, 1.0, 2.0], &points, None, Some(&points)).expect_err("rates"), "θ̇ too");
     words(Recorded::new(&ur5, &[-1.0, 1.0, 2.0], &points, None, None).expect_err("early"), "first time is -1");

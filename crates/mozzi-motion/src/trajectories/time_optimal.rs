@@ -6,7 +6,7 @@
 //! > |θ′u + θ″x| ≤ θ̈_max,  |a u + b x + c| ≤ τ_max,  x ≤ (θ̇_max/θ′)²
 //!
 //! Backwards, each point gets the largest x from which the next one's can be kept; forwards, each step takes the
-//! largest u. Limits are asked for at both ends of each interval.
+//! largest u. Limits hold at both ends of each interval.
 
 use super::demands::{Demand, demands, demands_of_a_motion};
 use super::limits::Limits;
@@ -14,15 +14,15 @@ use super::linear_program::{HalfPlane, maximize};
 use super::path::Path;
 use super::profile::Profile;
 use crate::Error;
-use crate::error::{check, check_driven};
+use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
 
 /// What no limit bounds: ṡ² and |s̈| of a path between 0 and 1.
 const UNBOUNDED: f64 = 1e12;
 /// Linearisations of viscous friction.
 const ROUNDS: usize = 4;
-/// So many places of each interval are looked at where the limits were not asked for, and so often are limits drawn in
-/// that are passed there.
+/// Points within each interval at which limits are checked, and the number of times that limits exceeded there are
+/// tightened.
 const BETWEEN: usize = 15;
 const CORRECTIONS: usize = 3;
 
@@ -38,6 +38,7 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
     limits.check(model)?;
     check(intervals >= 2, "the number of intervals", intervals, "at least 2")?;
     check_driven(model, "a robot on a timed path")?;
+    check_open(model, "a robot on a timed path")?;
     let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
     let grid = demands_of_a_motion(model, path, &s)?;
     let parts = BETWEEN + 1;

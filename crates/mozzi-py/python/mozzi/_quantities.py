@@ -8,6 +8,8 @@ Array = NDArray[Any]
 
 __all__ = [
     "TaskSpaceDynamics",
+    "ConstrainedForwardDynamics",
+    "ConstraintImpulse",
     "InverseDynamicsDerivatives",
     "ForwardDynamicsDerivatives",
     "EnergyRegressors",
@@ -24,6 +26,30 @@ class TaskSpaceDynamics(NamedTuple):
     """Shape (..., k, k): kg m², kg m, kg."""
     eta: Array
     """Shape (..., k): N m, N."""
+
+
+class ConstrainedForwardDynamics(NamedTuple):
+    """θ̈ and λ of τ = Mθ̈ + c + g + JᵀF + f + Aᵀλ with Aθ̈ + Ȧθ̇ = 0.
+
+    See ``Model.constrained_forward_dynamics``.
+    """
+
+    ddtheta: Array
+    """Shape (..., n): rad/s² or m/s²."""
+    multipliers: Array
+    """Shape (..., m): N m or N."""
+
+
+class ConstraintImpulse(NamedTuple):
+    """θ̇⁺ and Λ of M(θ̇⁺ − θ̇) = −AᵀΛ with Aθ̇⁺ = 0: the velocities after the constraints have begun to act.
+
+    See ``Model.constraint_impulse``.
+    """
+
+    dtheta_after: Array
+    """Shape (..., n): rad/s or m/s."""
+    impulse: Array
+    """Shape (..., m): N m s or N s."""
 
 
 class InverseDynamicsDerivatives(NamedTuple):

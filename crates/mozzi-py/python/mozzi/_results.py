@@ -221,6 +221,55 @@ class ReportSize(NamedTuple):
     bytes: int
 
 
+class Closing(NamedTuple):
+    """The largest violation of the constraints along a simulated motion, rad and m; 0 without constraints."""
+
+    residual: float
+    """After the correction of each step."""
+    corrected: float
+    """Before it: what the method of integration left."""
+
+
+class ConstraintRank(NamedTuple):
+    """The rank of the constraints at a position: see ``Model.constraint_rank``."""
+
+    rows: int
+    rank: int
+    freedom: int
+    redundant: list[str]
+
+
+class Reduction(NamedTuple):
+    """A mechanism in its own coordinates: see ``Model.reduce``."""
+
+    independent: list[int]
+    N: Array
+    bias: Array
+    M: Array
+    h: Array
+    g: Array
+
+
+class ConstrainedDynamics(NamedTuple):
+    """Torques and forces of a motion with constraints: see ``Model.constrained_inverse_dynamics``."""
+
+    ddtheta: Array
+    tau: Array
+    multipliers: Array
+    wrenches: dict[str, Array]
+
+
+class ConstrainedForwardDynamicsDerivatives(NamedTuple):
+    """Derivatives of θ̈ and λ: see ``Model.constrained_forward_dynamics_derivatives``."""
+
+    d_theta: Array
+    d_dtheta: Array
+    d_tau: Array
+    multipliers_d_theta: Array
+    multipliers_d_dtheta: Array
+    multipliers_d_tau: Array
+
+
 class Trajectory(NamedTuple):
     """A simulated motion: one row for each recorded time; works in J since the start; what ``until``, ``events`` and ``joint_limits`` found."""
 
@@ -239,6 +288,7 @@ class Trajectory(NamedTuple):
     model: "Model"
     events: list[Occurrence]
     joint_limits: list[LimitReached]
+    closing: Closing
 
     @property
     def energy(self) -> Array:
@@ -256,11 +306,12 @@ class Trajectory(NamedTuple):
         *,
         shapes: str | os.PathLike[str] | None = None,
         meshes: Literal["visual", "collision", "none"] = "visual",
+        mesh_root: str | os.PathLike[str] | None = None,
         title: str = "simulated",
         rows: int | None = 20_000,
     ) -> ReportSize:
         """The motion as one HTML file that needs nothing but a browser: see ``Model.report``."""
-        return self.model.report(path, self, shapes=shapes, meshes=meshes, title=title, rows=rows)
+        return self.model.report(path, self, shapes=shapes, meshes=meshes, mesh_root=mesh_root, title=title, rows=rows)
 
     def plot(self) -> Any:
         """A matplotlib figure of θ, θ̇, τ and the energies over t."""

@@ -26,13 +26,13 @@ base_twist, base_acceleration : array_like, shape (6,), optional
     };
 }
 
-fn matrix<'py>(py: Python<'py>, M: &DMatrix<f64>) -> PyResult<Bound<'py, PyAny>> {
+pub(super) fn matrix<'py>(py: Python<'py>, M: &DMatrix<f64>) -> PyResult<Bound<'py, PyAny>> {
     let mut numbers = vec![0.0; M.len()];
     by_rows(M, &mut numbers);
     array(py, &[M.nrows(), M.ncols()], numbers)
 }
 
-fn vector<'py>(py: Python<'py>, x: &DVector<f64>) -> PyResult<Bound<'py, PyAny>> {
+pub(super) fn vector<'py>(py: Python<'py>, x: &DVector<f64>) -> PyResult<Bound<'py, PyAny>> {
     array(py, &[x.len()], x.iter().copied())
 }
 
@@ -54,7 +54,7 @@ impl PyModel {
 }
 
 /// The environment of one state.
-fn environment<'py>(model: &mozzi::Model, given: [Given<'_, 'py>; 5]) -> PyResult<ArrayEnvironment<'py>> {
+pub(super) fn environment<'py>(model: &mozzi::Model, given: [Given<'_, 'py>; 5]) -> PyResult<ArrayEnvironment<'py>> {
     let slots = [Slot::TipWrench, Slot::Gravity, Slot::AppliedWrenches, Slot::BaseTwist, Slot::BaseAcceleration];
     ArrayEnvironment::one_state(model, &Arguments::of(slots.into_iter().zip(given)))
 }

@@ -96,6 +96,7 @@ fn found(leading: Option<&str>, output: &Output) -> String {
         Dim::N | Dim::Nq | Dim::Rows => "6".to_string(),
         Dim::Parameters => "len(ur5.parameters)".to_string(),
         Dim::Frames => "len(ur5.frames)".to_string(),
+        Dim::Constraints => "len(ur5.constraint_row_names)".to_string(),
         Dim::Is(size) => size.to_string(),
     };
     let sizes: Vec<String> = leading.map(String::from).into_iter().chain(output.dims.iter().map(size)).collect();

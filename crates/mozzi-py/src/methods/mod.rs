@@ -2,6 +2,7 @@
 
 mod attach;
 mod closed_form;
+mod constraints;
 mod documentation;
 mod edits;
 mod quantity;

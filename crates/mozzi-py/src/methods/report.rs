@@ -7,6 +7,7 @@ use crate::results::named;
 use mozzi::Trajectory;
 use mozzi::simulation::{Energy, Sample};
 use mozzi_report::{Drawing, Meshes, Motion};
+use mozzi_urdf::XacroArguments;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use std::ffi::CString;
@@ -77,6 +78,9 @@ impl PyModel {
     ///     skeleton.
     /// meshes : {'visual', 'collision', 'none'}
     ///     Which meshes of that file go into the page.
+    /// mesh_root : path, optional
+    ///     A folder above the meshes of that file that lie outside of its own folder and package; they go into the
+    ///     page, too.
     /// title : str
     ///     What the motion is, in a few words.
     /// rows : int, optional
@@ -91,7 +95,7 @@ impl PyModel {
     /// -----
     /// LoadWarning
     ///     For each shape that is left out.
-    #[pyo3(signature = (path, trajectory=None, *, shapes=None, meshes="visual", title="simulated", rows=Some(mozzi_report::ROWS)))]
+    #[pyo3(signature = (path, trajectory=None, *, shapes=None, meshes="visual", mesh_root=None, title="simulated", rows=Some(mozzi_report::ROWS)))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn report<'py>(
         &self,
@@ -100,12 +104,22 @@ impl PyModel {
         trajectory: Option<&Bound<'py, PyAny>>,
         shapes: Option<PathBuf>,
         meshes: &str,
+        mesh_root: Option<PathBuf>,
         title: &str,
         rows: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (model, meshes) = (&self.robot().model, self::meshes(meshes)?);
+        if let Some(folder) = mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
+            return Err(PyValueError::new_err(format!("mesh_root is '{}', expected a folder", folder.display())));
+        }
         let drawing = match shapes {
-            Some(file) => Drawing::of_file(&file.to_string_lossy(), meshes).map_err(|error| of_loader(py, error))?,
+            Some(file) => Drawing::of_file_below(
+                &file.to_string_lossy(),
+                &XacroArguments::default(),
+                meshes,
+                mesh_root.as_deref(),
+            )
+            .map_err(|error| of_loader(py, error))?,
             None => Drawing::default(),
         };
         for note in &drawing.notes {
@@ -118,7 +132,8 @@ impl PyModel {
         let motion = motion.map(|motion| Motion::simulated(title, &motion).thinned(rows.unwrap_or(usize::MAX)));
         let page = mozzi_report::html(model, &drawing, motion.as_ref());
         let page = page.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        std::fs::write(&path, &page).map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))?;
+        mozzi_text::whole_file::save(&path, page.as_bytes())
+            .map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))?;
         let rows = motion.map_or(0, |motion| motion.t.len());
         let numbers = [rows, all_rows, page.len()].map(|x| x.into_pyobject(py).map(Bound::into_any));
         named(py, "ReportSize", numbers.into_iter().collect::<Result<_, _>>()?)

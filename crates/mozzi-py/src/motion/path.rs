@@ -237,18 +237,18 @@ impl PyLine {
     }
 }
 
-/// The cubic spline of each joint through via points, for robots whose joints have one axis each and whose base is
-/// fixed.
+/// The cubic spline of each joint through via points. Balls, free joints and a floating base go through theirs without
+/// jumps of velocity or acceleration; between two of them they turn the shorter way.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The robot.
-/// points : array_like, shape (rows, n)
+/// points : array_like, shape (rows, nq)
 ///     Via points: rad or m, at least two.
 /// s : array_like, shape (rows,), optional
-///     Increasing places of the points, which are scaled to 0 … 1. Default: in proportion to the distances √Σ Δθ²
-///     between the points.
+///     Increasing places of the points, which are scaled to 0 … 1. Default: in proportion to the distances
+///     ‖θ[k + 1] ⊖ θ[k]‖ between the points.
 /// ends : {'natural', 'at rest'}
 ///     θ″ = 0 at both ends, for a path that a `Profile` runs through; or θ′ = 0, for one with s in proportion to time.
 ///
@@ -294,7 +294,7 @@ impl PySpline {
 /// ----------
 /// model : Model
 ///     The robot.
-/// start : array_like, shape (n,)
+/// start : array_like, shape (nq,)
 ///     θ₀: rad or m.
 /// goal : array_like, shape (4, 4)
 ///     The frame's pose at the end, T_sb.

@@ -153,7 +153,7 @@ impl PyTimed {
 ///     The robot.
 /// t : array_like, shape (rows,)
 ///     Increasing times, s, the first not below 0.
-/// theta : array_like, shape (rows, n)
+/// theta : array_like, shape (rows, nq)
 ///     Positions: rad or m.
 /// dtheta, ddtheta : array_like, shape (rows, n), optional
 ///     Velocities, rad/s or m/s, and accelerations, rad/s² or m/s².

@@ -59,7 +59,7 @@ pub fn solution<'py>(py: Python<'py>, all: &[Found], leading: &[usize], nq: usiz
         let numbers = array(py, leading, all.iter().map(part))?.call_method1("astype", (dtype,))?;
         if leading.is_empty() { numbers.call_method0("item") } else { Ok(numbers) }
     };
-    // asked for or not by all alike
+    // all solutions have one kind of goal
     let residual = |part: fn(&Residual) -> Option<f64>| -> PyResult<Bound<'py, PyAny>> {
         if all.iter().any(|found| part(&found.residual).is_none()) {
             return Ok(py.None().into_bound(py));

@@ -138,7 +138,7 @@ impl Robots<'_> {
         }
     }
 
-    /// Under torques that are asked for at each stage of each step.
+    /// With torques from the function at each stage of each step.
     fn move_driven(
         &self,
         py: Python,

@@ -114,7 +114,8 @@ impl PyModel {
     /// -------
     /// Trajectory, or Trajectories where there are leading axes
     ///     `t`, shape (rows,); `theta`, shape (..., rows, nq); `dtheta`, `ddtheta`, `tau`, shape (..., rows, n); and
-    ///     the energies, shape (..., rows). Works, such as `motor_work`, of one start alone.
+    ///     the energies, shape (..., rows). Works, such as `motor_work`, of one start alone, and `closing`: by how much
+    ///     the constraints of a robot that has some are violated.
     ///
     /// Raises
     /// ------

@@ -108,9 +108,10 @@ fn run(
 }
 
 fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, run: Run) -> PyResult<Bound<'py, PyAny>> {
-    let Run { motion: found, events, stops } = run;
+    let Run { motion: found, events, stops, closing } = run;
     let rows = found.len();
     let names = |names: Vec<&str>| names.into_pyobject(py);
+    let number = |x: f64| -> PyResult<_> { Ok(x.into_pyobject(py)?.into_any()) };
     let energies = |part: fn(&Energy) -> f64| array(py, &[rows], found.energy.iter().map(part));
     let model = &robot.get().robot().model;
     let fields = vec![
@@ -129,6 +130,7 @@ fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, run: Run) -> Py
         robot.clone().into_any(),
         happened(py, events)?,
         stopped(py, stops)?,
+        named(py, "Closing", vec![number(closing.residual)?, number(closing.corrected)?])?,
     ];
     named(py, "Trajectory", fields)
 }

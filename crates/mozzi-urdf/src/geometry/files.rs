@@ -24,7 +24,8 @@ impl fmt::Display for NotLocated {
             let outside = shown(outside);
             return write!(
                 f,
-                "mesh {name} is {outside}, outside of the robot's folder and of its package (a folder with package.xml)"
+                "mesh {name} is {outside}, outside of the robot's folder and of its package (a folder with \
+                 package.xml); a mesh root (--mesh-root in the command line) above it allows it"
             );
         }
         let Some(first) = self.tried.first() else {
@@ -47,13 +48,15 @@ impl std::error::Error for NotLocated {}
 ///
 /// Whoever writes a robot's file must not reach other files of whoever reads it: links followed, the mesh lies in the
 /// folder of the robot's file, in the package around it (the nearest folder above that has a `package.xml`), or in the
-/// package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS.
+/// package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS. `root` is
+/// one more folder in which meshes may lie, if whoever reads the file names it.
 ///
 /// # Errors
 /// [`NotLocated`] with the places, or with the file that is elsewhere.
-pub fn locate(robot_file: &Path, mesh: &str) -> Result<PathBuf, NotLocated> {
+pub fn locate(robot_file: &Path, mesh: &str, root: Option<&Path>) -> Result<PathBuf, NotLocated> {
     let candidates = candidates(robot_file, mesh, &|name| std::env::var_os(name));
-    let own = own_folders(robot_file);
+    let mut own = own_folders(robot_file);
+    own.extend(root.and_then(|root| root.canonicalize().ok()));
     let mut outside = None;
     for candidate in candidates.iter().filter(|candidate| candidate.path.is_file()) {
         match candidate.is_allowed(&own) {
@@ -157,9 +160,9 @@ mod tests {
     #[test]
     fn what_is_missing_is_named_with_a_place() {
         let error =
-            locate(Path::new("/robots/arm.urdf"), "package://arm/a.stl").expect_err("nothing there").to_string();
+            locate(Path::new("/robots/arm.urdf"), "package://arm/a.stl", None).expect_err("nothing there").to_string();
         assert!(error.starts_with("mesh package://arm/a.stl was not found: neither /"), "{error}");
-        let error = locate(Path::new("a.urdf"), "http://a/b.stl").expect_err("no network").to_string();
+        let error = locate(Path::new("a.urdf"), "http://a/b.stl", None).expect_err("no network").to_string();
         assert_eq!(error, "mesh http://a/b.stl: expected package://, file://, or a path");
     }
     #[test]
@@ -176,7 +179,7 @@ mod tests {
         std::os::unix::fs::symlink(top.join("e.stl"), top.join("ws/tool/link.stl")).expect("a link");
         let robot = top.join("ws/arm/urdf/arm.urdf");
         std::fs::write(&robot, "").expect("a file");
-        let is_found = |mesh: &str| match locate(&robot, mesh) {
+        let found_below = |mesh: &str, root: Option<&Path>| match locate(&robot, mesh, root) {
             Ok(_) => true,
             Err(error) => {
                 assert!(
@@ -200,11 +203,15 @@ mod tests {
             "../../../e.stl",
             &absolute,
         ];
-        let found = |expected: &[usize]| {
+        let found_with = |root: Option<&Path>, expected: &[usize]| {
             for (k, address) in addresses.iter().enumerate() {
-                assert_eq!(is_found(address), expected.contains(&k), "{address}");
+                assert_eq!(found_below(address, root), expected.contains(&k), "{address}");
             }
         };
+        let found = |expected: &[usize]| found_with(None, expected);
+        found_with(Some(&top.join("ws/arm")), &[0, 1, 2, 3]);
+        found_with(Some(&top.join("ws/nowhere")), &[0, 1, 3]);
+        found_with(Some(&top.join("ws")), &[0, 1, 2, 3, 4, 5]);
         found(&[0, 1, 3]);
         std::fs::write(top.join("ws/tool/package.xml"), "").expect("a file");
         found(&[0, 1, 3, 4]);

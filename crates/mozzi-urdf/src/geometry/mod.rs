@@ -9,10 +9,12 @@ pub use files::{NotLocated, locate};
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 
+use crate::XacroArguments;
 use crate::context::Context;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
 use crate::error::LoadError;
+use crate::expansion;
 use crate::finding::Findings;
 use crate::pages::Pages;
 use crate::source::Source;
@@ -34,6 +36,14 @@ pub struct Geometry {
 /// # Errors
 /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
 pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
+    geometry_with(name_or_path, &XacroArguments::default())
+}
+
+/// The same with arguments of xacro.
+///
+/// # Errors
+/// As there; [`LoadError::Refused`] if xacro cannot expand the file.
+pub fn geometry_with(name_or_path: &str, arguments: &XacroArguments) -> Result<Geometry, LoadError> {
     if let Some(text) = embedded::unless_file(name_or_path) {
         return Ok(parse(&format!("{name_or_path}.urdf"), text));
     }
@@ -41,25 +51,32 @@ pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
         return Err(LoadError::NoSuchRobot { name: name_or_path.to_string() });
     }
     let path = Path::new(name_or_path);
-    Ok(parse_in(path.parent(), name_or_path, &file_bytes(path)?))
+    parse_in(path.parent(), name_or_path, &file_bytes(path)?, arguments)
 }
 
 /// The shapes of a text. Diagnostics use the name as its file name.
 pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
-    parse_in(None, file_name, text.as_ref())
+    let none = || Geometry { shapes: Vec::new(), left_out: Vec::new() };
+    parse_in(None, file_name, text.as_ref(), &XacroArguments::default()).unwrap_or_else(|_| none())
 }
 
 /// What a text of MJCF includes is searched in a folder.
-fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8]) -> Geometry {
+fn parse_in(
+    folder: Option<&Path>,
+    file_name: &str,
+    text: &[u8],
+    arguments: &XacroArguments,
+) -> Result<Geometry, LoadError> {
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text, &mut findings));
+    let (source, _) = expansion::prepare(source, arguments)?; // the model's reader reports warnings
     let dialect = Dialect::of(&source.text);
     let source = syntax::mended(source, dialect, &mut Findings::default()); // the model's reader reports it
     let mut shapes = Vec::new();
     if dialect == Dialect::Mjcf && !findings.has_errors() {
         let mut sources = vec![source];
         let (shapes, cx) = mjcf::shapes(&mut sources, folder);
-        return placed(shapes, cx.findings, &sources, dialect);
+        return Ok(placed(shapes, cx.findings, &sources, dialect));
     }
     if dialect == Dialect::Urdf && source.text.trim_start().starts_with('<') {
         match syntax::parse(&source, Dialect::Urdf) {
@@ -75,7 +92,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8]) -> Geometry {
             }
         }
     }
-    placed(shapes, findings, &[source], dialect)
+    Ok(placed(shapes, findings, &[source], dialect))
 }
 
 fn placed(shapes: Vec<Shape>, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {

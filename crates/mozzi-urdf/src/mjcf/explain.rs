@@ -11,6 +11,9 @@ pub(crate) const CODES: [Entry; 41] = [
     ("circular_mimic",
         "Joints are coupled (equality) in a circle. Their positions are then undefined.",
         "remove one of the couplings"),
+    ("constraint_of_several_axes",
+        "An equality of joints includes a ball or a free joint, which do not have one position.",
+        "couple joints of one axis only; `connect` and `weld` suit any joint"),
     ("contradictory_key",
         "A key gives a mimic joint (equality) a position or velocity that disagrees with the coupling. In mozzi \
          the coupling is rigid: the state has the numbers of the independent joints, and the coupling gives the \
@@ -67,9 +70,6 @@ pub(crate) const CODES: [Entry; 41] = [
         "A value in a default class is longer than 256 bytes. No attribute needs this; the file is refused to \
          bound time.",
         "check that this is the right file"),
-    ("loop_closure",
-        "Two bodies are tied to each other, so that the bodies form a loop. mozzi supports trees only.",
-        "remove it, or set active=\"false\", if you want to compute the tree without it"),
     ("massless_leaf",
         "The last body of a branch moves but has no inertia about its joint's axis. Inverse dynamics works; \
          forward dynamics would divide by zero and returns an error that names the joint.",
@@ -137,9 +137,9 @@ pub(crate) const CODES: [Entry; 41] = [
          of the tree.",
         "let MuJoCo expand or remove it, and save the model from there"),
     ("unsupported_equality",
-        "An equality is not a linear coupling of two joint positions. Only linear couplings are mimic joints; \
-         ignoring others would give wrong results, so the file is refused.",
-        "remove it, or set active=\"false\", if you want to compute the tree without it"),
+        "An equality of tendons or flexible bodies. Equalities of joints and bodies are computed; ignoring others \
+         would give wrong results, so the file is refused.",
+        "remove it, or set active=\"false\", if you want to compute the robot without it"),
     ("unsupported_joint",
         "A free joint is inside the tree, or its body has other joints, too. MuJoCo refuses it, too.",
         "a ball and three slides in one body move like a free joint"),

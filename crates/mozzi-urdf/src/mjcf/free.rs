@@ -9,7 +9,7 @@ use super::vocabulary;
 use crate::context::Context;
 use crate::places::Place;
 use mozzi::SE3;
-use mozzi::model::description::JointKind;
+use mozzi::model::description::{ConstraintKind, JointKind};
 
 impl<'a> Model<'a> {
     /// Whether the next link's body is free. Adds its joint with this initial pose; reports an invalid free joint.
@@ -95,6 +95,7 @@ impl<'a> Model<'a> {
             return;
         }
         let (joint, start) = (base.name.given.clone(), base.start);
+        let poses = self.tree.poses();
         self.tree.joints.retain(|joint| joint.child != link);
         let mut free = Free { link, joint, start };
         let base = self.tree.links[free.link].name.shown();
@@ -122,6 +123,17 @@ impl<'a> Model<'a> {
             (joint.parent, joint.child) = (numbers[joint.parent], numbers[joint.child]);
         }
         self.tree.sites.iter_mut().for_each(|site| site.link = numbers[site.link]);
+        for one in &mut self.tree.constraints {
+            // what stays behind is in {s}
+            if let ConstraintKind::Frames { a, b, .. } = &mut one.kind {
+                for (link, anchor) in one.links.iter_mut().zip([a, b]) {
+                    if let Some(still) = link.filter(|&i| !stays[i]) {
+                        (*link, anchor.T) = (None, poses[still] * anchor.T);
+                    }
+                }
+            }
+            one.links = one.links.map(|link| link.map(|i| numbers[i]));
+        }
         self.tree.free = Some(free);
     }
 }

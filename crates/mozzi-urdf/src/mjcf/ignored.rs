@@ -153,7 +153,7 @@ impl Ignored {
 fn topic_of(element: &str) -> Topic {
     match element {
         "actuator" | "sensor" | "key" => Topic::Actuators,
-        "compiler" | "option" | "flag" | "size" | "custom" | "extension" => Topic::Settings,
+        "compiler" | "option" | "flag" | "size" | "custom" | "extension" | "connect" | "weld" => Topic::Settings,
         "equality" | "tendon" => Topic::Idle,
         _ => Topic::Looks,
     }

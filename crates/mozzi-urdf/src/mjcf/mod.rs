@@ -8,8 +8,8 @@
 //! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
 //! several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and
 //! `springdamper`; inertias, given or computed from geoms; default classes; includes; compiler settings that affect the
-//! tree; gravity; keyframes; a linear equality of two joints, as a mimic joint; the armature of actuators, and of fixed
-//! tendons, as rotors that several joints turn.
+//! tree; gravity; keyframes; a linear equality of two joints, as a mimic joint; other equalities of joints, `connect` and
+//! `weld`, as constraints; the armature of actuators, and of fixed tendons, as rotors that several joints turn.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
 //!   MuJoCo's `qpos`, with `ref`. Between two joints of one body there is a massless link `body:joint`.
@@ -19,16 +19,17 @@
 //!   world by a free joint with the same positions and velocities.
 //! - A ball has MuJoCo's quaternion, angular velocity and spring.
 //! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
-//! - A coupling of joints is rigid here; MuJoCo's solver keeps it approximately.
+//! - Equalities are rigid here; MuJoCo's solver keeps them approximately: `solref`, `solimp` and `torquescale` are not
+//!   used. Anchor {a} is in body 1 and {b} in body 2, at the point that coincides with it in the file's own
+//!   configuration, or where `relpose` or the sites have it. One without a name is called by its number: `connect0`.
 //! - A key of `<keyframe>` is a named state ([`mozzi::Model::state`]): its time, `qpos` and `qvel`. A key without a
 //!   name is called by its number, `key0`. If the file's own configuration is not θ = 0, because a free body is
 //!   elsewhere or a joint has a `ref`, it is the state `qpos0`, and the robot starts there ([`mozzi::Model::start`]),
 //!   as in MuJoCo. Numbers of mimic joints are checked against their source joints', and not kept.
 //!
 //! # What is not read
-//! - Refused by name: loop closures (`connect`, `weld`), nonlinear couplings, tendons with forces, spatial tendons with
-//!   an armature, flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed,
-//!   shells.
+//! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
+//!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed, shells.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //! - Loaded with a warning that nothing of the dynamics is lost: limits of tendons, reversed limits, an `<inertial>`
 //!   without moments, which is a point mass.
@@ -44,6 +45,7 @@ mod closure;
 mod compiler;
 mod contents;
 mod coordinates;
+mod equality;
 mod explain;
 mod free;
 mod geom;
@@ -96,7 +98,7 @@ pub(crate) struct Model<'a> {
     pub classes: Classes<'a>,
     pub ignored: Ignored,
     pub tree: Tree,
-    /// If they are asked for.
+    /// `None` if shapes are not read.
     pub shapes: Option<Shapes>,
 }
 

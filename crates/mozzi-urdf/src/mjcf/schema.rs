@@ -22,6 +22,8 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
         "mujoco/body/geom" | "mujoco/default/geom" => &vocabulary::GEOM,
         "mujoco/body/site" | "mujoco/default/site" => &vocabulary::SITE,
         "mujoco/equality/joint" | "mujoco/default/equality" => &vocabulary::COUPLING,
+        "mujoco/equality/connect" => &vocabulary::CONNECT,
+        "mujoco/equality/weld" => &vocabulary::WELD,
         "mujoco/keyframe" => &vocabulary::KEYFRAME,
         "mujoco/keyframe/key" => &vocabulary::KEY,
         "mujoco/tendon/spatial" | "mujoco/tendon/fixed" | "mujoco/default/tendon" => &vocabulary::TENDON,
@@ -30,7 +32,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
 }
 
 /// Elements that are reported with all their contents: the path, such an element, and the code.
-const TOLD: [(&str, &str, &str); 23] = [
+const TOLD: [(&str, &str, &str); 21] = [
     ("mujoco/compiler/lengthrange", "<compiler><§/></compiler>", "ignored_attribute"),
     ("mujoco/size", "<§/>", "ignored_element"),
     ("mujoco/statistic", "<§/>", "ignored_element"),
@@ -48,8 +50,6 @@ const TOLD: [(&str, &str, &str); 23] = [
     ("mujoco/deformable", "<§/>", "ignored_element"),
     ("mujoco/contact", "<§/>", "ignored_element"),
     ("mujoco/tendon/", "<tendon><§/></tendon>", "ignored_element"),
-    ("mujoco/equality/connect", "<equality><§/></equality>", "loop_closure"),
-    ("mujoco/equality/weld", "<equality><§/></equality>", "loop_closure"),
     ("mujoco/equality/", "<equality><§/></equality>", "unsupported_equality"),
     ("mujoco/actuator", "<§/>", "ignored_element"),
     ("mujoco/sensor", "<§/>", "ignored_element"),
@@ -87,13 +87,22 @@ fn model(path: &str, attribute: &str) -> String {
             "<joint name='a'/><joint name='b'/><geom size='1'/>",
             &format!("<equality><joint joint1='a' joint2='b' {attribute}/></equality>"),
         ),
+        "mujoco/equality/connect" | "mujoco/equality/weld" => {
+            let tag = path.rsplit('/').next().unwrap_or_default();
+            let rest = if attribute.starts_with("anchor") { "" } else { "anchor='1 0 0'" };
+            body(
+                "<joint/><geom size='1'/></body><body name='b'><joint/><geom size='1'/>",
+                &format!("<equality><{tag} body1='b' {rest} {attribute}/></equality>"),
+            )
+        }
         "mujoco/keyframe/key" => format!("<keyframe><key {attribute}/></keyframe>"),
         _ => String::new(),
     }
 }
 
 /// Attributes whose values are names.
-const NAMES: [&str; 7] = ["name", "class", "childclass", "joint1", "joint2", "model", "mesh"];
+const NAMES: [&str; 11] =
+    ["name", "class", "childclass", "body1", "body2", "joint1", "joint2", "site1", "site2", "model", "mesh"];
 
 #[test]
 fn every_word_is_in_a_class() {

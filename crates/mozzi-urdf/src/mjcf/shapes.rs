@@ -102,7 +102,7 @@ impl Shapes {
 }
 
 impl<'a> Model<'a> {
-    /// Adds the shapes of a body's geoms, if shapes are asked for.
+    /// Adds the shapes of a body's geoms, if shapes are read.
     pub fn draw(&mut self, geoms: &[Inside<'a>], link: usize) {
         let Some(mut shapes) = self.shapes.take() else { return };
         for geom in geoms {

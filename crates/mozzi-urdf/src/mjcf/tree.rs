@@ -6,7 +6,7 @@ use crate::element::Element;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
 use crate::vocabulary::shown;
-use mozzi::model::description::{self, FreeJoint, Gear, JointKind};
+use mozzi::model::description::{self, ConstraintKind, FreeJoint, Gear, JointKind};
 use mozzi::{Base, Description, SE3, SpatialInertia};
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -69,6 +69,15 @@ pub(crate) struct Rotor {
     pub place: Place,
 }
 
+/// A constraint; the names of its anchors' frames are settled at the end.
+pub(crate) struct Constraint {
+    pub name: Name,
+    /// The links of its anchors; None is {s}.
+    pub links: [Option<usize>; 2],
+    pub kind: ConstraintKind,
+    pub place: Place,
+}
+
 /// A site.
 pub(crate) struct Site {
     pub name: String,
@@ -92,6 +101,7 @@ pub(crate) struct Tree {
     pub joints: Vec<Joint>,
     pub sites: Vec<Site>,
     pub rotors: Vec<Rotor>,
+    pub constraints: Vec<Constraint>,
     /// The body that is free.
     pub free: Option<Free>,
     /// How many bodies and joints MuJoCo counts so far.
@@ -113,6 +123,7 @@ impl Tree {
             joints: Vec::new(),
             sites: Vec::new(),
             rotors: Vec::new(),
+            constraints: Vec::new(),
             free: None,
             bodies: 0,
             degrees: 0,
@@ -134,6 +145,21 @@ impl Tree {
         });
         let last = self.joints.len() - 1;
         &mut self.joints[last]
+    }
+
+    /// The configurations of all links in the file's own configuration.
+    pub fn poses(&self) -> Vec<SE3> {
+        let mut poses = vec![SE3::identity(); self.links.len()];
+        // parents stand before their children
+        for joint in &self.joints {
+            let moved = match joint.joint.kind {
+                JointKind::Screw(A) => joint.joint.origin * SE3::exp(A.twist() * joint.reference),
+                JointKind::Free => joint.start,
+                JointKind::Fixed | JointKind::Ball(_) => joint.joint.origin,
+            };
+            poses[joint.child] = poses[joint.parent] * moved;
+        }
+        poses
     }
 
     /// The description, with names for what has none.
@@ -196,6 +222,17 @@ impl Tree {
             let name = names.settle(rotor.name, &rotor.place, cx);
             places.rotors.push(rotor.place);
             description.rotors.push(description::Rotor { name, armature: rotor.armature, gears: rotor.gears });
+        }
+        let mut names =
+            Names::new("equality", self.constraints.iter().filter_map(|one| one.name.given.clone()).collect());
+        for one in self.constraints {
+            let name = names.settle(one.name, &one.place, cx);
+            let mut kind = one.kind;
+            if let ConstraintKind::Frames { a, b, .. } = &mut kind {
+                [a.frame, b.frame] = one.links.map(|link| link.map(|i| description.links[i].name.clone()));
+            }
+            places.constraints.push(one.place);
+            description.constraints.push(description::Constraint { name, kind });
         }
         (description, places)
     }

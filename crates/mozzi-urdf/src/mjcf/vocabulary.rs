@@ -289,6 +289,16 @@ pub(crate) const COUPLING: Vocabulary = Vocabulary {
     listed: &["solimp", "solref"],
     ..NOTHING
 };
+pub(crate) const CONNECT: Vocabulary = Vocabulary {
+    attributes: &["name", "class", "active", "body1", "body2", "anchor", "site1", "site2"],
+    listed: &["solimp", "solref"],
+    ..NOTHING
+};
+pub(crate) const WELD: Vocabulary = Vocabulary {
+    attributes: &["name", "class", "active", "body1", "body2", "anchor", "relpose", "site1", "site2"],
+    listed: &["solimp", "solref", "torquescale"],
+    ..NOTHING
+};
 pub(crate) const TENDONS: Vocabulary = Vocabulary { many: &["spatial", "fixed"], ..NOTHING };
 pub(crate) const TENDON: Vocabulary = Vocabulary {
     attributes: &["name", "class", "stiffness", "damping", "frictionloss", "armature", "limited", "range"],

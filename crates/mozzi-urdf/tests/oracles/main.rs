@@ -16,14 +16,8 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// What a model of MJCF may be refused for: it is more than a tree, or its numbers stand in meshes.
-const CLOSURES: [&str; 6] = [
-    "loop_closure",
-    "unsupported_tendon",
-    "unsupported_equality",
-    "mesh_inertia",
-    "actuator_armature",
-    "unsupported_attribute",
-];
+const CLOSURES: [&str; 5] =
+    ["unsupported_tendon", "unsupported_equality", "mesh_inertia", "actuator_armature", "unsupported_attribute"];
 
 /// The robot of a file of oracles, without friction and springs, and without armature where the oracle has none. The
 /// reason, where it is a model that mozzi refuses for good reason.

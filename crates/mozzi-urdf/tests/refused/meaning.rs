@@ -167,7 +167,7 @@ fn words() {
         (
             "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='a'/><§xacro:arm/></robot>",
             "xacro",
-            "<xacro:arm> is a xacro element, expected a file that xacro has expanded",
+            "the macro `arm` is not defined",
         ),
     ]);
     warned(&[

@@ -53,7 +53,7 @@ fn what_has_no_place_is_refused_by_name() {
         (
             "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><§xacro:arm/></mujoco>",
             "xacro",
-            "<xacro:arm> is a xacro element, expected a file that xacro has expanded",
+            "the macro `arm` is not defined",
         ),
         (body!("<joint/><geom size='1' mass='§${m}'/>"), "xacro", "body `b`: geom: mass: is `${m}`, expected a number"),
         (
@@ -62,19 +62,24 @@ fn what_has_no_place_is_refused_by_name() {
             "joint `j`: springdamper: the mass matrix is singular, expected an inertia",
         ),
         (
-            pair!("<equality><§weld body1='a' body2='b'/></equality>"),
-            "loop_closure",
-            "equality: weld: ties two bodies, which closes a loop, which mozzi does not compute",
+            pair!("<equality><§weld/></equality>"),
+            "missing_attribute",
+            "equality: weld: has neither sites nor bodies, expected `body1`, or `site1` and `site2`",
         ),
         (
-            pair!("<equality><§joint joint1='p' joint2='q' polycoef='0 1 0.1'/></equality>"),
-            "unsupported_equality",
-            "equality: joint: couples joints nonlinearly, which mozzi does not compute",
+            pair!("<equality><§connect body1='b'/></equality>"),
+            "missing_attribute",
+            "equality: connect: has no attribute `anchor`",
         ),
         (
-            pair!("<equality><§joint name='e' joint1='p'/></equality>"),
-            "unsupported_equality",
-            "equality: joint `e`: fixes a joint at its position, which mozzi does not compute",
+            pair!("<equality><weld name='w' body1='b' body2='§c'/></equality>"),
+            "unknown_link",
+            "equality: weld `w`: body2: there is no body `c`",
+        ),
+        (
+            pair!("<equality><connect site1='§s' site2='t'/></equality>"),
+            "unknown_frame",
+            "equality: connect: site1: there is no site `s`",
         ),
         (
             pair!("<equality><joint joint1='p' joint2='§r'/></equality>"),

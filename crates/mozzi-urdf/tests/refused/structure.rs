@@ -74,7 +74,12 @@ fn trees() {
         (
             "<robot name='r'><link name='a'/><§loop_joint name='j'/></robot>",
             "loop_closure",
-            "robot: loop_joint: closes a loop of links, which mozzi does not compute",
+            "robot: loop_joint: is not an element of URDF",
+        ),
+        (
+            "<robot name='r'><link name='a'/><§constraint name='c'/></robot>",
+            "unsupported_constraint",
+            "robot: constraint: is a proposal for URDF that no version defines, and that readers ignore or refuse",
         ),
     ]);
     // a ring beside the tree: each of its links is named

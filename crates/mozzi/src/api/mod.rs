@@ -1,6 +1,7 @@
 //! The methods of [`Model`]: the kernels on `f64`. They return errors where a kernel would panic, and nalgebra's
 //! vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
 
+pub(crate) mod constraints;
 mod derivatives;
 mod directional_derivative;
 mod dynamics;
@@ -11,6 +12,7 @@ mod newton_euler;
 mod regressor;
 mod task_space;
 
+pub use constraints::{ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, Reduction};
 pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 pub use task_space::TaskSpaceDynamics;

@@ -12,24 +12,10 @@
 //! All in the base's axes about each link's own origin: a step to a parent is a shift.
 
 use crate::linalg::ldlt;
-use crate::model::{Model, TOGETHER as W, Turned, Workspace};
+use crate::model::{AtLink, Model, TOGETHER as W, Turned, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
-
-/// Of W columns at a link what its joint's row holds, and P or a, angular first. A step waits for the one before it, so
-/// that several columns take no longer than one.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AtLink<S> {
-    x: [S; W],
-    six: [[S; W]; 6],
-}
-
-impl<S: Scalar> AtLink<S> {
-    pub fn zero() -> Self {
-        AtLink { x: [S::zero(); W], six: [[S::zero(); W]; 6] }
-    }
-}
 
 /// Overwrites X and Y, n × n by rows, with −M⁻¹X and −M⁻¹Y, and `inverse` with M⁻¹. The workspace holds the factors of
 /// forward dynamics, and of links R, p and A in the base's axes.

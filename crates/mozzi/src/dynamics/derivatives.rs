@@ -43,7 +43,7 @@ use crate::model::{ByRates, ByTheta, Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
-/// The derivatives, those by θ̇ and θ̈ where asked for; the workspace holds T_{i,i−1}(θ), and afterwards no more.
+/// ∂τ/∂θ and, if given, ∂τ/∂θ̇ and M. The workspace holds T_{i,i−1}(θ), and afterwards no more.
 #[cfg_attr(not(test), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
@@ -54,19 +54,17 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>,
     workspace: &mut Workspace<S>,
     d_theta: &mut [S],
-    by_rates: Option<[&mut [S]; 2]>,
+    mut d_dtheta: Option<&mut [S]>,
+    M: Option<&mut [S]>,
 ) {
     outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
     let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: false, is_composite: false };
     let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
     let by_theta = Some(Filled { X: d_theta, base: by_theta });
-    match by_rates {
-        None => composite_pass(model, workspace, Matrices { by_theta, by_rates: None, M: None }, does),
-        Some([d_dtheta, M]) => {
-            let by_rates = Some(Filled { X: &mut *d_dtheta, base: by_dtheta });
-            composite_pass(model, workspace, Matrices { by_theta, by_rates, M: Some(M) }, does);
-            add_damping(model, d_dtheta);
-        }
+    let by_rates = d_dtheta.as_deref_mut().map(|X| Filled { X, base: by_dtheta });
+    composite_pass(model, workspace, Matrices { by_theta, by_rates, M }, does);
+    if let Some(d_dtheta) = d_dtheta {
+        add_damping(model, d_dtheta);
     }
 }
 

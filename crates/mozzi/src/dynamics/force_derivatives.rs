@@ -76,7 +76,7 @@ fn at_rest<S: Scalar + From<C>, C: Scalar>(
 ) {
     let zero = take_zeros(workspace);
     joint_transforms(model, theta, workspace);
-    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, d_theta, None);
+    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, d_theta, None, None);
     workspace.vector = zero;
 }
 

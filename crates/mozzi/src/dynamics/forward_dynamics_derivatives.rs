@@ -4,9 +4,8 @@ use super::armature::{add_velocity_product_rates, add_velocity_products};
 use super::articulated_solve::solve_columns;
 use super::bias_forces::take_zeros;
 use super::composite::{Does, Filled, Matrices, composite_pass};
-use super::derivatives::{add_accelerations, add_damping, base_rates, joint_forces, outward_pass};
+use super::derivatives::{add_accelerations, add_damping, base_rates, derivatives, joint_forces, outward_pass};
 use super::forward_dynamics::forward_dynamics;
-use super::inverse_dynamics_derivatives::inverse_dynamics_derivatives;
 use super::joint_friction::joint_friction;
 use super::spring_forces::{add_spring_forces, add_stiffness};
 use crate::kinematics::joint_transforms;
@@ -44,8 +43,9 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     if S::IS_ONE && model.structure.solves_by_bodies {
         forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
-        let by_all = [&mut *d_theta, &mut *d_dtheta, &mut *d_tau];
-        inverse_dynamics_derivatives(model, theta, dtheta, ddtheta, environment, workspace, by_all);
+        derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some(&mut *d_dtheta), None);
+        add_stiffness(model, theta, d_theta);
+        add_velocity_product_rates(model, dtheta, d_dtheta);
         solve_columns(model, workspace, [d_theta, d_dtheta, d_tau]);
         return;
     }

@@ -29,7 +29,7 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, [d_theta, d_dtheta, M]: [&mut [S]; 3],
 ) {
     joint_transforms(model, theta, workspace);
-    derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some([d_dtheta, M]));
+    derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some(&mut *d_dtheta), Some(M));
     add_stiffness(model, theta, d_theta);
     add_velocity_product_rates(model, dtheta, d_dtheta);
 }

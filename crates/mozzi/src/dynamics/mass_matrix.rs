@@ -24,6 +24,16 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     model.assert_lengths(theta.len(), []);
     assert!(M.len() == n * n, "M has {} entries, expected n² = {}", M.len(), n * n);
     joint_transforms(model, theta, workspace);
+    composite_inertias(model, workspace, M);
+}
+
+/// M where the workspace holds T_{i,i−1}(θ).
+#[cfg_attr(not(test), inline(always))]
+pub(crate) fn composite_inertias<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    workspace: &mut Workspace<S>,
+    M: &mut [S],
+) {
     workspace.G_c[0] = model.base_inertia.map(S::from);
     for (i, link) in model.outward::<S>() {
         workspace.G_c[i] = link.G();

@@ -27,8 +27,6 @@ mod regressor;
 mod spring_forces;
 mod task_space_dynamics;
 
-pub(crate) use articulated_solve::AtLink;
-
 #[cfg(test)]
 pub(crate) mod tests;
 
@@ -54,6 +52,7 @@ pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynam
 pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
 pub use inverse_dynamics_derivatives::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
 pub use joint_friction::{JointFriction, joint_friction};
+pub(crate) use mass_matrix::composite_inertias;
 pub use mass_matrix::{MassMatrix, mass_matrix};
 pub use mass_matrix_inverse::{MassMatrixInverse, mass_matrix_inverse};
 pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};

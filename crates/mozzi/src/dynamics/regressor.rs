@@ -40,7 +40,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
 ) {
     let (n, p) = (model.n(), model.parameter_count());
     assert!(Y.len() == n * p, "Y has {} entries, expected n p = {}", Y.len(), n * p);
-    // 𝒱 and 𝒱̇ of each link, as in inverse dynamics; its forces are not asked for
+    // 𝒱 and 𝒱̇ of each link, as in inverse dynamics; without its forces
     let mut tau = core::mem::take(&mut workspace.vector);
     newton_euler(model, theta, dtheta, ddtheta, environment, workspace, &mut tau);
     workspace.vector = tau;

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 
 /// The configuration manifold: lines and angles, SO(3) for balls, SE(3) for a floating base and free joints, each with
 /// its indices in θ and θ̇.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfigurationSpace(pub(crate) Arc<[Place]>);
 
 impl<C: Scalar> Model<C> {
@@ -70,6 +70,26 @@ impl ConfigurationSpace {
         }
     }
 
+    /// θ₁ ⊖ θ₀: see [`difference`].
+    ///
+    /// # Panics
+    /// When a slice is too short.
+    pub fn difference<S: Real>(&self, theta0: &[S], theta1: &[S], difference: &mut [S]) {
+        for place in &*self.0 {
+            let (from, to, way) =
+                (&theta0[place.positions()], &theta1[place.positions()], &mut difference[place.velocities()]);
+            let turn = |q: &[S]| SO3::from_quaternion(q[0], Vec3([q[1], q[2], q[3]]));
+            match place.freedom {
+                Freedom::One => way[0] = to[0] - from[0],
+                Freedom::Ball => way.copy_from_slice(&(turn(from).inverse() * turn(to)).log().0),
+                Freedom::Free => {
+                    let pose = |q: &[S]| SE3::from_pose(core::array::from_fn(|k| q[k]));
+                    way.copy_from_slice(&(pose(from).inverse() * pose(to)).log().to_array());
+                }
+            }
+        }
+    }
+
     /// u̇ for θ = θ₀ ⊕ u moving with θ̇: θ̇ itself for lines, [`rate_of_logarithm`] for a twist.
     ///
     /// # Panics
@@ -107,19 +127,7 @@ pub fn integrate<S: Real, C: Scalar>(model: &Model<C>, theta: &mut [S], dtheta: 
 pub fn difference<S: Real, C: Scalar>(model: &Model<C>, theta0: &[S], theta1: &[S], difference: &mut [S]) {
     model.assert_lengths(theta0.len(), [difference.len()]);
     model.assert_lengths(theta1.len(), []);
-    for place in model.configuration_space().places() {
-        let (from, to, way) =
-            (&theta0[place.positions()], &theta1[place.positions()], &mut difference[place.velocities()]);
-        let turn = |q: &[S]| SO3::from_quaternion(q[0], Vec3([q[1], q[2], q[3]]));
-        match place.freedom {
-            Freedom::One => way[0] = to[0] - from[0],
-            Freedom::Ball => way.copy_from_slice(&(turn(from).inverse() * turn(to)).log().0),
-            Freedom::Free => {
-                let pose = |q: &[S]| SE3::from_pose(core::array::from_fn(|k| q[k]));
-                way.copy_from_slice(&(pose(from).inverse() * pose(to)).log().to_array());
-            }
-        }
-    }
+    model.configuration_space().difference(theta0, theta1, difference);
 }
 
 /// θ ⊕ δθ ε: the positions as dual numbers with the direction δθ, n numbers like velocities. Results computed from them

@@ -27,14 +27,34 @@ pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]
 /// Overwrites b with x, where LᵀDLx = b.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
+    solve_transposed_all(pattern, L, b);
+    solve_rest(pattern, L, b);
+}
+
+/// Overwrites b with y, where Lᵀy = b.
+#[cfg_attr(not(test), inline(always))]
+pub(crate) fn solve_transposed_all<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
+    solve_transposed(pattern, L, b, (0..pattern.len()).rev());
+}
+
+/// The same for a b that is zero but in these rows, the last first, and in which the ancestors of each are contained.
+#[cfg_attr(not(test), inline(always))]
+pub(crate) fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S], rows: impl Iterator<Item = usize>) {
     let n = pattern.len();
     let b = &mut b[..n];
-    for k in (0..n).rev() {
+    for k in rows {
         let (L, b_k) = (&L[k * n..][..n], b[k]);
         for i in pattern.ancestors(k) {
             b[i] = L[i].mul_add(-b_k, b[i]);
         }
     }
+}
+
+/// Overwrites y with x, where DLx = y.
+#[cfg_attr(not(test), inline(always))]
+pub(crate) fn solve_rest<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
+    let n = pattern.len();
+    let b = &mut b[..n];
     for k in 0..n {
         let L = &L[k * n..][..n];
         let mut b_k = b[k] / L[k];

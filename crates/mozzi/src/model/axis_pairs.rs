@@ -1,6 +1,7 @@
 //! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame: of s the
 //! angular part, what its linear one multiplies being 0. The axis is along z; a rate of it has no part along z.
 
+use super::TOGETHER as W;
 use crate::lie::SO3;
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
@@ -46,7 +47,7 @@ impl<S: Scalar> ByRates<S> {
     }
 }
 
-/// What the composite-body pass asks of a link, in the base's axes, about the link's origin.
+/// A link for the composite-body pass, in the base's axes, about the link's origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned<S> {
     /// R_0i.
@@ -72,5 +73,20 @@ impl<S: Scalar> Turned<S> {
             by_theta: none,
             by_rates: none,
         }
+    }
+}
+
+/// W columns of a right-hand side, as `dynamics/articulated_solve.rs` solves for them, at a link: the joint's row, and
+/// the wrench P or the acceleration a, angular first. A step waits for the one before it, so that several columns take
+/// no longer than one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtLink<S> {
+    pub x: [S; W],
+    pub six: [[S; W]; 6],
+}
+
+impl<S: Scalar> AtLink<S> {
+    pub fn zero() -> Self {
+        AtLink { x: [S::zero(); W], six: [[S::zero(); W]; 6] }
     }
 }

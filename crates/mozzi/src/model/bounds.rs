@@ -41,14 +41,57 @@ impl Bounds {
     /// # Panics
     /// On a θ of a wrong length, or where there is no joint k.
     pub fn value(&self, theta: &[f64], k: usize) -> f64 {
-        let Place { freedom, q, .. } = self.places[k];
-        match freedom {
-            Freedom::Ball => SO3::from_quaternion(theta[q], vector(&theta[q + 1..])).log().norm(),
-            _ => theta[q],
-        }
+        self.places[k].bounded_value(theta)
     }
 }
 
-fn vector(list: &[f64]) -> Vec3 {
-    Vec3([list[0], list[1], list[2]])
+impl Place {
+    /// What a limit of this joint bounds: its position; of a ball the angle ‖φ‖ that it turns from 0.
+    ///
+    /// # Panics
+    /// On a θ of a wrong length.
+    pub fn bounded_value(&self, theta: &[f64]) -> f64 {
+        match self.freedom {
+            Freedom::Ball => self.rotation_vector(theta).norm(),
+            _ => theta[self.q],
+        }
+    }
+
+    /// The gradient n of [`bounded_value`](Self::bounded_value), whose rate is nᵀθ̇, along the joint's velocities, with
+    /// zeros behind it: 1, and φ/‖φ‖ of a ball.
+    ///
+    /// # Panics
+    /// On a θ of a wrong length.
+    pub fn bounded_gradient(&self, theta: &[f64]) -> [f64; 3] {
+        match self.freedom {
+            Freedom::Ball => {
+                let turn = self.rotation_vector(theta);
+                (turn * (1.0 / turn.norm().max(f64::MIN_POSITIVE))).0
+            }
+            _ => [1.0, 0.0, 0.0],
+        }
+    }
+
+    /// Moves the joint to a limit: a ball about its present axis, short of the limit by the rounding of its quaternion,
+    /// so that [`bounded_value`](Self::bounded_value) is within.
+    ///
+    /// # Panics
+    /// On a θ of a wrong length.
+    pub fn put_at_limit(&self, theta: &mut [f64], limit: f64) {
+        match self.freedom {
+            Freedom::Ball => {
+                let angle = limit * (1.0 - 8.0 * f64::EPSILON);
+                let (w, v) = SO3::exp(Vec3(self.bounded_gradient(theta)) * angle).quaternion();
+                let sign = theta[self.q].signum(); // q and −q are one rotation
+                theta[self.positions()].copy_from_slice(&[w, v.0[0], v.0[1], v.0[2]].map(|x| sign * x));
+            }
+            _ => theta[self.q] = limit,
+        }
+    }
+
+    /// φ of a ball with R = e^{`[φ]`}, ‖φ‖ ≤ π.
+    fn rotation_vector(&self, theta: &[f64]) -> Vec3 {
+        let [w, x, y, z] = [0, 1, 2, 3].map(|i| theta[self.q + i]);
+        SO3::from_quaternion(w, Vec3([x, y, z])).log()
+    }
 }

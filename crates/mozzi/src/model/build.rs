@@ -2,6 +2,7 @@
 
 use super::description::{self, Joint, JointKind};
 use super::places::names_of;
+use super::tie::ties;
 use super::{
     Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Runs, Severity, Spring,
     Structure,
@@ -116,7 +117,15 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
     let (springs, spring_energy) = springs(description, &moving_joints, &links, &places);
     let is_deep = mean_depth_exceeds(DEEP, &links);
     let coupled_free = rotors.is_empty() && moving_joints.iter().all(|&i| description.joints[i].mimic.is_none());
+    let pattern = Pattern::coupled(
+        description.base.velocities(),
+        n,
+        links.iter().map(|link| (link.parent, link.j)),
+        rotors.iter().map(Rotor::joints),
+    );
+    let is_floating = description.base == Base::Floating;
     Model {
+        ties: ties(description, &frames, &links, &moving_joints, &pattern, is_floating),
         base_inertia: inertias[0],
         armature: sum(|joint, ratio| ratio * ratio * joint.armature),
         damping: sum(|joint, ratio| ratio * ratio * joint.damping),
@@ -127,12 +136,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         gravity: Vec3(description.gravity),
         base: description.base,
         structure: Arc::new(Structure {
-            pattern: Pattern::coupled(
-                description.base.velocities(),
-                n,
-                links.iter().map(|link| (link.parent, link.j)),
-                rotors.iter().map(Rotor::joints),
-            ),
+            pattern,
             has_mimic_joints: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
             free: joint_places.iter().filter(|place| place.freedom == Freedom::Free).map(|place| place.j).collect(),
             is_deep,

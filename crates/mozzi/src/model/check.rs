@@ -1,6 +1,7 @@
 //! Validation of a description: all errors and warnings, each with its place.
 
 mod bodies;
+mod constraint;
 mod mimic;
 mod numbers;
 mod overflow;
@@ -30,6 +31,8 @@ pub enum Element {
     Frame(usize),
     /// `rotors[i]`.
     Rotor(usize),
+    /// `constraints[i]`.
+    Constraint(usize),
     /// `states[i]`.
     State(usize),
 }
@@ -102,6 +105,7 @@ impl Report<'_> {
             Element::Joint(i) => format!("joint `{}`", d.joints[i].name),
             Element::Frame(i) => format!("frame `{}`", d.frames[i].name),
             Element::Rotor(i) => format!("rotor `{}`", d.rotors[i].name),
+            Element::Constraint(i) => format!("constraint `{}`", d.constraints[i].name),
             Element::State(i) => format!("state `{}`", d.states[i].name),
         };
         self.problems.push(Problem { severity, code, element, subject, attribute, message });
@@ -151,6 +155,7 @@ impl Description {
         report.inertias(tree.as_ref());
         report.mimics(&joints);
         report.rotors(&joints);
+        report.constraints(&frames, &joints, tree.as_ref());
         report.states(&joints);
         report.units();
         for (i, frame) in self.frames.iter().enumerate() {

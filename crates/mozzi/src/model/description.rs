@@ -1,5 +1,6 @@
 //! The content of a robot's file as plain data.
 
+pub use super::constraint::{Anchor, Closure, Constraint, ConstraintKind};
 pub use super::states::{BaseState, JointState, NamedState};
 use super::{Base, Freedom};
 use crate::lie::SE3;
@@ -24,6 +25,10 @@ pub struct Description<C = f64> {
     pub rotors: Vec<Rotor<C>>,
     /// Further frames.
     pub frames: Vec<NamedFrame<C>>,
+    /// Constraints that close loops, pin frames or couple joints.
+    pub constraints: Vec<Constraint<C>>,
+    /// The joints that have motors, for the inverse dynamics of robots with constraints; `None` means all joints.
+    pub motors: Option<Vec<String>>,
     /// The name of the end-effector frame, if the file has one.
     pub end_effector: Option<String>,
     /// Gravity in {s} coordinates, m/s².
@@ -214,6 +219,8 @@ impl Description {
             joints: Vec::new(),
             rotors: Vec::new(),
             frames: Vec::new(),
+            constraints: Vec::new(),
+            motors: None,
             end_effector: None,
             gravity: [0.0, 0.0, -9.81],
             base: Base::Fixed,
@@ -250,6 +257,12 @@ impl Description {
     /// Adds a frame with configuration `T` relative to a link's frame.
     pub fn frame(mut self, name: impl Into<String>, link: impl Into<String>, T: SE3) -> Self {
         self.frames.push(NamedFrame { name: name.into(), link: link.into(), T });
+        self
+    }
+
+    /// Adds a constraint.
+    pub fn constraint(mut self, constraint: Constraint) -> Self {
+        self.constraints.push(constraint);
         self
     }
 }
@@ -310,6 +323,8 @@ impl<C: Real> Description<C> {
             joints: self.joints.iter().map(joint).collect(),
             rotors: self.rotors.iter().map(rotor).collect(),
             frames: self.frames.iter().map(frame).collect(),
+            constraints: self.constraints.iter().map(|constraint| constraint.map(f)).collect(),
+            motors: self.motors.clone(),
             end_effector: self.end_effector.clone(),
             gravity: self.gravity.map(f),
             base: self.base,

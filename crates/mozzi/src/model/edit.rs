@@ -1,6 +1,6 @@
 //! Edits that return a new robot: payloads, locked joints, sub-chains, further frames.
 
-use super::description::{JointKind, NamedFrame, NamedState};
+use super::description::{Constraint, ConstraintKind, JointKind, NamedFrame, NamedState};
 use super::{Base, Description, Error, FrameId, Model, State};
 use crate::lie::SE3;
 use crate::spatial::SpatialInertia;
@@ -28,6 +28,26 @@ impl Model<f64> {
         let (mut robot, (link, T_link_on)) = (self.description().clone(), self.link_of(on));
         let link = robot.links[link].name.clone();
         robot.frames.push(NamedFrame { name: name.into(), link, T: T_link_on * T });
+        robot.build()
+    }
+
+    /// The same robot with further constraints: loops that close, feet that are pinned. See [`constraints`].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a name that is taken, an anchor that does not exist, anchors that are fixed to each other,
+    /// numbers that are not finite.
+    ///
+    /// [`constraints`]: crate::constraints
+    pub fn with_constraints(&self, constraints: impl IntoIterator<Item = Constraint>) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        robot.constraints.extend(constraints);
+        robot.build()
+    }
+
+    /// The same robot without constraints: the tree.
+    pub fn without_constraints(&self) -> Result<Model, Error> {
+        let mut robot = self.description().clone();
+        robot.constraints.clear();
         robot.build()
     }
 
@@ -123,6 +143,7 @@ impl Model<f64> {
                     joint.origin = joint.origin * SE3::exp(A * position);
                     (joint.kind, joint.mimic) = (JointKind::Fixed, None);
                     robot.states.iter_mut().for_each(|state| state.retain(|kept| kept != name));
+                    robot.motors.iter_mut().for_each(|motors| motors.retain(|motor| *motor != name));
                 }
                 locked.extend(robot.joints.iter().enumerate().filter_map(|(k, joint)| {
                     let mimic = joint.mimic.as_ref().filter(|mimic| mimic.joint == name)?;
@@ -184,6 +205,21 @@ impl Model<f64> {
             }
         }
         let has = |name: &String| links.iter().any(|&i| whole.links[i].name == *name);
+        let mut constraints = whole.constraints.clone();
+        let links_of = |constraint: &Constraint| match &constraint.kind {
+            ConstraintKind::Frames { a, b, .. } => {
+                [a, b].map(|anchor| anchor.frame.as_deref().is_none_or(|name| self.is_on(name, &links)))
+            }
+            ConstraintKind::Joint { joint, source, .. } => {
+                [on_path(joint), source.as_ref().is_none_or(|source| on_path(source))]
+            }
+        };
+        constraints.retain(|one| links_of(one) != [false, false]);
+        if let Some(one) = constraints.iter().find(|one| links_of(one) != [true, true]) {
+            let found = alloc::format!("`{}`, which holds a part off the path, too", one.name);
+            let expected = "one that holds parts on the path alone";
+            return Err(Error::BadArgument { what: "a constraint of the sub-chain", found, expected });
+        }
         let kept: BTreeSet<&str> = joints.iter().map(|&i| whole.joints[i].name.as_str()).collect();
         let base = if from == self.structure.base { whole.base } else { Base::Fixed };
         let part = |state: &NamedState| {
@@ -198,6 +234,8 @@ impl Model<f64> {
             joints: joints.iter().map(|&i| whole.joints[i].clone()).collect(),
             rotors,
             frames: whole.frames.iter().filter(|frame| has(&frame.link)).cloned().collect::<Vec<_>>(),
+            constraints,
+            motors: whole.motors.as_ref().map(|motors| motors.iter().filter(|name| on_path(name)).cloned().collect()),
             end_effector: Some(whole.links[to].name.clone()),
             gravity: whole.gravity,
             base,
@@ -206,6 +244,11 @@ impl Model<f64> {
             start: whole.start.clone(),
         }
         .build()
+    }
+
+    /// Is this link, or the link of this frame, among these?
+    fn is_on(&self, name: &str, links: &BTreeSet<usize>) -> bool {
+        self.frame(name).is_ok_and(|frame| links.contains(&self.link_of(frame).0))
     }
 
     /// The link of the description that carries a frame, and the frame seen from it.

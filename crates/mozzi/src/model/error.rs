@@ -17,6 +17,57 @@ pub enum Error {
         /// All problems found.
         problems: Vec<Problem>,
     },
+    /// The constraints cannot be satisfied.
+    #[error("constraint `{constraint}` cannot be satisfied: {what} does; the nearest violates it by {residual:.3e}")]
+    Unreachable {
+        /// The constraint that is violated most.
+        constraint: String,
+        /// By how much, rad or m, or their rates.
+        residual: f64,
+        /// What was looked for.
+        what: &'static str,
+    },
+    /// A simulation's start violates a constraint.
+    #[error(
+        "the start has {what} that violates constraint `{constraint}` by {residual:.3e}, expected at most 1e-6; `assemble` \
+         closes positions, `assemble_velocities` or `constraint_impulse` velocities"
+    )]
+    OpenStart {
+        /// The constraint.
+        constraint: String,
+        /// By how much, rad or m, or their rates.
+        residual: f64,
+        /// Position or velocity.
+        what: &'static str,
+    },
+    /// A simulation cannot keep a constraint.
+    #[error(
+        "constraint `{constraint}` cannot be closed at t = {time} s: {residual:.3e} rad or m are left; the step may be too \
+         long, or the mechanism at the end of its reach"
+    )]
+    Opened {
+        /// The constraint that is violated most.
+        constraint: String,
+        /// By how much.
+        residual: f64,
+        /// When, s.
+        time: f64,
+    },
+    /// The motors cannot produce the motion.
+    #[error(
+        "no motor drives `{joint}` ({motors} motors for {freedom} degrees of freedom): the motion needs {force:.3e} N m \
+         or N there"
+    )]
+    Underactuated {
+        /// The joint that takes the largest part of the missing force.
+        joint: String,
+        /// The missing force.
+        force: f64,
+        /// The number of motors.
+        motors: usize,
+        /// The degrees of freedom that the constraints leave.
+        freedom: usize,
+    },
     /// A vector or matrix of a wrong length.
     #[error("{what} has {found} entries, expected {expected}")]
     WrongLength {

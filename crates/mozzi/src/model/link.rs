@@ -71,8 +71,8 @@ impl<C: Scalar> Link<C> {
     }
 }
 
-/// A link, its constants as `S`, each where it is asked for: a kernel that holds all of them at once has no registers
-/// left.
+/// A link, its constants as `S`, each converted where it is used: a kernel that holds all of them at once has no
+/// registers left.
 #[derive(Clone, Copy)]
 pub(crate) struct Lifted<'m, C, S> {
     link: &'m Link<C>,

@@ -5,6 +5,7 @@ mod base;
 mod bounds;
 mod build;
 mod check;
+mod constraint;
 mod couples;
 pub mod description;
 mod edit;
@@ -23,6 +24,7 @@ mod screws;
 mod spring;
 mod states;
 mod task;
+mod tie;
 mod traverse;
 mod variation;
 mod workspace;
@@ -35,7 +37,7 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-pub(crate) use axis_pairs::{ByRates, ByTheta, Turned};
+pub(crate) use axis_pairs::{AtLink, ByRates, ByTheta, Turned};
 pub use base::Base;
 pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
@@ -54,6 +56,7 @@ pub use screws::{HomeFrames, ScrewLists, Screws};
 pub(crate) use spring::Spring;
 pub use states::State;
 pub use task::{Task, TaskFrame, TaskMemory};
+pub(crate) use tie::{End, Own, TieKind, Ties};
 pub use variation::Variation;
 pub use workspace::Workspace;
 
@@ -82,6 +85,7 @@ pub struct Model<C = f64> {
     /// The springs' energy at θ = 0, Σ ½k(θ₀ − offset)².
     pub(crate) spring_energy: C,
     pub(crate) frames: Vec<Frame<C>>,
+    pub(crate) ties: Ties<C>,
     pub(crate) gravity: Vec3<C>,
     pub(crate) base: Base,
     pub(crate) structure: Arc<Structure>,
@@ -169,6 +173,23 @@ impl<C: Scalar> Model<C> {
         self.has_mimic_joints() || !self.rotors.is_empty()
     }
 
+    /// The constraints, as described.
+    pub fn constraints(&self) -> &[description::Constraint] {
+        &self.structure.description.constraints
+    }
+
+    /// The number m of rows of all constraints: the length of λ. 0 for a tree.
+    pub fn constraint_rows(&self) -> usize {
+        self.ties.rows
+    }
+
+    /// The names of the m rows: `constraint.vx` and so on.
+    pub fn constraint_row_names(&self) -> impl Iterator<Item = String> {
+        self.constraints()
+            .iter()
+            .flat_map(|one| one.row_names().iter().map(move |row| alloc::format!("{}.{row}", one.name)))
+    }
+
     /// Gravity in {s} coordinates, m/s².
     pub fn gravity(&self) -> Vec3<C> {
         self.gravity
@@ -224,6 +245,7 @@ impl<C: Scalar> Model<C> {
             springs: self.springs.iter().map(|spring| spring.map(f)).collect(),
             spring_energy: f(self.spring_energy),
             frames: self.frames.iter().map(|frame| Frame { slot: frame.slot, T: frame.T.map(f) }).collect(),
+            ties: self.ties.map(f),
             gravity: self.gravity.map(f),
             base: self.base,
             structure: Arc::clone(&self.structure),

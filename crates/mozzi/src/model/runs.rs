@@ -95,9 +95,7 @@ impl<S: Scalar> Row<S> {
     pub fn forces(&self, F: Wrench<S>) -> [S; W] {
         dots(&self.A, F.to_array())
     }
-}
 
-impl<S: Scalar> Row<S> {
     /// rᵀ(𝒢ᶜA) + sᵀ(𝓑ᶜᵀA) of each link.
     #[inline(always)]
     pub fn products(pairs: &[[S; W]; 9], GA: Wrench<S>, BtA: Vec3<S>) -> [S; W] {

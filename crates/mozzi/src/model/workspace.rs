@@ -1,7 +1,6 @@
 //! Memory for one evaluation.
 
-use super::{ByRates, ByTheta, Model, Row, Turned};
-use crate::dynamics::AtLink;
+use super::{AtLink, ByRates, ByTheta, Model, Row, Turned};
 use crate::lie::SE3;
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;

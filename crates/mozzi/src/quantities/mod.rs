@@ -38,6 +38,8 @@ macro_rules! quantities {
             KineticEnergy PotentialEnergy
             ForwardKinematics FramePoses SpaceJacobian BodyJacobian SpaceJacobianRate BodyJacobianRate
             SpaceJacobianDerivative BodyJacobianDerivative FrameAcceleration TaskSpaceDynamics
+            ConstrainedForwardDynamics ConstraintJacobian ConstraintBias ConstraintResidual ConstraintProjection
+            ConstraintImpulse
             InverseDynamicsDerivatives ForwardDynamicsDerivatives
             GravityForcesDerivative TipForcesDerivative MassMatrixProductDerivative
             CenterOfMass CenterOfMassVelocity CenterOfMassAcceleration CenterOfMassJacobian
@@ -48,6 +50,7 @@ macro_rules! quantities {
 }
 
 mod kernels {
+    pub use crate::constraints::*;
     pub use crate::dynamics::*;
     pub use crate::kinematics::*;
 }

@@ -108,6 +108,8 @@ pub enum Dim {
     Frames,
     /// The task's rows.
     Rows,
+    /// m, the rows of the robot's constraints.
+    Constraints,
     /// A constant.
     Is(usize),
 }
@@ -121,6 +123,7 @@ impl Dim {
             Dim::Parameters => model.parameter_count(),
             Dim::Frames => model.frames().len(),
             Dim::Rows => of.rows.len(),
+            Dim::Constraints => model.constraint_rows(),
             Dim::Is(size) => size,
         }
     }
@@ -134,6 +137,7 @@ impl core::fmt::Display for Dim {
             Dim::Parameters => f.write_str("p"),
             Dim::Frames => f.write_str("frames"),
             Dim::Rows => f.write_str("k"),
+            Dim::Constraints => f.write_str("m"),
             Dim::Is(size) => write!(f, "{size}"),
         }
     }

@@ -1,5 +1,6 @@
 //! Memory for any quantity.
 
+use crate::constraints::ConstraintMemory;
 use crate::lie::SE3;
 use crate::linalg::{Vec3, ldlt::Pattern};
 use crate::model::{Model, TaskMemory, Workspace};
@@ -23,6 +24,7 @@ pub struct Memory<S = f64> {
     /// Of n × n without zeros.
     pub(crate) dense: Option<Pattern>,
     pub(crate) task: Option<(usize, TaskMemory<S>)>,
+    pub(crate) constraints: Option<ConstraintMemory<S>>,
     /// In place of the query's point, for the next call.
     pub(crate) point: Option<Vec3<S>>,
 }
@@ -40,6 +42,7 @@ impl<S: Scalar> Memory<S> {
             vector: Vec::new(),
             dense: None,
             task: None,
+            constraints: None,
             point: None,
         }
     }
@@ -71,6 +74,9 @@ impl<S: Scalar> Memory<S> {
         self.vector.fill(nan);
         if let Some((_, task)) = &mut self.task {
             task.fill_nan();
+        }
+        if let Some(constraints) = &mut self.constraints {
+            constraints.fill_nan();
         }
     }
 }

@@ -1,24 +1,28 @@
 //! The equation of motion, with joints that rest against their stops.
 
+use super::closing::Closer;
+use super::held::Held;
 use super::state::State;
-use super::{Energy, Equation, Input, Options, Powers};
+use super::{Closing, Energy, Equation, Input, Options, Powers};
 use crate::dynamics::mass_matrix;
-use crate::model::{Error, Model, Workspace};
+use crate::model::{Error, Freedom, Model, Workspace};
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// A robot, its input, and the joints that are held at a stop: of those θ̈ = 0.
+/// A robot, its input, and the joints that are held at a stop, which do not accelerate beyond it.
 pub(super) struct Driven<'m> {
     pub model: &'m Model,
     equation: Equation<'m, &'m mut (dyn Input + 'm)>,
-    /// Velocity j, and the side of its stop: −1 or 1.
-    pub held: Vec<(usize, f64)>,
+    pub held: Vec<Held>,
     /// The stops' forces at the last evaluation, one for each held joint.
     pub reactions: Vec<f64>,
     workspace: Workspace,
     M: Vec<f64>,
+    closer: Option<Closer>,
+    /// Of the constraints, where M was factored last.
+    A: DMatrix<f64>,
 }
 
 impl<'m> Driven<'m> {
@@ -32,6 +36,8 @@ impl<'m> Driven<'m> {
             reactions: Vec::new(),
             workspace: Workspace::new(model),
             M: vec![0.0; n * n],
+            closer: Closer::new(model),
+            A: DMatrix::zeros(0, n),
         }
     }
 
@@ -53,9 +59,27 @@ impl<'m> Driven<'m> {
         let powers = self.equation.evaluate(t, theta, dtheta, ddtheta)?;
         if !self.held.is_empty() {
             let M = self.factored(theta)?;
-            self.reactions = self.bring_to_rest(&M, ddtheta);
+            self.reactions = self.bring_to_rest(&M, theta, Some(dtheta), ddtheta);
         }
         Ok(powers)
+    }
+
+    /// Has the robot constraints?
+    pub fn has_constraints(&self) -> bool {
+        self.closer.is_some()
+    }
+
+    /// Positions and velocities brought back onto the constraints.
+    pub fn close(&mut self, t: f64, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
+        match &mut self.closer {
+            Some(closer) => closer.close(self.model, t, theta, dtheta),
+            None => Ok(()),
+        }
+    }
+
+    /// The largest violation of the constraints so far.
+    pub fn closing(&self) -> Closing {
+        self.closer.as_ref().map_or(Closing::default(), |closer| closer.account)
     }
 
     /// Fills in θ̈ and the powers of a state.
@@ -77,6 +101,9 @@ impl<'m> Driven<'m> {
 
     /// M(θ), factored.
     pub fn factored(&mut self, theta: &[f64]) -> Result<Cholesky<f64, Dyn>, Error> {
+        if self.has_constraints() {
+            self.A = self.model.constraint_rows_at(theta, &vec![0.0; self.model.n()]).A;
+        }
         let M = self.mass(theta);
         match M.cholesky() {
             Some(M) => Ok(M),
@@ -93,31 +120,54 @@ impl<'m> Driven<'m> {
         }
     }
 
-    /// x ← x + M⁻¹Eλ with the λ that makes x 0 at the held joints, which is returned: forces, of accelerations, or
-    /// impulses, of velocities.
-    pub fn bring_to_rest(&self, M: &Cholesky<f64, Dyn>, x: &mut [f64]) -> Vec<f64> {
+    /// x ← x + M⁻¹Eλ with the λ that keeps the held joints at their limits, which is returned: Eᵀx = 0 of velocities x,
+    /// with λ impulses; Eᵀx + Ėᵀθ̇ = 0 of accelerations x at the velocities θ̇, with λ forces. E has the column n of
+    /// each held joint.
+    pub fn bring_to_rest(
+        &self,
+        M: &Cholesky<f64, Dyn>,
+        theta: &[f64],
+        moving: Option<&[f64]>,
+        x: &mut [f64],
+    ) -> Vec<f64> {
         let count = self.held.len();
         let mut E = DMatrix::zeros(x.len(), count);
-        for (k, &(j, _)) in self.held.iter().enumerate() {
-            E[(j, k)] = 1.0;
+        for (held, mut column) in self.held.iter().zip(E.column_iter_mut()) {
+            held.add(theta, 1.0, column.as_mut_slice());
         }
-        let columns = M.solve(&E); // M⁻¹E
+        let excess =
+            |held: &Held, x: &[f64]| held.along(theta, x) + moving.map_or(0.0, |dtheta| held.rate_along(theta, dtheta));
+        let columns = self.response(M, &E);
         let A = E.transpose() * &columns;
-        let b = DVector::from_iterator(count, self.held.iter().map(|&(j, _)| -x[j]));
-        let lambda = A.cholesky().map_or_else(|| DVector::zeros(count), |A| A.solve(&b));
+        let b = DVector::from_iterator(count, self.held.iter().map(|held| -excess(held, x)));
+        let lambda = match self.has_constraints() {
+            true => pseudo_solve(A, &DMatrix::from_column_slice(count, 1, b.as_slice())).column(0).clone_owned(),
+            false => A.cholesky().map_or_else(|| DVector::zeros(count), |A| A.solve(&b)),
+        };
         let change = columns * &lambda;
         x.iter_mut().zip(change.iter()).for_each(|(x, d)| *x += d);
-        self.held.iter().for_each(|&(j, _)| x[j] = 0.0);
+        self.held.iter().for_each(|held| held.add(theta, -excess(held, x), x)); // what rounding left
         lambda.as_slice().to_vec()
     }
 
-    /// Lets go of the held joints whose stop would have to pull, the worst first: forces of accelerations, impulses of
-    /// velocities; x is what it would be without stops. Returns whether some were let go.
-    pub fn let_go(&mut self, M: &Cholesky<f64, Dyn>, x: &[f64]) -> bool {
+    /// The accelerations by forces E: M⁻¹E, and of a robot with constraints what they let through of it, M⁻¹P E.
+    fn response(&self, M: &Cholesky<f64, Dyn>, E: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut columns = M.solve(E);
+        if self.has_constraints() {
+            let by_constraints = M.solve(&self.A.transpose());
+            let G = &self.A * &by_constraints;
+            columns -= by_constraints * pseudo_solve(G, &(&self.A * &columns));
+        }
+        columns
+    }
+
+    /// Lets go of the held joints whose stop would have to pull, the worst first: x, and what is moving, as for
+    /// [`bring_to_rest`](Self::bring_to_rest), are what they would be without stops. Returns whether some were let go.
+    pub fn let_go(&mut self, M: &Cholesky<f64, Dyn>, theta: &[f64], moving: Option<&[f64]>, x: &[f64]) -> bool {
         let mut found = false;
         while !self.held.is_empty() {
-            let lambda = self.bring_to_rest(M, &mut x.to_vec());
-            let pull = |k: &usize| lambda[*k] * self.held[*k].1;
+            let lambda = self.bring_to_rest(M, theta, moving, &mut x.to_vec());
+            let pull = |k: &usize| lambda[*k] * self.held[*k].side;
             let worst = (0..lambda.len()).max_by(|a, b| pull(a).total_cmp(&pull(b)));
             match worst {
                 Some(k) if pull(&k) > 0.0 => {
@@ -141,8 +191,22 @@ impl<'m> Driven<'m> {
             .reactions
             .iter()
             .zip(&self.held)
-            .map(|(force, (_, side))| force * side)
+            .map(|(force, held)| force * held.side)
             .fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    /// Puts held balls, which the step's error moved, back onto their limits; the kinetic energy that this takes is
+    /// friction's. Held joints of one axis do not move.
+    pub fn keep_at_limits(&mut self, state: &mut State) -> Result<(), Error> {
+        if self.held.iter().all(|held| held.place.freedom == Freedom::One) {
+            return Ok(());
+        }
+        self.held.iter().for_each(|held| held.project(&mut state.theta));
+        let before = self.energy(&state.theta, &state.dtheta, state.works).kinetic;
+        let M = self.factored(&state.theta)?;
+        self.bring_to_rest(&M, &state.theta, None, &mut state.dtheta);
+        state.works[1] += before - self.energy(&state.theta, &state.dtheta, state.works).kinetic;
+        self.complete(state)
     }
 
     /// Of held joints, those whose stop would pull now.
@@ -153,9 +217,20 @@ impl<'m> Driven<'m> {
         let M = self.factored(&state.theta)?;
         let mut free = vec![0.0; self.model.n()];
         self.equation.evaluate(state.t, &state.theta, &state.dtheta, &mut free)?;
-        if self.let_go(&M, &free) {
+        if self.let_go(&M, &state.theta, Some(&state.dtheta), &free) {
             self.complete(state)?;
         }
         Ok(())
     }
+}
+
+/// X of least norm with GX = B, for a G that may be singular.
+fn pseudo_solve(G: DMatrix<f64>, B: &DMatrix<f64>) -> DMatrix<f64> {
+    let (rows, columns) = (G.ncols(), B.ncols());
+    if rows == 0 {
+        return DMatrix::zeros(rows, columns);
+    }
+    let svd = G.svd(true, true);
+    let tolerance = 1e-10 * svd.singular_values.max();
+    svd.solve(B, tolerance).unwrap_or_else(|_| DMatrix::zeros(rows, columns))
 }

@@ -52,6 +52,8 @@ pub struct Equation<'m, I> {
     tau: Vec<f64>,
     /// τ as forward dynamics gets it.
     force: Vec<f64>,
+    /// λ of the last evaluation.
+    lambda: Vec<f64>,
     wrenches: Vec<(FrameId, Wrench)>,
     columns: Vec<Twist>,
     fast: fast::Workspace,
@@ -73,6 +75,7 @@ impl<'m, I: Input> Equation<'m, I> {
             other: None,
             tau: vec![0.0; model.n()],
             force: vec![0.0; model.n()],
+            lambda: vec![0.0; model.constraint_rows()],
             wrenches: Vec::new(),
             columns: vec![Twist::zero(); model.n()],
             fast: fast::Workspace::new(model),
@@ -88,7 +91,7 @@ impl<'m, I: Input> Equation<'m, I> {
         let Some(other) = other else { return Ok(self) };
         let (mine, its) = (self.model.description(), other.model().description());
         check(mine == its, "the forward dynamics", format!("that of another robot, `{}`", its.name), "this robot's")?;
-        if self.gravity == self.model.gravity() {
+        if self.gravity == self.model.gravity() && self.lambda.is_empty() {
             self.other = Some(other);
         }
         Ok(self)
@@ -127,18 +130,37 @@ impl<'m, I: Input> Equation<'m, I> {
         let is_clear = match &mut self.other {
             Some(other) if self.wrenches.is_empty() => other.write(theta, dtheta, &self.force, ddtheta),
             _ => {
-                let query = Query::from(quantities::ForwardDynamics);
-                fast::evaluate(&query, self.model, &state, &environment, &mut self.fast, &mut [ddtheta]);
+                let query = self.query();
+                let outputs: &mut [&mut [f64]] = match self.lambda.as_mut_slice() {
+                    [] => &mut [&mut *ddtheta],
+                    lambda => &mut [&mut *ddtheta, lambda],
+                };
+                fast::evaluate(&query, self.model, &state, &environment, &mut self.fast, outputs);
                 self.fast.are_pivots_clear(&query)
             }
         };
         if !is_clear {
-            self.model.compute(quantities::ForwardDynamics, &state, &environment)?; // names what is singular, if anything is
+            self.model.compute(self.query(), &state, &environment)?; // names what is singular, if anything is
         }
         let applied_power = self.applied_power(theta, dtheta);
         self.bounded("ddtheta", t, ddtheta)?;
         let motor_power = self.tau.iter().zip(dtheta).map(|(tau, rate)| tau * rate).sum();
         Ok([motor_power, friction_power, applied_power])
+    }
+
+    /// Forward dynamics, with constraints if the robot has some.
+    fn query(&self) -> Query<'static> {
+        match self.lambda.is_empty() {
+            true => quantities::ForwardDynamics.into(),
+            false => quantities::ConstrainedForwardDynamics.into(),
+        }
+    }
+
+    /// λ of the last evaluation, m numbers: see [`constrained_forward_dynamics`].
+    ///
+    /// [`constrained_forward_dynamics`]: crate::constrained_forward_dynamics
+    pub fn lambda(&self) -> &[f64] {
+        &self.lambda
     }
 
     /// The energies of a state, with works: of the motors, lost in friction, given to the environment.

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{add_spring_forces, gravity_forces};
 use crate::linalg::Vec3;
-use crate::model::{Error, FrameId, Freedom, Model, Workspace};
+use crate::model::{Environment, Error, FrameId, Freedom, Model, Workspace};
 use crate::spatial::Wrench;
 use alloc::boxed::Box;
 use alloc::vec;
@@ -69,7 +69,8 @@ impl Input for Zero {}
 
 /// τ = g(θ) + k(θ − θ₀), what holds the robot against gravity and its springs, and nothing against friction: a robot at
 /// rest stays, a moving one coasts. (With Coulomb friction that is not smooth it trembles instead of staying, see
-/// [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it falls.
+/// [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it falls. Of a robot with
+/// constraints whose [`motors`](crate::Description::motors) are named, the torques of these that hold it.
 #[derive(Clone, Debug)]
 pub struct GravityCompensation<'m> {
     model: &'m Model,
@@ -95,6 +96,12 @@ impl Input for GravityCompensation<'_> {
         if theta.len() != self.model.nq() || tau.len() != self.model.n() {
             // made for another robot
             return Err(Error::WrongLength { what: "theta", found: theta.len(), expected: self.model.nq() });
+        }
+        if self.model.constraint_rows() > 0 && self.model.description().motors.is_some() {
+            let (still, environment) = (vec![0.0; tau.len()], Environment::with_gravity(self.gravity));
+            let held = self.model.constrained_inverse_dynamics(theta, &still, &still, &environment, None)?;
+            tau.iter_mut().zip(held.tau.iter()).for_each(|(sum, tau)| *sum += tau);
+            return Ok(());
         }
         gravity_forces(self.model, theta, self.gravity, &mut self.workspace, &mut self.g);
         add_spring_forces(self.model, theta, &mut self.g);

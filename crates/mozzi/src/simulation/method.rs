@@ -202,6 +202,22 @@ impl<S: Real, const K: usize> Motion<S, K> {
         t_next: f64,
         mut F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
     ) -> Result<(), E> {
+        self.advance(method, h, t_next, &mut F)?;
+        self.rates = F(self.t, &self.theta, &self.dtheta, &mut self.ddtheta)?;
+        Ok(())
+    }
+
+    /// [`step`](Self::step) without the rates at its end, which are then those of its start.
+    ///
+    /// # Errors
+    /// Those of F; then the motion is left between two states.
+    pub fn advance<E>(
+        &mut self,
+        method: Explicit,
+        h: f64,
+        t_next: f64,
+        mut F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
+    ) -> Result<(), E> {
         let dt = S::from_f64(h);
         match method {
             Explicit::Euler => {
@@ -217,7 +233,6 @@ impl<S: Real, const K: usize> Motion<S, K> {
             Explicit::RungeKutta4 => self.runge_kutta_4(h, t_next, &mut F)?,
         }
         self.t = t_next;
-        self.rates = F(self.t, &self.theta, &self.dtheta, &mut self.ddtheta)?;
         Ok(())
     }
 

@@ -78,7 +78,7 @@ impl Midpoint {
             }
             let mut next = factors.solve(&momentum);
             if !driven.held.is_empty() {
-                driven.bring_to_rest(&factors, next.as_mut_slice());
+                driven.bring_to_rest(&factors, &theta, None, next.as_mut_slice());
             }
             let differences = &next - &v;
             worst = (n > 0).then(|| differences.iamax());
@@ -113,7 +113,7 @@ impl Midpoint {
         if driven.held.is_empty() {
             self.momentum = Some((to.t, p));
         } else {
-            driven.bring_to_rest(&factors, &mut to.dtheta);
+            driven.bring_to_rest(&factors, &to.theta, None, &mut to.dtheta);
         }
         driven.complete(&mut to)?;
         Ok(to)

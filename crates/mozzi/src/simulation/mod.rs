@@ -12,16 +12,21 @@
 //! | `DormandPrince` | 5 | found | smooth motions, to a tolerance |
 //! | `Midpoint` | 2 | given | long motions: the energy's error is bounded |
 //!
+//! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
+//! the constraints after each step: [`Ending::closing`] reports by how much.
+//!
 //! All of them integrate on SE(3) where the base floats, and all are steps of one loop, [`Simulation`]: it looks for
 //! [`Event`]s, zeros of functions of (t, θ, θ̇) on the polynomial between two steps, treats the joints' limits by a
 //! [`Policy`], and hands each row to a [`Recorder`], so that a long motion need not be kept in memory.
 
+mod closing;
 mod condition;
 mod dense;
 mod dormand_prince;
 mod driven;
 mod equation;
 mod events;
+mod held;
 mod input;
 mod method;
 mod midpoint;
@@ -37,6 +42,8 @@ mod table;
 mod trajectory;
 
 #[cfg(test)]
+mod against_stops;
+#[cfg(test)]
 mod balls;
 #[cfg(test)]
 mod between;
@@ -45,6 +52,7 @@ mod free_base;
 #[cfg(test)]
 mod robots;
 
+pub use closing::Closing;
 pub use dormand_prince::dormand_prince_by_equal_steps;
 pub use equation::{Equation, ForwardDynamics, Powers};
 pub use events::{Direction, Event, EventFunction, Occurrence};
@@ -64,7 +72,7 @@ use crate::model::{Error, Model};
 impl Model<f64> {
     /// The motion from (θ(0), θ̇(0)) under an input, by N steps of δt = t_f / N.
     ///
-    /// τ and the wrenches are asked for at the time and in the state of each stage of each step. A step costs one
+    /// The input is called at the time and in the state of each stage of each step. A step costs one
     /// forward dynamics (O(n)) for the Euler methods and four for Runge-Kutta 4, and allocates nothing; six for
     /// Dormand-Prince.
     ///

@@ -1,5 +1,6 @@
 //! The one loop: steps, what happens on the way, and the rows that are recorded.
 
+use super::closing::{Closing, check_start};
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
@@ -52,6 +53,8 @@ pub struct Run {
     pub events: Vec<Occurrence>,
     /// Joints that came to their limits; none where those are ignored.
     pub stops: Vec<Stopped>,
+    /// The largest violation of the robot's constraints.
+    pub closing: Closing,
 }
 
 /// How a simulation ended whose rows went elsewhere.
@@ -65,6 +68,8 @@ pub struct Ending {
     pub events: Vec<Occurrence>,
     /// Joints that came to their limits; none where those are ignored.
     pub stops: Vec<Stopped>,
+    /// The largest violation of the robot's constraints.
+    pub closing: Closing,
 }
 
 impl<'a> Simulation<'a> {
@@ -95,10 +100,10 @@ impl<'a> Simulation<'a> {
         progress: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Run, Error> {
         let mut motion = Trajectory::new(model);
-        let Ending { steps, complete, events, stops } =
+        let Ending { steps, complete, events, stops, closing } =
             self.stream(model, theta, dtheta, input, &mut motion, progress)?;
         (motion.steps, motion.complete) = (steps, complete);
-        Ok(Run { motion, events, stops })
+        Ok(Run { motion, events, stops, closing })
     }
 
     /// As [`run_with_progress`](Self::run_with_progress), with rows that go to a recorder one by one: memory does not
@@ -118,6 +123,7 @@ impl<'a> Simulation<'a> {
         let mut course = Course::new(self, model, [theta, dtheta], &mut input, recorder)?;
         course.run(&mut progress)?;
         course.ending.stops = course.stops.noted();
+        course.ending.closing = course.driven.closing();
         Ok(course.ending)
     }
 }
@@ -191,6 +197,10 @@ impl<'r> Course<'r> {
         options.check()?;
         let equation = Equation::new(model, input, &options).with_forward_dynamics(simulation.forward_dynamics)?;
         let mut driven = Driven::new(equation);
+        check_start(model, theta, dtheta)?;
+        let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
+        driven.close(0.0, &mut theta, &mut dtheta)?;
+        let (theta, dtheta) = (&theta[..], &dtheta[..]);
         let integrator = Integrator::new(options.method, model)?;
         let stops = Stops::new(model, options.joint_limits, theta)?;
         let motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
@@ -223,6 +233,11 @@ impl<'r> Course<'r> {
             self.ending.complete = true;
             return Ok(());
         }
+        if self.stops.are_respected() {
+            let mut state = State::of(&self.motion);
+            self.stops.stop_at_limits(&mut state, &mut self.driven)?;
+            state.copy_to(&mut self.motion);
+        }
         let mut over = false;
         while !over && !self.is_closed {
             let done = self.ending.steps + 1;
@@ -254,7 +269,9 @@ impl<'r> Course<'r> {
         self.driven.at_step(done, h);
         if let Integrator::Explicit(method) = self.integrator {
             let driven = &mut self.driven;
-            self.motion.step(method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+            self.motion.advance(method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+            self.close()?;
+            self.complete()?;
         }
         self.ending.steps = done;
         Ok(())
@@ -282,12 +299,19 @@ impl<'r> Course<'r> {
         let happens = impact.is_some() || release.is_some();
         if end < reached || happens {
             dense.at(model, end).copy_to(&mut self.motion);
+            self.close()?;
             self.complete()?;
         }
         let mut state = State::of(&self.motion);
         match impact.filter(|(t, ..)| *t <= end) {
-            Some((_, k, side)) => self.stops.impact(&mut state, k, side, &mut self.driven)?,
-            None => self.driven.release(&mut state)?,
+            Some((_, k, side)) => self.stops.stop(&mut state, k, side, &mut self.driven)?,
+            None => {
+                self.driven.keep_at_limits(&mut state)?;
+                self.driven.release(&mut state)?;
+            }
+        }
+        if respected {
+            self.stops.stop_at_limits(&mut state, &mut self.driven)?;
         }
         self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
         state.copy_to(&mut self.motion);
@@ -303,15 +327,22 @@ impl<'r> Course<'r> {
         let (h, end) = step_to(step, from.t, *duration);
         match integrator {
             Integrator::Explicit(method) => {
-                motion.step(*method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+                motion.advance(*method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+                self.close()?;
+                self.complete()?;
             }
-            Integrator::Midpoint(method) => method.step(from, h, end, driven)?.copy_to(motion),
+            Integrator::Midpoint(method) => {
+                method.step(from, h, end, driven)?.copy_to(motion);
+                self.close_again()?;
+            }
             Integrator::DormandPrince(method) => {
                 let (to, dense) = method.step(from, *duration, driven)?;
                 to.copy_to(motion);
+                self.close_again()?;
                 return Ok(dense);
             }
         }
+        let Course { driven, motion, from, .. } = self;
         Ok(Dense::hermite(driven.model, from, &State::of(motion)))
     }
 
@@ -341,6 +372,8 @@ impl<'r> Course<'r> {
         let end = end - self.tolerance();
         while !self.is_closed && self.next < self.options.steps && self.options.time(self.next) < end {
             let mut row = dense.at(self.driven.model, self.options.time(self.next));
+            self.driven.close(row.t, &mut row.theta, &mut row.dtheta)?;
+            self.driven.keep_at_limits(&mut row)?;
             self.driven.complete(&mut row)?;
             self.next += self.options.record_every;
             let energy = self.driven.energy(&row.theta, &row.dtheta, row.works);
@@ -360,6 +393,23 @@ impl<'r> Course<'r> {
     fn is_near_next(&self) -> bool {
         let next = self.options.time(self.next.min(self.options.steps));
         (next - self.motion.t).abs() <= self.tolerance()
+    }
+
+    /// The state brought back onto the constraints.
+    fn close(&mut self) -> Result<(), Error> {
+        let Motion { t, theta, dtheta, .. } = &mut self.motion;
+        self.driven.close(*t, theta, dtheta)
+    }
+
+    /// The same for a state whose rates are known.
+    fn close_again(&mut self) -> Result<(), Error> {
+        if !self.driven.has_constraints() {
+            return Ok(());
+        }
+        self.close()?;
+        self.complete()?;
+        self.integrator.restart();
+        Ok(())
     }
 
     /// Fills in θ̈ and the powers.

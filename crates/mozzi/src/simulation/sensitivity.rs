@@ -76,6 +76,8 @@ impl Model<f64> {
     ) -> Result<(Vec<f64>, Vec<f64>), Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("tau", tau)])?;
         options.check()?;
+        let m = self.constraint_rows();
+        check(m == 0, "the robot", format!("one with {m} constraint rows"), "a robot without constraints")?;
         let fine = |theta: &[f64], workspace: &mut Workspace| {
             Pivots::new(workspace.pivots()).check(self, theta, || self.mass_matrix_rows(theta))
         };

@@ -4,13 +4,15 @@ use super::Policy;
 use super::dense::Dense;
 use super::driven::Driven;
 use super::events::{Direction, first_zero};
+use super::held::Held;
 use super::options::check;
 use super::state::State;
-use crate::model::{Bounds, Error, Freedom, Model};
+use crate::model::{Bounds, Error, Freedom, Model, Place};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
+use core::f64::consts::PI;
 
 /// A joint that came to the end of its way.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +33,8 @@ pub struct Stopped {
 pub(super) struct Stops {
     policy: Policy,
     bounds: Bounds,
+    /// Joint and side, lower (0) or upper (1), of every limit that can be reached.
+    sides: Vec<(usize, usize)>,
     names: Vec<String>,
     /// Lower and upper, joint by joint.
     noted: Vec<[Option<Stopped>; 2]>,
@@ -44,14 +48,16 @@ impl Stops {
         let names: Vec<String> = model.joint_names().map(ToString::to_string).collect();
         for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(&names) {
             let q = bounds.value(start, k);
-            let is_ball = bounds.places[k].freedom == Freedom::Ball && high.is_finite();
+            let is_ball = bounds.places[k].freedom == Freedom::Ball;
             check(
-                policy != Policy::Respect || !is_ball,
+                policy != Policy::Respect || !is_ball || high > 0.0,
                 "limits to respect",
-                format!("that of `{name}`, a ball, which may turn by {high} rad"),
-                "limits of joints of one axis; those of balls are only reported",
+                format!("that of `{name}`, a ball that may not turn at all"),
+                "an angle above 0, or a fixed joint",
             )?;
-            let fine = policy != Policy::Respect || (low..=high).contains(&q);
+            // a quaternion has the angle to rounding only
+            let rounding = if is_ball { 1e-12 } else { 0.0 };
+            let fine = policy != Policy::Respect || (low..=high + rounding).contains(&q);
             check(
                 fine,
                 "the start",
@@ -63,6 +69,7 @@ impl Stops {
             policy,
             noted: vec![[None, None]; names.len()],
             beyond: vec![[false; 2]; names.len()],
+            sides: sides(&bounds),
             bounds,
             names,
         })
@@ -85,9 +92,15 @@ impl Stops {
         if side == 0 { low - q } else { q - high }
     }
 
-    fn sides(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let bounds = self.bounds.joints.clone();
-        (0..bounds.len()).flat_map(|k| [(k, 0), (k, 1)]).filter(move |&(k, side)| bounds[k][side].is_finite())
+    /// As [`excess`](Self::excess), along a motion from θ₀: a ball's angle goes on beyond π, so that it does not come
+    /// within its limit on the other side.
+    fn excess_from(&self, from: &[f64], theta: &[f64], k: usize, side: usize) -> f64 {
+        let (Place { freedom, q, .. }, excess) = (self.bounds.places[k], self.excess(theta, k, side));
+        if freedom == Freedom::Ball && from[q] * theta[q] < 0.0 {
+            let [_, limit] = self.bounds.joints[k];
+            return 2.0 * (PI - limit) - excess; // 2π − ‖φ‖ − limit
+        }
+        excess
     }
 
     fn note(&mut self, t: f64, k: usize, side: usize, beyond: f64, again: bool) {
@@ -103,30 +116,24 @@ impl Stops {
         if self.policy != Policy::Report {
             return;
         }
-        for k in 0..self.bounds.joints.len() {
-            for side in [0, 1] {
-                let excess = self.excess(theta, k, side);
-                if excess > 0.0 {
-                    let again = !self.beyond[k][side];
-                    self.note(t, k, side, excess, again);
-                }
-                self.beyond[k][side] = excess > 0.0;
+        for i in 0..self.sides.len() {
+            let (k, side) = self.sides[i];
+            let excess = self.excess(theta, k, side);
+            if excess > 0.0 {
+                let again = !self.beyond[k][side];
+                self.note(t, k, side, excess, again);
             }
+            self.beyond[k][side] = excess > 0.0;
         }
     }
 
     /// The first time within the step at which a joint that is not held reaches a stop, until a time.
-    pub fn first_impact(
-        &self,
-        model: &Model,
-        dense: &Dense,
-        until: f64,
-        held: &[(usize, f64)],
-    ) -> Option<(f64, usize, usize)> {
-        let free = self.sides().filter(|&(k, _)| !held.iter().any(|&(j, _)| j == self.bounds.places[k].j));
+    pub fn first_impact(&self, model: &Model, dense: &Dense, until: f64, held: &[Held]) -> Option<(f64, usize, usize)> {
+        let from = dense.at(model, dense.t).theta;
+        let free = self.sides.iter().copied().filter(|&(k, _)| !is_held(self.bounds.places[k], held));
         let impacts = free.filter_map(|(k, side)| {
-            let found = first_zero(model, dense, until, Direction::Rising, |state| self.excess(&state.theta, k, side));
-            found.map(|t| (t, k, side))
+            let excess = |state: &State| self.excess_from(&from, &state.theta, k, side);
+            first_zero(model, dense, until, Direction::Rising, excess).map(|t| (t, k, side))
         });
         impacts.min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -144,18 +151,52 @@ impl Stops {
         Ok(Some(b))
     }
 
+    /// Stops the joints at a limit that move towards it, or are at rest and would: those that start there, those that
+    /// came there at the same time as another, those that another stop lets go.
+    pub fn stop_at_limits(&mut self, state: &mut State, driven: &mut Driven) -> Result<(), Error> {
+        for i in 0..self.sides.len() {
+            let (k, side) = self.sides[i];
+            let held = Held::new(&self.bounds, k, side);
+            let rounding = if held.place.freedom == Freedom::Ball { 1e-12 } else { 0.0 };
+            let is_there = self.excess(&state.theta, k, side) >= -rounding && !is_held(held.place, &driven.held);
+            if is_there && held.along(&state.theta, &state.dtheta) * held.side >= 0.0 {
+                self.stop(state, k, side, driven)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The joint comes to rest there, without a rebound, and all that rests against stops with it; what the impact
     /// takes is friction's.
-    pub fn impact(&mut self, state: &mut State, k: usize, side: usize, driven: &mut Driven) -> Result<(), Error> {
-        self.note(state.t, k, side, 0.0, true);
-        state.theta[self.bounds.places[k].q] = self.bounds.joints[k][side];
+    pub fn stop(&mut self, state: &mut State, k: usize, side: usize, driven: &mut Driven) -> Result<(), Error> {
+        let held = Held::new(&self.bounds, k, side);
+        held.project(&mut state.theta);
+        let comes = held.along(&state.theta, &state.dtheta) * held.side > 0.0;
         let before = driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
-        driven.held.push((self.bounds.places[k].j, if side == 0 { -1.0 } else { 1.0 }));
+        driven.held.push(held);
         let M = driven.factored(&state.theta)?;
-        driven.let_go(&M, &state.dtheta.clone());
-        driven.bring_to_rest(&M, &mut state.dtheta);
+        driven.let_go(&M, &state.theta, None, &state.dtheta.clone());
+        driven.bring_to_rest(&M, &state.theta, None, &mut state.dtheta);
         state.works[1] += before - driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
         driven.complete(state)?;
-        driven.release(state)
+        driven.release(state)?;
+        if comes || is_held(held.place, &driven.held) {
+            self.note(state.t, k, side, 0.0, true);
+        }
+        Ok(())
     }
+}
+
+/// A ball turns by an angle from 0 to π.
+fn sides(bounds: &Bounds) -> Vec<(usize, usize)> {
+    let all = (0..bounds.joints.len()).flat_map(|k| [(k, 0), (k, 1)]);
+    let is_reachable = |&(k, side): &(usize, usize)| {
+        let (limit, is_ball) = (bounds.joints[k][side], bounds.places[k].freedom == Freedom::Ball);
+        limit.is_finite() && !(is_ball && (side == 0 || limit >= PI))
+    };
+    all.filter(is_reachable).collect()
+}
+
+fn is_held(place: Place, held: &[Held]) -> bool {
+    held.iter().any(|held| held.place == place)
 }

@@ -59,7 +59,7 @@ pub struct Run<'a> {
     compute: Compute<'a>,
 }
 
-/// The outputs as f64, where they are asked for.
+/// A run; returns the outputs as f64 if its argument is `true`.
 type Compute<'a> = Box<dyn FnMut(bool) -> Result<Vec<Vec<f64>>> + 'a>;
 
 impl Run<'_> {

@@ -6,7 +6,8 @@ mod one_state;
 mod subject;
 mod table;
 
-use crate::failure::{Failure, Result};
+use super::assemble::violation;
+use crate::failure::{self, Failure, Result};
 use crate::inputs::{InputArguments, STATE};
 use crate::json;
 use crate::numbers::array;
@@ -14,6 +15,7 @@ use crate::quantity::{hyphenated, of_end_effector, quantity};
 use crate::robot::RobotArguments;
 use crate::state::WrenchArguments;
 use crate::task::TaskArguments;
+use crate::text::about;
 use clap::{Arg, Args};
 use mozzi::quantities::{INPUTS, Of, Query};
 use mozzi::{Environment, Model, Task, Vec3};
@@ -58,17 +60,44 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
     let query = arguments.subject(query, &rows, &model)?;
     let applied = arguments.wrenches.read(&model)?;
     let environment = Environment { applied: &applied, ..model.environment() };
+    check_constraints(query, &model)?;
     if let Some(file) = &arguments.table.input {
         let (model, table, robot) = (&model, &arguments.table, &arguments.robot);
         return Job { file, query, model, environment, table, robot }.run();
     }
     let inputs = arguments.inputs.read(query.declaration(), &model)?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+    if is_constrained(query) {
+        let open = violation(&model, slices[0])?;
+        if open > 1e-6 {
+            failure::note(&format!("θ violates the constraints by {}; `mozzi assemble` closes them", about(open)));
+        }
+    }
     let outputs = model.compute(query, &slices, &environment)?;
     Ok(match arguments.robot.json {
         true => json::print(&one_state::object(query, &model, &slices, &environment, &outputs)),
         false => one_state::page(query, &model, &slices, &environment, &outputs),
     })
+}
+
+/// Does the quantity depend on the robot's constraints?
+fn is_constrained(query: Query) -> bool {
+    query.name().starts_with("constrain")
+}
+
+/// Constraints where they are needed, and a note where they are left out.
+fn check_constraints(query: Query, model: &Model) -> Result<()> {
+    let m = model.constraint_rows();
+    if is_constrained(query) && m == 0 {
+        let (name, robot) = (hyphenated(query.name()), &model.description().name);
+        return Err(Failure::wrong(format!("{name}: {robot} has no constraints; --constraints FILE adds some")));
+    }
+    if m > 0 && query.name().starts_with("forward_dynamics") {
+        failure::note(
+            "the robot's constraints do not act in this quantity; `constrained-forward-dynamics` applies them",
+        );
+    }
+    Ok(())
 }
 
 impl ComputeArguments {

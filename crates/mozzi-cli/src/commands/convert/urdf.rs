@@ -5,7 +5,7 @@ use crate::robot_json;
 use clap::ValueEnum;
 use mozzi::Description;
 use mozzi::model::description::Joint;
-use mozzi_urdf::{edit, embedded, expressible, mjcf};
+use mozzi_urdf::{Settings, drives_of_fixed_joints, edit, embedded, expanded, expressible, mjcf};
 use std::path::Path;
 
 /// What a URDF is written without.
@@ -15,15 +15,27 @@ pub enum LeftOut {
     Springs,
     Gravity,
     Rotors,
+    Constraints,
 }
 
-pub fn text(input: &str, output: &str, robot: &Description, left_out: &[LeftOut]) -> Result<String> {
+pub fn text(
+    input: &str,
+    output: &str,
+    robot: &Description,
+    left_out: &[LeftOut],
+    settings: Settings,
+) -> Result<String> {
     let not_written =
         |why: &dyn std::fmt::Display, help: &str| Failure::wrong(format!("{output} is not written: {why}; {help}"));
-    match source(input)? {
+    match source(input, settings)? {
         Some(text) if left_out.is_empty() => {
             relative_meshes(input, output, &text);
-            edit(input, &text, robot).map_err(|why| not_written(&why, "convert to .json first, and that to .urdf"))
+            let text = edit(input.strip_suffix(".xacro").unwrap_or(input), &text, robot)
+                .map_err(|why| not_written(&why, "convert to .json first, and that to .urdf"))?;
+            for drive in drives_of_fixed_joints(&text, robot) {
+                failure::write(&format!("{output}: warning: {drive}; controllers may refuse it: remove the drive\n"));
+            }
+            Ok(text)
         }
         _ => {
             let robot = reduced(output, robot, left_out);
@@ -34,10 +46,10 @@ pub fn text(input: &str, output: &str, robot: &Description, left_out: &[LeftOut]
     }
 }
 
-const HELP: &str = ".json can express all of it, --leave-out drops gravity and rotors";
+const HELP: &str = ".json can express all of it, --leave-out drops gravity, rotors and constraints";
 
-/// The text of a URDF.
-fn source(input: &str) -> Result<Option<String>> {
+/// The text of a URDF; of xacro, its expansion.
+fn source(input: &str, settings: Settings) -> Result<Option<String>> {
     if let Some(text) = embedded::text(input) {
         return Ok(Some(text.to_string()));
     }
@@ -46,6 +58,7 @@ fn source(input: &str) -> Result<Option<String>> {
     }
     let text =
         std::fs::read_to_string(input).map_err(|error| Failure::wrong(format!("{input}: cannot be read: {error}")))?;
+    let text = expanded(input, &text, settings)?.unwrap_or(text);
     Ok(Some(text).filter(|text| !mjcf::is_mjcf(text)))
 }
 
@@ -94,6 +107,15 @@ fn reduced(output: &str, robot: &Description, left_out: &[LeftOut]) -> Descripti
                 let names: Vec<String> = robot.rotors.drain(..).map(|rotor| format!("`{}`", rotor.name)).collect();
                 if !names.is_empty() {
                     omitted(format!("the rotors {}: M differs", names.join(", ")));
+                }
+            }
+            LeftOut::Constraints => {
+                let names: Vec<String> = robot.constraints.drain(..).map(|one| format!("`{}`", one.name)).collect();
+                if !names.is_empty() {
+                    omitted(format!("the constraints {}: the robot is a tree", names.join(", ")));
+                }
+                if robot.motors.take().is_some() {
+                    omitted("the list of motors".to_string());
                 }
             }
         }

@@ -1,0 +1,267 @@
+//! `mozzi`: the dynamics of robots on the command line. It converts arguments, calls the library and reports
+//! errors; every formula is the library's.
+
+mod columns;
+mod commands;
+mod conditions;
+mod controller;
+mod csv;
+mod exit;
+mod failure;
+mod goals;
+mod input;
+mod inputs;
+mod interrupt;
+mod json;
+mod json_file;
+mod log;
+mod motors;
+mod numbers;
+mod output;
+mod places;
+mod progress;
+mod quantity;
+mod report;
+mod robot;
+mod robot_json;
+mod sarif;
+mod serve;
+mod state;
+mod table;
+mod tables;
+mod task;
+mod terminal;
+#[doc(hidden)]
+pub mod untrusted;
+mod workload;
+mod xacro_arguments;
+
+use clap::{Parser, Subcommand};
+use commands::{assemble, check, compute, convert, explain, info, screws, simulate, terms, tour};
+use failure::{Failure, Result};
+use mozzi_text as text;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Dynamics of robots, in the notation of Lynch & Park, Modern Robotics, chapter 8.
+///
+/// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, xacro, MuJoCo's MJCF, or JSON
+/// of `mozzi convert`), - for standard input, or the name of an embedded robot.
+#[derive(Parser, Debug)]
+#[command(version, after_help = help(), after_long_help = help(), max_term_width = 104)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+/// What follows the list of commands.
+fn help() -> String {
+    format!("{EXAMPLES}\n{}", exit::help())
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Show the robot: joints, limits, links, masses, frames
+    Info(info::InfoArguments),
+    /// Print the book's lists: M_i, M_i-1,i, S_i, B_i, A_i, G_i
+    Screws(screws::ScrewsArguments),
+    /// Compute every quantity at one state: T, J, M, C, c, g, h, JᵀF, τ, θ̈, energies, Λ, η, …
+    Terms(terms::TermsArguments),
+    /// Compute one quantity, at one state or at every state of a table: τ, θ̈, M, Jacobians, derivatives, …
+    #[command(after_help = format!("{COMPUTE}\n\n{TABLES}"), mut_arg("model", compute::model))]
+    Compute(compute::ComputeArguments),
+    /// Measure how long each quantity takes on this machine, for one state and for many
+    Bench(commands::bench::BenchArguments),
+    /// Inverse kinematics: joint positions that place the end effector at a desired pose, or at a table of poses
+    Ik(commands::ik::IkArguments),
+    /// Plan a trajectory in joint space or along lines and screws, within limits of velocity, acceleration and torque
+    #[command(after_help = TRAJECTORIES)]
+    Trajectory(commands::trajectory::TrajectoryArguments),
+    /// Close a robot's loops: positions and velocities that satisfy its constraints, and how many it has
+    Assemble(assemble::AssembleArguments),
+    /// Simulate the motion from a state, under joint torques and a tip wrench
+    #[command(after_help = SIMULATIONS)]
+    Simulate(simulate::SimulateArguments),
+    /// Show the robot in a browser: a motion with plots, or a slider for each joint
+    #[command(after_help = TABLES)]
+    View(commands::view::ViewArguments),
+    /// Draw a figure as SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
+    #[command(after_help = TABLES)]
+    Plot(commands::plot::PlotArguments),
+    /// Check a robot's file: all errors and warnings, each with its place
+    Check(check::CheckArguments),
+    /// Convert a robot to URDF, JSON, or Python for NumPy
+    Convert(convert::ConvertArguments),
+    /// Generate source text of a robot's quantities in Rust, C or CUDA; count operations
+    Codegen(commands::codegen::CodegenArguments),
+    /// Expand a xacro file, with values of its arguments
+    Xacro(commands::xacro::XacroCommand),
+    /// Compare with Pinocchio and MuJoCo on the same file, and explain differences (needs Python)
+    Compare(commands::compare::CompareArguments),
+    /// Explain a diagnostic's code, such as mozzi::urdf::zero_axis
+    Explain(explain::ExplainArguments),
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  mozzi                                                 the tour
+  mozzi info panda                                      joints, limits, links, masses, frames
+  mozzi check my_robot.urdf                             what is wrong with a file
+  mozzi check my_robot.urdf --format json               the same, one JSON object per line
+  mozzi explain zero_axis                               what a diagnostic's code means
+  mozzi info ur.urdf.xacro --xacro-arg prefix:=left_    a robot as ROS users write it; --package NAME=DIR
+  mozzi xacro ur.urdf.xacro prefix:=left_ -o ur.urdf    its expansion
+  mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; mozzi reads this file
+  mozzi compare my_robot.urdf                           compared with Pinocchio and MuJoCo: what differs, and why
+  mozzi terms my_robot.urdf --lenient                   repairs inertias; --strict: warnings are errors
+  mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
+  mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
+  mozzi terms two_link_planar --theta 0.3,0.8 --task vx,vz
+  mozzi compute --list                                  every quantity: its formula, inputs and outputs
+  mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
+  mozzi compute ur5 forward-dynamics --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
+  mozzi compute ur5 inverse-dynamics --in motion.csv --out torques.csv
+  mozzi compute ur5 mass-matrix --in states.npy --out M.npy
+  mozzi bench panda                                     nanoseconds per state on your machine
+  mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
+  mozzi codegen panda --explain                         operations before and after folding constants
+  mozzi terms quadruped.urdf --floating                 with a floating base: its quaternion and origin first
+  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions for a pose of the tool
+  mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
+  mozzi simulate ur5 --report fall.html                 the motion as one HTML file: 3-D view, plots
+  mozzi simulate my_robot.xml --state home              from a keyframe; `mozzi info my_robot.xml` lists them
+  mozzi plot energy double_pendulum swing.csv --out energy.svg
+  mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
+  mozzi view double_pendulum swing.csv --out swing.html a motion from a table
+
+Units: rad, m, s, kg, N. Twists and wrenches: angular part first.
+F_tip is the wrench that the robot applies to the environment, in the end effector's frame.
+Results go to standard output, messages to standard error.";
+
+const TABLES: &str = "\
+CSV files have a header and one row for each state; columns in any order:
+  t                                     time, s
+  theta_1 … theta_n                     positions; likewise dtheta_, ddtheta_, tau_, x_;
+                                        a joint by its number, or by its name: theta_elbow_joint;
+                                        floating base: theta_base.qw qx qy qz x y z, and
+                                        dtheta_base.wx wy wz vx vy vz, likewise ddtheta_, tau_
+  m_x m_y m_z f_x f_y f_z               the tip's wrench on the environment, in the tip's frame
+Columns of .arrow, .feather, .parquet and structured .npy files have the same names; .npz has
+arrays t (N,), theta (N, nq), dtheta (N, n), …
+Missing groups dtheta, ddtheta and wrench are 0, and so are the six entries of a floating
+base in tau. Every subcommand reads the files that another writes.";
+
+const TRAJECTORIES: &str = "\
+Examples:
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0                         joint space, the shortest quintic
+  mozzi trajectory ur5 --to 1,-1,1,0,0.5,0 --profile fastest --max-acceleration 15 --out way.csv
+  mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --path line --position 0.4,0.2,0.5 --time 2
+  mozzi trajectory ur5 --via points.csv --profile trapezoidal      a spline through points
+  mozzi simulate ur5 --follow way.csv --controller computed.json   see mozzi simulate --help";
+
+const SIMULATIONS: &str = "\
+Examples:
+  mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
+  mozzi simulate double_pendulum --theta 2,1 --method dopri --report-event 'joint1 = 0' --until 'tip.z > 0.4'
+  mozzi simulate panda --method dopri --until joint-limit
+  mozzi simulate ur5 --follow way.csv --controller computed.json
+An event is the moment a condition becomes true: the zero of the polynomial between two steps, as exact as the method.
+Conditions that are true for less than a quarter of a step may be missed.
+
+Tables are described in `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; --follow reads what `mozzi trajectory` writes.
+
+A controller is a JSON object; gains are one number for all, or lists:
+  {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + k(θ − θ₀) + p e + d ė; N m/rad, N m s/rad
+  {\"controller\": \"computed-torque\", \"p\": 100, \"d\": 20}          ë + d ė + p e = 0; 1/s², 1/s
+  {\"controller\": \"task-space\", \"frame\": \"tool0\", \"p\": 100, \"d\": 20, \"posture_p\": 25, \"posture_d\": 10}
+  {\"controller\": \"impedance\", \"frame\": \"tool0\", \"stiffness\": [20, 20, 20, 500, 500, 500], \"damping\": [1, 1, 1, 50, 50, 50],
+   \"posture_p\": 25, \"posture_d\": 10}
+An additional \"model\": \"FILE or embedded robot\" is the controller's own model of the robot.";
+
+const COMPUTE: &str = "\
+Examples:
+  mozzi compute --list                                          every quantity: its formula, inputs and outputs
+  mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02
+  mozzi compute ur5 body-jacobian --frame forearm_link
+  mozzi compute two_link_planar task-space-dynamics --theta 0.3,0.8 --task vx,vz
+  mozzi compute ur5 inverse-dynamics --wrench tool0=0,0,0,0,0,20 --wrench forearm_link=0,0,0,1,0,0 --json
+  mozzi compute ur5 inverse-dynamics --in motion.csv --out torques.csv
+  mozzi compute ur5 mass-matrix --in states.npy --out M.npz --precision f32
+A flag that has no effect on the quantity is an error.
+
+Files with N states:
+  .npy             one array (N, columns): the quantity's inputs in order, such as theta | dtheta | ddtheta,
+                   then the tip's wrench m_x m_y m_z f_x f_y f_z if there are six more columns; or a
+                   structured array (N,) with names as in CSV, such as `mozzi simulate` writes
+  .npz             arrays theta (N, nq), dtheta, ddtheta, tau, x (N, n), wrench (N, 6) of the tip; also
+                   gravity (N, 3), parameters (N, p) and wrench_FRAME (N, 6), different in each state
+  .arrow .feather  Arrow's IPC file (pandas.to_feather, polars.write_ipc) with columns as in CSV
+  .csv             columns theta_1 …, see below
+  .parquet         columns as in CSV, if built with this feature and not compressed
+Numbers are float64, float32 or integers. Wrenches given by flags are the same in all states.
+Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
+  .npy             one array; .npz: one array per output, by name
+  .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
+NaN in a state gives NaN in the results of that state only.";
+
+/// The program.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() && std::env::args_os().any(|word| is_odd(&word.to_string_lossy())) => {
+            failure::write(&error.render().to_string()); // without colours
+            return ExitCode::from(exit::USAGE);
+        }
+        Err(error) => error.exit(),
+    };
+    let answer = run(&arguments);
+    let (text, code) = match answer {
+        Ok(text) => (text, ExitCode::from(exit::SUCCESS)),
+        Err(failure) => {
+            failure.say();
+            match failure {
+                Failure::Answered(text) => (text, ExitCode::from(exit::FAILED)),
+                Failure::Stopped(text) => (text, ExitCode::from(exit::STOPPED)),
+                _ => (String::new(), ExitCode::from(exit::FAILED)),
+            }
+        }
+    };
+    let mut output = std::io::stdout().lock();
+    match output.write_all(terminal::result(&text).as_bytes()).and_then(|()| output.flush()) {
+        Ok(()) => code,
+        // the reader has closed the pipe
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => code,
+        Err(error) => {
+            Failure::wrong(format!("standard output cannot be written: {error}")).say();
+            ExitCode::from(exit::FAILED)
+        }
+    }
+}
+
+/// Would a terminal obey it, or be flooded by it?
+fn is_odd(word: &str) -> bool {
+    terminal::message(word) != word
+}
+
+fn run(arguments: &Arguments) -> Result<String> {
+    match &arguments.command {
+        None => tour::run(),
+        Some(Command::Info(arguments)) => info::run(arguments),
+        Some(Command::Screws(arguments)) => screws::run(arguments),
+        Some(Command::Terms(arguments)) => terms::run(arguments),
+        Some(Command::Compute(arguments)) => compute::run(arguments),
+        Some(Command::Bench(arguments)) => commands::bench::run(arguments),
+        Some(Command::Ik(arguments)) => commands::ik::run(arguments),
+        Some(Command::Trajectory(arguments)) => commands::trajectory::run(arguments),
+        Some(Command::Assemble(arguments)) => assemble::run(arguments),
+        Some(Command::Simulate(arguments)) => simulate::run(arguments),
+        Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Codegen(arguments)) => commands::codegen::run(arguments),
+        Some(Command::Compare(arguments)) => commands::compare::run(arguments),
+        Some(Command::Convert(arguments)) => convert::run(arguments),
+        Some(Command::Explain(arguments)) => explain::run(arguments),
+        Some(Command::Xacro(arguments)) => commands::xacro::run(arguments),
+        Some(Command::Plot(arguments)) => commands::plot::run(arguments),
+        Some(Command::View(arguments)) => commands::view::run(arguments),
+    }
+}

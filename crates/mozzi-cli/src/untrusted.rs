@@ -1,0 +1,62 @@
+//! What reads the files and requests of strangers, as the commands call it: for tests and fuzz targets that give it any
+//! bytes.
+
+use crate::failure::Failure;
+use crate::serve::request::{self, Head};
+use crate::tables::{read, states::States};
+use mozzi::quantities::Query;
+use mozzi::{Description, Model};
+use std::io::Result as IoResult;
+
+pub use crate::tables::samples::Samples;
+
+/// A robot of a JSON file.
+///
+/// # Errors
+/// Every problem with its place.
+pub fn robot(file: &str) -> Result<Description, Vec<String>> {
+    crate::robot_json::read(file).map_err(|errors| errors.iter().map(ToString::to_string).collect())
+}
+
+/// The robot as such a file.
+pub fn robot_text(model: &Model) -> String {
+    crate::robot_json::write(model)
+}
+
+/// A table of named columns or arrays, as `simulate --follow`, `plot` and `view` read it.
+///
+/// # Errors
+/// What is wrong, with its place.
+pub fn table(file: &str, model: &Model) -> Result<Samples, String> {
+    read::read(file, model).map_err(said)
+}
+
+/// The quantity's inputs at each state of a table, as `compute --in` reads them.
+///
+/// # Errors
+/// What is wrong, with its place.
+pub fn inputs(file: &str, query: Query, model: &Model) -> Result<Vec<Vec<f64>>, String> {
+    States::<f64>::read(file, query, model, &[]).map(|states| states.inputs).map_err(said)
+}
+
+/// The status and the body that the server of `mozzi view` answers; `read` is the connection.
+///
+/// # Errors
+/// The connection's.
+pub fn answer(read: impl FnMut(&mut [u8]) -> IoResult<usize>, port: u16, page: &str) -> IoResult<(&'static str, &str)> {
+    Ok(match request::head(read)? {
+        Head::Late => ("408", ""),
+        Head::Long => ("431", ""),
+        Head::Whole(head) => {
+            let reply = request::reply(&head, port, page);
+            (reply.status, if reply.is_head { "" } else { reply.body })
+        }
+    })
+}
+
+fn said(failure: Failure) -> String {
+    match failure {
+        Failure::Wrong(text) | Failure::Answered(text) | Failure::Stopped(text) => text,
+        Failure::Load(error) => error.to_string(),
+    }
+}

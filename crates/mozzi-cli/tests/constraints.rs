@@ -1,0 +1,59 @@
+//! `--constraints FILE`, and constraints in a robot's JSON.
+
+mod common;
+
+use common::{complaint, file, folder, mozzi, text};
+use serde_json::Value;
+
+const LOOPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracles/constraints/loops.xml");
+const ROD: &str = "{\"constraints\": [{\"name\": \"rod\", \"kind\": \"distance\", \"length\": 0.5,\n \
+                   \"a\": {\"frame\": null}, \"b\": {\"frame\": \"link2\"}}], \"motors\": [\"joint1\"]}";
+
+/// The robot's JSON after a conversion.
+fn converted(folder: &std::path::Path, arguments: &[&str]) -> (String, Value) {
+    let out = file(folder, "out.json", "");
+    text(&[&["convert"], arguments, &[&out]].concat());
+    let found = std::fs::read_to_string(&out).expect("written");
+    (out, serde_json::from_str(&found).expect("JSON"))
+}
+
+#[test]
+fn json_keeps_constraints_and_motors() {
+    let folder = folder("constraints-json");
+    let (first, robot) = converted(&folder, &[LOOPS]);
+    let names: Vec<&str> =
+        robot["constraints"].as_array().expect("a list").iter().filter_map(|one| one["name"].as_str()).collect();
+    assert_eq!(names, ["connect0", "grip", "cam", "stop"]);
+    assert_eq!(robot["motors"], Value::Null);
+    let copy = file(&folder, "copy.json", &std::fs::read_to_string(first).expect("written"));
+    assert_eq!(converted(&folder, &[&copy]).1, robot);
+    let wrong = robot.to_string().replace("\"weld\"", "\"wled\"");
+    let (code, why) = complaint(&["info", &file(&folder, "wrong.json", &wrong)]);
+    assert!(code != 0 && why.contains("constraints[1].kind is \"wled\", expected one of point, weld"), "{why}");
+    let (_, why) = complaint(&["convert", &copy, &file(&folder, "out.urdf", "")]);
+    assert!(why.contains("constraint `cam`"), "{why}");
+}
+
+#[test]
+fn a_file_adds_constraints_to_any_robot() {
+    let folder = folder("constraints-file");
+    let rod = file(&folder, "rod.json", ROD);
+    let (_, robot) = converted(&folder, &["two_link_planar", "--constraints", &rod]);
+    assert_eq!(robot["constraints"][0]["length"], 0.5);
+    assert_eq!(robot["motors"][0], "joint1");
+    let bad = file(&folder, "bad.json", &ROD.replace("link2", "lnik2"));
+    for command in ["info", "check"] {
+        let (code, why) = complaint(&[command, "two_link_planar", "--constraints", &bad]);
+        assert!(
+            code != 0 && why.contains("bad.json:1:18: constraint `rod`: b: there is no link or frame `lnik2`"),
+            "{why}"
+        );
+    }
+    // a robot.yaml next to the robot is mentioned, not read
+    let (_, tree) = converted(&folder, &["two_link_planar"]);
+    let robot = file(&folder, "robot.json", &tree.to_string());
+    file(&folder, "robot.yaml", "closed_loop: []");
+    let output = mozzi(&["info", &robot]);
+    let notes = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && notes.contains("robot.yaml is not read; --constraints"), "{notes}");
+}

@@ -1,0 +1,100 @@
+//! Files of xacro are expanded before they are read. What is found in the expansion stands in the xacro file.
+
+use crate::bytes::to_text;
+use crate::diagnostic::Diagnostic;
+use crate::dialect::Dialect;
+use crate::error::LoadError;
+use crate::finding::Finding;
+use crate::scan::scan;
+use crate::settings::Settings;
+use crate::source::{Source, Walker};
+use crate::{syntax, xacro};
+use mozzi_xacro::{Arguments, Error, Expansion, File, Origin, expand_text};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A source that the reader takes, and warnings of xacro.
+type Prepared = (Source, Vec<Diagnostic>);
+
+/// The source as it is, or its expansion if it is xacro.
+pub(crate) fn prepare(source: Source, arguments: &Arguments) -> Result<Prepared, LoadError> {
+    let dialect = Dialect::of(&source.text);
+    let parse = || {
+        scan(&source.text).ok()?;
+        let document = roxmltree::Document::parse(&source.text).ok()?;
+        Some(xacro::is_unexpanded(&document, dialect))
+    };
+    if !xacro::is_program(&source.text, &source.name, parse) {
+        return Ok((source, Vec::new()));
+    }
+    let place = |files: &[File], origin: &Origin, finding| at(files, origin, finding, dialect);
+    match expand_text(&source.name, &source.text, arguments) {
+        Ok(expansion) => {
+            let warning = |warning: &mozzi_xacro::Warning| {
+                let finding = Finding::warning("xacro_warning", 0..0, warning.message.clone());
+                place(&expansion.files, &warning.place, finding)
+            };
+            let warnings = expansion.warnings.iter().take(crate::finding::MOST_FINDINGS).map(warning).collect();
+            let mut expanded = Source::new(&source.name, &expansion.text);
+            expanded.expansion = Some(Arc::new(expansion));
+            Ok((expanded, warnings))
+        }
+        Err(error) => {
+            let mut diagnostics = vec![refused(&error, &source, dialect)];
+            diagnostics.extend(error.warnings().iter().map(|warning| {
+                let finding = Finding::warning("xacro_warning", 0..0, warning.message.clone());
+                place(error.files(), &warning.place, finding)
+            }));
+            Err(LoadError::Refused { file: source.name.to_string(), diagnostics, is_cut: false })
+        }
+    }
+}
+
+/// The expansion of a text of xacro; None of a text that is not.
+///
+/// # Errors
+/// [`LoadError::Refused`] with the place of the error.
+pub fn expanded(
+    file_name: &str,
+    text: impl AsRef<[u8]>,
+    settings: impl Into<Settings>,
+) -> Result<Option<String>, LoadError> {
+    let Ok(text) = to_text(text.as_ref()) else { return Ok(None) };
+    let (source, _) = prepare(Source::new(file_name, text), &settings.into().xacro)?;
+    Ok(source.expansion.map(|expansion| expansion.text.clone()))
+}
+
+fn refused(error: &Error, source: &Source, dialect: Dialect) -> Diagnostic {
+    let Some(origin) = error.place() else {
+        let finding = Finding::error("xacro", 0..0, error.message());
+        return Diagnostic::new(finding, Walker::new(&source.text).advance(0), source.clone(), dialect);
+    };
+    let mut finding = Finding::error("xacro", 0..0, error.message());
+    if error.is_syntax() && origin.file == 0 {
+        // the words of the reader of XML
+        if let Err(syntax) = syntax::parse(source, dialect) {
+            let origin = Origin { span: syntax.span.clone(), ..origin.clone() };
+            return at(error.files(), &origin, syntax, dialect);
+        }
+    } else if error.is_syntax() {
+        // it may be any file of this machine: its lines are not for whoever reads the diagnostics
+        finding = finding.help("an included file is XML, of xacro or of URDF");
+        let diagnostic = at(error.files(), origin, finding, dialect);
+        return diagnostic.hidden();
+    }
+    at(error.files(), origin, finding, dialect)
+}
+
+/// A finding of the expansion at its place in a file of xacro.
+pub(crate) fn placed(expansion: &Expansion, finding: Finding, span: Range<usize>, dialect: Dialect) -> Diagnostic {
+    let start = || Origin { file: 0, span: 0..0, calls: Vec::new() };
+    let origin = expansion.origin(span).unwrap_or_else(start);
+    at(&expansion.files, &origin, finding, dialect)
+}
+
+fn at(files: &[File], origin: &Origin, mut finding: Finding, dialect: Dialect) -> Diagnostic {
+    let source = files.get(origin.file).map_or_else(|| Source::new("", ""), |file| Source::new(&file.name, &file.text));
+    finding.span = source.clamp(origin.span.clone());
+    let position = Walker::new(&source.text).advance(finding.span.start);
+    Diagnostic::new(finding, position, source, dialect).from_calls(origin.from(files))
+}

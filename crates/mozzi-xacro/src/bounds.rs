@@ -1,0 +1,83 @@
+//! Bounds on time, memory and depth. Each ends the expansion with an error.
+
+use crate::fault::{Fault, Result};
+use std::cell::Cell;
+
+/// Larger files are refused, and larger expansions.
+pub(crate) const MOST_BYTES: usize = 64 << 20;
+/// Steps of evaluation, elements and sixteenths of text, all together: about half a second.
+pub(crate) const MOST_WORK: u64 = 5_000_000;
+/// Bytes of one string.
+pub(crate) const MOST_TEXT: usize = 1 << 20;
+/// Items of one list, dictionary or range that is gone through.
+pub(crate) const MOST_ITEMS: usize = 1 << 18;
+/// Bits of an int.
+pub(crate) const MOST_BITS: u64 = 16_384;
+/// Digits of an int that is read or printed, as in Python.
+pub(crate) const MOST_DIGITS: usize = 4300;
+/// Levels of one expression, and operators in a row.
+pub(crate) const MOST_EXPRESSION_DEPTH: usize = 200;
+/// Macros, elements, properties and parts of expressions that wait for each other.
+pub(crate) const MOST_DEPTH: usize = 2000;
+/// Macros in macros.
+pub(crate) const MOST_CALLS: usize = 250;
+/// Included files.
+pub(crate) const MOST_FILES: usize = 4096;
+/// Files in files.
+pub(crate) const MOST_INCLUDE_DEPTH: usize = 100;
+/// Levels of elements in a file.
+pub(crate) const MOST_ELEMENT_DEPTH: usize = 256;
+/// The stack that these depths need.
+pub(crate) const STACK: usize = 256 << 20;
+
+/// What was used so far.
+#[derive(Default)]
+pub(crate) struct Budget {
+    work: Cell<u64>,
+    depth: Cell<usize>,
+}
+
+impl Budget {
+    #[inline]
+    pub fn spend(&self, work: u64) -> Result<()> {
+        let total = self.work.get().saturating_add(work);
+        self.work.set(total);
+        if total > MOST_WORK {
+            return Err(Fault::new(format!("the expansion takes more than {MOST_WORK} steps")));
+        }
+        Ok(())
+    }
+
+    /// A string of this many bytes is made.
+    pub fn text(&self, bytes: usize) -> Result<()> {
+        if bytes > MOST_TEXT {
+            return Err(Fault::new(format!("a string of {bytes} bytes, expected at most {MOST_TEXT}")));
+        }
+        self.spend(1 + bytes as u64 / 16)
+    }
+
+    /// A collection of this many items is made.
+    pub fn items(&self, count: usize) -> Result<()> {
+        if count > MOST_ITEMS {
+            return Err(Fault::new(format!("{count} items, expected at most {MOST_ITEMS}")));
+        }
+        self.spend(1 + count as u64)
+    }
+
+    pub fn work(&self) -> u64 {
+        self.work.get()
+    }
+
+    /// Does something one level deeper.
+    #[inline]
+    pub fn deeper<T>(&self, what: impl FnOnce() -> Result<T>) -> Result<T> {
+        let depth = self.depth.get();
+        if depth >= MOST_DEPTH {
+            return Err(Fault::new(format!("more than {MOST_DEPTH} levels of macros, properties and expressions")));
+        }
+        self.depth.set(depth + 1);
+        let done = what();
+        self.depth.set(depth);
+        done
+    }
+}

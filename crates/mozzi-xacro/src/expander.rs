@@ -1,0 +1,144 @@
+//! The state of an expansion, and what its expressions can see.
+
+use crate::bounds::Budget;
+use crate::condition::literal;
+use crate::document::{Document, Id};
+use crate::expression::{Host, Node, Value, global};
+use crate::fault::{Fault, Result};
+use crate::place::Place;
+use crate::scope::{Property, Scope};
+use crate::{Arguments, Warning};
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// A file that was read.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// As it was named: relative to the current folder, or absolute.
+    pub name: Arc<str>,
+    /// Its text, without a byte order mark.
+    pub text: Arc<str>,
+}
+
+pub(crate) struct Expander<'a> {
+    pub given: &'a Arguments,
+    pub budget: Budget,
+    pub document: RefCell<Document>,
+    pub files: RefCell<Vec<File>>,
+    /// The files that are being processed, outermost first.
+    pub open: RefCell<Vec<PathBuf>>,
+    /// The arguments that were given, and defaults.
+    pub arguments: RefCell<HashMap<Rc<str>, Rc<str>>>,
+    pub expressions: RefCell<HashMap<Rc<str>, Rc<Node>>>,
+    pub warnings: RefCell<Vec<Warning>>,
+    /// The place that is being processed.
+    pub place: RefCell<Place>,
+    pub calls: Cell<usize>,
+    /// The one text of two line ends that keeps comments before it, wherever it was put last.
+    pub spacer: Id,
+}
+
+impl Expander<'_> {
+    /// A path relative to the file that is being processed.
+    pub fn beside(&self, file: &str) -> PathBuf {
+        let open = self.open.borrow();
+        open.last().and_then(|current| current.parent()).unwrap_or(Path::new("")).join(file)
+    }
+
+    pub fn warn(&self, message: String) {
+        let place = self.place.borrow().clone();
+        self.warnings.borrow_mut().push(Warning { message, place: crate::Origin::of(&place) });
+    }
+
+    /// The value of a property; None if there is none of the name.
+    pub fn property(&self, name: &str, scope: &Rc<Scope>) -> Result<Option<Value>> {
+        match scope.find(name) {
+            None => Ok(None),
+            Some((_, Property::Value(value))) => Ok(Some(value)),
+            Some((_, Property::Block(_))) => Err(Fault::new(format!("`{name}` is a block of elements, not a value"))),
+            Some((owner, Property::Text(text, place))) => {
+                let mut waiting: Vec<Rc<str>> = owner.evaluating.borrow().clone();
+                if waiting.iter().any(|other| **other == *name) {
+                    waiting.push(name.into());
+                    let circle = waiting.join(" -> ");
+                    return Err(Fault::new(format!(
+                        "the property is defined by itself: {circle}; `lazy_eval=\"false\"` evaluates it where it stands"
+                    )));
+                }
+                owner.evaluating.borrow_mut().push(name.into());
+                let value = literal(self.budget.deeper(|| self.evaluate(&text, &owner, &place))?);
+                owner.evaluating.borrow_mut().pop();
+                owner.set(name, Property::Value(value.clone()));
+                Ok(Some(value))
+            }
+        }
+    }
+}
+
+/// What expressions of a scope see.
+pub(crate) struct Names<'n> {
+    pub expander: &'n Expander<'n>,
+    pub scope: &'n Rc<Scope>,
+}
+
+impl Host for Names<'_> {
+    fn budget(&self) -> &Budget {
+        &self.expander.budget
+    }
+
+    fn lookup(&self, name: &str, _: bool) -> Result<Option<Value>> {
+        Ok(self.expander.property(name, self.scope)?.or_else(|| global(name)))
+    }
+
+    fn member(&self, scope: &Rc<Scope>, name: &str) -> Result<Option<Value>> {
+        Ok(self.expander.property(name, scope)?.or_else(|| global(name)))
+    }
+
+    fn load_yaml(&self, file: &str) -> Result<Value> {
+        self.expander.load_yaml(file)
+    }
+
+    fn absolute(&self, file: &str) -> String {
+        self.expander.beside(file).to_string_lossy().into_owned()
+    }
+
+    fn argument(&self, name: &str) -> Option<Rc<str>> {
+        self.expander.arguments.borrow().get(name).cloned()
+    }
+
+    fn message(&self, kind: &str, text: String) {
+        self.expander.warn(if kind == "message" { text } else { format!("{kind}: {text}") });
+    }
+}
+
+/// What `$(eval …)` sees.
+impl Host for Expander<'_> {
+    fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
+    fn lookup(&self, name: &str, is_nested: bool) -> Result<Option<Value>> {
+        Ok(if is_nested { None } else { self.eval_name(name) })
+    }
+
+    fn member(&self, _: &Rc<Scope>, _: &str) -> Result<Option<Value>> {
+        Ok(None)
+    }
+
+    fn load_yaml(&self, _: &str) -> Result<Value> {
+        Err(Fault::new("`load_yaml` is not known in `$(eval …)`"))
+    }
+
+    fn absolute(&self, file: &str) -> String {
+        file.to_string()
+    }
+
+    fn argument(&self, _: &str) -> Option<Rc<str>> {
+        None
+    }
+
+    fn message(&self, _: &str, _: String) {}
+}

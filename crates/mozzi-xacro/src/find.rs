@@ -1,0 +1,90 @@
+//! `$(find package)`: where a package of ROS lies.
+
+use crate::expander::Expander;
+use crate::fault::{Fault, Result};
+use std::path::{Path, PathBuf};
+
+/// Of a package.xml so many bytes are read for its name.
+const MOST_MANIFEST: usize = 64 << 10;
+/// Of a folder so many entries are looked at.
+const MOST_ENTRIES: usize = 4096;
+
+impl Expander<'_> {
+    /// The folder of a package: as it was given, of a ROS installation, or near the file that names it.
+    pub fn find_package(&self, name: &str) -> Result<String> {
+        self.budget.spend(64)?;
+        if let Some((_, folder)) = self.given.packages.iter().find(|(known, _)| known == name) {
+            return Ok(folder.to_string_lossy().into_owned());
+        }
+        let is_plain = !name.contains(['/', '\\']) && !name.starts_with('.');
+        let found = Some(name).filter(|_| is_plain).and_then(|name| installed(name).or_else(|| self.nearby(name)));
+        match found {
+            Some(folder) => Ok(folder.to_string_lossy().into_owned()),
+            None => Err(Fault::new(format!(
+                "the package `{name}` was not found in AMENT_PREFIX_PATH, CMAKE_PREFIX_PATH, ROS_PACKAGE_PATH, or the \
+                 folders around the file; `--package {name}=FOLDER` names its folder"
+            ))),
+        }
+    }
+
+    /// A folder around the file, or beside one of these.
+    fn nearby(&self, name: &str) -> Option<PathBuf> {
+        let open = self.open.borrow();
+        open.iter().rev().find_map(|file| {
+            let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let folder = folder.canonicalize().ok()?;
+            folder.ancestors().find_map(|above| {
+                let is_it = above.file_name().is_some_and(|own| own == name) || has_name(above, name);
+                if is_it {
+                    return Some(above.to_path_buf());
+                }
+                in_folder(above, name)
+            })
+        })
+    }
+}
+
+/// In what ROS lists.
+fn installed(name: &str) -> Option<PathBuf> {
+    let listed = |variable: &str| {
+        let list = std::env::var_os(variable).unwrap_or_default();
+        std::env::split_paths(&list).filter(|folder| !folder.as_os_str().is_empty()).collect::<Vec<_>>()
+    };
+    let share = |folder: PathBuf| Some(folder.join("share").join(name)).filter(|folder| folder.is_dir());
+    let prefixes = listed("AMENT_PREFIX_PATH").into_iter().chain(listed("CMAKE_PREFIX_PATH"));
+    let of_prefix = prefixes.filter_map(share).next();
+    of_prefix.or_else(|| {
+        listed("ROS_PACKAGE_PATH").into_iter().find_map(|folder| {
+            let is_it = folder.file_name().is_some_and(|own| own == name) && folder.is_dir() || has_name(&folder, name);
+            if is_it { Some(folder) } else { in_folder(&folder, name) }
+        })
+    })
+}
+
+/// A folder of this name, or a folder with a package.xml of this name, one or two levels down.
+fn in_folder(folder: &Path, name: &str) -> Option<PathBuf> {
+    // the root of all files holds no packages
+    folder.parent()?;
+    let direct = folder.join(name);
+    if direct.is_dir() {
+        return Some(direct);
+    }
+    let folders = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_ENTRIES);
+        let mut folders: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+        folders.sort();
+        folders
+    };
+    let beside = folders(folder);
+    let renamed = beside.iter().find(|folder| has_name(folder, name)).cloned();
+    // a repository of several packages beside this one
+    renamed.or_else(|| beside.iter().map(|folder| folder.join(name)).find(|inner| inner.join("package.xml").is_file()))
+}
+
+/// Does the folder's package.xml give this name?
+fn has_name(folder: &Path, name: &str) -> bool {
+    let Ok(text) = std::fs::read_to_string(folder.join("package.xml")) else { return false };
+    let text = &text[..text.floor_char_boundary(MOST_MANIFEST)];
+    let given = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
+    given.is_some_and(|(given, _)| given.trim() == name)
+}

@@ -1,0 +1,250 @@
+use crate::model::description::{Anchor, Closure, Constraint};
+use crate::scalar::Dual;
+use crate::simulation::{Method, Options, Policy, Simulation, Zero, torque};
+use crate::testing::{closed, floating_mixed_tree, four_bar, mixed_tree, state, tree};
+use crate::{Environment, Error, Model, SE3, Workspace, constrained_forward_dynamics, kinematics};
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::DVector;
+
+const GUESS: [f64; 3] = [1.0, -0.6, 1.6];
+
+fn closed_four_bar() -> (Model, Vec<f64>, Vec<f64>) {
+    let model = four_bar();
+    let theta = model.assemble(&GUESS, &["crank_pivot"]).expect("closes");
+    let dtheta = model.assemble_velocities(&theta, &[1.5, 0.0, 0.0], &["crank_pivot"]).expect("moves");
+    (model, theta, dtheta)
+}
+
+#[test]
+fn a_four_bar_is_assembled() {
+    let (model, theta, dtheta) = closed_four_bar();
+    assert_eq!((theta[0], dtheta[0]), (1.0, 1.5));
+    // the coupler's and the rocker's end, by trigonometry
+    let (sin, cos) = (theta[0] + theta[1]).sin_cos();
+    let x = 0.3 * theta[0].cos() + 0.8 * cos - 0.9 - 0.6 * theta[2].cos();
+    let z = 0.3 * theta[0].sin() + 0.8 * sin - 0.6 * theta[2].sin();
+    assert!(x.abs() < 1e-14 && z.abs() < 1e-14, "{x} {z}");
+    let rank = model.constraint_rank(&theta).expect("lengths");
+    assert_eq!((rank.rows, rank.rank, rank.freedom), (5, 2, 1));
+    assert_eq!(rank.redundant, ["loop.wx", "loop.wy", "loop.vz"], "{rank:?}");
+}
+
+#[test]
+fn what_cannot_be_closed_is_named() {
+    let long = four_bar().description().clone();
+    let mut apart = long.clone();
+    apart.constraints[0] =
+        Constraint::distance("rope", "coupler", Anchor::world(SE3::translation([5.0, 0.0, 0.0])), 0.1);
+    let model = apart.build().expect("sound");
+    let Err(Error::Unreachable { constraint, residual, .. }) = model.assemble(&GUESS, &[]) else { panic!("5 m") };
+    assert!(constraint == "rope" && residual > 1.0, "{residual}");
+    let model = four_bar();
+    let held = model.assemble(&[1.0, 0.0, 0.0], &["crank_pivot", "coupler_pivot"]);
+    assert!(held.expect_err("held").to_string().contains("no position with the held joints"));
+    // a frame and itself, a length of 0, a frame that does not exist
+    let mut bad = long;
+    bad.constraints = vec![
+        Constraint::weld("itself", "coupler", Anchor::frame("coupler").at(SE3::translation([0.1, 0.0, 0.0]))),
+        Constraint::distance("nothing", "coupler", "rocker", 0.0),
+        Constraint::point("nowhere", "coupler", "rokcer"),
+    ];
+    let message = bad.build().expect_err("three errors").to_string();
+    for expected in ["`coupler` and `coupler` are fixed to each other", "is 0 m", "no link or frame `rokcer`"] {
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn a_four_bar_keeps_its_energy_and_stays_closed() {
+    let (model, theta, dtheta) = closed_four_bar();
+    let methods = [
+        (Method::RungeKutta4, 1e-6),
+        (Method::DormandPrince { tolerance: 1e-9 }, 1e-6),
+        (Method::Midpoint, 2e-3),
+        (Method::SemiImplicitEuler, 0.3),
+    ];
+    for (method, drift) in methods {
+        let options = Options { method, record_every: 100, ..Options::new(2.0, 2000) };
+        let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
+        assert!(run.motion.largest_drift() < drift, "{}: {}", method.name(), run.motion.largest_drift());
+        assert!(run.closing.residual < 1e-14, "{}: {:?}", method.name(), run.closing);
+        for sample in run.motion.samples() {
+            let rows = model.constraint_rows_at(sample.theta, sample.dtheta);
+            assert!(rows.phi.amax() < 1e-13 && (rows.A * DVector::from_column_slice(sample.dtheta)).amax() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_reduction_moves_like_the_whole() {
+    let (model, theta, dtheta) = closed_four_bar();
+    let environment = model.environment();
+    let tau = [0.7, 0.0, -0.2];
+    let whole = model.constrained_forward_dynamics(&theta, &dtheta, &tau, &environment).expect("regular");
+    for independent in ["crank_pivot", "rocker_pivot"] {
+        let own = model.reduce(&theta, &dtheta, &[independent], &environment).expect("one degree of freedom");
+        let force = own.N.transpose() * DVector::from_column_slice(&tau);
+        let du = own.M.clone().cholesky().expect("positive").solve(&(force - &own.h));
+        let ddtheta = &own.N * du + &own.bias;
+        assert!((ddtheta - &whole.ddtheta).amax() < 1e-10 * whole.ddtheta.amax());
+        let u = dtheta[own.independent[0]];
+        assert!((&own.N * u - DVector::from_column_slice(&dtheta)).amax() < 1e-12);
+        // inverse dynamics by one motor
+        let mut robot = model.description().clone();
+        robot.motors = Some(vec![independent.into()]);
+        let driven = robot.build().expect("sound");
+        let found = driven
+            .constrained_inverse_dynamics(&theta, &dtheta, whole.ddtheta.as_slice(), &environment, None)
+            .expect("one motor");
+        let expected = (own.N.transpose() * DVector::from_column_slice(&tau))[0];
+        let j = own.independent[0];
+        assert!((found.tau[j] - expected).abs() < 1e-9, "{} {expected}", found.tau);
+        assert!((0..3).all(|k| k == j || found.tau[k] == 0.0));
+    }
+    let error = model.reduce(&theta, &dtheta, &["crank_pivot", "rocker_pivot"], &environment).expect_err("two");
+    assert!(error.to_string().contains("independently of each other"), "{error}");
+    let error = model.reduce(&theta, &dtheta, &[], &environment).expect_err("none");
+    assert!(error.to_string().contains("not determined"), "{error}");
+}
+
+#[test]
+fn inverse_dynamics_undoes_forward_dynamics() {
+    for seed in 0..6 {
+        let model = [tree(seed, 9, 0), mixed_tree(seed, 8, 2)][seed as usize % 2].clone();
+        let [theta, dtheta, tau] = state(&model, seed);
+        let model = closed(&model, &theta, &[Closure::Point, Closure::Hinge], seed);
+        let environment = model.environment();
+        let dtheta = model.assemble_velocities(&theta, &dtheta, &[]).expect("moves");
+        let forward = model.constrained_forward_dynamics(&theta, &dtheta, &tau, &environment).expect("regular");
+        let found = model
+            .constrained_inverse_dynamics(&theta, &dtheta, forward.ddtheta.as_slice(), &environment, None)
+            .expect("all joints have motors");
+        // the same motion, by torques that are not larger
+        let again =
+            model.constrained_forward_dynamics(&theta, &dtheta, found.tau.as_slice(), &environment).expect("regular");
+        assert!((&again.ddtheta - &forward.ddtheta).amax() < 1e-7 * forward.ddtheta.amax());
+        assert!(found.tau.norm() <= DVector::from_column_slice(&tau).norm() * (1.0 + 1e-12));
+        // too few motors
+        let mut robot = model.description().clone();
+        robot.motors = Some(Vec::new());
+        let dead = robot.build().expect("sound");
+        let error = dead.constrained_inverse_dynamics(&theta, &dtheta, forward.ddtheta.as_slice(), &environment, None);
+        assert!(matches!(error, Err(Error::Underactuated { motors: 0, .. })), "{error:?}");
+        let mut wrong = forward.ddtheta.clone();
+        wrong += model.constraint_rows_at(&theta, &dtheta).A.row(0).transpose() * (1.0 + wrong.amax());
+        let error = model.constrained_inverse_dynamics(&theta, &dtheta, wrong.as_slice(), &environment, None);
+        assert!(matches!(error, Err(Error::Unreachable { .. })), "{error:?}");
+        let mended = model.assemble_accelerations(&theta, &dtheta, wrong.as_slice(), &[]).expect("some");
+        model.constrained_inverse_dynamics(&theta, &dtheta, &mended, &environment, None).expect("allowed");
+    }
+}
+
+#[test]
+fn derivatives_are_those_of_dual_numbers() {
+    for seed in 0..6 {
+        let model = match seed % 3 {
+            0 => tree(seed, 8, 0),
+            1 => mixed_tree(seed, 7, 2),
+            _ => floating_mixed_tree(seed, 6, 0),
+        };
+        let [theta, dtheta, tau] = state(&model, seed);
+        let closures = [[Closure::Weld], [Closure::Rolling(0.4)], [Closure::Hinge]][seed as usize % 3];
+        let model = closed(&model, &theta, &closures, seed);
+        let environment = Environment { gravity: crate::Vec3([1.0, 2.0, -9.0]), ..model.environment() };
+        let dtheta = model.assemble_velocities(&theta, &dtheta, &[]).expect("moves");
+        let (m, n) = (model.constraint_rows(), model.n());
+        let found =
+            model.constrained_forward_dynamics_derivatives(&theta, &dtheta, &tau, &environment).expect("regular");
+        let mut nothing = Vec::new();
+        let lifted = environment.map(Dual::constant, &mut nothing);
+        for j in 0..n {
+            let mut e = vec![0.0; n];
+            e[j] = 1.0;
+            let plain = || [Dual::constants(&theta), Dual::constants(&dtheta), Dual::constants(&tau)];
+            let along = |which: usize| {
+                let mut inputs = plain();
+                inputs[which] = match which {
+                    0 => kinematics::seed_direction(&model, &theta, &e),
+                    1 => Dual::list(&dtheta, &e),
+                    _ => Dual::list(&tau, &e),
+                };
+                let (mut ddtheta, mut lambda) = (Dual::constants(&vec![0.0; n]), Dual::constants(&vec![0.0; m]));
+                let (mut workspace, mut memory) = (Workspace::new(&model), crate::ConstraintMemory::new(&model));
+                let [theta, dtheta, tau] = &inputs;
+                constrained_forward_dynamics(
+                    &model,
+                    theta,
+                    dtheta,
+                    tau,
+                    &lifted,
+                    &mut workspace,
+                    &mut memory,
+                    &mut ddtheta,
+                    &mut lambda,
+                );
+                let slopes = |list: Vec<Dual>| DVector::from_iterator(list.len(), list.iter().map(|x| x.derivative));
+                (slopes(ddtheta), slopes(lambda))
+            };
+            let expected = [along(0), along(1), along(2)];
+            let accelerations = [&found.d_theta, &found.d_dtheta, &found.d_tau];
+            let forces = [&found.lambda_d_theta, &found.lambda_d_dtheta, &found.lambda_d_tau];
+            let is_unique = model.constraint_rank(&theta).expect("lengths").redundant.is_empty();
+            for k in 0..3 {
+                let (x, y) = (accelerations[k].column(j).clone_owned(), forces[k].column(j).clone_owned());
+                assert!(
+                    (&x - &expected[k].0).amax() < 1e-7 * (1.0 + accelerations[k].amax()),
+                    "{seed} {k} {j}: {x} {}",
+                    expected[k].0
+                );
+                assert!(!is_unique || (&y - &expected[k].1).amax() < 1e-7 * (1.0 + forces[k].amax()), "{seed} {k} {j}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_open_start_is_refused_and_a_motor_turns_the_crank() {
+    let (model, theta, dtheta) = closed_four_bar();
+    let options = Options { record_every: 50, ..Options::new(0.5, 500) };
+    let error = model.simulate(&GUESS, &[0.0; 3], Zero, &options).expect_err("open");
+    assert!(error.to_string().contains("violates constraint `loop`"), "{error}");
+    let error = model.simulate(&theta, &[1.0, 1.0, 1.0], Zero, &options).expect_err("cannot move so");
+    assert!(error.to_string().contains("a velocity that violates constraint `loop`"), "{error}");
+    let push = torque(|_, _, _, tau: &mut [f64]| tau[0] = 0.3);
+    let motion = model.simulate(&theta, &dtheta, push, &options).expect("a motion");
+    assert!(motion.largest_drift() < 1e-9 && motion.last().energy.motor_work > 0.0);
+}
+
+#[test]
+fn a_four_bar_stops_at_the_limit_of_its_rocker() {
+    let (model, theta, dtheta) = closed_four_bar();
+    let mut robot = model.description().clone();
+    let rocker = robot.joints.iter_mut().find(|joint| joint.name == "rocker_pivot").expect("there");
+    rocker.limits.position = Some([theta[2] - 0.1, theta[2] + 0.1]);
+    let model = robot.build().expect("sound");
+    let options = Options { joint_limits: Policy::Respect, record_every: 10, ..Options::new(1.0, 1000) };
+    let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
+    assert!(!run.stops.is_empty() && run.stops.iter().all(|stop| stop.joint == "rocker_pivot"), "{:?}", run.stops);
+    let mut energy = f64::INFINITY;
+    for sample in run.motion.samples() {
+        let rows = model.constraint_rows_at(sample.theta, sample.dtheta);
+        let speed = (rows.A * DVector::from_column_slice(sample.dtheta)).amax();
+        assert!(rows.phi.amax() < 1e-9 && speed < 1e-9, "{} {speed} at {}", rows.phi.amax(), sample.t);
+        assert!((sample.theta[2] - theta[2]).abs() < 0.1 + 1e-9);
+        let now = sample.energy.kinetic + sample.energy.potential;
+        assert!(now < energy + 1e-7, "{now} {energy}");
+        energy = now;
+    }
+    assert!(run.motion.largest_drift() < 1e-6, "{}", run.motion.largest_drift());
+}
+
+#[test]
+fn a_hundred_thousand_steps_leave_the_loop_closed() {
+    let (model, theta, dtheta) = closed_four_bar();
+    let options = Options { record_every: 10_000, ..Options::new(100.0, 100_000) };
+    let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
+    assert!(run.closing.residual < 1e-13, "{:?}", run.closing);
+    let at_10_s = (0..run.motion.len()).find(|&k| run.motion.t[k] >= 10.0).expect("recorded");
+    assert!(run.motion.drift(at_10_s).abs() < 1e-6, "{}", run.motion.drift(at_10_s));
+}

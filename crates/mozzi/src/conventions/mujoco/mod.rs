@@ -1,0 +1,262 @@
+//! MuJoCo's convention.
+
+#[cfg(test)]
+mod tests;
+mod turns;
+
+use super::JointOrder;
+use super::joint_order::check_length;
+use crate::api::check_unit;
+use crate::lie::{SE3, SO3};
+use crate::linalg::Vec3;
+use crate::model::{Error, Freedom, Model};
+use crate::spatial::Twist;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+use turns::{back, congruent, seen, turned};
+
+/// Converts states, forces and matrices of a model to and from MuJoCo's coordinates.
+///
+/// | | mozzi | MuJoCo (a floating base is its `freejoint`), R = `R_sb` |
+/// |---|---|---|
+/// | configuration | (q_w, q_x, q_y, q_z, p, joints) | `qpos` = (p, q_w, q_x, q_y, q_z, joints) |
+/// | velocity | (ω, v, joints), in the base link's coordinates | `qvel` = (Rv, ω, joints): ṗ in world axes, ω in the body's |
+/// | acceleration | its derivative | `qacc` = (R(v̇ + ω × v), ω̇, joints): p̈ in world axes |
+/// | force | (m, f, joints) | `qfrc_*` = (Rf, m, joints) |
+/// | mass matrix | M | XᵀMX, with θ̇ = X `qvel` |
+/// | h | h | Xᵀ(h + Mβ), with θ̈ = X `qacc` + β, β = (0, −ω × v, 0) |
+///
+/// A ball has the same quaternion and ω in both. A free joint inside the robot is like a floating base; MuJoCo allows
+/// them on the world only and has the pose in {s}, mozzi the pose relative to the joint's frame at 0.
+///
+/// h does not convert like a [`force`](Self::force): it is the force for θ̈ = 0, `qfrc_bias` the force for `qacc` = 0.
+///
+/// Results are exact up to the rounding of one rotation; permutations, and everything for a fixed base, are exact to
+/// the bit. Conversions to MuJoCo take θ to compute R, conversions from MuJoCo take `qpos`.
+#[derive(Clone, Debug)]
+pub struct MuJoCo {
+    order: JointOrder,
+    /// Of each free joint (and a floating base) by its number among the places, where MuJoCo sees its configuration
+    /// from: at 0 of it, seen from {s}.
+    homes: Vec<(usize, SE3)>,
+}
+
+impl MuJoCo {
+    /// Joints in mozzi's own order, which is MuJoCo's for the same file: depth first, siblings in the file's order.
+    pub fn new(model: &Model) -> Self {
+        MuJoCo::of(model, JointOrder::new(model, (0..model.joint_names().len()).collect()))
+    }
+
+    /// Joints in the order of these names from a MuJoCo model, without the free joint of a floating base.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`] or [`Error::BadArgument`] unless the names are the independent
+    /// joints, each once.
+    pub fn with_joints(model: &Model, names: &[&str]) -> Result<Self, Error> {
+        Ok(MuJoCo::of(model, JointOrder::by_name(model, names)?))
+    }
+
+    fn of(model: &Model, order: JointOrder) -> Self {
+        let free = order.places().iter().enumerate().filter(|(_, place)| place.freedom == Freedom::Free);
+        let on_base = model.homes_on_base();
+        let homes = free.map(|(k, place)| (k, on_base.get(&place.j).copied().unwrap_or(SE3::identity()))).collect();
+        MuJoCo { order, homes }
+    }
+
+    /// mozzi's joint index of each of MuJoCo's joints.
+    pub fn joints(&self) -> &[usize] {
+        self.order.joints()
+    }
+
+    /// `qpos` from θ.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn configuration(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length("theta", theta.len(), self.order.nq())?;
+        let mut qpos = Vec::with_capacity(theta.len());
+        for (k, place) in self.order.places().iter().enumerate() {
+            let mine = &theta[place.positions()];
+            match (place.freedom, mine) {
+                (Freedom::Free, &[w, x, y, z, px, py, pz]) => {
+                    let [w, x, y, z, px, py, pz] = seen([w, x, y, z, px, py, pz], self.home(k));
+                    qpos.extend([px, py, pz, w, x, y, z]);
+                }
+                _ => qpos.extend(mine),
+            }
+        }
+        Ok(DVector::from_vec(qpos))
+    }
+
+    /// θ from `qpos`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn from_configuration(&self, qpos: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length("qpos", qpos.len(), self.order.nq())?;
+        let (mut theta, mut rest) = (DVector::zeros(self.order.nq()), qpos);
+        for (k, place) in self.order.places().iter().enumerate() {
+            let (theirs, others) = rest.split_at(place.freedom.positions());
+            rest = others;
+            let mine = &mut theta.as_mut_slice()[place.positions()];
+            match (place.freedom, theirs) {
+                (Freedom::Free, &[px, py, pz, w, x, y, z]) => {
+                    mine.copy_from_slice(&seen([w, x, y, z, px, py, pz], self.home(k).map(SE3::inverse)));
+                }
+                _ => mine.copy_from_slice(theirs),
+            }
+        }
+        Ok(theta)
+    }
+
+    /// `qvel` from θ̇: (Rv, ω, joints).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
+    pub fn velocity(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        let R = self.orientations(theta)?;
+        Ok(turned(self.order.velocities_to("dtheta", dtheta)?, R))
+    }
+
+    /// θ̇ from `qvel`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
+    pub fn from_velocity(&self, qpos: &[f64], qvel: &[f64]) -> Result<DVector<f64>, Error> {
+        self.turned_back(qpos, "qvel", qvel)
+    }
+
+    /// `qacc` from θ̈: (R(v̇ + ω × v), ω̇, joints).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
+    pub fn acceleration(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        let (R, beta) = (self.orientations(theta)?, self.spin(dtheta)?);
+        check_length("ddtheta", ddtheta.len(), self.order.n())?;
+        Ok(turned(self.order.velocities_to("ddtheta", (DVector::from_column_slice(ddtheta) - beta).as_slice())?, R))
+    }
+
+    /// θ̈ from `qacc`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
+    pub fn from_acceleration(&self, qpos: &[f64], qvel: &[f64], qacc: &[f64]) -> Result<DVector<f64>, Error> {
+        let dtheta = self.from_velocity(qpos, qvel)?;
+        Ok(self.turned_back(qpos, "qacc", qacc)? + self.spin(dtheta.as_slice())?)
+    }
+
+    /// `qfrc_*` from τ: (Rf, m, joints). For h see [`bias_forces`](Self::bias_forces).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
+    pub fn force(&self, theta: &[f64], tau: &[f64]) -> Result<DVector<f64>, Error> {
+        let R = self.orientations(theta)?;
+        Ok(turned(self.order.velocities_to("tau", tau)?, R))
+    }
+
+    /// τ from `qfrc_*`.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for an invalid quaternion.
+    pub fn from_force(&self, qpos: &[f64], qfrc: &[f64]) -> Result<DVector<f64>, Error> {
+        self.turned_back(qpos, "qfrc", qfrc)
+    }
+
+    /// `mj_fullM`'s matrix from M: XᵀMX.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
+    pub fn mass_matrix(&self, theta: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        let R = self.orientations(theta)?;
+        Ok(congruent(self.order.matrix_to("M", M)?, R))
+    }
+
+    /// M from `mj_fullM`'s matrix.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
+    pub fn from_mass_matrix(&self, qpos: &[f64], M: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+        let R = self.orientations(self.from_configuration(qpos)?.as_slice())?;
+        self.order.check_matrix("M", M)?;
+        self.order.matrix_from("M", &congruent(M.clone(), back(R)))
+    }
+
+    /// `qfrc_bias` from h and M, both mozzi's: Xᵀ(h + Mβ), β = (0, −ω × v, 0).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
+    pub fn bias_forces(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        M: &DMatrix<f64>,
+        h: &[f64],
+    ) -> Result<DVector<f64>, Error> {
+        self.order.check_matrix("M", M)?;
+        check_length("h", h.len(), self.order.n())?;
+        if self.homes.is_empty() {
+            return self.order.velocities_to("h", h);
+        }
+        self.force(theta, (DVector::from_column_slice(h) + M * self.spin(dtheta)?).as_slice())
+    }
+
+    /// h from `qfrc_bias` and M, this one mozzi's: X⁻ᵀ`qfrc_bias` − Mβ.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
+    pub fn from_bias_forces(
+        &self,
+        qpos: &[f64],
+        qvel: &[f64],
+        M: &DMatrix<f64>,
+        qfrc_bias: &[f64],
+    ) -> Result<DVector<f64>, Error> {
+        self.order.check_matrix("M", M)?;
+        let h = self.turned_back(qpos, "qfrc_bias", qfrc_bias)?;
+        if self.homes.is_empty() {
+            return Ok(h);
+        }
+        Ok(h - M * self.spin(self.from_velocity(qpos, qvel)?.as_slice())?)
+    }
+
+    /// Where MuJoCo sees the configuration of this place from, unless from the same frame.
+    fn home(&self, k: usize) -> Option<SE3> {
+        let found = self.homes.binary_search_by_key(&k, |(place, _)| *place).ok()?;
+        Some(self.homes[found].1).filter(|home| *home != SE3::identity())
+    }
+
+    /// Of each free joint, where its linear velocity stands in `qvel`, and the rotation from its axes to MuJoCo's.
+    fn orientations(&self, theta: &[f64]) -> Result<Vec<(usize, SO3)>, Error> {
+        check_length("theta", theta.len(), self.order.nq())?;
+        let (mut turns, mut at) = (Vec::new(), 0);
+        for (k, place) in self.order.places().iter().enumerate() {
+            if let (Freedom::Free, &[w, x, y, z, ..]) = (place.freedom, &theta[place.positions()]) {
+                check_unit([w, x, y, z])?;
+                let R = SO3::from_quaternion(w, Vec3([x, y, z]));
+                turns.push((at, self.home(k).map_or(R, |home| home.R * R)));
+            }
+            at += place.freedom.velocities();
+        }
+        Ok(turns)
+    }
+
+    /// β = Ẋ `qvel`: −ω × v in the rows of v, for the body's axes turn under the velocity.
+    fn spin(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        check_length("dtheta", dtheta.len(), self.order.n())?;
+        let mut beta = DVector::zeros(self.order.n());
+        for place in self.order.places().iter().filter(|place| place.freedom == Freedom::Free) {
+            let V = Twist::from_array(core::array::from_fn(|k| dtheta[place.j + k]));
+            let turning = V.v.cross(V.w);
+            (0..3).for_each(|i| beta[place.j + 3 + i] = turning.0[i]);
+        }
+        Ok(beta)
+    }
+
+    /// X `theirs`, which X⁻ᵀ is too: a rotation and a permutation.
+    fn turned_back(&self, qpos: &[f64], what: &'static str, theirs: &[f64]) -> Result<DVector<f64>, Error> {
+        let R = self.orientations(self.from_configuration(qpos)?.as_slice())?;
+        check_length(what, theirs.len(), self.order.n())?;
+        let turned = turned(DVector::from_column_slice(theirs), back(R));
+        self.order.velocities_from(what, turned.as_slice())
+    }
+}

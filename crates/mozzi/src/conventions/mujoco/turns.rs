@@ -1,0 +1,41 @@
+//! Rotations of some entries of lists and matrices.
+
+use crate::lie::{SE3, SO3};
+use crate::linalg::Vec3;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// A configuration seen from another frame, at T of it.
+pub(super) fn seen(pose: [f64; 7], T: Option<SE3>) -> [f64; 7] {
+    T.map_or(pose, |T| (T * SE3::from_pose(pose)).to_pose())
+}
+
+/// The inverse rotations.
+pub(super) fn back(turns: Vec<(usize, SO3)>) -> Vec<(usize, SO3)> {
+    turns.into_iter().map(|(at, R)| (at, R.inverse())).collect()
+}
+
+/// R times the three entries from each place on.
+pub(super) fn turned(mut list: DVector<f64>, turns: Vec<(usize, SO3)>) -> DVector<f64> {
+    turn(list.as_mut_slice(), &turns);
+    list
+}
+
+fn turn(list: &mut [f64], turns: &[(usize, SO3)]) {
+    for &(at, R) in turns {
+        let three = R * Vec3([list[at], list[at + 1], list[at + 2]]);
+        list[at..at + 3].copy_from_slice(&three.0);
+    }
+}
+
+/// Diag(R, I) M diag(R, I)ᵀ.
+pub(super) fn congruent(mut M: DMatrix<f64>, turns: Vec<(usize, SO3)>) -> DMatrix<f64> {
+    if turns.is_empty() {
+        return M;
+    }
+    for _ in 0..2 {
+        M.column_iter_mut().for_each(|mut column| turn(column.as_mut_slice(), &turns));
+        M = M.transpose();
+    }
+    M
+}

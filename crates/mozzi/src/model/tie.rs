@@ -1,0 +1,156 @@
+//! Constraints as the kernels read them: anchors in the links' normal frames, rows, and the velocities they couple.
+
+use super::description::{Anchor, Closure, ConstraintKind, Description};
+use super::{Frame, Link};
+use crate::lie::SE3;
+use crate::linalg::ldlt::Pattern;
+use crate::scalar::{Real, Scalar};
+use alloc::vec::Vec;
+
+/// The constraints of a model.
+#[derive(Clone, Debug)]
+pub(crate) struct Ties<C> {
+    pub list: Vec<Tie<C>>,
+    /// m, the number of rows of A.
+    pub rows: usize,
+    /// A M⁻¹Aᵀ is a full matrix.
+    pub dense: Pattern,
+}
+
+/// One constraint.
+#[derive(Clone, Debug)]
+pub(crate) struct Tie<C> {
+    /// Its first row of A.
+    pub first: usize,
+    /// The columns in which its rows are not zero, and their ancestors in the factors of M; the last first.
+    pub support: Vec<usize>,
+    pub kind: TieKind<C>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum TieKind<C> {
+    Frames { a: End<C>, b: End<C>, closure: Closure<C> },
+    Joint { joint: Own<C>, source: Option<Own<C>>, polynomial: [C; 5] },
+}
+
+/// An anchor. A slot of `None` is {s}; a fixed base is {s}, too.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct End<C> {
+    pub slot: Option<usize>,
+    /// Its configuration in the link's normal frame.
+    pub T: SE3<C>,
+}
+
+/// The position of a joint, ratio · θ + offset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Own<C> {
+    pub q: usize,
+    pub j: usize,
+    pub ratio: C,
+    pub offset: C,
+}
+
+impl<C> TieKind<C> {
+    /// The number of its rows.
+    #[inline(always)]
+    pub fn rows(&self) -> usize {
+        match self {
+            TieKind::Joint { .. } => 1,
+            TieKind::Frames { closure, .. } => closure.rows().len(),
+        }
+    }
+}
+
+impl<C: Scalar> Ties<C> {
+    pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Ties<U> {
+        let end = |end: End<C>| End { slot: end.slot, T: end.T.map(f) };
+        let own = |own: Own<C>| Own { q: own.q, j: own.j, ratio: f(own.ratio), offset: f(own.offset) };
+        let tie = |tie: &Tie<C>| Tie {
+            first: tie.first,
+            support: tie.support.clone(),
+            kind: match tie.kind {
+                TieKind::Frames { a, b, closure } => TieKind::Frames { a: end(a), b: end(b), closure: closure.map(f) },
+                TieKind::Joint { joint, source, polynomial } => {
+                    TieKind::Joint { joint: own(joint), source: source.map(own), polynomial: polynomial.map(f) }
+                }
+            },
+        };
+        Ties { list: self.list.iter().map(tie).collect(), rows: self.rows, dense: self.dense.clone() }
+    }
+}
+
+/// The constraints of a checked description, by the frames and links of its normal form.
+pub(super) fn ties<C: Real>(
+    description: &Description<C>,
+    frames: &[Frame<C>],
+    links: &[Link<C>],
+    moving_joints: &[usize],
+    pattern: &Pattern,
+    is_floating: bool,
+) -> Ties<C> {
+    let names = || description.links.iter().map(|l| &l.name).chain(description.frames.iter().map(|f| &f.name));
+    let end = |anchor: &Anchor<C>| match &anchor.frame {
+        None if is_floating => End { slot: None, T: anchor.T },
+        None => End { slot: Some(0), T: anchor.T },
+        Some(name) => {
+            let Frame { slot, T } = frames[names().position(|known| known == name).unwrap_or_default()];
+            End { slot: Some(slot), T: T * anchor.T }
+        }
+    };
+    let own = |name: &str| {
+        let slot = moving_joints.iter().position(|&i| description.joints[i].name == name).unwrap_or_default();
+        let Link { q, j, ratio, offset, .. } = links[slot];
+        Own { q, j, ratio, offset }
+    };
+    let (mut list, mut rows) = (Vec::new(), 0);
+    for constraint in &description.constraints {
+        let kind = match &constraint.kind {
+            ConstraintKind::Frames { a, b, closure } => TieKind::Frames { a: end(a), b: end(b), closure: *closure },
+            ConstraintKind::Joint { joint, source, polynomial } => {
+                TieKind::Joint { joint: own(joint), source: source.as_deref().map(own), polynomial: *polynomial }
+            }
+        };
+        let moved = match &kind {
+            TieKind::Frames { a, b, .. } => between(a.slot, b.slot, links),
+            TieKind::Joint { joint, source, .. } => {
+                core::iter::once(joint.j).chain(source.iter().map(|source| source.j)).collect()
+            }
+        };
+        let mut support: Vec<usize> =
+            moved.iter().flat_map(|&j| core::iter::once(j).chain(pattern.ancestors(j))).collect();
+        support.sort_unstable_by(|a, b| b.cmp(a));
+        support.dedup();
+        list.push(Tie { first: rows, support, kind });
+        rows += constraint.row_names().len();
+    }
+    Ties { list, rows, dense: Pattern::new(rows, rows, core::iter::empty()) }
+}
+
+/// The velocities that move one slot relative to another.
+fn between<C>(a: Option<usize>, b: Option<usize>, links: &[Link<C>]) -> Vec<usize> {
+    let mut moved = Vec::new();
+    if a.is_none() != b.is_none() {
+        moved.extend(0..6);
+    }
+    let (mut a, mut b) = (a.unwrap_or(0), b.unwrap_or(0));
+    while a != b {
+        let further = if a > b { &mut a } else { &mut b };
+        let link = &links[*further - 1];
+        moved.push(link.j);
+        *further = link.parent;
+    }
+    moved
+}
+
+impl<C: Scalar> Closure<C> {
+    /// The same with another number type.
+    pub(crate) fn map<U>(self, f: impl Fn(C) -> U) -> Closure<U> {
+        match self {
+            Closure::Point => Closure::Point,
+            Closure::Weld => Closure::Weld,
+            Closure::Hinge => Closure::Hinge,
+            Closure::Distance(length) => Closure::Distance(f(length)),
+            Closure::Rolling(radius) => Closure::Rolling(f(radius)),
+        }
+    }
+}
