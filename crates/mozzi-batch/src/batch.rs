@@ -114,6 +114,10 @@ impl<T: Number> Batch<T> {
         self.threads.count()
     }
 
+    pub(crate) fn constants(&self) -> &Model<T> {
+        &self.constants
+    }
+
     pub(crate) fn workers(&self) -> &Threads {
         &self.threads
     }

@@ -4,8 +4,7 @@ use crate::chunk::Table;
 use crate::request::Request;
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout, Number};
-use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Method, Motion};
+use mozzi::simulation::{Closer, Method, Motion, forward_dynamics_of};
 
 /// Robots that one thread moves together: their states and the method's stages stay in its cache.
 const TOGETHER: usize = 512;
@@ -13,12 +12,13 @@ const TOGETHER: usize = 512;
 impl<T: Number> Batch<T> {
     /// (θ, θ̇) (N, nq) and (N, n) of every robot after `steps` steps of a method over `duration` seconds, in place,
     /// under torques τ (N, n) and an environment that stay as they are: a controller's interval. Robots move by pieces
-    /// that fit the cache. See [`mozzi::simulation`].
+    /// that fit the cache; those of a robot with constraints are brought back onto them after each step. See
+    /// [`mozzi::simulation`].
     ///
     /// # Errors
     /// A table has the wrong length, the method is not [explicit](Method::explicit), or a state fails (the error
-    /// carries its index): its mass matrix is singular, or it became infinite or NaN. Neighbouring states are computed
-    /// before the error is returned.
+    /// carries its index): its mass matrix is singular, it violates the constraints, or became infinite or NaN.
+    /// Neighbouring states are computed before the error is returned.
     #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
     pub fn simulate(
         &self,
@@ -31,14 +31,10 @@ impl<T: Number> Batch<T> {
         steps: usize,
     ) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n());
-        let m = self.model().constraint_rows();
-        if m > 0 {
-            let (found, expected) = (format!("one with {m} constraint rows"), "a robot without constraints");
-            return Err(mozzi::Error::BadArgument { what: "the robot of a batch's simulation", found, expected }.into());
-        }
         let table = |name, numbers, width| Table { name, numbers, width };
         let mut inputs = vec![table("theta", &*theta, nq), table("dtheta", &*dtheta, n), table("tau", tau, n)];
-        inputs.extend(Request::new(ForwardDynamics.into(), self.model(), environment).further());
+        let query = forward_dynamics_of(self.model());
+        inputs.extend(Request::new(query, self.model(), environment).further());
         let frames = environment.wrenches.iter().map(|&(frame, _)| frame);
         let states = self.check(&inputs, [].into_iter(), &environment.environment, frames)?;
         let explicit = method.explicit()?;
@@ -68,7 +64,9 @@ impl<T: Number> Batch<T> {
             return Ok(());
         }
 
+        self.check_closed(theta, dtheta)?;
         let alone = self.on(Threads::One);
+        let m = self.model().constraint_rows();
         let pieces: Vec<_> = theta.chunks_mut(TOGETHER * nq).zip(dtheta.chunks_mut(TOGETHER * n)).enumerate().collect();
         let results = self.workers().map(
             pieces,
@@ -85,16 +83,20 @@ impl<T: Number> Batch<T> {
                 let parameters = environment.parameters.map(|table| &table[first * p..][..robots * p]);
                 let environment = BatchEnvironment { wrenches: &wrenches, gravity, parameters, ..*environment };
                 let tau = &tau[first * n..][..robots * n];
-                let accelerations = |_t: f64, theta: &[T], dtheta: &[T], ddtheta: &mut [T]| {
+                let mut lambda = vec![T::zero(); robots * m];
+                let mut accelerations = |_t: f64, theta: &[T], dtheta: &[T], ddtheta: &mut [T]| {
+                    let outputs: &mut [&mut [T]] = if m == 0 { &mut [ddtheta] } else { &mut [ddtheta, &mut lambda] };
                     alone
-                        .compute(ForwardDynamics, &[theta, dtheta, tau], &environment, &mut [ddtheta])
+                        .compute(query, &[theta, dtheta, tau], &environment, outputs)
                         .map(|()| [])
                         .map_err(|error| error.after(first))
                 };
                 let space = alone.model().configuration_space();
-                let mut motion: Motion<T> = Motion::start_many(space, robots, 0.0, theta, dtheta, accelerations)?;
+                let mut motion: Motion<T> = Motion::start_many(space, robots, 0.0, theta, dtheta, &mut accelerations)?;
                 for k in 1..=steps {
-                    motion.step(explicit, h, k as f64 * h, accelerations)?;
+                    motion.advance(explicit, h, k as f64 * h, &mut accelerations)?;
+                    alone.close(motion.t, &mut motion.theta, &mut motion.dtheta).map_err(|error| error.after(first))?;
+                    motion.find_rates(&mut accelerations)?;
                 }
                 let diverged = lost(dtheta, &motion.dtheta).map(|k| {
                     let (joint, value) =
@@ -107,6 +109,64 @@ impl<T: Number> Batch<T> {
                 theta.copy_from_slice(&motion.theta);
                 dtheta.copy_from_slice(&motion.dtheta);
                 diverged.map_or(Ok(()), Err)
+            },
+        );
+        results.into_iter().collect()
+    }
+
+    /// Do these states, tables by rows, satisfy the robot's constraints? See [`Closer::check_start`].
+    ///
+    /// # Errors
+    /// [`mozzi::Error::OpenStart`] of the first state that does not.
+    pub fn check_closed(&self, theta: &[T], dtheta: &[T]) -> Result<(), Error> {
+        let (nq, n) = (self.model().nq(), self.model().n().max(1));
+        let pieces = theta.chunks(TOGETHER * nq.max(1)).zip(dtheta.chunks(TOGETHER * n));
+        self.each(pieces.collect(), |closer, (theta, dtheta)| {
+            for (k, (theta, dtheta)) in theta.chunks_exact(nq).zip(dtheta.chunks_exact(n)).enumerate() {
+                closer
+                    .check_start(self.constants(), theta, dtheta)
+                    .map_err(|source| Error::State { index: k, source })?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Brings states at time t, tables by rows, back onto the robot's constraints. See [`Closer::close`].
+    ///
+    /// # Errors
+    /// [`mozzi::Error::Opened`] of the first state whose loops cannot be closed; of states that are not finite, none.
+    pub fn close(&self, t: f64, theta: &mut [T], dtheta: &mut [T]) -> Result<(), Error> {
+        let (nq, n) = (self.model().nq(), self.model().n().max(1));
+        let pieces = theta.chunks_mut(TOGETHER * nq.max(1)).zip(dtheta.chunks_mut(TOGETHER * n));
+        let finite = |numbers: &[T]| numbers.iter().all(|&x| x * T::zero() == T::zero());
+        self.each(pieces.collect(), |closer, (theta, dtheta)| {
+            for (k, (theta, dtheta)) in theta.chunks_exact_mut(nq).zip(dtheta.chunks_exact_mut(n)).enumerate() {
+                if finite(theta) && finite(dtheta) {
+                    closer
+                        .close(self.constants(), t, theta, dtheta)
+                        .map_err(|source| Error::State { index: k, source })?;
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// f of pieces of [`TOGETHER`] states; nothing where the robot has no constraints.
+    fn each<I: Send>(
+        &self,
+        pieces: Vec<I>,
+        f: impl Fn(&mut Closer<T>, I) -> Result<(), Error> + Sync,
+    ) -> Result<(), Error> {
+        if self.model().constraint_rows() == 0 {
+            return Ok(());
+        }
+        let pieces: Vec<_> = pieces.into_iter().enumerate().collect();
+        let results = self.workers().map(
+            pieces,
+            || Closer::new(self.constants()),
+            |closer, (k, piece)| match closer {
+                Some(closer) => f(closer, piece).map_err(|error| error.after(k * TOGETHER)),
+                None => Ok(()),
             },
         );
         results.into_iter().collect()

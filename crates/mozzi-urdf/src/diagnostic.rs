@@ -39,7 +39,7 @@ impl Diagnostic {
     }
 
     /// In a macro of xacro's, which these calls lead to: `, from ur.urdf.xacro:40 (prefix = "left_")`.
-    pub(crate) fn from_calls(self, calls: String) -> Self {
+    pub(crate) fn called_from(self, calls: String) -> Self {
         Diagnostic { calls, ..self }
     }
 

@@ -96,5 +96,5 @@ fn at(files: &[File], origin: &Origin, mut finding: Finding, dialect: Dialect) -
     let source = files.get(origin.file).map_or_else(|| Source::new("", ""), |file| Source::new(&file.name, &file.text));
     finding.span = source.clamp(origin.span.clone());
     let position = Walker::new(&source.text).advance(finding.span.start);
-    Diagnostic::new(finding, position, source, dialect).from_calls(origin.from(files))
+    Diagnostic::new(finding, position, source, dialect).called_from(origin.from(files))
 }

@@ -35,13 +35,13 @@ impl Writer<'_> {
         match &node.content {
             Content::Data(data) => {
                 self.piece(|text| *text += &format!("<![CDATA[{data}]]>"), &node.place);
-                return Ok(());
+                Ok(())
             }
             Content::Text(data) => {
                 self.indent(indent);
                 self.piece(|text| escape(data, text), &node.place);
                 self.text.push('\n');
-                return Ok(());
+                Ok(())
             }
             Content::Comment(data) => {
                 if data.contains("--") || data.ends_with('-') {
@@ -52,12 +52,12 @@ impl Writer<'_> {
                 }
                 self.indent(indent);
                 self.text += &format!("<!--{data}-->\n");
-                return Ok(());
+                Ok(())
             }
             Content::Instruction(data) => {
                 self.indent(indent);
                 self.text += &format!("<?{data}?>\n");
-                return Ok(());
+                Ok(())
             }
             Content::Element { name, attributes } => {
                 self.indent(indent);

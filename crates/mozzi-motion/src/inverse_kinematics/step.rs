@@ -104,7 +104,7 @@ impl Step {
                     }
                     let columns = &mut self.columns[place.velocities()];
                     let along = columns.iter().zip(n).fold(Twist::zero(), |sum, (column, n)| sum + *column * n);
-                    columns.iter_mut().zip(n).for_each(|(column, n)| *column = *column - along * n);
+                    columns.iter_mut().zip(n).for_each(|(column, n)| *column -= along * n);
                     self.cones.push((*place, n));
                 }
                 _ => continue,

@@ -119,7 +119,9 @@ fn tables_of_a_known_motion_are_met_to_their_order() {
         let times: Vec<f64> = (0..=pieces).map(|k| 2.0 * f64::from(k) / f64::from(pieces)).collect();
         let (mut theta, mut dtheta, mut ddtheta) = (vec![], vec![], vec![]);
         for (q, w, dw) in times.iter().map(|&t| motion(t)) {
-            (theta.push(q), dtheta.push(w), ddtheta.push(dw));
+            theta.push(q);
+            dtheta.push(w);
+            ddtheta.push(dw);
         }
         let second = second.then_some(&ddtheta[..]);
         let recorded = Recorded::new(&ball, &times, &theta, Some(&dtheta), second).expect("fine");

@@ -196,7 +196,11 @@ impl PyModel {
         hold: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (theta, [guess]) = self.state_of(theta, [("guess", guess)])?;
-        let found = self.robot().model.assemble_velocities(&theta, &guess, &names(&hold.unwrap_or_default())).map_err(of_model)?;
+        let found = self
+            .robot()
+            .model
+            .assemble_velocities(&theta, &guess, &names(&hold.unwrap_or_default()))
+            .map_err(of_model)?;
         array(py, &[found.len()], found)
     }
 
@@ -225,7 +229,9 @@ impl PyModel {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (theta, [dtheta, guess]) = self.state_of(theta, [("dtheta", dtheta), ("guess", guess)])?;
         let model = &self.robot().model;
-        let found = model.assemble_accelerations(&theta, &dtheta, &guess, &names(&hold.unwrap_or_default())).map_err(of_model)?;
+        let found = model
+            .assemble_accelerations(&theta, &dtheta, &guess, &names(&hold.unwrap_or_default()))
+            .map_err(of_model)?;
         array(py, &[found.len()], found)
     }
 

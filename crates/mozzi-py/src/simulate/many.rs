@@ -9,8 +9,8 @@ use crate::numpy::Fresh;
 use crate::results::named;
 use crate::signature::{INPUTS, Slot};
 use crate::threads::Threads;
-use mozzi::quantities::{ForwardDynamics, GravityForces, KineticEnergy, PotentialEnergy, Query, SpringForces};
-use mozzi::simulation::{LARGEST, Motion, Options};
+use mozzi::quantities::{KineticEnergy, PotentialEnergy, Query};
+use mozzi::simulation::{GravityCompensation, Input, LARGEST, Motion, Options, forward_dynamics_of};
 use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, BatchEnvironment};
 use pyo3::prelude::*;
@@ -134,6 +134,10 @@ impl Robots<'_> {
                 let (step, time) = (done + step, self.options.time(done + step));
                 self.wrong(index, Error::Diverged { quantity, joint, value, step, time, step_size })
             }
+            mozzi_batch::Error::State { index, source: Error::Opened { constraint, residual, time } } => {
+                let time = self.options.time(done) + time;
+                self.wrong(index, Error::Opened { constraint, residual, time })
+            }
             error => of_batch(error, self.leading),
         }
     }
@@ -146,22 +150,29 @@ impl Robots<'_> {
         mut torque: impl FnMut(f64, &[f64], &[f64], &mut [f64]) -> PyResult<()>,
         record: &mut Record,
     ) -> PyResult<()> {
-        let mut tau = vec![0.0; dtheta.len()];
+        let robots = dtheta.len() / self.model.n();
+        let m = self.model.constraint_rows();
+        let (mut tau, mut lambda) = (vec![0.0; dtheta.len()], vec![0.0; robots * m]);
+        let query = forward_dynamics_of(self.model);
         let mut accelerations = |tau: &mut [f64], t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]| {
             torque(t, theta, dtheta, tau)?;
             let inputs: [&[f64]; 3] = [theta, dtheta, tau];
-            py.detach(|| self.batch.compute(ForwardDynamics, &inputs, &self.environment, &mut [ddtheta]))
+            let outputs: &mut [&mut [f64]] = if m == 0 { &mut [ddtheta] } else { &mut [ddtheta, &mut lambda] };
+            py.detach(|| self.batch.compute(query, &inputs, &self.environment, outputs))
                 .map_err(|error| of_batch(error, self.leading))?;
             Ok::<[f64; 0], PyErr>([])
         };
-        let (space, robots) = (self.model.configuration_space(), dtheta.len() / self.model.n());
+        let space = self.model.configuration_space();
         let method = self.options.method.explicit().map_err(of_model)?;
         let mut motion =
             Motion::start_many(space, robots, 0.0, theta, dtheta, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
         record.write(0.0, &motion.theta, &motion.dtheta, &tau);
         for step in 1..=self.options.steps {
             let (h, t) = (self.options.step(), self.options.time(step));
-            motion.step(method, h, t, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
+            motion.advance(method, h, t, |t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
+            let closed = self.batch.close(t, &mut motion.theta, &mut motion.dtheta);
+            closed.map_err(|error| of_batch(error, self.leading))?;
+            motion.find_rates(|t, q, v, a| accelerations(&mut tau, t, q, v, a))?;
             for (quantity, numbers) in
                 [("theta", &motion.theta), ("dtheta", &motion.dtheta), ("ddtheta", &motion.ddtheta)]
             {
@@ -221,6 +232,7 @@ pub fn simulate<'py>(
     let everywhere = |_| String::new();
     robots.check_finite("theta", start[0], everywhere)?;
     robots.check_finite("dtheta", start[1], everywhere)?;
+    robots.batch.check_closed(start[0], start[1]).map_err(|error| of_batch(error, leading))?;
 
     let (n, rows) = (model.n(), 1 + options.steps.div_ceil(options.record_every));
     let table = |width| Table::new(py, leading, rows, width);
@@ -236,19 +248,14 @@ pub fn simulate<'py>(
             robots.move_steadily(py, start, tau.slice()?, &mut record)?;
         }
         Torque::GravityCompensation => {
-            // without motors: a floating base and free joints
-            let space = model.configuration_space();
-            let free: Vec<_> = space.places().iter().filter(|place| place.freedom == mozzi::Freedom::Free).collect();
-            let compensation = |_, theta: &[f64], _: &[f64], tau: &mut [f64]| {
-                let mut springs = vec![0.0; tau.len()];
-                py.detach(|| {
-                    robots.batch.compute(GravityForces, &[theta], &environment, &mut [&mut *tau])?;
-                    robots.batch.compute(SpringForces, &[theta], &environment, &mut [&mut springs])
-                })
-                .map_err(|error| of_batch(error, leading))?;
-                tau.iter_mut().zip(springs).for_each(|(tau, spring)| *tau += spring);
-                for tau in tau.chunks_exact_mut(n) {
-                    free.iter().for_each(|place| tau[place.velocities()].fill(0.0));
+            let gravity = options.gravity.unwrap_or(model.gravity());
+            let mut input = GravityCompensation::against(model, gravity);
+            let nq = model.nq();
+            let compensation = |t, theta: &[f64], dtheta: &[f64], tau: &mut [f64]| {
+                tau.fill(0.0);
+                for (k, tau) in tau.chunks_exact_mut(n).enumerate() {
+                    let held = input.torque(t, &theta[k * nq..][..nq], &dtheta[k * n..][..n], tau);
+                    held.map_err(|error| robots.wrong(k, error))?;
                 }
                 Ok(())
             };
@@ -268,7 +275,10 @@ pub fn simulate<'py>(
         let given = Arguments::of(state.chain([(Slot::Gravity, gravity)]));
         this.robot().compute(py, &query, &given, threads)
     };
-    let ddtheta = compute(ForwardDynamics.into(), &[&theta, &dtheta, &tau], gravity)?;
+    let mut ddtheta = compute(forward_dynamics_of(model), &[&theta, &dtheta, &tau], gravity)?;
+    if model.constraint_rows() > 0 {
+        ddtheta = ddtheta.getattr("ddtheta")?; // without the multipliers
+    }
     let recorded = |state: usize| (state / rows, (state % rows * options.record_every).min(options.steps));
     robots.check_bounded("ddtheta", Numbers::new("ddtheta", &ddtheta)?.slice()?, recorded)?;
     let fields = vec![

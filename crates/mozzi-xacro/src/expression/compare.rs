@@ -6,7 +6,7 @@ use super::syntax::Compare;
 use super::value::{Value, View};
 use crate::fault::{Fault, Result};
 use num_bigint::BigInt;
-use num_traits::{FromPrimitive, Signed};
+use num_traits::FromPrimitive;
 use std::cmp::Ordering;
 use std::rc::Rc;
 
@@ -53,7 +53,7 @@ fn mixed(float: f64, int: &BigInt) -> Option<Ordering> {
             // the part that the float has beyond its whole number
             Some(if order == Ordering::Equal { float.fract().partial_cmp(&0.0)? } else { order })
         }
-        _ => Some(if float > 0.0 || int.is_negative() && float > 0.0 { Ordering::Greater } else { Ordering::Less }),
+        _ => float.partial_cmp(&0.0), // infinite, or no number
     }
 }
 

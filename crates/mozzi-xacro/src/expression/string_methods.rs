@@ -176,7 +176,7 @@ fn pad(cx: &Evaluator, text: &str, name: &str, arguments: Arguments) -> Result<V
 }
 
 /// The part between two indices in characters, and where it begins; None if it is out of reach.
-fn part<'t>(text: &'t str, start: Option<Value>, stop: Option<Value>) -> Result<Option<(&'t str, usize)>> {
+fn part(text: &str, start: Option<Value>, stop: Option<Value>) -> Result<Option<(&str, usize)>> {
     let count = text.chars().count() as i64;
     let clip = |value: Option<Value>, default: i64| match value {
         None | Some(Value::None) => Ok::<i64, Box<Fault>>(default),

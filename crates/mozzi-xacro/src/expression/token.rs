@@ -39,7 +39,9 @@ pub(crate) fn continues_name(c: char) -> bool {
 
 /// All words of a text, each with the byte where it begins.
 pub(crate) fn tokens(text: &str) -> Result<Vec<(usize, Token)>> {
-    let (mut found, mut open, mut at): (Vec<(usize, Token)>, Vec<(&str, usize)>, usize) = (Vec::new(), Vec::new(), 0);
+    let mut found: Vec<(usize, Token)> = Vec::new();
+    let mut open: Vec<(&str, usize)> = Vec::new();
+    let mut at = 0;
     while let Some(c) = text[at..].chars().next() {
         let (start, rest) = (at, &text[at..]);
         let operator = || OPERATORS.iter().find(|operator| rest.starts_with(**operator));

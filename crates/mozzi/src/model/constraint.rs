@@ -184,13 +184,7 @@ impl<C: Real> Constraint<C> {
         let anchor = |anchor: &Anchor<C>| Anchor { frame: anchor.frame.clone(), T: anchor.T.map(f) };
         let kind = match &self.kind {
             ConstraintKind::Frames { a, b, closure } => {
-                let closure = match *closure {
-                    Closure::Point => Closure::Point,
-                    Closure::Weld => Closure::Weld,
-                    Closure::Hinge => Closure::Hinge,
-                    Closure::Distance(length) => Closure::Distance(f(length)),
-                    Closure::Rolling(radius) => Closure::Rolling(f(radius)),
-                };
+                let closure = closure.map(f);
                 ConstraintKind::Frames { a: anchor(a), b: anchor(b), closure }
             }
             ConstraintKind::Joint { joint, source, polynomial } => {

@@ -210,9 +210,7 @@ impl Model<f64> {
             ConstraintKind::Frames { a, b, .. } => {
                 [a, b].map(|anchor| anchor.frame.as_deref().is_none_or(|name| self.is_on(name, &links)))
             }
-            ConstraintKind::Joint { joint, source, .. } => {
-                [on_path(joint), source.as_ref().is_none_or(|source| on_path(source))]
-            }
+            ConstraintKind::Joint { joint, source, .. } => [on_path(joint), source.as_ref().is_none_or(on_path)],
         };
         constraints.retain(|one| links_of(one) != [false, false]);
         if let Some(one) = constraints.iter().find(|one| links_of(one) != [true, true]) {

@@ -5,6 +5,7 @@ use super::{Frame, Link};
 use crate::lie::SE3;
 use crate::linalg::ldlt::Pattern;
 use crate::scalar::{Real, Scalar};
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
 /// The constraints of a model.
@@ -88,18 +89,21 @@ pub(super) fn ties<C: Real>(
     pattern: &Pattern,
     is_floating: bool,
 ) -> Ties<C> {
-    let names = || description.links.iter().map(|l| &l.name).chain(description.frames.iter().map(|f| &f.name));
+    let names = description.links.iter().map(|l| &l.name).chain(description.frames.iter().map(|f| &f.name));
+    let names: BTreeMap<&str, usize> = names.enumerate().map(|(k, name)| (name.as_str(), k)).collect();
+    let joint_names = moving_joints.iter().map(|&i| description.joints[i].name.as_str());
+    // of links at one joint, the first, whose position is the joint's own
+    let slots: BTreeMap<&str, usize> = joint_names.enumerate().rev().map(|(slot, name)| (name, slot)).collect();
     let end = |anchor: &Anchor<C>| match &anchor.frame {
         None if is_floating => End { slot: None, T: anchor.T },
         None => End { slot: Some(0), T: anchor.T },
         Some(name) => {
-            let Frame { slot, T } = frames[names().position(|known| known == name).unwrap_or_default()];
+            let Frame { slot, T } = frames[names.get(name.as_str()).copied().unwrap_or_default()];
             End { slot: Some(slot), T: T * anchor.T }
         }
     };
     let own = |name: &str| {
-        let slot = moving_joints.iter().position(|&i| description.joints[i].name == name).unwrap_or_default();
-        let Link { q, j, ratio, offset, .. } = links[slot];
+        let Link { q, j, ratio, offset, .. } = links[slots.get(name).copied().unwrap_or_default()];
         Own { q, j, ratio, offset }
     };
     let (mut list, mut rows) = (Vec::new(), 0);

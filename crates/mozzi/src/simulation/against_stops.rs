@@ -14,7 +14,7 @@ const METHODS: [(Method, f64); 3] =
 
 fn ball(child: &str, parent: &str, center: [f64; 3], limit: f64) -> Joint {
     let kind = JointKind::Ball(Vec3(center));
-    let mut joint = Joint::new(&std::format!("ball of {child}"), parent, child, SE3::identity(), kind);
+    let mut joint = Joint::new(std::format!("ball of {child}"), parent, child, SE3::identity(), kind);
     joint.limits.position = Some([0.0, limit]);
     joint
 }
@@ -148,7 +148,7 @@ fn slides(limits: [f64; 2]) -> Model {
         Description::new("slides").link("base", SpatialInertia::zero()),
         |robot, name| {
             let axis = JointKind::Screw(ScrewAxis::new([0.0; 3], [0.0, 0.0, 1.0]).expect("unit"));
-            let mut joint = Joint::new(&std::format!("{name} slide"), "base", *name, SE3::identity(), axis);
+            let mut joint = Joint::new(std::format!("{name} slide"), "base", *name, SE3::identity(), axis);
             joint.limits.position = Some(limits);
             robot.link(*name, SpatialInertia::point_mass(1.0, Vec3::zero())).joint(joint)
         },

@@ -3,16 +3,23 @@
 use crate::constraints::{ConstraintMemory, change, constraint_jacobian, delassus};
 use crate::kinematics::integrate;
 use crate::model::{Error, Model, Workspace};
+use crate::scalar::Float;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// A residual below this needs no correction: rounding of positions of the order of 1 m.
-const CLOSED: f64 = 1e-15;
-/// One above this, rad or m, is not closed.
-const OPEN: f64 = 1e-10;
 /// Corrections with one factorization, and factorizations.
 const CORRECTIONS: usize = 4;
 const FACTORIZATIONS: usize = 6;
+
+/// A residual below this needs no correction: rounding of positions of the order of 1 m; 10⁻¹⁵ for `f64`.
+fn closed<S: Float + Into<f64>>() -> f64 {
+    4.5 * S::EPSILON.into()
+}
+
+/// One above this, rad or m, is not closed; 10⁻¹⁰ for `f64`, 5 · 10⁻⁵ for `f32`.
+fn open<S: Float + Into<f64>>() -> f64 {
+    (450_000.0 * S::EPSILON.into()).min(5e-5)
+}
 
 /// The largest violation of the constraints along a motion, rad and m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,49 +30,82 @@ pub struct Closing {
     pub residual: f64,
 }
 
-/// Memory for the correction.
-pub(super) struct Closer {
-    workspace: Workspace,
-    memory: ConstraintMemory,
-    phi: Vec<f64>,
-    change: Vec<f64>,
-    at_rest: Vec<f64>,
+/// Brings states of a robot with constraints back onto them.
+#[derive(Clone, Debug)]
+pub struct Closer<S = f64> {
+    workspace: Workspace<S>,
+    memory: ConstraintMemory<S>,
+    phi: Vec<S>,
+    change: Vec<S>,
+    at_rest: Vec<S>,
+    /// The largest violation so far.
     pub account: Closing,
 }
 
-impl Closer {
+impl<S: Float + Into<f64>> Closer<S> {
     /// None for a robot without constraints.
-    pub fn new(model: &Model) -> Option<Self> {
+    pub fn new(model: &Model<S>) -> Option<Self> {
         let (m, n) = (model.constraint_rows(), model.n());
         (m > 0).then(|| Closer {
             workspace: Workspace::new(model),
             memory: ConstraintMemory::new(model),
-            phi: vec![0.0; m],
-            change: vec![0.0; n],
-            at_rest: vec![0.0; n],
+            phi: vec![S::zero(); m],
+            change: vec![S::zero(); n],
+            at_rest: vec![S::zero(); n],
             account: Closing::default(),
         })
     }
 
+    /// Does the start satisfy the constraints, to 10⁻⁶ (`f32`: 5 · 10⁻⁵)?
+    ///
+    /// # Errors
+    /// [`Error::OpenStart`].
+    ///
+    /// # Panics
+    /// When θ is not nq long, or θ̇ not n.
+    pub fn check_start(&mut self, model: &Model<S>, theta: &[S], dtheta: &[S]) -> Result<(), Error> {
+        model.assert_lengths(theta.len(), [dtheta.len()]);
+        self.rows(model, theta);
+        self.find_speeds(model, dtheta);
+        let tolerance = open::<S>().max(1e-6);
+        let bound = tolerance * largest(dtheta).max(1.0);
+        let rows = [("a position", &self.phi, tolerance), ("a velocity", &self.memory.right, bound)];
+        for (what, values, bound) in rows {
+            let mut values = values.iter().map(|&x| x.into().abs()).enumerate();
+            if let Some((row, residual)) = values.find(|(_, x)| !(*x <= bound)) {
+                return Err(Error::OpenStart { constraint: model.constraint_of_row(row), residual, what });
+            }
+        }
+        Ok(())
+    }
+
     /// θ ← θ ⊕ δ with M δ = −Aᵀλ, A δ = −φ, until φ is 0; then θ̇ ← θ̇ − M⁻¹AᵀΛ with A θ̇ = 0: the nearest in the metric
-    /// of M.
-    pub fn close(&mut self, model: &Model, t: f64, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
+    /// of M. t is for the error.
+    ///
+    /// # Errors
+    /// [`Error::Opened`].
+    ///
+    /// # Panics
+    /// When θ is not nq long, or θ̇ not n.
+    pub fn close(&mut self, model: &Model<S>, t: f64, theta: &mut [S], dtheta: &mut [S]) -> Result<(), Error> {
+        model.assert_lengths(theta.len(), [dtheta.len()]);
+        let (closed, open) = (closed::<S>(), open::<S>());
         let mut residual = self.rows(model, theta);
         self.account.corrected = self.account.corrected.max(residual);
         let mut is_factored = false;
         for _ in 0..FACTORIZATIONS {
-            if is_factored && residual <= OPEN {
+            if is_factored && residual <= open {
                 break;
             }
             delassus::factor(model, &mut self.workspace, &mut self.memory);
             is_factored = true;
             for _ in 0..CORRECTIONS {
-                if residual <= CLOSED {
+                if residual <= closed {
                     break;
                 }
                 self.memory.right.copy_from_slice(&self.phi);
                 change(model, &mut self.memory, &mut self.change);
-                integrate(model, theta, &self.change, 1.0);
+                integrate(model, theta, &self.change, S::one());
                 let next = self.rows(model, theta);
                 let improves = next < 0.5 * residual;
                 residual = next;
@@ -74,43 +114,42 @@ impl Closer {
                 }
             }
         }
-        if !(residual <= OPEN) {
-            let row = (0..self.phi.len()).max_by(|&a, &b| self.phi[a].abs().total_cmp(&self.phi[b].abs())).unwrap_or(0);
+        if !(residual <= open) {
+            let size = |row: &usize| self.phi[*row].into().abs();
+            let row = (0..self.phi.len()).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
             let constraint = model.constraint_of_row(row);
             return Err(Error::Opened { constraint, residual, time: t });
         }
         self.account.residual = self.account.residual.max(residual);
         // A is that of the corrected θ, its factors are not: each round gains as many digits as θ had
         for _ in 0..CORRECTIONS {
-            self.memory.right.fill(0.0);
-            delassus::add_products(model, &self.memory.A, dtheta, &mut self.memory.right);
-            let speed = self.memory.right.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            if speed <= CLOSED * dtheta.iter().fold(1.0_f64, |most, x| most.max(x.abs())) {
+            self.find_speeds(model, dtheta);
+            if largest(&self.memory.right) <= closed * largest(dtheta).max(1.0) {
                 break;
             }
             change(model, &mut self.memory, &mut self.change);
-            dtheta.iter_mut().zip(&self.change).for_each(|(rate, change)| *rate += change);
+            dtheta.iter_mut().zip(&self.change).for_each(|(rate, &change)| *rate += change);
         }
         Ok(())
     }
 
     /// A and φ at θ; the largest of φ.
-    fn rows(&mut self, model: &Model, theta: &[f64]) -> f64 {
+    fn rows(&mut self, model: &Model<S>, theta: &[S]) -> f64 {
         let Closer { workspace, memory, phi, at_rest, .. } = self;
         constraint_jacobian(model, theta, at_rest, workspace, &mut memory.A, &mut [], phi);
-        phi.iter().fold(0.0, |most, x| if x.abs() <= most { most } else { x.abs() }) // NaN is kept
+        largest(phi)
+    }
+
+    /// A θ̇, in the memory's `right`.
+    fn find_speeds(&mut self, model: &Model<S>, dtheta: &[S]) {
+        let ConstraintMemory { A, right, .. } = &mut self.memory;
+        right.fill(S::zero());
+        delassus::add_products(model, A, dtheta, right);
     }
 }
 
-/// Does the start satisfy the constraints, to 10⁻⁶?
-pub(super) fn check_start(model: &Model, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
-    let rows = model.constraint_rows_at(theta, dtheta);
-    let speeds = &rows.A * nalgebra::DVector::from_column_slice(dtheta);
-    let size = dtheta.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-    for (what, values, bound) in [("a position", &rows.phi, 1e-6), ("a velocity", &speeds, 1e-6 * size)] {
-        if let Some((row, x)) = values.iter().enumerate().find(|(_, x)| !(x.abs() <= bound)) {
-            return Err(Error::OpenStart { constraint: model.constraint_of_row(row), residual: x.abs(), what });
-        }
-    }
-    Ok(())
+/// The largest |x|; NaN if one is NaN.
+fn largest<S: Float + Into<f64>>(numbers: &[S]) -> f64 {
+    let sizes = numbers.iter().map(|&x| x.into().abs());
+    sizes.fold(0.0, |most, x| if x <= most { most } else { x })
 }

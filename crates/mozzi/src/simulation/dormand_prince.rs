@@ -61,6 +61,7 @@ impl DormandPrince {
         let (model, n) = (driven.model, from.dtheta.len());
         let start = [&vec![0.0; n][..], &from.dtheta, &from.works].concat();
         self.k[0] = [&from.dtheta[..], &from.ddtheta, &from.powers].concat();
+        let mut changes = vec![false; n];
         loop {
             let room = until - from.t;
             // no crumb is left for a last step
@@ -68,7 +69,7 @@ impl DormandPrince {
             if !(h > 1e-13 * from.t.abs().max(1e-3).max(1e-6 * until)) && room > h {
                 return Err(too_short(model, driven.options(), [from.t, h], self.tolerance, self.trouble.sensitive));
             }
-            let mut changes = vec![false; n];
+            changes.fill(false);
             for stage in 1..7 {
                 for i in 0..self.y.len() {
                     self.y[i] = start[i] + h * (0..stage).map(|r| A[stage][r] * self.k[r][i]).sum::<f64>();
@@ -90,7 +91,7 @@ impl DormandPrince {
                 let size = if i < n { 0.0 } else { start[i].abs().max(self.y[i].abs()) };
                 estimate / (self.tolerance * (1.0 + size))
             };
-            self.trouble.changes.iter_mut().zip(changes).for_each(|(count, change)| *count += usize::from(change));
+            self.trouble.changes.iter_mut().zip(&changes).for_each(|(count, &change)| *count += usize::from(change));
             self.trouble.sensitive = (0..n).max_by(|&i, &j| error(n + i).abs().total_cmp(&error(n + j).abs()));
             let mean = (0..2 * n).map(|i| squared(error(i))).sum::<f64>() / (2 * n).max(1) as f64;
             let mean = Scalar::sqrt(mean);

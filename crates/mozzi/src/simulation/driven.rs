@@ -69,6 +69,13 @@ impl<'m> Driven<'m> {
         self.closer.is_some()
     }
 
+    /// Does the start satisfy the constraints? If so, it is brought onto them.
+    pub fn close_start(&mut self, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
+        let Some(closer) = &mut self.closer else { return Ok(()) };
+        closer.check_start(self.model, theta, dtheta)?;
+        closer.close(self.model, 0.0, theta, dtheta)
+    }
+
     /// Positions and velocities brought back onto the constraints.
     pub fn close(&mut self, t: f64, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
         match &mut self.closer {

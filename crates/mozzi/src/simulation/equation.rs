@@ -148,12 +148,8 @@ impl<'m, I: Input> Equation<'m, I> {
         Ok([motor_power, friction_power, applied_power])
     }
 
-    /// Forward dynamics, with constraints if the robot has some.
     fn query(&self) -> Query<'static> {
-        match self.lambda.is_empty() {
-            true => quantities::ForwardDynamics.into(),
-            false => quantities::ConstrainedForwardDynamics.into(),
-        }
+        forward_dynamics_of(self.model)
     }
 
     /// λ of the last evaluation, m numbers: see [`constrained_forward_dynamics`].
@@ -251,4 +247,12 @@ impl<'m, I: Input> Equation<'m, I> {
 /// All of them, NaN is not; without a branch for each.
 fn are_below(values: &[f64], bound: f64) -> bool {
     values.iter().fold(true, |fine, x| fine & (x.abs() < bound))
+}
+
+/// The quantity by which a robot moves: forward dynamics, with constraints if it has some.
+pub fn forward_dynamics_of(model: &Model) -> Query<'static> {
+    match model.constraint_rows() {
+        0 => quantities::ForwardDynamics.into(),
+        _ => quantities::ConstrainedForwardDynamics.into(),
+    }
 }

@@ -203,6 +203,17 @@ impl<S: Real, const K: usize> Motion<S, K> {
         mut F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
     ) -> Result<(), E> {
         self.advance(method, h, t_next, &mut F)?;
+        self.find_rates(F)
+    }
+
+    /// The rates of this state, such as after [`advance`](Self::advance) or a change of it.
+    ///
+    /// # Errors
+    /// Those of F.
+    pub fn find_rates<E>(
+        &mut self,
+        mut F: impl FnMut(f64, &[S], &[S], &mut [S]) -> Result<[S; K], E>,
+    ) -> Result<(), E> {
         self.rates = F(self.t, &self.theta, &self.dtheta, &mut self.ddtheta)?;
         Ok(())
     }

@@ -52,9 +52,9 @@ mod free_base;
 #[cfg(test)]
 mod robots;
 
-pub use closing::Closing;
+pub use closing::{Closer, Closing};
 pub use dormand_prince::dormand_prince_by_equal_steps;
-pub use equation::{Equation, ForwardDynamics, Powers};
+pub use equation::{Equation, ForwardDynamics, Powers, forward_dynamics_of};
 pub use events::{Direction, Event, EventFunction, Occurrence};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
 pub use method::{Explicit, Method, Motion};

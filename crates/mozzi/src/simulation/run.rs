@@ -1,6 +1,6 @@
 //! The one loop: steps, what happens on the way, and the rows that are recorded.
 
-use super::closing::{Closing, check_start};
+use super::closing::Closing;
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
@@ -197,9 +197,8 @@ impl<'r> Course<'r> {
         options.check()?;
         let equation = Equation::new(model, input, &options).with_forward_dynamics(simulation.forward_dynamics)?;
         let mut driven = Driven::new(equation);
-        check_start(model, theta, dtheta)?;
         let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
-        driven.close(0.0, &mut theta, &mut dtheta)?;
+        driven.close_start(&mut theta, &mut dtheta)?;
         let (theta, dtheta) = (&theta[..], &dtheta[..]);
         let integrator = Integrator::new(options.method, model)?;
         let stops = Stops::new(model, options.joint_limits, theta)?;

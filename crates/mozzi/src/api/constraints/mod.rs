@@ -16,6 +16,7 @@ pub use reduction::Reduction;
 
 use crate::constraints::constraint_jacobian;
 use crate::model::{Error, Model, Workspace};
+use crate::scalar::Scalar;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec;
@@ -32,6 +33,14 @@ pub(crate) struct Rows {
     pub phi: DVector<f64>,
 }
 
+impl<C: Scalar> Model<C> {
+    /// The constraint that a row belongs to.
+    pub(crate) fn constraint_of_row(&self, row: usize) -> String {
+        let found = self.ties.list.iter().rposition(|tie| tie.first <= row).unwrap_or(0);
+        self.constraints().get(found).map_or_else(String::new, |one| one.name.clone())
+    }
+}
+
 impl Model<f64> {
     /// At a state of the right lengths.
     pub(crate) fn constraint_rows_at(&self, theta: &[f64], dtheta: &[f64]) -> Rows {
@@ -39,12 +48,6 @@ impl Model<f64> {
         let (mut A, mut bias, mut phi) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; m]);
         constraint_jacobian(self, theta, dtheta, &mut Workspace::new(self), &mut A, &mut bias, &mut phi);
         Rows { A: DMatrix::from_row_slice(m, n, &A), bias: DVector::from_vec(bias), phi: DVector::from_vec(phi) }
-    }
-
-    /// The constraint that a row belongs to.
-    pub(crate) fn constraint_of_row(&self, row: usize) -> String {
-        let found = self.ties.list.iter().rposition(|tie| tie.first <= row).unwrap_or(0);
-        self.constraints().get(found).map_or_else(String::new, |one| one.name.clone())
     }
 
     /// The velocities of joints of these names.

@@ -9,6 +9,9 @@ use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::ToString;
 
+/// A M⁻¹Aᵀ is a full matrix: this many rows fill 128 MiB.
+const MOST_ROWS: usize = 4096;
+
 impl Report<'_> {
     /// See the module.
     pub(super) fn constraints(
@@ -19,6 +22,12 @@ impl Report<'_> {
     ) {
         let d = self.description;
         self.unique(d.constraints.iter().enumerate().map(|(i, one)| (Element::Constraint(i), one.name.as_str())));
+        let rows: usize = d.constraints.iter().map(|one| one.row_names().len()).sum();
+        if rows > MOST_ROWS {
+            let message =
+                format!("has {} constraints of {rows} rows, expected at most {MOST_ROWS}", d.constraints.len());
+            self.error(Element::Robot, "constraints", "too_many_constraints", message);
+        }
         for (i, constraint) in d.constraints.iter().enumerate() {
             let element = Element::Constraint(i);
             match &constraint.kind {
@@ -116,7 +125,10 @@ impl Report<'_> {
             Some(name) => {
                 let link = match frames.get(name.as_str())? {
                     Element::Link(i) => *i,
-                    Element::Frame(i) => d.links.iter().position(|link| link.name == d.frames[*i].link)?,
+                    Element::Frame(i) => match frames.get(d.frames[*i].link.as_str())? {
+                        Element::Link(i) => *i,
+                        _ => return None,
+                    },
                     _ => return None,
                 };
                 Some(rigid(d, tree, link))
