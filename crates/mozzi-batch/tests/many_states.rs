@@ -2,11 +2,11 @@
 #![allow(missing_docs)]
 
 use mozzi::quantities::{
-    CenterOfMassJacobian, ForwardDynamics, GravityForces, InverseDynamics, MassMatrix, Query, Regressor,
-    TaskSpaceDynamics,
+    CenterOfMassJacobian, ConstraintJacobian, ConstraintResidual, ForwardDynamics, GravityForces, InverseDynamics,
+    MassMatrix, Query, Regressor, TaskSpaceDynamics,
 };
 use mozzi::simulation::{Method, Options};
-use mozzi::testing::{Random, floating_tree, state, tree};
+use mozzi::testing::{Random, floating_tree, four_bar, state, tree};
 use mozzi::{Model, Task, TaskFrame};
 use mozzi_batch::{Batch, BatchEnvironment, InstructionSet, Layout, Number};
 
@@ -21,7 +21,11 @@ impl States {
     fn new(model: &Model, count: usize) -> Self {
         let mut all = States { theta: vec![], dtheta: vec![], x: vec![] };
         for k in 0..count {
-            let [theta, dtheta, x] = state(model, k as u64);
+            let [mut theta, mut dtheta, x] = state(model, k as u64);
+            if model.constraint_rows() > 0 {
+                theta = model.assemble(&[1.0 + 0.001 * k as f64, -0.6, 1.6], &[]).expect("closed");
+                dtheta = model.assemble_velocities(&theta, &dtheta, &[]).expect("closed");
+            }
             all.theta.extend(theta);
             all.dtheta.extend(dtheta);
             all.x.extend(x);
@@ -128,10 +132,11 @@ fn many_turns_are_reduced_exactly() {
 
 #[test]
 fn many_robots_move_as_each_alone() {
-    for model in [tree(5, 3, 0), floating_tree(3, 3, 0)] {
+    for model in [tree(5, 3, 0), floating_tree(3, 3, 0), four_bar()] {
         let (count, nq, n) = (601, model.nq(), model.n()); // more than a piece
         let mut states = States::new(&model, count);
         states.dtheta.iter_mut().for_each(|x| *x *= 0.1);
+        states.x.iter_mut().for_each(|x| *x *= if model.constraint_rows() > 0 { 0.1 } else { 1.0 });
         let environment = BatchEnvironment::from(model.environment());
         let (duration, steps) = (0.02, 4);
         for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
@@ -161,6 +166,36 @@ fn many_robots_move_as_each_alone() {
             }
         }
     }
+}
+
+#[test]
+fn loops_stay_closed_in_f32_and_open_starts_are_refused() {
+    let model = four_bar();
+    let (states, environment) = (States::new(&model, 20), model.environment().into());
+    let [mut q, mut v] = [&states.theta, &states.dtheta].map(|x| numbers::<f32>(x));
+    let batch = Batch::<f32>::of(&model);
+    let tau = vec![0.0; v.len()];
+    batch.simulate(&mut q, &mut v, &tau, &environment, Method::RungeKutta4, 0.5, 500).unwrap();
+    let wide = |x: &[f32]| x.iter().map(|&x| f64::from(x)).collect::<Vec<_>>();
+    let (m, mut phi, mut A) = (model.constraint_rows(), vec![0.0; 20 * 5], vec![0.0; 20 * 5 * 3]);
+    let (exact, environment64) = (Batch::new(&model), BatchEnvironment::from(model.environment()));
+    exact.compute(ConstraintResidual, &[&wide(&q)], &environment64, &mut [&mut phi]).unwrap();
+    exact.compute(ConstraintJacobian, &[&wide(&q)], &environment64, &mut [&mut A]).unwrap();
+    assert!(m == 5 && phi.iter().all(|gap| gap.abs() < 2e-6), "{phi:?}");
+    for (A, dtheta) in A.chunks_exact(5 * 3).zip(wide(&v).chunks_exact(3)) {
+        for row in A.chunks_exact(3) {
+            let speed: f64 = row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum();
+            assert!(speed.abs() < 1e-5, "{speed}");
+        }
+    }
+    q[3] += 0.01;
+    let error = batch.simulate(&mut q, &mut v, &tau, &environment, Method::RungeKutta4, 0.5, 500).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("state 1 (counted from 0): the start has a position that violates constraint `loop`"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -44,12 +44,10 @@ fn a_python_that_gives_no_answer() {
         r#"cat > /dev/null; echo '{"library": "mujoco", "version": null, "attempts": [], "error": {"stage": "import", "message": "No module named x"}}'"#,
     );
     let hangs = fake("hangs", "exec sleep 1000");
-    let begin = std::time::Instant::now();
     says(
         &["compare", "ur5", "--python", &hangs, "--time-limit", "0.5"],
         &["no answer within 0.5 s, it was ended", "the program called as Python"],
     );
-    assert!(begin.elapsed().as_secs() < 20);
     says(&["compare", "ur5", "--time-limit", "0"], &["--time-limit is 0 s, expected more than 0"]);
     let crashes = fake("crashes", "cat > /dev/null; kill -SEGV $$");
     says(&["compare", "ur5", "--python", &crashes], &["MuJoCo returned no result", "the fault is MuJoCo's"]);

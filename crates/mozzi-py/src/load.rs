@@ -52,11 +52,17 @@ pub struct Xacro<'py> {
 impl Xacro<'_> {
     fn arguments(&self) -> PyResult<XacroArguments> {
         let mut arguments = XacroArguments::default();
+        let wrong = |of: &str, found: &Bound<'_, PyAny>, expected| {
+            PyTypeError::new_err(format!("{of} is {found:?}, expected {expected}"))
+        };
         for (name, value) in self.values.iter().flatten() {
-            arguments.values.push((name.extract()?, value.str()?.extract()?));
+            let name = name.extract().map_err(|_| wrong("a name in xacro_args", &name, "a str"))?;
+            arguments.values.push((name, value.str()?.extract()?));
         }
         for (name, folder) in self.packages.iter().flatten() {
-            arguments.packages.push((name.extract()?, folder.extract()?));
+            let name: String = name.extract().map_err(|_| wrong("a name in packages", &name, "a str"))?;
+            let folder = folder.extract().map_err(|_| wrong(&format!("packages[{name:?}]"), &folder, "a folder"))?;
+            arguments.packages.push((name, folder));
         }
         Ok(arguments)
     }

@@ -112,6 +112,22 @@ def test_a_motion_stays_closed(four_bar, state):
         four_bar.simulate(GUESS, [0, 0, 0], 1.0, 10)
 
 
+def test_many_starts_move_as_each_alone(four_bar, state):
+    driven = four_bar.with_constraints(HINGE, motors=["crank"])
+    starts = [driven.assemble([angle, -0.6, 1.6], hold=["crank"]) for angle in (0.9, 1.0, 1.1)]
+    rates = [driven.assemble_velocities(theta, [0.5, 0, 0], hold=["crank"]) for theta in starts]
+    pushed = lambda t, theta, dtheta: np.concatenate([np.full(theta.shape[:-1] + (1,), np.sin(t)), 0 * theta[..., 1:]], -1)
+    for torque in [None, [0.3, 0, 0], "gravity_compensation", pushed]:
+        many = driven.simulate(starts, rates, 0.5, 100, torque=torque)
+        for k in range(3):
+            one = driven.simulate(starts[k], rates[k], 0.5, 100, torque=torque)
+            for name in ["theta", "dtheta", "ddtheta", "tau"]:
+                assert_close(getattr(many, name)[k], getattr(one, name), tolerance=1e-9)
+            assert abs(driven.constraint_residual(many.theta[k])).max() < 1e-13
+    with pytest.raises(ValueError, match=r"state \[1\]: the start has a position that violates constraint `loop`"):
+        driven.simulate([starts[0], GUESS], rates[:2], 0.1, 10)
+
+
 def test_constraints_are_data(tree, four_bar, tmp_path):
     assert tree.constraints == [] and four_bar.without_constraints() == tree
     again = tree.with_constraints(four_bar.constraints)

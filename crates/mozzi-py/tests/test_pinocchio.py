@@ -1,44 +1,23 @@
-"""Every quantity that Pinocchio has, beside it. The conversions are written out here, apart from those of mozzi."""
+"""Every quantity that Pinocchio has, beside it."""
 
 import mozzi
 import numpy as np
 import pinocchio as pin
 import pytest
+from beside_pinocchio import Beside
 from conftest import MODELS, assert_close, positions, tip
 
 SWAP = [3, 4, 5, 0, 1, 2]  # linear first, as Pinocchio has six-vectors
 
 
-class Beside:
-    """A robot of both libraries, and random states of it in both conventions."""
+class Quantities(Beside):
+    """With a frame to look at."""
 
     def __init__(self, name, floating):
-        self.robot = getattr(mozzi.models, name)(floating=floating)
-        path = str(MODELS / f"{name}.urdf")
-        free = (pin.JointModelFreeFlyer(),) if floating else ()
-        self.pin = pin.buildModelFromUrdf(path, *free, mimic=True)
-        self.pin.armature[:] = 0.0
-        self.data = self.pin.createData()
+        super().__init__(getattr(mozzi.models, name)(floating=floating), MODELS / f"{name}.urdf", mimic=True)
         self.has_mimic = any("Mimic" in joint.shortname() for joint in self.pin.joints)
         self.frame = tip(self.robot)
         self.frame_id = self.pin.getFrameId(self.frame)
-        base = [3, 4, 5, 0, 1, 2] if floating else []
-        ids = [self.pin.getJointId(joint) for joint in self.robot.joint_names]
-        self.v = np.array(base + [self.pin.idx_vs[i] for i in ids])  # θ̇ = ν[v]
-        self.q = [(self.pin.idx_qs[i], self.pin.nqs[i]) for i in ids]
-
-    def configuration(self, theta):
-        q = pin.neutral(self.pin)
-        if self.robot.is_floating:
-            q[:3], q[3:7] = theta[4:7], [*theta[1:4], theta[0]]
-        for (at, nq), angle in zip(self.q, theta[self.robot.nq - len(self.q) :]):
-            q[at : at + nq] = [np.cos(angle), np.sin(angle)] if nq == 2 else angle
-        return q
-
-    def velocity(self, dtheta):
-        v = np.zeros(self.pin.nv)
-        v[self.v] = dtheta
-        return v
 
     def columns(self, J):
         return J[SWAP][:, self.v]
@@ -46,7 +25,7 @@ class Beside:
 
 @pytest.fixture(params=[("ur5", False), ("panda", False), ("anymal", False), ("anymal", True), ("furuta_pendulum", False)])
 def both(request):
-    return Beside(*request.param)
+    return Quantities(*request.param)
 
 
 def states(both, random, count=5):

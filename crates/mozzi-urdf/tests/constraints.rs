@@ -203,7 +203,7 @@ fn what_is_wrong_in_a_file_has_its_place() {
         (
             "\"xyz\": [0.3, 0.1, 0]",
             "\"xyz\": [0.3, 0.1]",
-            "2:61: constraints[0].a.xyz is a list of 2, expected 3 numbers",
+            "2:58: constraints[0].a.xyz is a list of 2, expected 3 numbers",
         ),
         (
             "\"rpy\"",

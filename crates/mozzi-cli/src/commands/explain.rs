@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::text::{page_width, width};
 use clap::Args;
-use mozzi_urdf::{explain, mjcf, nearest_code};
+use mozzi_urdf::{explain, mjcf, nearest_code, remedy};
 use std::collections::BTreeSet;
 
 #[derive(Args, Debug)]
@@ -23,7 +23,9 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
         Some(text) => {
             let is_urdf = mozzi_urdf::codes().any(|code| code == short) && !asked.starts_with("mozzi::mjcf::");
             let language = if is_urdf { "urdf" } else { "mjcf" };
-            Ok(format!("mozzi::{language}::{short}\n\n{}", wrapped(text)))
+            let remedy =
+                remedy(asked).map(|text| format!("\n{}", wrapped(&format!("Remedy: {text}.")))).unwrap_or_default();
+            Ok(format!("mozzi::{language}::{short}\n\n{}{remedy}", wrapped(text)))
         }
         None => {
             let hint = match nearest_code(asked) {

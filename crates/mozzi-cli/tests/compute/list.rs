@@ -2,8 +2,8 @@
 
 use crate::common::{assert_close, folder, json, mozzi, numbers, text};
 use crate::files::read_npz;
-use crate::largest;
 use crate::states::States;
+use crate::{largest, tied};
 use mozzi::quantities::{LIST, Of, Uses};
 use serde_json::Value;
 
@@ -21,7 +21,7 @@ fn flat(value: &Value) -> Vec<f64> {
 #[test]
 fn every_quantity_is_the_same_at_one_state_and_in_a_table() {
     let folder = folder("compute_list");
-    let model = mozzi_urdf::open("ur5").expect("a robot").build().expect("a model");
+    let (model, rod) = tied(&folder);
     let states = States::new(&model, 3);
     let input = states.npz(&folder, "states.npz");
     for declaration in LIST {
@@ -33,7 +33,7 @@ fn every_quantity_is_the_same_at_one_state_and_in_a_table() {
             Of::Point => &["--about", "0.1,-0.2,0.3"],
         };
         let out = folder.join(format!("{name}.npz")).to_str().expect("text").to_string();
-        text(&[&["compute", "ur5", &name, "--in", &input, "--out", &out], subject].concat());
+        text(&[&["compute", "ur5", &name, "--constraints", &rod, "--in", &input, "--out", &out], subject].concat());
         let table = read_npz(&out);
         let names: Vec<&str> = table.iter().map(|(name, ..)| name.as_str()).collect();
         assert_eq!(names, declaration.outputs.iter().map(|output| output.name).collect::<Vec<_>>());
@@ -48,7 +48,7 @@ fn every_quantity_is_the_same_at_one_state_and_in_a_table() {
             }
             let flags: Vec<&str> = flags.iter().map(String::as_str).collect();
             // the name with underscores
-            let found = json(&[&["compute", "ur5", declaration.name], subject, &flags].concat());
+            let found = json(&[&["compute", "ur5", declaration.name, "--constraints", &rod], subject, &flags].concat());
             for input in declaration.inputs {
                 assert_eq!(numbers(&found[input.name]), states.at(place(input.name), state), "{name}");
             }
@@ -58,7 +58,7 @@ fn every_quantity_is_the_same_at_one_state_and_in_a_table() {
                 assert_eq!(one.len(), width, "{name}: {output} {shape}");
                 assert_close(&one, &values[state * width..][..width], 1e-11 * largest(values));
             }
-            let page = text(&[&["compute", "ur5", &name], subject, &flags].concat());
+            let page = text(&[&["compute", "ur5", &name, "--constraints", &rod], subject, &flags].concat());
             assert!(page.contains(declaration.formula), "{page}");
         }
     }

@@ -132,7 +132,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
 }
 
 /// Symbols and what they are in plain letters, longer ones first.
-const LETTERS: [(&str, &str); 45] = [
+const LETTERS: [(&str, &str); 46] = [
     ("θ̈", "ddtheta"),
     ("θ̇", "dtheta"),
     ("θ_j", "theta_j"),
@@ -148,6 +148,7 @@ const LETTERS: [(&str, &str); 45] = [
     ("𝒱", "V"),
     ("𝓕", "F"),
     ("Λ", "Lambda"),
+    ("λ", "lambda"),
     ("η", "eta"),
     ("μ", "mu"),
     ("π", "pi"),

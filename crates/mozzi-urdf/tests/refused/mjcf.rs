@@ -77,7 +77,8 @@ fn what_has_no_place_is_refused_by_name() {
             "equality: weld `w`: body2: there is no body `c`",
         ),
         (
-            pair!("<equality><connect site1='§s' site2='t'/></equality>"),
+            "<mujoco><worldbody><body name='b'><joint/><geom size='1'/><site name='t'/></body></worldbody>\
+             <equality><connect site1='§s' site2='t'/></equality></mujoco>",
             "unknown_frame",
             "equality: connect: site1: there is no site `s`",
         ),

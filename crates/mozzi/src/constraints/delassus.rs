@@ -9,8 +9,8 @@
 //! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021).
 
 use crate::dynamics::composite_inertias;
-use crate::linalg::ldlt;
-use crate::model::{Model, Workspace};
+use crate::linalg::{dense_ldlt, ldlt};
+use crate::model::{Model, Tie, Workspace};
 use crate::scalar::Scalar;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -29,11 +29,11 @@ pub struct ConstraintMemory<S = f64> {
     pub(crate) M: Vec<S>,
     /// Y = A L⁻¹, m × n.
     pub(crate) Y: Vec<S>,
-    /// G, m × m, its lower triangle.
+    /// G, m × m.
     G: Vec<S>,
     /// The factors of G + ρ1.
     factors: Vec<S>,
-    pivots: Vec<S>,
+    one_over_d: Vec<S>,
     /// b − Gλ.
     residual: Vec<S>,
     /// m and n numbers.
@@ -53,7 +53,7 @@ impl<S: Scalar> ConstraintMemory<S> {
             Y: vec![o; m * n],
             G: vec![o; m * m],
             factors: vec![o; m * m],
-            pivots: vec![o; m],
+            one_over_d: vec![o; m],
             residual: vec![o; m],
             right: vec![o; m],
             lambda: vec![o; m],
@@ -64,8 +64,8 @@ impl<S: Scalar> ConstraintMemory<S> {
     /// Sets every number to NaN.
     pub(crate) fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
-        let ConstraintMemory { A, dA_dtheta, M, Y, G, factors, pivots, residual, right, lambda, vector } = self;
-        for list in [A, dA_dtheta, M, Y, G, factors, pivots, residual, right, lambda, vector] {
+        let ConstraintMemory { A, dA_dtheta, M, Y, G, factors, one_over_d, residual, right, lambda, vector } = self;
+        for list in [A, dA_dtheta, M, Y, G, factors, one_over_d, residual, right, lambda, vector] {
             list.fill(nan);
         }
     }
@@ -78,29 +78,22 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     memory: &mut ConstraintMemory<S>,
 ) {
-    let (m, n, pattern) = (model.ties.rows, model.n(), &model.structure.pattern);
-    let ConstraintMemory { A, M, Y, G, factors, pivots, vector, .. } = memory;
-    composite_inertias(model, workspace, M);
-    ldlt::factor(pattern, M, &mut workspace.pivots);
-    Y.copy_from_slice(A);
-    let scaled = &mut vector[..n];
+    let (m, n) = (model.ties.rows, model.n());
+    composite_inertias(model, workspace, &mut memory.M);
+    ldlt::factor(&model.structure.pattern, &mut memory.M, &mut workspace.pivots);
+    for j in 0..n {
+        memory.vector[j] = S::one() / memory.M[j * n + j];
+    }
+    memory.Y.copy_from_slice(&memory.A);
     for tie in &model.ties.list {
-        for r in tie.first..tie.first + tie.kind.rows() {
-            let y = &mut Y[r * n..][..n];
-            ldlt::solve_transposed(pattern, M, y, tie.support.iter().copied()); // Lᵀy = a
-            for &j in &tie.support {
-                scaled[j] = y[j] / M[j * n + j];
-            }
-            for s in 0..=r {
-                let other = &Y[s * n..][..n];
-                let mut sum = S::zero();
-                for &j in &tie.support {
-                    sum = scaled[j].mul_add(other[j], sum);
-                }
-                G[r * m + s] = sum;
-            }
+        match tie.kind.rows() {
+            1 => add_rows::<1, S, C>(model, tie, memory),
+            3 => add_rows::<3, S, C>(model, tie, memory),
+            5 => add_rows::<5, S, C>(model, tie, memory),
+            _ => add_rows::<6, S, C>(model, tie, memory),
         }
     }
+    let ConstraintMemory { G, factors, one_over_d, .. } = memory;
     let mut trace = S::from_f64(1e-30); // no row can move: 0/ρ stays 0
     for r in 0..m {
         trace += G[r * m + r];
@@ -110,7 +103,42 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
     for r in 0..m {
         factors[r * m + r] += rho;
     }
-    ldlt::factor(&model.ties.dense, factors, pivots);
+    dense_ldlt::factor(factors, one_over_d);
+}
+
+/// R rows of Y, LᵀY = Aᵀ, and of G, with the rows before them: side by side, since each number of one row waits for the
+/// one before it. `vector` holds 1/D.
+#[cfg_attr(not(test), inline(always))]
+fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>, memory: &mut ConstraintMemory<S>) {
+    let (m, n, pattern) = (model.ties.rows, model.n(), &model.structure.pattern);
+    let ConstraintMemory { M, Y, G, vector, .. } = memory;
+    let (before, Y_tie) = Y[..(tie.first + R) * n].split_at_mut(tie.first * n);
+    for &k in &tie.support {
+        let L = &M[k * n..][..n];
+        let mut y = [S::zero(); R];
+        for r in 0..R {
+            y[r] = Y_tie[r * n + k];
+        }
+        for i in pattern.ancestors(k) {
+            for r in 0..R {
+                Y_tie[r * n + i] = L[i].mul_add(-y[r], Y_tie[r * n + i]);
+            }
+        }
+    }
+    for s in 0..tie.first + R {
+        let row = if s < tie.first { &before[s * n..][..n] } else { &Y_tie[(s - tie.first) * n..][..n] };
+        let mut sums = [S::zero(); R];
+        for &j in &tie.support {
+            let scaled = row[j] * vector[j];
+            for r in 0..R {
+                sums[r] = Y_tie[r * n + j].mul_add(scaled, sums[r]);
+            }
+        }
+        for r in 0..R {
+            G[(tie.first + r) * m + s] = sums[r];
+            G[s * m + tie.first + r] = sums[r];
+        }
+    }
 }
 
 /// ρ over the mean diagonal entry of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
@@ -123,19 +151,18 @@ fn relative_rho<S: Scalar>() -> f64 {
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>) {
     let m = model.ties.rows;
-    let ConstraintMemory { G, factors, residual, right, lambda, .. } = memory;
+    let ConstraintMemory { G, factors, one_over_d, residual, right, lambda, .. } = memory;
     lambda.copy_from_slice(right);
-    ldlt::solve(&model.ties.dense, factors, lambda);
+    dense_ldlt::solve(factors, one_over_d, lambda);
     for _ in 1..REFINEMENTS {
         for r in 0..m {
             let mut sum = right[r];
             for s in 0..m {
-                let g = G[r.max(s) * m + r.min(s)];
-                sum = g.mul_add(-lambda[s], sum);
+                sum = G[r * m + s].mul_add(-lambda[s], sum);
             }
             residual[r] = sum;
         }
-        ldlt::solve(&model.ties.dense, factors, residual);
+        dense_ldlt::solve(factors, one_over_d, residual);
         for r in 0..m {
             lambda[r] += residual[r];
         }

@@ -50,7 +50,7 @@ pub fn constrained_forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     // w = L⁻ᵀ(τ − h − f), b = Y D⁻¹w + Ȧθ̇, θ̈ = L⁻¹D⁻¹(w − Yᵀλ)
     ldlt::solve_transposed_all(pattern, &memory.M, ddtheta);
     for j in 0..n {
-        memory.vector[j] = ddtheta[j] / memory.M[j * n + j];
+        memory.vector[j] = ddtheta[j] * memory.vector[j]; // which held 1/D
     }
     memory.right.copy_from_slice(&memory.dA_dtheta);
     add_products(model, &memory.Y, &memory.vector, &mut memory.right);

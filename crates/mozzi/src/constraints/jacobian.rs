@@ -2,9 +2,10 @@
 
 use super::relative_motion::{RelativeMotion, relative_motion, z_of};
 use crate::kinematics::joint_transforms;
+use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::description::Closure;
-use crate::model::{Model, Own, TieKind, Workspace};
+use crate::model::{End, Model, Own, TieKind, Way, Workspace};
 use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
@@ -53,110 +54,143 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
     }
     A.fill(S::zero());
     for tie in &model.ties.list {
-        let first = tie.first;
-        let mut set = |row: usize, bias: S, residual: S| {
-            if let Some(x) = dA_dtheta.get_mut(first + row) {
-                *x = bias;
-            }
-            if let Some(x) = phi.get_mut(first + row) {
-                *x = residual;
-            }
-        };
+        let rows = tie.first..tie.first + tie.kind.rows();
+        let A = if A.is_empty() { &mut [][..] } else { &mut A[rows.start * n..rows.end * n] };
+        let dA_dtheta = dA_dtheta.get_mut(rows.clone()).unwrap_or_default();
+        let phi = phi.get_mut(rows).unwrap_or_default();
         match &tie.kind {
             TieKind::Joint { joint, source, polynomial } => {
-                let value = |own: &Own<C>| S::from(own.ratio).mul_add(theta[own.q], S::from(own.offset));
-                let [c0, c1, c2, c3, c4] = polynomial.map(S::from);
-                let (x, dx) = source
-                    .as_ref()
-                    .map_or((S::zero(), S::zero()), |own| (value(own), S::from(own.ratio) * dtheta[own.j]));
-                let (two, three, four) = (S::from_f64(2.0), S::from_f64(3.0), S::from_f64(4.0));
-                let (six, twelve) = (S::from_f64(6.0), S::from_f64(12.0));
-                let f = x.mul_add(x.mul_add(x.mul_add(x.mul_add(c4, c3), c2), c1), c0);
-                let df = x.mul_add(x.mul_add(x.mul_add(four * c4, three * c3), two * c2), c1);
-                let ddf = x.mul_add(x.mul_add(twelve * c4, six * c3), two * c2);
-                if !A.is_empty() {
-                    let row = &mut A[first * n..][..n];
-                    row[joint.j] += S::from(joint.ratio);
-                    if let Some(own) = source {
-                        row[own.j] -= df * S::from(own.ratio);
-                    }
-                }
-                set(0, -(ddf * dx * dx), value(joint) - f);
+                joint_row(theta, dtheta, (joint, source.as_ref(), polynomial), A, dA_dtheta, phi);
             }
-            TieKind::Frames { a, b, closure: Closure::Point } => {
-                let motion = relative_motion(model, theta, dtheta, [a, b], workspace, |j, J| {
-                    add_to_rows(A, n, first, j, J.v.0);
-                });
-                for k in 0..3 {
-                    set(k, motion.bias.v.0[k], motion.T.p.0[k]);
-                }
-            }
-            TieKind::Frames { a, b, closure: Closure::Weld } => {
-                let motion = relative_motion(model, theta, dtheta, [a, b], workspace, |j, J| {
-                    add_to_rows(A, n, first, j, J.to_array());
-                });
-                let (bias, residual) =
-                    (motion.bias.to_array(), Twist { w: rotation(&motion), v: motion.T.p }.to_array());
-                for k in 0..6 {
-                    set(k, bias[k], residual[k]);
-                }
-            }
-            TieKind::Frames { a, b, closure: Closure::Hinge } => {
-                let motion = relative_motion(model, theta, dtheta, [a, b], workspace, |j, J| {
-                    let [wx, wy, _, vx, vy, vz] = J.to_array();
-                    add_to_rows(A, n, first, j, [wx, wy, vx, vy, vz]);
-                });
-                let [wx, wy, _, vx, vy, vz] = motion.bias.to_array();
-                let (bias, z, p) = ([wx, wy, vx, vy, vz], z_of(motion.T).0, motion.T.p.0);
-                let residual = [-z[1], z[0], p[0], p[1], p[2]];
-                for k in 0..5 {
-                    set(k, bias[k], residual[k]);
-                }
-            }
-            TieKind::Frames { a, b, closure: Closure::Distance(length) } => {
-                // the wrench's direction needs T_ab, which the first call finds
-                let one_over = S::one() / S::from(*length);
-                let RelativeMotion { T, V, bias } = relative_motion(model, theta, dtheta, [a, b], workspace, |_, _| {});
-                let along = T.p * one_over;
-                if !A.is_empty() {
-                    relative_motion(model, theta, dtheta, [a, b], workspace, |j, J| {
-                        add_to_rows(A, n, first, j, [along.dot(J.v)]);
-                    });
-                }
-                let half = S::from_f64(0.5);
-                set(0, V.v.dot(V.v) * one_over + along.dot(bias.v), (T.p.dot(along) - S::from(*length)) * half);
-            }
-            TieKind::Frames { a, b, closure: Closure::Rolling(radius) } => {
-                let radius = S::from(*radius);
-                let motion = relative_motion(model, theta, dtheta, [a, b], workspace, |_, _| {});
-                let wheel = Wheel::new(&motion);
-                let arm = wheel.up * -radius; // from the centre to the lowest point
-                if !A.is_empty() {
-                    relative_motion(model, theta, dtheta, [a, b], workspace, |j, J| {
-                        add_to_rows(A, n, first, j, (J.v + J.w.cross(arm)).0);
-                    });
-                }
-                let rate = wheel.rate(&motion) * -radius;
-                let bias = motion.bias.v + motion.bias.w.cross(arm) + motion.V.w.cross(rate);
-                let height = motion.T.p.0[2] - radius * wheel.size;
-                let residual = [S::zero(), S::zero(), height];
-                for k in 0..3 {
-                    set(k, bias.0[k], residual[k]);
-                }
+            TieKind::Frames { a, b, closure } => {
+                frame_rows(model, theta, dtheta, ([a, b], closure), workspace, A, dA_dtheta, phi);
             }
         }
     }
 }
 
-/// Adds a column's part to rows.
+/// The row of θ_j − Σ c_k θ_iᵏ = 0.
 #[inline(always)]
-fn add_to_rows<S: Scalar, const K: usize>(A: &mut [S], n: usize, first: usize, j: usize, column: [S; K]) {
+fn joint_row<S: Scalar + From<C>, C: Scalar>(
+    theta: &[S],
+    dtheta: &[S],
+    (joint, source, polynomial): (&Own<C>, Option<&Own<C>>, &[C; 5]),
+    A: &mut [S],
+    dA_dtheta: &mut [S],
+    phi: &mut [S],
+) {
+    let [c0, c1, c2, c3, c4] = polynomial.map(S::from);
+    let (x, dx) = match source {
+        Some(own) => (own.position(theta), S::from(own.ratio) * dtheta[own.j]),
+        None => (S::zero(), S::zero()),
+    };
+    let (two, three, four) = (S::from_f64(2.0), S::from_f64(3.0), S::from_f64(4.0));
+    let (six, twelve) = (S::from_f64(6.0), S::from_f64(12.0));
+    let f = x.mul_add(x.mul_add(x.mul_add(x.mul_add(c4, c3), c2), c1), c0);
+    let df = x.mul_add(x.mul_add(x.mul_add(four * c4, three * c3), two * c2), c1);
+    let ddf = x.mul_add(x.mul_add(twelve * c4, six * c3), two * c2);
+    if !A.is_empty() {
+        A[joint.j] += S::from(joint.ratio);
+        if let Some(own) = source {
+            A[own.j] -= df * S::from(own.ratio);
+        }
+    }
+    set(dA_dtheta, [-(ddf * dx * dx)]);
+    set(phi, [joint.position(theta) - f]);
+}
+
+/// The rows between two anchors.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // a state, a constraint, and its rows
+fn frame_rows<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    (ends, closure): ([&End<C>; 2], &Closure<C>),
+    workspace: &mut Workspace<S>,
+    A: &mut [S],
+    dA_dtheta: &mut [S],
+    phi: &mut [S],
+) {
+    let motion = relative_motion(model, theta, dtheta, ends, workspace);
+    let RelativeMotion { T, V, bias, .. } = &motion;
+    let mut direction = Vec3::zero(); // which the rows of distances and wheels depend on
+    match closure {
+        Closure::Point => {
+            set(dA_dtheta, bias.v.0);
+            set(phi, T.p.0);
+        }
+        Closure::Weld => {
+            set(dA_dtheta, bias.to_array());
+            set(phi, Twist { w: rotation(&motion), v: T.p }.to_array());
+        }
+        Closure::Hinge => {
+            let (z, p) = (z_of(*T).0, T.p.0);
+            set(dA_dtheta, without_wz(*bias));
+            set(phi, [-z[1], z[0], p[0], p[1], p[2]]);
+        }
+        Closure::Distance(length) => {
+            let (length, half) = (S::from(*length), S::from_f64(0.5));
+            let one_over = S::one() / length;
+            direction = T.p * one_over;
+            set(dA_dtheta, [V.v.dot(V.v) * one_over + direction.dot(bias.v)]);
+            set(phi, [(T.p.dot(direction) - length) * half]);
+        }
+        Closure::Rolling(radius) => {
+            let radius = S::from(*radius);
+            let wheel = Wheel::new(*T);
+            direction = wheel.up * -radius; // from the centre to the lowest point
+            let rate = wheel.rate(V.w) * -radius;
+            set(dA_dtheta, (bias.v + bias.w.cross(direction) + V.w.cross(rate)).0);
+            set(phi, [S::zero(), S::zero(), T.p.0[2] - radius * wheel.size]);
+        }
+    }
     if A.is_empty() {
         return;
     }
-    for (k, x) in column.into_iter().enumerate() {
-        A[(first + k) * n + j] += x;
+    let n = model.n();
+    for (_, slot) in Way::new(&model.links, ends.map(|end| end.slot)) {
+        add_column(closure, direction, workspace.V[slot], &mut A[model.links[slot - 1].j..], n);
     }
+    if let Some(six) = motion.by_base {
+        for (j, J) in six.into_iter().enumerate() {
+            add_column(closure, direction, J, &mut A[j..], n);
+        }
+    }
+}
+
+/// Adds what a velocity with these ω and ṗ contributes to the rows: `A` begins at its column.
+#[inline(always)]
+fn add_column<S: Scalar, C>(closure: &Closure<C>, direction: Vec3<S>, J: Twist<S>, A: &mut [S], n: usize) {
+    match closure {
+        Closure::Point => add(A, n, J.v.0),
+        Closure::Weld => add(A, n, J.to_array()),
+        Closure::Hinge => add(A, n, without_wz(J)),
+        Closure::Distance(_) => add(A, n, [direction.dot(J.v)]),
+        Closure::Rolling(_) => add(A, n, (J.v + J.w.cross(direction)).0),
+    }
+}
+
+#[inline(always)]
+fn add<S: Scalar, const K: usize>(A: &mut [S], n: usize, column: [S; K]) {
+    for k in 0..K {
+        A[k * n] += column[k];
+    }
+}
+
+/// Rows of an output that may be empty.
+#[inline(always)]
+fn set<S: Scalar, const K: usize>(rows: &mut [S], values: [S; K]) {
+    if !rows.is_empty() {
+        rows.copy_from_slice(&values);
+    }
+}
+
+/// What a hinge about z keeps.
+#[inline(always)]
+fn without_wz<S: Scalar>(V: Twist<S>) -> [S; 5] {
+    let [wx, wy, _, vx, vy, vz] = V.to_array();
+    [wx, wy, vx, vy, vz]
 }
 
 /// 2 sin(α/2) times the axis of the rotation by α from {a} to {b}.
@@ -180,27 +214,26 @@ struct Wheel<S> {
 }
 
 impl<S: Scalar> Wheel<S> {
-    fn new(motion: &RelativeMotion<S>) -> Self {
-        let axis = z_of(motion.T);
-        let w = Self::normal() - axis * axis.0[2];
+    #[inline(always)]
+    fn new(T_ab: SE3<S>) -> Self {
+        let axis = z_of(T_ab);
+        let normal = Vec3([S::zero(), S::zero(), S::one()]);
+        let w = normal - axis * axis.0[2];
         let size = w.norm();
         Wheel { axis, up: w * (S::one() / size), size }
     }
 
-    fn normal() -> Vec3<S> {
-        Vec3([S::zero(), S::zero(), S::one()])
-    }
-
-    /// d(up)/dt.
-    fn rate(&self, motion: &RelativeMotion<S>) -> Vec3<S> {
-        let turning = motion.V.w.cross(self.axis);
+    /// d(up)/dt of a wheel that turns with ω.
+    #[inline(always)]
+    fn rate(&self, w: Vec3<S>) -> Vec3<S> {
+        let turning = w.cross(self.axis);
         let dw = -(self.axis * turning.0[2] + turning * self.axis.0[2]);
         (dw - self.up * self.up.dot(dw)) * (S::one() / self.size)
     }
 }
 
 /// The wrench that the constraint's multipliers stand for: in the axes of {a}, about the origin of {b}.
-pub(crate) fn wrench_of(closure: Closure, T_ab: crate::SE3, lambda: &[f64]) -> Wrench {
+pub(crate) fn wrench_of(closure: Closure, T_ab: SE3, lambda: &[f64]) -> Wrench {
     let vector = |k: usize| Vec3([lambda[k], lambda[k + 1], lambda[k + 2]]);
     match closure {
         Closure::Point => Wrench { m: Vec3::zero(), f: vector(0) },
@@ -208,8 +241,7 @@ pub(crate) fn wrench_of(closure: Closure, T_ab: crate::SE3, lambda: &[f64]) -> W
         Closure::Hinge => Wrench { m: Vec3([lambda[0], lambda[1], 0.0]), f: vector(2) },
         Closure::Distance(length) => Wrench { m: Vec3::zero(), f: T_ab.p * (lambda[0] / length) },
         Closure::Rolling(radius) => {
-            let motion = RelativeMotion { T: T_ab, V: Twist::zero(), bias: Twist::zero() };
-            let arm = Wheel::new(&motion).up * -radius;
+            let arm = Wheel::new(T_ab).up * -radius;
             Wrench { m: arm.cross(vector(0)), f: vector(0) }
         }
     }

@@ -3,7 +3,7 @@
 use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{End, Model, Workspace};
+use crate::model::{End, Model, Way, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{JointAxis, Twist};
 
@@ -15,6 +15,8 @@ pub(super) struct RelativeMotion<S> {
     pub V: Twist<S>,
     /// dω/dt and p̈ at θ̈ = 0.
     pub bias: Twist<S>,
+    /// The Jacobian's columns of a floating base, where it carries one of the anchors alone.
+    pub by_base: Option<[Twist<S>; 6]>,
 }
 
 /// The twist of an anchor relative to a link on its way to the base, and its rate at θ̈ = 0, in the anchor's
@@ -29,20 +31,23 @@ struct Side<S> {
 }
 
 impl<S: Scalar> Side<S> {
+    #[inline(always)]
     fn at(T: SE3<S>) -> Self {
         Side { T: T.inverse(), V: Twist::zero(), V_J: Twist::zero(), dV: Twist::zero() }
     }
 
     /// The acceleration of the anchor's origin, and its angular acceleration.
+    #[inline(always)]
     fn classical(&self) -> Twist<S> {
         Twist { w: self.dV.w, v: self.dV.v + self.V.w.cross(self.V.v) }
     }
 }
 
 /// The motion of {b} relative to {a}. Both are followed to the link that carries them both, so that what moves this
-/// link does not enter. `add(j, J)` gets each column of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
+/// link does not enter.
 ///
-/// The workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds the columns as the anchors see them.
+/// The workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the [`Way`] of the anchors, the columns of
+/// the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
 #[inline(always)]
 pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -50,30 +55,26 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     dtheta: &[S],
     [a, b]: [&End<C>; 2],
     workspace: &mut Workspace<S>,
-    mut add: impl FnMut(usize, Twist<S>),
 ) -> RelativeMotion<S> {
     let Workspace { T, V: columns, .. } = workspace;
-    let mut sides = [a, b].map(|end| Side::at(end.T.map(S::from)));
-    let mut slots = [a, b].map(|end| end.slot.unwrap_or(0));
-    while slots[0] != slots[1] {
-        let k = usize::from(slots[1] > slots[0]); // the one that is further from the base
-        let (side, link) = (&mut sides[k], model.link::<S>(slots[k]));
+    let mut sides = [Side::at(a.T.map(S::from)), Side::at(b.T.map(S::from))];
+    for (k, slot) in Way::new(&model.links, [a.slot, b.slot]) {
+        let (side, link) = (&mut sides[k], model.link::<S>(slot));
         let J = seen(side.T, link.A());
         if link.is_last {
             side.V_J = side.V;
         }
         side.dV += J.ad() * side.V_J * dtheta[link.j];
         side.V += J * dtheta[link.j];
-        side.T = side.T * T[slots[k]];
-        columns[slots[k]] = J;
-        slots[k] = link.parent;
+        side.T = side.T * T[slot];
+        columns[slot] = J;
     }
     // from a floating base to {s}
-    let by_base = (a.slot.is_none() != b.slot.is_none()).then_some(usize::from(a.slot.is_none()));
-    let mut base = None;
-    if let (Some(k), Some(&V_0)) = (by_base, dtheta.first_chunk()) {
+    let mut carried = None;
+    if let (true, Some(&V_0)) = (a.slot.is_none() != b.slot.is_none(), dtheta.first_chunk()) {
+        let k = usize::from(a.slot.is_none());
         let side = &mut sides[k];
-        base = Some((k, side.T));
+        carried = Some((k, side.T));
         let V_0 = side.T.Ad() * Twist::from_array(V_0);
         side.dV += V_0.ad() * side.V;
         side.V += V_0;
@@ -84,25 +85,25 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     let [of_a, of_b] = &sides;
     let T_ab = of_a.T * of_b.T.inverse();
     let (R, p) = (T_ab.R, T_ab.p);
-    let column = |k: usize, J: Twist<S>| match k {
-        0 => Twist { w: -J.w, v: -(J.v + J.w.cross(p)) },
-        _ => Twist { w: R * J.w, v: R * J.v },
-    };
-    let mut slots = [a, b].map(|end| end.slot.unwrap_or(0));
-    while slots[0] != slots[1] {
-        let k = usize::from(slots[1] > slots[0]);
-        let link = model.link::<S>(slots[k]);
-        add(link.j, column(k, columns[slots[k]]));
-        slots[k] = link.parent;
+    for (k, slot) in Way::new(&model.links, [a.slot, b.slot]) {
+        let J = columns[slot];
+        columns[slot] = match k {
+            0 => Twist { w: -J.w, v: -(J.v + J.w.cross(p)) },
+            _ => Twist { w: R * J.w, v: R * J.v },
+        };
     }
-    if let Some((k, T)) = base {
-        // Ad_T e: turns (R e, p × R e), slides (0, R e), then as `column`, which is linear, has it
+    let mut by_base = None;
+    if let Some((k, T)) = carried {
+        // Ad_T e: turns (R e, p × R e), slides (0, R e), then as the columns above, which are linear
         let axes = T.R.inverse().matrix(); // R e_x, R e_y, R e_z
-        for (j, z) in [axes.x, axes.y, axes.z].into_iter().enumerate() {
-            let (z, p_0) = if k == 0 { (-z, T.p - p) } else { (R * z, R * T.p) };
-            add(j, Twist { w: z, v: p_0.cross(z) });
-            add(j + 3, Twist { w: Vec3::zero(), v: z });
+        let axes = [axes.x, axes.y, axes.z];
+        let mut six = [Twist::zero(); 6];
+        for j in 0..3 {
+            let (z, p_0) = if k == 0 { (-axes[j], T.p - p) } else { (R * axes[j], R * T.p) };
+            six[j] = Twist { w: z, v: p_0.cross(z) };
+            six[j + 3] = Twist { w: Vec3::zero(), v: z };
         }
+        by_base = Some(six);
     }
     let (w_a, w_b) = (of_a.V.w, R * of_b.V.w);
     let (A_a, A_b) = (of_a.classical(), of_b.classical());
@@ -112,7 +113,7 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
         w: R * A_b.w - A_a.w - w_a.cross(V.w),
         v: R * A_b.v - A_a.v - A_a.w.cross(p) - w_a.cross(w_a.cross(p) + V.v * two), // less the Coriolis acceleration
     };
-    RelativeMotion { T: T_ab, V, bias }
+    RelativeMotion { T: T_ab, V, bias, by_base }
 }
 
 /// Ad_T A for an axis (0, 0, a, 0, 0, b).

@@ -24,6 +24,7 @@ pub(crate) struct ByRates<S> {
 }
 
 impl<S: Scalar> ByTheta<S> {
+    #[inline(always)]
     pub fn zero() -> Self {
         ByTheta { r: Twist::zero(), s: [S::zero(); 2] }
     }
@@ -36,6 +37,7 @@ impl<S: Scalar> ByTheta<S> {
 }
 
 impl<S: Scalar> ByRates<S> {
+    #[inline(always)]
     pub fn zero() -> Self {
         ByRates { r: AxisRate::zero(), s: S::zero() }
     }
@@ -63,6 +65,7 @@ pub(crate) struct Turned<S> {
 }
 
 impl<S: Scalar> Turned<S> {
+    #[inline(always)]
     pub fn zero() -> Self {
         let none = (Twist::zero(), Vec3::zero());
         Turned {
@@ -86,6 +89,7 @@ pub(crate) struct AtLink<S> {
 }
 
 impl<S: Scalar> AtLink<S> {
+    #[inline(always)]
     pub fn zero() -> Self {
         AtLink { x: [S::zero(); W], six: [[S::zero(); W]; 6] }
     }

@@ -56,7 +56,7 @@ pub use screws::{HomeFrames, ScrewLists, Screws};
 pub(crate) use spring::Spring;
 pub use states::State;
 pub use task::{Task, TaskFrame, TaskMemory};
-pub(crate) use tie::{End, Own, TieKind, Ties};
+pub(crate) use tie::{End, Own, Tie, TieKind, Ties, Way};
 pub use variation::Variation;
 pub use workspace::Workspace;
 

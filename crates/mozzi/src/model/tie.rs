@@ -14,8 +14,6 @@ pub(crate) struct Ties<C> {
     pub list: Vec<Tie<C>>,
     /// m, the number of rows of A.
     pub rows: usize,
-    /// A M⁻¹Aᵀ is a full matrix.
-    pub dense: Pattern,
 }
 
 /// One constraint.
@@ -76,7 +74,7 @@ impl<C: Scalar> Ties<C> {
                 }
             },
         };
-        Ties { list: self.list.iter().map(tie).collect(), rows: self.rows, dense: self.dense.clone() }
+        Ties { list: self.list.iter().map(tie).collect(), rows: self.rows }
     }
 }
 
@@ -127,7 +125,7 @@ pub(super) fn ties<C: Real>(
         list.push(Tie { first: rows, support, kind });
         rows += constraint.row_names().len();
     }
-    Ties { list, rows, dense: Pattern::new(rows, rows, core::iter::empty()) }
+    Ties { list, rows }
 }
 
 /// The velocities that move one slot relative to another.
@@ -136,14 +134,45 @@ fn between<C>(a: Option<usize>, b: Option<usize>, links: &[Link<C>]) -> Vec<usiz
     if a.is_none() != b.is_none() {
         moved.extend(0..6);
     }
-    let (mut a, mut b) = (a.unwrap_or(0), b.unwrap_or(0));
-    while a != b {
-        let further = if a > b { &mut a } else { &mut b };
-        let link = &links[*further - 1];
-        moved.push(link.j);
-        *further = link.parent;
-    }
+    moved.extend(Way::new(links, [a, b]).map(|(_, slot)| links[slot - 1].j));
     moved
+}
+
+/// The slots on the ways from two slots to the one that carries both, the last first, each with the end that it
+/// carries: 0 or 1. {s} is beyond the base.
+pub(crate) struct Way<'m, C> {
+    links: &'m [Link<C>],
+    slots: [usize; 2],
+}
+
+impl<'m, C> Way<'m, C> {
+    #[inline(always)]
+    pub fn new(links: &'m [Link<C>], [a, b]: [Option<usize>; 2]) -> Self {
+        Way { links, slots: [a.unwrap_or(0), b.unwrap_or(0)] }
+    }
+}
+
+impl<C> Iterator for Way<'_, C> {
+    type Item = (usize, usize);
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(usize, usize)> {
+        let [a, b] = self.slots;
+        if a == b {
+            return None;
+        }
+        let (k, slot) = if b > a { (1, b) } else { (0, a) };
+        self.slots[k] = self.links[slot - 1].parent;
+        Some((k, slot))
+    }
+}
+
+impl<C: Scalar> Own<C> {
+    /// Of the joint, ratio · θ + offset.
+    #[inline(always)]
+    pub fn position<S: Scalar + From<C>>(&self, theta: &[S]) -> S {
+        S::from(self.ratio).mul_add(theta[self.q], S::from(self.offset))
+    }
 }
 
 impl<C: Scalar> Closure<C> {

@@ -15,6 +15,7 @@ pub(crate) struct AxisRate<S> {
 }
 
 impl<S: Scalar> AxisRate<S> {
+    #[inline(always)]
     pub fn zero() -> Self {
         AxisRate { w: [S::zero(); 2], v: [S::zero(); 2] }
     }

@@ -1,0 +1,68 @@
+//! `mozzi xacro`, and robots that are xacro files in every command.
+
+mod common;
+
+use common::{assert_close, complaint, file, folder, json, rows, text};
+use std::path::Path;
+
+const ROBOT: &str = r#"<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="length" default="0.5"/>
+  <xacro:include filename="$(find rods)/rod.xacro"/>
+  <link name="base"/>
+  <xacro:rod name="rod" length="${float('$(arg length)')}"/>
+</robot>
+"#;
+const ROD: &str = r#"<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="rod" params="name length mass:=2">
+    <joint name="${name}_pivot" type="continuous">
+      <parent link="base"/><child link="${name}"/><axis xyz="0 1 0"/>
+    </joint>
+    <link name="${name}"><inertial><origin xyz="0 0 ${-length / 2}"/><mass value="${mass}"/>
+      <inertia ixx="${mass * length**2 / 12}" iyy="${mass * length**2 / 12}" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  </xacro:macro>
+</robot>
+"#;
+
+/// The robot's file, and the flag with its package.
+fn arm(folder: &Path) -> (String, String) {
+    std::fs::create_dir_all(folder.join("of rods")).expect("a folder");
+    file(&folder.join("of rods"), "rod.xacro", ROD);
+    (file(folder, "arm.urdf.xacro", ROBOT), format!("--package=rods={}", folder.join("of rods").display()))
+}
+
+#[test]
+fn an_expansion_is_the_robot_that_every_command_opens() {
+    let folder = folder("xacro-expansion");
+    let (robot, package) = arm(&folder);
+    let printed = text(&["xacro", &robot, "length:=0.9", &package]);
+    assert!(printed.contains("<joint name=\"rod_pivot\" type=\"continuous\">"), "{printed}");
+    assert!(printed.contains("xyz=\"0 0 -0.45\""), "{printed}");
+    let out = folder.join("out.urdf").display().to_string();
+    assert_eq!(text(&["xacro", &robot, "length:=0.9", &package, "-o", &out]), "");
+    assert_eq!(std::fs::read_to_string(&out).expect("written"), printed);
+    for (model, flags) in [(&out, &[][..]), (&robot, &["--xacro-arg", "length:=0.9", &package])] {
+        let compute = [&["compute", model, "mass-matrix", "--theta", "0.3"], flags].concat();
+        let M = rows(&json(&compute)["M"]);
+        assert_close(&M[0], &[2.0 * 0.9 * 0.9 / 3.0], 1e-14);
+        text(&[&["info", model], flags].concat());
+        text(&[&["check", model], flags].concat());
+        text(&[&["simulate", model, "--theta", "0.3", "--duration", "0.1", "--steps", "10"], flags].concat());
+    }
+}
+
+#[test]
+fn errors_point_into_the_files_that_the_user_wrote() {
+    let folder = folder("xacro-errors");
+    let (robot, package) = arm(&folder);
+    let (code, why) = complaint(&["info", &robot]);
+    assert!(code != 0 && why.contains("arm.urdf.xacro:3:") && why.contains("rods"), "{why}");
+    let (code, why) = complaint(&["xacro", &robot, "length=0.9", &package]);
+    assert!(code != 0 && why.contains("length=0.9") && why.contains(":="), "{why}");
+    file(&folder.join("of rods"), "rod.xacro", &ROD.replace("value=\"${mass}\"", "value=\"${-mass}\""));
+    let (code, why) = complaint(&["info", &robot, &package]);
+    assert!(code != 0 && why.contains("rod.xacro:6:"), "{why}");
+    assert!(why.contains("from ") && why.contains("arm.urdf.xacro:5 (name = \"rod\""), "{why}");
+    file(&folder.join("of rods"), "rod.xacro", &ROD.replace("${mass}", "${9**9**9}"));
+    let (code, why) = complaint(&["xacro", &robot, &package]);
+    assert!(code != 0 && why.contains("rod.xacro:6:"), "{why}");
+}

@@ -1,0 +1,70 @@
+"""Robots from xacro: arguments, packages, and errors at their places in the files that the user wrote."""
+
+import mozzi
+import numpy as np
+import pytest
+from conftest import assert_close
+
+ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="length" default="0.5"/>
+  <xacro:arg name="prefix" default=""/>
+  <xacro:include filename="$(find rods)/rod.xacro"/>
+  <link name="base"/>
+  <xacro:rod name="$(arg prefix)rod" length="${float('$(arg length)')}"/>
+</robot>
+"""
+ROD = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="rod" params="name length mass:=2">
+    <joint name="${name}_pivot" type="continuous">
+      <parent link="base"/><child link="${name}"/><axis xyz="0 1 0"/>
+    </joint>
+    <link name="${name}"><inertial><origin xyz="0 0 ${-length / 2}"/><mass value="${mass}"/>
+      <inertia ixx="${mass * length**2 / 12}" iyy="${mass * length**2 / 12}" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  </xacro:macro>
+</robot>
+"""
+
+
+@pytest.fixture
+def arm(tmp_path):
+    folder = tmp_path / "elsewhere" / "of_rods"
+    folder.mkdir(parents=True)
+    (folder / "rod.xacro").write_text(ROD)
+    path = tmp_path / "arm.urdf.xacro"
+    path.write_text(ROBOT)
+    return path, {"rods": folder}
+
+
+def test_arguments_and_packages(arm):
+    path, packages = arm
+    robot = mozzi.Model.from_urdf(path, packages=packages)
+    assert robot.joint_names == ["rod_pivot"]
+    assert_close(robot.mass_matrix([0.0]), [[2 * 0.5**2 / 3]])
+    given = {"length": 0.9, "prefix": "left_"}
+    longer = mozzi.Model.from_urdf(str(path), xacro_args=given, packages={"rods": str(packages["rods"])})
+    assert longer.joint_names == ["left_rod_pivot"]
+    assert_close(longer.mass_matrix([0.0]), [[2 * 0.9**2 / 3]])
+    assert_close(longer.gravity_forces([np.pi / 2]), [2 * 9.81 * 0.45], tolerance=1e-9)
+    text = mozzi.Model.from_urdf_string(ROBOT, name="arm.urdf.xacro", xacro_args=given, packages=packages)
+    assert text == longer
+    # numbers are given as Python prints them
+    assert mozzi.Model.from_urdf(path, xacro_args={"length": np.float64(0.9), "prefix": "left_"}, packages=packages) == longer
+
+
+def test_errors_have_their_places(arm):
+    path, packages = arm
+    with pytest.raises(ValueError, match=r"arm\.urdf\.xacro:4:.*rods"):
+        mozzi.Model.from_urdf(path)
+    with pytest.raises(ValueError, match="lenght"):
+        mozzi.Model.from_urdf(path, xacro_args={"lenght": 1}, packages=packages)
+    broken = packages["rods"] / "rod.xacro"
+    broken.write_text(ROD.replace('value="${mass}"', 'value="${-mass}"'))
+    with pytest.raises(ValueError, match=r"(?s)rod\.xacro:6:.*from .*arm\.urdf\.xacro:6"):
+        mozzi.Model.from_urdf(path, packages=packages)
+    broken.write_text(ROD.replace("${mass}", "${maß}"))
+    with pytest.raises(ValueError, match=r"(?s)rod\.xacro:6:.*maß"):
+        mozzi.Model.from_urdf(path, packages=packages)
+    with pytest.raises(TypeError, match="a name in xacro_args is 1, expected a str"):
+        mozzi.Model.from_urdf(path, xacro_args={1: 1}, packages=packages)
+    with pytest.raises(TypeError, match=r'packages\["rods"\] is 1, expected a folder'):
+        mozzi.Model.from_urdf(path, packages={"rods": 1})
