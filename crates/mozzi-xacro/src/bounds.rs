@@ -6,7 +6,7 @@ use std::cell::Cell;
 /// Larger files are refused, and larger expansions.
 pub(crate) const MOST_BYTES: usize = 64 << 20;
 /// Steps of evaluation, elements and sixteenths of text, all together: about half a second.
-pub(crate) const MOST_WORK: u64 = 5_000_000;
+pub(crate) const MOST_WORK: u64 = 2_000_000;
 /// Bytes of one string.
 pub(crate) const MOST_TEXT: usize = 1 << 20;
 /// Items of one list, dictionary or range that is gone through.

@@ -176,7 +176,7 @@ def fuzz(batch, seconds, seed):
 
 def bounded(message):
     """Refused for a bound, or for what is documented as not supported."""
-    return re.search(r"expected at most|steps|complex|not defined, expected|has no text|is not supported|order of this set", message)
+    return re.search(r"expected at most|steps|complex|not defined, expected|has no text|is not supported|order of this set|more than \d+ bits", message)
 
 
 NUMBERS = ["0", "1", "2", "3", "7", "-1", "10", "100", "0.5", "1.5", "2.5", "-0.0", "0.1", "1e3", "1e-7", "1e16", "3.14159", "10**20", "12345678901234567890", "True", "False"]

@@ -27,12 +27,17 @@ pub(crate) fn call(cx: &Evaluator, name: &str, mut arguments: Arguments) -> Opti
             if int(&k)? > int(&n)? && !int(&n)?.is_negative() {
                 return Ok(Value::int(0));
             }
-            let (n, k) = (size(&n)?, size(&k)?);
-            let k = k.min(n - k);
+            let whole = int(&n)?;
+            if whole.is_negative() {
+                size(&n)?; // says so
+            }
+            // n over k is n over n − k: the smaller one is fewer steps
+            let rest = Value::Int(&whole - int(&k)?);
+            let k = if int(&rest)? < int(&k)? { size(&rest)? } else { size(&k)? };
             let mut result = BigInt::from(1);
             for i in 1..=k {
                 cx.spend(1 + result.bits() / 64)?;
-                result = integer::bounded(result * (n - k + i) / i)?;
+                result = integer::bounded(result * (&whole - k + i) / i)?;
             }
             Ok(Value::Int(result))
         }),

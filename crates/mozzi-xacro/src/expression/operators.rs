@@ -44,8 +44,10 @@ pub(crate) fn binary(cx: &Evaluator, operator: Binary, left: &Value, right: &Val
     if left.is_number() && right.is_number() {
         return real(operator, as_float(left)?, as_float(right)?);
     }
-    let count =
-        |value: &Value| value.as_int().map(|n| n.to_i64().unwrap_or(if n.is_negative() { 0 } else { i64::MAX }));
+    let count = |value: &Value| {
+        let fits = |n: &BigInt| n.to_i64().ok_or_else(|| Fault::new(format!("{n} is not a number of repetitions")));
+        value.as_int().map(|n| fits(&n))
+    };
     match (operator, left, right) {
         (Binary::Add, Value::Str(a), Value::Str(b)) => {
             budget.text(a.len() + b.len())?;
@@ -61,10 +63,10 @@ pub(crate) fn binary(cx: &Evaluator, operator: Binary, left: &Value, right: &Val
         }
         (Binary::Modulo, Value::Str(template), value) => percent::format(cx, template, value),
         (Binary::Multiply, Value::Str(_) | Value::List(..) | Value::Tuple(_), other) if count(other).is_some() => {
-            repeated(cx, left, count(other).unwrap_or_default())
+            repeated(cx, left, count(other).unwrap_or(Ok(0))?)
         }
         (Binary::Multiply, other, Value::Str(_) | Value::List(..) | Value::Tuple(_)) if count(other).is_some() => {
-            repeated(cx, right, count(other).unwrap_or_default())
+            repeated(cx, right, count(other).unwrap_or(Ok(0))?)
         }
         (Binary::BitOr, Value::Dict(a, _), Value::Dict(b, _)) => {
             budget.items(a.borrow().len() + b.borrow().len())?;
