@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | page | bench | accuracy | wheel`: the same commands as in CI.
+//! `cargo xtask test | check | docs | page | bench | accuracy | nightly | wheel`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -15,6 +15,7 @@ mod house_rules;
 mod licences;
 mod main_job;
 mod metadata;
+mod nightly;
 mod no_std;
 mod oracles;
 mod package;
@@ -54,6 +55,8 @@ usage: cargo xtask COMMAND
           --robots ur5,anymal:floating,FILE.urdf      only these robots, to standard output
           --quantities mass-matrix,forward-dynamics   likewise
           --no-hard                                   without the cases that are hard by design
+  nightly long simulations, accuracy at 1000 states, fuzzing guided by coverage; hours, with a log in target/nightly
+          --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
           --of-tests                                  package the build of `test`, as `test` does it";
 
@@ -67,6 +70,10 @@ fn main() -> ExitCode {
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
         ["wheel"] => wheel(&workspace),
+        ["nightly"] => nightly::run(&workspace, nightly::SECONDS),
+        ["nightly", "--seconds", seconds] if seconds.parse::<u32>().is_ok() => {
+            nightly::run(&workspace, seconds.parse().unwrap_or(nightly::SECONDS))
+        }
         ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
@@ -98,7 +105,7 @@ fn test(workspace: &Workspace) -> ExitCode {
     report.step("tests", || tests::run(workspace, &mut count));
     report.step("Python package", || package::test(workspace, &mut count));
     report.step("wheel", || wheel::test(workspace));
-    report.step("fuzzing", || fuzz::run(workspace));
+    report.step("fuzzing", || fuzz::run(workspace, None));
     report.step("no_std", || no_std::check(workspace));
     let mut programs = examples::Programs::new();
     report.step("examples", || examples::build(workspace, &mut programs));

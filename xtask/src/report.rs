@@ -1,5 +1,7 @@
 //! What each step did: a heading when it starts, a line in the list at the end.
 
+use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -16,9 +18,20 @@ pub enum Outcome {
 pub struct Report {
     lines: Vec<String>,
     failed: Vec<String>,
+    /// Where each line goes as soon as it is known.
+    log: Option<PathBuf>,
 }
 
 impl Report {
+    /// With a file that begins with `head` and takes a line when a step ends.
+    pub fn with_log(file: PathBuf, head: &str) -> Self {
+        let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);
+        if let Err(error) = folder.and_then(|()| std::fs::write(&file, head)) {
+            println!("{}: {error}", file.display());
+        }
+        Report { log: Some(file), ..Report::default() }
+    }
+
     pub fn step(&mut self, name: &str, run: impl FnOnce() -> Outcome) {
         println!("\n=== {name} ===");
         let start = Instant::now();
@@ -35,6 +48,12 @@ impl Report {
             line += &format!(": {note}");
         }
         println!("{line}");
+        if let Some(file) = &self.log {
+            let written = std::fs::OpenOptions::new().append(true).open(file);
+            if let Err(error) = written.and_then(|mut file| writeln!(file, "- {line}")) {
+                println!("{}: {error}", file.display());
+            }
+        }
         self.lines.push(line);
     }
 

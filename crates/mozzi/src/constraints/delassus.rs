@@ -125,13 +125,17 @@ fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>
             }
         }
     }
+    let (mut rows, vector) = ([&Y_tie[..n]; R], &vector[..n]);
+    for r in 1..R {
+        rows[r] = &Y_tie[r * n..][..n];
+    }
     for s in 0..tie.first + R {
-        let row = if s < tie.first { &before[s * n..][..n] } else { &Y_tie[(s - tie.first) * n..][..n] };
+        let row = if s < tie.first { &before[s * n..][..n] } else { rows[s - tie.first] };
         let mut sums = [S::zero(); R];
         for &j in &tie.support {
             let scaled = row[j] * vector[j];
             for r in 0..R {
-                sums[r] = Y_tie[r * n + j].mul_add(scaled, sums[r]);
+                sums[r] = rows[r][j].mul_add(scaled, sums[r]);
             }
         }
         for r in 0..R {
@@ -157,8 +161,8 @@ pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut Constra
     for _ in 1..REFINEMENTS {
         for r in 0..m {
             let mut sum = right[r];
-            for s in 0..m {
-                sum = G[r * m + s].mul_add(-lambda[s], sum);
+            for (&g, &x) in G[r * m..][..m].iter().zip(&*lambda) {
+                sum = g.mul_add(-x, sum);
             }
             residual[r] = sum;
         }

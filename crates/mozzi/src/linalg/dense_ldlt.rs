@@ -9,10 +9,11 @@ use crate::scalar::Scalar;
 pub(crate) fn factor<S: Scalar>(G: &mut [S], one_over_d: &mut [S]) {
     let m = one_over_d.len();
     for k in 0..m {
-        one_over_d[k] = S::one() / G[k * m + k];
+        let inverse = S::one() / G[k * m + k];
+        one_over_d[k] = inverse;
         for i in (k + 1..m).rev() {
             // rows above i still have column k as it was
-            let a = G[i * m + k] * one_over_d[k];
+            let a = G[i * m + k] * inverse;
             for j in k + 1..=i {
                 G[i * m + j] = G[j * m + k].mul_add(-a, G[i * m + j]);
             }
@@ -26,16 +27,18 @@ pub(crate) fn factor<S: Scalar>(G: &mut [S], one_over_d: &mut [S]) {
 pub(crate) fn solve<S: Scalar>(L: &[S], one_over_d: &[S], b: &mut [S]) {
     let m = one_over_d.len();
     for k in 0..m {
+        let x = -b[k];
         for i in k + 1..m {
-            b[i] = L[i * m + k].mul_add(-b[k], b[i]);
+            b[i] = L[i * m + k].mul_add(x, b[i]);
         }
     }
     for k in 0..m {
         b[k] = b[k] * one_over_d[k];
     }
     for k in (0..m).rev() {
-        for i in 0..k {
-            b[i] = L[k * m + i].mul_add(-b[k], b[i]);
+        let (row, x) = (&L[k * m..][..k], -b[k]);
+        for (b, &l) in b[..k].iter_mut().zip(row) {
+            *b = l.mul_add(x, *b);
         }
     }
 }

@@ -1,0 +1,118 @@
+//! What takes hours: long simulations, fuzzing with and without the guidance of coverage, accuracy at many states. The
+//! log of a night is `target/nightly/DATE.md`; a step is written when it ends.
+
+use crate::accuracy;
+use crate::command;
+use crate::fuzz;
+use crate::oracles;
+use crate::report::{Outcome, Report};
+use crate::venv;
+use crate::workspace::{FEATURES, Workspace};
+use std::process::{Command, ExitCode};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// For each fuzz target, unless `--seconds` says otherwise.
+pub const SECONDS: u32 = 3600;
+const FOLDER: &str = "target/nightly";
+/// What a target begins with besides its corpus.
+const SEEDS: [(&str, &[&str]); 3] = [
+    ("urdf", &["models", "crates/mozzi-urdf/tests/broken"]),
+    ("mjcf", &["oracles", "crates/mozzi-urdf/tests/broken/mjcf"]),
+    ("xacro", &["examples/xacro", "crates/mozzi-urdf/tests/xacro"]),
+];
+
+pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
+    let file = workspace.path(FOLDER).join(format!("{}.md", today()));
+    let mut git = Command::new("git");
+    let commit = command::output(git.args(["rev-parse", "HEAD"]).current_dir(&workspace.root));
+    let commit = commit.map(|(_, text)| text).unwrap_or_default();
+    let head = format!("# {}\n\ncommit {}, {seconds} s for each fuzz target\n\n", today(), commit.trim());
+    let mut report = Report::with_log(file, &head);
+    report.step("Python environment", || venv::prepare(workspace));
+    report.step("reference numbers", || oracles::make(workspace));
+    report.step("long simulations", || {
+        let mut cargo = workspace.cargo(&["test", "--workspace", "--lib"]);
+        command::outcome(cargo.args(FEATURES).args(["--", "--ignored", "--nocapture", "simulation"]))
+    });
+    report.step("accuracy at 1000 states", || {
+        let page = workspace.path(FOLDER).join("accuracy.md");
+        accuracy::run(workspace, &["--states", "1000", "--page", &page.to_string_lossy()])
+    });
+    report.step("xacro beside PyPI's", || xacro(workspace, seconds));
+    report.step("fuzzing, plain", || fuzz::run(workspace, Some(seconds)));
+    for target in targets(workspace) {
+        report.step(&format!("fuzzing, guided by coverage: {target}"), || guided(workspace, &target, seconds));
+    }
+    report.finish()
+}
+
+/// Random expressions, others each night.
+fn xacro(workspace: &Workspace, seconds: u32) -> Outcome {
+    if let Err(why) = command::run(workspace.cargo(&["build", "--release", "-p", "mozzi-xacro", "--example", "batch"]))
+    {
+        return Outcome::Failed(why);
+    }
+    let mut python = Command::new(venv::python(workspace));
+    python.arg(workspace.path("crates/mozzi-xacro/tests/compare.py"));
+    python.arg(workspace.target().join("release/examples/batch"));
+    command::outcome(python.args(["--fuzz", &seconds.to_string(), "--seed", &today().replace('-', "")]))
+}
+
+/// The names in `fuzz/fuzz_targets`.
+fn targets(workspace: &Workspace) -> Vec<String> {
+    let files = std::fs::read_dir(workspace.path("fuzz/fuzz_targets")).into_iter().flatten().filter_map(Result::ok);
+    let mut names: Vec<String> =
+        files.filter_map(|file| Some(file.path().file_stem()?.to_string_lossy().into_owned())).collect();
+    names.sort();
+    names
+}
+
+fn guided(workspace: &Workspace, target: &str, seconds: u32) -> Outcome {
+    if !command::exists(&mut workspace.cargo(&["fuzz"])) {
+        return Outcome::Skipped("`cargo install cargo-fuzz` installs what it needs".into());
+    }
+    let corpus = format!("fuzz/corpus/{target}"); // the first folder takes what is found
+    if let Err(why) = std::fs::create_dir_all(workspace.path(&corpus)) {
+        return Outcome::Failed(format!("{corpus}: {why}"));
+    }
+    let seeds = SEEDS.iter().filter(|(name, _)| *name == target).flat_map(|(_, folders)| *folders);
+    let mut cargo = workspace.cargo(&["fuzz", "run", target, &corpus]);
+    cargo.args(seeds).arg("--").arg(format!("-max_total_time={seconds}")).env("RUSTC_BOOTSTRAP", "1");
+    command::outcome(cargo.args(["-rss_limit_mb=3000", "-timeout=20", "-print_final_stats=1"]))
+}
+
+/// The date in UTC, `2026-11-23`.
+fn today() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+    date(i64::try_from(seconds / 86_400).unwrap_or_default())
+}
+
+/// Of the days since 1970. Years are taken to begin in March: a leap day is then a year's last.
+fn date(days: i64) -> String {
+    let days = days + 719_468; // since 1 March 0000
+    let (era, day) = (days.div_euclid(146_097), days.rem_euclid(146_097));
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    format!("{:04}-{month:02}-{day:02}", year + era * 400 + i64::from(month <= 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date;
+
+    #[test]
+    fn days_are_dates() {
+        for (days, expected) in [
+            (0, "1970-01-01"),
+            (59, "1970-03-01"),
+            (11_016, "2000-02-29"),
+            (20_780, "2026-11-23"),
+            (47_540, "2100-02-28"),
+        ] {
+            assert_eq!(date(days), expected);
+        }
+    }
+}
