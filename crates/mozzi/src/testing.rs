@@ -4,6 +4,7 @@ use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
 use crate::model::description::{Anchor, Closure, Constraint, Gear, Joint, JointKind, Mimic, Rotor};
 use crate::model::{Base, Description, Freedom, Model};
+use crate::scalar::Scalar;
 use crate::spatial::solids::Solid;
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
@@ -209,7 +210,7 @@ pub fn closed(model: &Model, theta: &[f64], closures: &[Closure], seed: u64) -> 
             Closure::Rolling(radius) => {
                 let z = relative.R.matrix().z.0[2]; // n·z of the wheel
                 let [x, y, _] = relative.p.0;
-                SE3 { p: Vec3([x, y, radius * (1.0 - z * z).sqrt()]), ..relative }
+                SE3 { p: Vec3([x, y, radius * Scalar::sqrt(1.0 - z * z)]), ..relative }
             }
         };
         let to = Anchor::frame(name(b)).at(pose(&name(b)).inverse() * T_sa * T_ab);

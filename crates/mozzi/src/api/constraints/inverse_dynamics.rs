@@ -2,6 +2,7 @@
 
 use super::{ConstrainedDynamics, Rows, SINGULAR, least_squares};
 use crate::model::{Environment, Error, Model};
+use crate::scalar::Scalar;
 use alloc::format;
 use alloc::string::ToString;
 use alloc::vec::Vec;
@@ -69,7 +70,7 @@ impl Model<f64> {
         // Nᵀτ = Nᵀ(Mθ̈ + h + f), N the motions that the constraints allow
         let N = null_space(&A, n);
         let motors = self.motors();
-        let scale = |j: usize| weights.map_or(1.0, |weights| 1.0 / weights[j].sqrt());
+        let scale = |j: usize| weights.map_or(1.0, |weights| 1.0 / Scalar::sqrt(weights[j]));
         let B = DMatrix::from_fn(N.ncols(), motors.len(), |r, c| N[(motors[c], r)] * scale(motors[c]));
         let right = N.transpose() * &needed;
         let scaled = least_squares(&B, &right);
