@@ -17,7 +17,7 @@ pub struct XacroCommand {
     file: String,
     /// Values of its arguments
     #[arg(value_name = "NAME:=VALUE", value_parser = assignment)]
-    values: Vec<(String, String)>,
+    given: Vec<(String, String)>,
     /// Write to a file instead of standard output
     #[arg(short, long, value_name = "FILE")]
     out: Option<String>,
@@ -31,7 +31,7 @@ pub fn run(command: &XacroCommand) -> Result<String> {
         "-" => input::robot_text().map_err(|error| input::cannot(file, &error))?.to_vec(),
         _ => input::bytes(file, MOST)?,
     };
-    let settings = Settings { xacro: command.xacro.with(&command.values).arguments(), ..Settings::default() };
+    let settings = Settings { xacro: command.xacro.with(&command.given).arguments(), ..Settings::default() };
     let Some(text) = expanded(input::name(file), text, settings)? else {
         return Err(Failure::wrong(format!(
             "{} is not a xacro file: its name does not end in .xacro, or its root declares no namespace of xacro with \

@@ -55,8 +55,8 @@ fn largest(values: &[f64]) -> f64 {
 
 /// The UR5 whose wrist hangs on a rod, and the file with the rod.
 fn tied(folder: &Path) -> (Model, String) {
-    let rod =
-        r#"[{"name": "rod", "kind": "distance", "length": 0.5, "a": {"frame": null}, "b": {"frame": "wrist_3_link"}}]"#;
+    let rod = r#"{"constraints": [{"name": "rod", "kind": "distance", "length": 0.5,
+                  "a": {"frame": null}, "b": {"frame": "wrist_3_link"}}]}"#;
     let file = file(folder, "rod.json", rod);
     let ur5 = mozzi_urdf::open("ur5").expect("a robot");
     (mozzi_urdf::constraints::read(&file, ur5.description).expect("a rod").build().expect("a model"), file)

@@ -132,7 +132,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
 }
 
 /// Symbols and what they are in plain letters, longer ones first.
-const LETTERS: [(&str, &str); 46] = [
+const LETTERS: [(&str, &str); 48] = [
     ("θ̈", "ddtheta"),
     ("θ̇", "dtheta"),
     ("θ_j", "theta_j"),
@@ -149,6 +149,8 @@ const LETTERS: [(&str, &str); 46] = [
     ("𝓕", "F"),
     ("Λ", "Lambda"),
     ("λ", "lambda"),
+    ("φ", "phi"),
+    ("⁺", "+"),
     ("η", "eta"),
     ("μ", "mu"),
     ("π", "pi"),
