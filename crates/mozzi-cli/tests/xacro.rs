@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{assert_close, complaint, file, folder, json, rows, text};
+use common::{assert_close, complaint, file, folder, json, mozzi, rows, text};
 use std::path::Path;
 
 const ROBOT: &str = r#"<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -46,7 +46,7 @@ fn an_expansion_is_the_robot_that_every_command_opens() {
         assert_close(&M[0], &[2.0 * 0.9 * 0.9 / 3.0], 1e-14);
         text(&[&["info", model], flags].concat());
         text(&[&["check", model], flags].concat());
-        text(&[&["simulate", model, "--theta", "0.3", "--duration", "0.1", "--steps", "10"], flags].concat());
+        text(&[&["simulate", model, "--theta", "0.3", "--time", "0.1", "--step", "0.01"], flags].concat());
     }
 }
 
@@ -58,10 +58,13 @@ fn errors_point_into_the_files_that_the_user_wrote() {
     assert!(code != 0 && why.contains("arm.urdf.xacro:3:") && why.contains("rods"), "{why}");
     let (code, why) = complaint(&["xacro", &robot, "length=0.9", &package]);
     assert!(code != 0 && why.contains("length=0.9") && why.contains(":="), "{why}");
+    let said = mozzi(&["info", &robot, "--xacro-arg", "lenght:=0.9", &package]);
+    let said = String::from_utf8_lossy(&said.stderr).into_owned();
+    assert!(said.contains("the argument `lenght` is given and not used, expected some of: length"), "{said}");
     file(&folder.join("of rods"), "rod.xacro", &ROD.replace("value=\"${mass}\"", "value=\"${-mass}\""));
     let (code, why) = complaint(&["info", &robot, &package]);
     assert!(code != 0 && why.contains("rod.xacro:6:"), "{why}");
-    assert!(why.contains("from ") && why.contains("arm.urdf.xacro:5 (name = \"rod\""), "{why}");
+    assert!(why.contains(", from ") && why.contains("arm.urdf.xacro:5") && why.contains("(name = \"rod\""), "{why}");
     file(&folder.join("of rods"), "rod.xacro", &ROD.replace("${mass}", "${9**9**9}"));
     let (code, why) = complaint(&["xacro", &robot, &package]);
     assert!(code != 0 && why.contains("rod.xacro:6:"), "{why}");

@@ -59,6 +59,7 @@ class Constrained(Beside):
         )
 
 
+@pytest.mark.filterwarnings("ignore::mozzi.LoadWarning")
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_mechanisms_with_loops(name, random):
     folder = SHARED / name

@@ -189,7 +189,7 @@ impl Expander<'_> {
 
     fn define_argument(&self, id: Id, scope: &Rc<Scope>) -> Result<()> {
         let name = self.checked(id, &["name", "default"], &[])?.value;
-        if !self.arguments.borrow().contains_key(&name) {
+        if self.argument(&name).is_none() {
             let default = self.required(id, "default")?;
             let value = self.evaluate_text(&default.value, scope, &default.place)?;
             self.arguments.borrow_mut().insert(name, value);

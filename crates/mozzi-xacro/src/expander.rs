@@ -9,7 +9,7 @@ use crate::place::Place;
 use crate::scope::{Property, Scope};
 use crate::{Arguments, Warning};
 use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub(crate) struct Expander<'a> {
     pub open: RefCell<Vec<PathBuf>>,
     /// The arguments that were given, and defaults.
     pub arguments: RefCell<HashMap<Rc<str>, Rc<str>>>,
+    /// The names of arguments that the files declare or read.
+    pub known_arguments: RefCell<BTreeSet<Rc<str>>>,
     pub expressions: RefCell<HashMap<Rc<str>, Rc<Node>>>,
     pub warnings: RefCell<Vec<Warning>>,
     /// The place that is being processed.
@@ -51,6 +53,24 @@ impl Expander<'_> {
     pub fn warn(&self, message: String) {
         let place = self.place.borrow().clone();
         self.warnings.borrow_mut().push(Warning { message, place: crate::Origin::of(&place) });
+    }
+
+    /// The value of an argument that a file declares or reads; None if there is none of the name.
+    pub fn argument(&self, name: &str) -> Option<Rc<str>> {
+        self.known_arguments.borrow_mut().insert(name.into());
+        self.arguments.borrow().get(name).cloned()
+    }
+
+    /// Warns of arguments that were given and that no file has.
+    pub fn warn_of_unused_arguments(&self) {
+        let known = self.known_arguments.borrow();
+        let mut names: Vec<&str> = known.iter().map(|name| &**name).collect();
+        for (name, _) in self.given.values.iter().filter(|(name, _)| !known.contains(name.as_str())) {
+            names.truncate(20);
+            let expected = if names.is_empty() { "none".to_string() } else { names.join(", ") };
+            let message = format!("the argument `{name}` is given and not used, expected some of: {expected}");
+            self.warnings.borrow_mut().push(Warning { message, place: crate::Origin::of(&Place::default()) });
+        }
     }
 
     /// The value of a property; None if there is none of the name.
@@ -106,7 +126,7 @@ impl Host for Names<'_> {
     }
 
     fn argument(&self, name: &str) -> Option<Rc<str>> {
-        self.expander.arguments.borrow().get(name).cloned()
+        self.expander.argument(name)
     }
 
     fn message(&self, kind: &str, text: String) {

@@ -108,6 +108,7 @@ fn expand_here(name: &str, text: &str, arguments: &Arguments) -> std::result::Re
         files: RefCell::default(),
         open: RefCell::new(vec![PathBuf::from(name)]),
         arguments: RefCell::new(given.collect()),
+        known_arguments: RefCell::default(),
         expressions: RefCell::default(),
         warnings: RefCell::default(),
         place: RefCell::default(),
@@ -115,6 +116,9 @@ fn expand_here(name: &str, text: &str, arguments: &Arguments) -> std::result::Re
         spacer,
     };
     let result = expander.run(name, text);
+    if result.is_ok() {
+        expander.warn_of_unused_arguments();
+    }
     let files = expander.files.take();
     let warnings = expander.warnings.take();
     match result {

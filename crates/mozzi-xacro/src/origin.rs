@@ -53,7 +53,7 @@ pub struct Expansion {
     pub files: Vec<File>,
     /// Messages of the file, and doubtful words.
     pub warnings: Vec<Warning>,
-    /// Steps of evaluation, of at most five million.
+    /// Steps of evaluation, of at most two million.
     pub work: u64,
     pieces: Vec<Piece>,
 }

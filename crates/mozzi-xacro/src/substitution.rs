@@ -64,7 +64,7 @@ impl Expander<'_> {
         match name {
             "arg" => {
                 let key = one()?;
-                let value = self.arguments.borrow().get(key).cloned();
+                let value = self.argument(key);
                 value.map(|value| value.to_string()).ok_or_else(|| self.unknown_argument(key))
             }
             "env" => {
@@ -113,7 +113,7 @@ impl Expander<'_> {
         if let Some(value) = global(name).filter(|value| !is_module(value)) {
             return Some(value);
         }
-        let text = self.arguments.borrow().get(name).cloned()?;
+        let text = self.argument(name)?;
         let number = if text.contains('.') {
             parse_float(&text).map(Value::Float)
         } else {
