@@ -55,9 +55,11 @@ pub fn reply<'p>(head: &[u8], port: u16, page: &'p str) -> Reply<'p> {
         .collect();
     // a page from elsewhere whose name was made to mean 127.0.0.1 says that name here
     let is_us = matches!(hosts[..], [host] if is_here(host, port));
-    let method = words.next();
-    let (status, kind, body) = match (is_us, method, words.next()) {
+    let (method, target) = (words.next(), words.next());
+    let is_http = words.next().is_some_and(|version| version.starts_with("HTTP/"));
+    let (status, kind, body) = match (is_us, method, target) {
         (false, ..) => ("403 Forbidden", "text/plain", "this page is for 127.0.0.1"),
+        _ if !is_http => ("400 Bad Request", "text/plain", "the first line is no request of HTTP"),
         (_, Some("GET" | "HEAD"), Some("/")) => ("200 OK", "text/html", page),
         (_, Some("GET" | "HEAD"), _) => ("404 Not Found", "text/plain", "the only page is /"),
         _ => ("405 Method Not Allowed", "text/plain", "only GET and HEAD are allowed"),
