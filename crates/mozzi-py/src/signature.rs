@@ -142,8 +142,8 @@ fn state((input, slot): (&Input, Slot)) -> Argument {
     Argument { slot, name: input.name, default: None, stub: "ArrayLike", about: [""; 2] }
 }
 
-/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, the constraints' own included, nor
-/// do forces of wrenches alone, nor what multiplies the parameters.
+/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, the constraints' own included,
+/// nor do forces of wrenches alone, nor what multiplies the parameters.
 fn depends_on_parameters(declaration: &Declaration) -> bool {
     let free_of_them = |dim: &Dim| matches!(dim, Dim::Frames | Dim::Parameters);
     let of_constraints = |output: &Output| output.dims.iter().any(|dim| matches!(dim, Dim::Constraints));

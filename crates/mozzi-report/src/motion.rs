@@ -108,8 +108,8 @@ impl Motion {
         Ok(())
     }
 
-    /// For each row and constraint the wrench in {s} about its origin, (m, f), that anchor {b} applies to {a}. None where
-    /// rates or torques are not known, or nothing is constrained.
+    /// For each row and constraint the wrench in {s} about its origin, (m, f), that anchor {b} applies to {a}. None
+    /// where rates or torques are not known, or nothing is constrained.
     fn constraint_wrenches(&self, model: &Model) -> Result<Option<Vec<f64>>, Error> {
         let (Some(dtheta), Some(ddtheta), Some(tau)) = (&self.dtheta, &self.ddtheta, &self.tau) else {
             return Ok(None);

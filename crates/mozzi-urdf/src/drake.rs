@@ -1,5 +1,5 @@
-//! Drake's words in a URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw and universal;
-//! `drake:rotor_inertia` and `drake:gear_ratio` of an actuator; `<drake:ball_constraint>`.
+//! Drake's words in a URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw and
+//! universal; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator; `<drake:ball_constraint>`.
 
 use crate::axis;
 use crate::context::Context;

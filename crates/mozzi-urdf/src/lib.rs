@@ -17,7 +17,8 @@
 //!   warning that it is ignored before.
 //! - Drake's words: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint (`screw`), or,
 //!   if `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator
-//!   are the armature ratio² × inertia; `<drake:ball_constraint>` is a constraint. Its forces are warnings that name them.
+//!   are the armature ratio² × inertia; `<drake:ball_constraint>` is a constraint. Its forces are warnings that name
+//!   them.
 //! - Constraints, which close loops, may also come from a file of their own: see [`constraints`]. urdfdom's proposal
 //!   `<constraint>` is refused by name.
 //! - Probable misspellings of URDF elements and attributes are errors, unless the right word is there as well. Known

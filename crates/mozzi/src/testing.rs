@@ -151,8 +151,8 @@ pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {
     [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
 }
 
-/// A planar four-bar linkage in the x-z plane: ground 0.9 m, crank 0.3 m, coupler 0.8 m, rocker 0.6 m, uniform rods of 1
-/// kg a metre. The loop is closed by a hinge, five rows of which three are redundant. θ = 0 is not closed.
+/// A planar four-bar linkage in the x-z plane: ground 0.9 m, crank 0.3 m, coupler 0.8 m, rocker 0.6 m, uniform rods of
+/// 1 kg a metre. The loop is closed by a hinge, five rows of which three are redundant. θ = 0 is not closed.
 pub fn four_bar() -> Model {
     let rod = |length: f64| Solid::Box([length, 0.02, 0.02]).inertia(length);
     let along = |x: f64| SE3::translation([x, 0.0, 0.0]);

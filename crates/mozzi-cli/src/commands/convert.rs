@@ -25,7 +25,8 @@ pub struct ConvertArguments {
     /// Allow OUT to be the file IN, which is overwritten
     #[arg(long)]
     in_place: bool,
-    /// Leave out of a URDF what it cannot express (gravity, rotors, constraints), or what other readers ignore (armature, springs)
+    /// Leave out of a URDF what it cannot express (gravity, rotors, constraints), or what other readers ignore
+    /// (armature, springs)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
     leave_out: Vec<LeftOut>,
     #[command(flatten)]

@@ -10,7 +10,7 @@ use mozzi::{ConfigurationSpace, Model};
 
 /// Rows of θ at increasing times, and of θ̇ and θ̈ where they are known. In between: with θ̈ the quintic that meets θ,
 /// θ̇ and θ̈ of both rows, with θ̇ alone the cubic that meets θ and θ̇, with neither the cubic spline at rest at both
-/// ends. On balls, free joints and floating bases the polynomials are those of u in θ = θ[k] ⊕ u.
+/// ends. On balls, free joints and floating bases the polynomials are those of u in θ = θ_k ⊕ u.
 #[derive(Clone, Debug)]
 pub struct Recorded {
     space: ConfigurationSpace,

@@ -17,8 +17,8 @@ pub enum Ends {
 
 /// A cubic spline of each joint through points at increasing s from 0 to 1.
 ///
-/// A ball, a free joint and a floating base have no coordinates that can be added. There y[k + 1] = y[k] + (θ[k + 1] ⊖
-/// θ[k]) takes their place: its cubic spline has the slopes and curvatures at the points, and between them θ[k] ⊕ u
+/// A ball, a free joint and a floating base have no coordinates that can be added. There y_{k+1} = y_k + (θ_{k+1} ⊖
+/// θ_k) takes their place: its cubic spline has the slopes and curvatures at the points, and between them θ_k ⊕ u
 /// meets both with a quintic u. So θ, θ′ and θ″ have no jumps, rotations about one axis give the cubic spline of their
 /// angle, and the choice of {s} does not matter. Rotations between two points take the shorter way.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl Spline {
         Ok(Spline { space: model.configuration_space().clone(), s, theta: points.to_vec(), y, curvatures })
     }
 
-    /// Through rows of positions, s in proportion to the distances between them, ‖θ[k + 1] ⊖ θ[k]‖.
+    /// Through rows of positions, s in proportion to the distances between them, ‖θ_{k+1} ⊖ θ_k‖.
     ///
     /// # Errors
     /// As [`new`](Self::new); also where two points in a row are the same.
@@ -110,7 +110,7 @@ impl Path for Spline {
     }
 }
 
-/// Rows y[k + 1] = y[k] + (θ[k + 1] ⊖ θ[k]): on a flat space, the positions.
+/// Rows y_{k+1} = y_k + (θ_{k+1} ⊖ θ_k): on a flat space, the positions.
 fn developed(model: &Model, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
     if model.configuration_space().is_flat() {
         return points.to_vec();

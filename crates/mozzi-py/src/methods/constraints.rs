@@ -270,8 +270,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// dict of str to numpy.ndarray of shape (6,)
-    ///     By the constraint's name, the wrench (m, f) that {b} applies to {a}, in the axes of {a} and about the origin of
-    ///     {b}: N m, N.
+    ///     By the constraint's name, the wrench (m, f) that {b} applies to {a}, in the axes of {a} and about the origin
+    ///     of {b}: N m, N.
     fn constraint_wrenches<'py>(
         &self,
         py: Python<'py>,
@@ -335,8 +335,8 @@ impl PyModel {
         named(py, "Reduction", fields)
     }
 
-    /// The torques of the motors, and λ, of a motion that satisfies the constraints: τ = Mθ̈ + h + f + Aᵀλ, with τ_j = 0
-    /// where no motor is.
+    /// The torques of the motors, and λ, of a motion that satisfies the constraints: τ = Mθ̈ + h + f + Aᵀλ, with τ_j =
+    /// 0 where no motor is.
     ///
     /// Parameters
     /// ----------

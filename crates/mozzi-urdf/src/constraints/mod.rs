@@ -11,8 +11,8 @@
 //!  "motors": ["j1"]}
 //! ```
 //!
-//! - `kind` is `point`, `weld`, `hinge`, `distance` (with a `length`, m), `rolling` (with a `radius`, m) or `joint`: see
-//!   [`Closure`](mozzi::model::description::Closure). All rows are in the axes of {a}.
+//! - `kind` is `point`, `weld`, `hinge`, `distance` (with a `length`, m), `rolling` (with a `radius`, m) or `joint`:
+//!   see [`Closure`](mozzi::model::description::Closure). All rows are in the axes of {a}.
 //! - An anchor is a `frame` (a link or frame of the robot; null is {s}) and its configuration in it, the identity by
 //!   default: `xyz` (m) and `rpy` (roll, pitch, yaw, rad), or the 4 × 4 matrix `T`.
 //! - A `joint` has up to five coefficients, θ_joint = Σ c_k θ_sourceᵏ; without `source`, one: the position at which the

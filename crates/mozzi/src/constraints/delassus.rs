@@ -1,7 +1,7 @@
 //! The Delassus matrix A M⁻¹Aᵀ, and the multipliers that solve with it.
 //!
-//! With M = LᵀDL and Y = A L⁻¹ it is G = Y D⁻¹Yᵀ; a row of Y has the zeros of the tree. Constraints may be redundant, so
-//! that G is singular: the multipliers are found by a proximal iteration,
+//! With M = LᵀDL and Y = A L⁻¹ it is G = Y D⁻¹Yᵀ; a row of Y has the zeros of the tree. Constraints may be redundant,
+//! so that G is singular: the multipliers are found by a proximal iteration,
 //!
 //! > λ₀ = 0,  λ ← λ + (G + ρ1)⁻¹(b − Gλ),  three times,
 //!

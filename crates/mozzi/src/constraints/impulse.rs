@@ -11,8 +11,8 @@ use crate::scalar::Scalar;
 ///
 /// > M(θ̇⁺ − θ̇) = −AᵀΛ,  A θ̇⁺ = 0,  so (A M⁻¹Aᵀ)Λ = A θ̇
 ///
-/// θ̇⁺ is the velocity that satisfies the constraints nearest to θ̇ in the metric of M. Of the impact, inelastic, kinetic
-/// energy is lost.
+/// θ̇⁺ is the velocity that satisfies the constraints nearest to θ̇ in the metric of M. Of the impact, inelastic,
+/// kinetic energy is lost.
 ///
 /// Cost O(n · depth² + m · depth² + m³), no allocation.
 ///

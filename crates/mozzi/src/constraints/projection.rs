@@ -7,7 +7,8 @@ use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, Rare, THETA, output};
 use crate::scalar::Scalar;
 
-/// P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹, n × n by rows: Pτ = P(Mθ̈ + h) are the equations of motion without λ. Rank n − rank A.
+/// P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹, n × n by rows: Pτ = P(Mθ̈ + h) are the equations of motion without λ. Rank n − rank
+/// A.
 ///
 /// Cost O(n · m · (n + m)), no allocation.
 ///

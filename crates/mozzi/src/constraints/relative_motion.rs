@@ -46,8 +46,8 @@ impl<S: Scalar> Side<S> {
 /// The motion of {b} relative to {a}. Both are followed to the link that carries them both, so that what moves this
 /// link does not enter.
 ///
-/// The workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the [`Way`] of the anchors, the columns of
-/// the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
+/// The workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the [`Way`] of the anchors, the columns
+/// of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
 #[inline(always)]
 pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

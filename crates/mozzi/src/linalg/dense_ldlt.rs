@@ -1,10 +1,10 @@
-//! G = LDLᵀ of a full symmetric matrix: no pivoting, no square root. Each step changes numbers that do not depend on each
-//! other.
+//! G = LDLᵀ of a full symmetric matrix: no pivoting, no square root. Each step changes numbers that do not depend on
+//! each other.
 
 use crate::scalar::Scalar;
 
-/// Overwrites the lower triangle of G (row-major, m × m) with L (unit diagonal, not stored), and fills `one_over_d` with
-/// 1/D.
+/// Overwrites the lower triangle of G (row-major, m × m) with L (unit diagonal, not stored), and fills `one_over_d`
+/// with 1/D.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar>(G: &mut [S], one_over_d: &mut [S]) {
     let m = one_over_d.len();

@@ -34,8 +34,8 @@ impl Model<f64> {
     /// The same robot with further constraints: loops that close, feet that are pinned. See [`constraints`].
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a name that is taken, an anchor that does not exist, anchors that are fixed to each other,
-    /// numbers that are not finite.
+    /// [`Error::Invalid`] for a name that is taken, an anchor that does not exist, anchors that are fixed to each
+    /// other, numbers that are not finite.
     ///
     /// [`constraints`]: crate::constraints
     pub fn with_constraints(&self, constraints: impl IntoIterator<Item = Constraint>) -> Result<Model, Error> {

@@ -79,8 +79,8 @@ impl<S: Float + Into<f64>> Closer<S> {
         Ok(())
     }
 
-    /// θ ← θ ⊕ δ with M δ = −Aᵀλ, A δ = −φ, until φ is 0; then θ̇ ← θ̇ − M⁻¹AᵀΛ with A θ̇ = 0: the nearest in the metric
-    /// of M. t is for the error.
+    /// θ ← θ ⊕ δ with M δ = −Aᵀλ, A δ = −φ, until φ is 0; then θ̇ ← θ̇ − M⁻¹AᵀΛ with A θ̇ = 0: the nearest in the
+    /// metric of M. t is for the error.
     ///
     /// # Errors
     /// [`Error::Opened`].

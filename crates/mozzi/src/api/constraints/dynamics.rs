@@ -66,7 +66,8 @@ impl Model<f64> {
         Ok(found.collect())
     }
 
-    /// λ of a known motion and known torques, m numbers: Aᵀλ = τ − M θ̈ − h − f − JᵀF in this environment, of least norm.
+    /// λ of a known motion and known torques, m numbers: Aᵀλ = τ − M θ̈ − h − f − JᵀF in this environment, of least
+    /// norm.
     ///
     /// # Errors
     /// [`Error::WrongLength`].

@@ -29,8 +29,8 @@ impl Model<f64> {
     /// > τ = Mθ̈ + h + f + Aᵀλ, with τ_j = 0 where no [motor](Self::motors) is
     ///
     /// If there are more motors than degrees of freedom, τ is the one with the least Σ w_j τ_j²; weights w > 0, one
-    /// for each velocity, are 1 by default. λ is the one of least norm. The motors' τ that only stress the mechanism are
-    /// zero then.
+    /// for each velocity, are 1 by default. λ is the one of least norm. The motors' τ that only stress the mechanism
+    /// are zero then.
     ///
     /// By singular values, O(n³).
     ///

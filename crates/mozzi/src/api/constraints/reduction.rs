@@ -29,8 +29,8 @@ impl Model<f64> {
     /// The dynamics in the velocities of these joints, from which the constraints determine all others.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::BadArgument`] if a joint is not determined by them, or if
-    /// they depend on each other.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::BadArgument`] if a joint is not determined by them, or
+    /// if they depend on each other.
     pub fn reduce(
         &self,
         theta: &[f64],
