@@ -1,6 +1,6 @@
 """What Pinocchio or MuJoCo make of a robot: a question as JSON on standard input, the answer on standard output.
 
-Everything is told as the library has it; comparing and explaining is left to who asks. Six-vectors are angular first.
+Numbers are passed on as the library computes them; the caller compares and explains. Six-vectors are angular first.
 """
 
 import sys
