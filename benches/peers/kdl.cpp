@@ -1,4 +1,4 @@
-// Orocos KDL, from Debian's liborocos-kdl-dev: chains that are bolted down.
+// Orocos KDL, from Debian's liborocos-kdl-dev: fixed chains.
 
 #include "peer.hpp"
 #include <kdl/chaindynparam.hpp>
@@ -21,7 +21,7 @@ struct Robot {
           none(c.getNrOfSegments(), KDL::Wrench::Zero()), theta(n), dtheta(n), x(n), result(n), M(n) {}
 };
 
-std::string version() { return "KDL " KDL_VERSION_STRING ", as Debian compiled it; bolted chains alone"; }
+std::string version() { return "KDL " KDL_VERSION_STRING ", as Debian compiled it; fixed chains alone"; }
 const char* const CONVENTION = "mozzi";
 
 namespace {
