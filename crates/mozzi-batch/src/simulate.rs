@@ -70,8 +70,8 @@ impl<T: Number> Batch<T> {
         let pieces: Vec<_> = theta.chunks_mut(TOGETHER * nq).zip(dtheta.chunks_mut(TOGETHER * n)).enumerate().collect();
         let results = self.workers().map(
             pieces,
-            || (),
-            |(), (k, (theta, dtheta))| {
+            || Closer::new(self.constants()),
+            |closer, (k, (theta, dtheta))| {
                 let (first, robots) = (k * TOGETHER, dtheta.len() / n);
                 let wrenches: Vec<_> = environment
                     .wrenches
@@ -85,7 +85,7 @@ impl<T: Number> Batch<T> {
                 let tau = &tau[first * n..][..robots * n];
                 let mut lambda = vec![T::zero(); robots * m];
                 let mut accelerations = |_t: f64, theta: &[T], dtheta: &[T], ddtheta: &mut [T]| {
-                    let outputs: &mut [&mut [T]] = if m == 0 { &mut [ddtheta] } else { &mut [ddtheta, &mut lambda] };
+                    let outputs = &mut [ddtheta, &mut lambda][..query.declaration().outputs.len()];
                     alone
                         .compute(query, &[theta, dtheta, tau], &environment, outputs)
                         .map(|()| [])
@@ -95,7 +95,10 @@ impl<T: Number> Batch<T> {
                 let mut motion: Motion<T> = Motion::start_many(space, robots, 0.0, theta, dtheta, &mut accelerations)?;
                 for k in 1..=steps {
                     motion.advance(explicit, h, k as f64 * h, &mut accelerations)?;
-                    alone.close(motion.t, &mut motion.theta, &mut motion.dtheta).map_err(|error| error.after(first))?;
+                    if let Some(closer) = closer {
+                        self.close_by(closer, motion.t, &mut motion.theta, &mut motion.dtheta)
+                            .map_err(|error| error.after(first))?;
+                    }
                     motion.find_rates(&mut accelerations)?;
                 }
                 let diverged = lost(dtheta, &motion.dtheta).map(|k| {
@@ -138,17 +141,19 @@ impl<T: Number> Batch<T> {
     pub fn close(&self, t: f64, theta: &mut [T], dtheta: &mut [T]) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let pieces = theta.chunks_mut(TOGETHER * nq.max(1)).zip(dtheta.chunks_mut(TOGETHER * n));
+        self.each(pieces.collect(), |closer, (theta, dtheta)| self.close_by(closer, t, theta, dtheta))
+    }
+
+    fn close_by(&self, closer: &mut Closer<T>, t: f64, theta: &mut [T], dtheta: &mut [T]) -> Result<(), Error> {
+        let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let finite = |numbers: &[T]| numbers.iter().all(|&x| x * T::zero() == T::zero());
-        self.each(pieces.collect(), |closer, (theta, dtheta)| {
-            for (k, (theta, dtheta)) in theta.chunks_exact_mut(nq).zip(dtheta.chunks_exact_mut(n)).enumerate() {
-                if finite(theta) && finite(dtheta) {
-                    closer
-                        .close(self.constants(), t, theta, dtheta)
-                        .map_err(|source| Error::State { index: k, source })?;
-                }
+        for (k, (theta, dtheta)) in theta.chunks_exact_mut(nq).zip(dtheta.chunks_exact_mut(n)).enumerate() {
+            if finite(theta) && finite(dtheta) {
+                let closed = closer.close(self.constants(), t, theta, dtheta);
+                closed.map_err(|source| Error::State { index: k, source })?;
             }
-            Ok(())
-        })
+        }
+        Ok(())
     }
 
     /// f of pieces of [`TOGETHER`] states; nothing where the robot has no constraints.

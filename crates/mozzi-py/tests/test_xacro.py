@@ -1,28 +1,14 @@
 """Robots from xacro: arguments, packages, and errors at their places in the files that the user wrote."""
 
+import pathlib
+
 import mozzi
 import numpy as np
 import pytest
 from conftest import assert_close
 
-ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="length" default="0.5"/>
-  <xacro:arg name="prefix" default=""/>
-  <xacro:include filename="$(find rods)/rod.xacro"/>
-  <link name="base"/>
-  <xacro:rod name="$(arg prefix)rod" length="${float('$(arg length)')}"/>
-</robot>
-"""
-ROD = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:macro name="rod" params="name length mass:=2">
-    <joint name="${name}_pivot" type="continuous">
-      <parent link="base"/><child link="${name}"/><axis xyz="0 1 0"/>
-    </joint>
-    <link name="${name}"><inertial><origin xyz="0 0 ${-length / 2}"/><mass value="${mass}"/>
-      <inertia ixx="${mass * length**2 / 12}" iyy="${mass * length**2 / 12}" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>
-  </xacro:macro>
-</robot>
-"""
+FILES = pathlib.Path(__file__).parents[2] / "mozzi-xacro" / "tests" / "arm"
+ROBOT, ROD = ((FILES / name).read_text(encoding="utf-8") for name in ["arm.urdf.xacro", "rod.xacro"])
 
 
 @pytest.fixture

@@ -26,10 +26,7 @@ pub struct AssembleArguments {
 
 pub fn run(arguments: &AssembleArguments) -> Result<String> {
     let model = arguments.robot.load()?;
-    if model.constraint_rows() == 0 {
-        let robot = &model.description().name;
-        return Err(Failure::wrong(format!("{robot} has no constraints; --constraints FILE adds some")));
-    }
+    needs_constraints(&model)?;
     let (guess, rates) = arguments.start.read(&model)?;
     let hold: Vec<&str> = arguments.hold.iter().map(String::as_str).collect();
     let theta = model.assemble(&guess, &hold)?;
@@ -60,6 +57,17 @@ pub fn run(arguments: &AssembleArguments) -> Result<String> {
     let list = |values: &[f64]| values.iter().map(|x| format!("{x}")).collect::<Vec<_>>().join(",");
     page.blank().line(format!("--theta {} --dtheta {}", list(&theta), list(&dtheta)));
     Ok(page.end())
+}
+
+/// Is there something to compute?
+pub fn needs_constraints(model: &Model) -> Result<()> {
+    match model.constraint_rows() {
+        0 => {
+            let robot = &model.description().name;
+            Err(Failure::wrong(format!("{robot} has no constraints; --constraints FILE adds some")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The largest violation of the constraints, rad and m.

@@ -2,9 +2,11 @@
 
 mod attach;
 mod closed_form;
+mod constrained_dynamics;
 mod constraints;
 mod documentation;
 mod edits;
+mod properties;
 mod quantity;
 mod report;
 mod states;

@@ -157,7 +157,7 @@ impl Robots<'_> {
         let mut accelerations = |tau: &mut [f64], t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]| {
             torque(t, theta, dtheta, tau)?;
             let inputs: [&[f64]; 3] = [theta, dtheta, tau];
-            let outputs: &mut [&mut [f64]] = if m == 0 { &mut [ddtheta] } else { &mut [ddtheta, &mut lambda] };
+            let outputs = &mut [ddtheta, &mut lambda][..query.declaration().outputs.len()];
             py.detach(|| self.batch.compute(query, &inputs, &self.environment, outputs))
                 .map_err(|error| of_batch(error, self.leading))?;
             Ok::<[f64; 0], PyErr>([])

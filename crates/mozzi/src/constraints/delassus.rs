@@ -6,7 +6,8 @@
 //! > λ₀ = 0,  λ ← λ + (G + ρ1)⁻¹(b − Gλ),  three times,
 //!
 //! which needs no decision about the rank and so works on registers, dual numbers and recordings. Its error in the
-//! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021).
+//! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021). After a step by δ, b − Gλ
+//! is ρδ.
 
 use crate::dynamics::composite_inertias;
 use crate::linalg::{dense_ldlt, ldlt};
@@ -15,8 +16,11 @@ use crate::scalar::Scalar;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// How often the residual is solved for.
-const REFINEMENTS: usize = 3;
+/// Of the proximal iteration.
+const STEPS: usize = 3;
+
+/// The rows of a weld; no constraint has more.
+const MOST_ROWS: usize = 6;
 
 /// Memory of the constrained dynamics, m constraint rows and n velocities.
 #[derive(Clone, Debug)]
@@ -29,13 +33,14 @@ pub struct ConstraintMemory<S = f64> {
     pub(crate) M: Vec<S>,
     /// Y = A L⁻¹, m × n.
     pub(crate) Y: Vec<S>,
-    /// G, m × m.
+    /// The rows of one constraint of Y D⁻¹.
+    scaled: Vec<S>,
+    /// G, m × m, and then the factors of G + ρ1.
     G: Vec<S>,
-    /// The factors of G + ρ1.
-    factors: Vec<S>,
     one_over_d: Vec<S>,
-    /// b − Gλ.
-    residual: Vec<S>,
+    rho: S,
+    /// By how much λ grows.
+    step: Vec<S>,
     /// m and n numbers.
     pub(crate) right: Vec<S>,
     pub(crate) lambda: Vec<S>,
@@ -51,10 +56,11 @@ impl<S: Scalar> ConstraintMemory<S> {
             dA_dtheta: vec![o; m],
             M: vec![o; n * n],
             Y: vec![o; m * n],
+            scaled: vec![o; MOST_ROWS * n],
             G: vec![o; m * m],
-            factors: vec![o; m * m],
             one_over_d: vec![o; m],
-            residual: vec![o; m],
+            rho: o,
+            step: vec![o; m],
             right: vec![o; m],
             lambda: vec![o; m],
             vector: vec![o; n],
@@ -64,8 +70,9 @@ impl<S: Scalar> ConstraintMemory<S> {
     /// Sets every number to NaN.
     pub(crate) fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
-        let ConstraintMemory { A, dA_dtheta, M, Y, G, factors, one_over_d, residual, right, lambda, vector } = self;
-        for list in [A, dA_dtheta, M, Y, G, factors, one_over_d, residual, right, lambda, vector] {
+        let ConstraintMemory { A, dA_dtheta, M, Y, scaled, G, one_over_d, rho, step, right, lambda, vector } = self;
+        *rho = nan;
+        for list in [A, dA_dtheta, M, Y, scaled, G, one_over_d, step, right, lambda, vector] {
             list.fill(nan);
         }
     }
@@ -90,34 +97,34 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
             1 => add_rows::<1, S, C>(model, tie, memory),
             3 => add_rows::<3, S, C>(model, tie, memory),
             5 => add_rows::<5, S, C>(model, tie, memory),
-            _ => add_rows::<6, S, C>(model, tie, memory),
+            _ => add_rows::<MOST_ROWS, S, C>(model, tie, memory),
         }
     }
-    let ConstraintMemory { G, factors, one_over_d, .. } = memory;
+    let ConstraintMemory { G, one_over_d, rho, .. } = memory;
     let mut trace = S::from_f64(1e-30); // no row can move: 0/ρ stays 0
     for r in 0..m {
         trace += G[r * m + r];
     }
-    let rho = trace * S::from_f64(relative_rho::<S>() / m.max(1) as f64);
-    factors.copy_from_slice(G);
+    *rho = trace * S::from_f64(relative_rho::<S>() / m.max(1) as f64);
     for r in 0..m {
-        factors[r * m + r] += rho;
+        G[r * m + r] += *rho;
     }
-    dense_ldlt::factor(factors, one_over_d);
+    dense_ldlt::factor(G, one_over_d);
 }
 
-/// R rows of Y, LᵀY = Aᵀ, and of G, with the rows before them: side by side, since each number of one row waits for the
-/// one before it. `vector` holds 1/D.
+/// R rows of Y, LᵀY = Aᵀ, and of G's upper triangle: side by side, since each number of one row waits for the one before
+/// it. `vector` holds 1/D.
 #[cfg_attr(not(test), inline(always))]
 fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>, memory: &mut ConstraintMemory<S>) {
     let (m, n, pattern) = (model.ties.rows, model.n(), &model.structure.pattern);
-    let ConstraintMemory { M, Y, G, vector, .. } = memory;
-    let (before, Y_tie) = Y[..(tie.first + R) * n].split_at_mut(tie.first * n);
+    let ConstraintMemory { M, Y, scaled, G, vector, .. } = memory;
+    let (Y_tie, scaled) = (&mut Y[tie.first * n..][..R * n], &mut scaled[..R * n]);
     for &k in &tie.support {
         let L = &M[k * n..][..n];
         let mut y = [S::zero(); R];
         for r in 0..R {
             y[r] = Y_tie[r * n + k];
+            scaled[r * n + k] = y[r] * vector[k];
         }
         for i in pattern.ancestors(k) {
             for r in 0..R {
@@ -125,24 +132,38 @@ fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>
             }
         }
     }
-    let (mut rows, vector) = ([&Y_tie[..n]; R], &vector[..n]);
+    let mut rows = [&scaled[..n]; R];
     for r in 1..R {
-        rows[r] = &Y_tie[r * n..][..n];
+        rows[r] = &scaled[r * n..][..n];
     }
-    for s in 0..tie.first + R {
-        let row = if s < tie.first { &before[s * n..][..n] } else { rows[s - tie.first] };
-        let mut sums = [S::zero(); R];
-        for &j in &tie.support {
-            let scaled = row[j] * vector[j];
+    for other in &model.ties.list {
+        if other.first > tie.first {
+            break;
+        }
+        let columns = shared(&tie.support, &other.support);
+        for s in other.first..other.first + other.kind.rows() {
+            let row = &Y[s * n..][..n];
+            let mut sums = [S::zero(); R];
+            for &j in columns {
+                for r in 0..R {
+                    sums[r] = rows[r][j].mul_add(row[j], sums[r]);
+                }
+            }
             for r in 0..R {
-                sums[r] = rows[r][j].mul_add(scaled, sums[r]);
+                G[s * m + tie.first + r] = sums[r];
             }
         }
-        for r in 0..R {
-            G[(tie.first + r) * m + s] = sums[r];
-            G[s * m + tie.first + r] = sums[r];
-        }
     }
+}
+
+/// Of the first columns those that may be in the second; both begin with their last.
+#[inline(always)]
+fn shared<'s>(columns: &'s [usize], others: &[usize]) -> &'s [usize] {
+    let (mut from, last) = (0, others.first().copied().unwrap_or_default());
+    while from < columns.len() && columns[from] > last {
+        from += 1;
+    }
+    &columns[from..]
 }
 
 /// ρ over the mean diagonal entry of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
@@ -155,20 +176,17 @@ fn relative_rho<S: Scalar>() -> f64 {
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>) {
     let m = model.ties.rows;
-    let ConstraintMemory { G, factors, one_over_d, residual, right, lambda, .. } = memory;
-    lambda.copy_from_slice(right);
-    dense_ldlt::solve(factors, one_over_d, lambda);
-    for _ in 1..REFINEMENTS {
+    let ConstraintMemory { G, one_over_d, rho, step, right, lambda, .. } = memory;
+    step.copy_from_slice(right);
+    dense_ldlt::solve(G, one_over_d, step);
+    lambda.copy_from_slice(step);
+    for _ in 1..STEPS {
         for r in 0..m {
-            let mut sum = right[r];
-            for (&g, &x) in G[r * m..][..m].iter().zip(&*lambda) {
-                sum = g.mul_add(-x, sum);
-            }
-            residual[r] = sum;
+            step[r] = step[r] * *rho;
         }
-        dense_ldlt::solve(factors, one_over_d, residual);
+        dense_ldlt::solve(G, one_over_d, step);
         for r in 0..m {
-            lambda[r] += residual[r];
+            lambda[r] += step[r];
         }
     }
 }

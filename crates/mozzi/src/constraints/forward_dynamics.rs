@@ -73,6 +73,7 @@ impl Quantity for ConstrainedForwardDynamics {
         &[output("ddtheta", VECTOR, ACCELERATION), output("multipliers", &[Dim::Constraints], "N m or N")],
     )
     .uses(Uses::ALL)
+    .is_constrained()
     .divides();
 }
 impl Kernel for ConstrainedForwardDynamics {

@@ -60,6 +60,7 @@ impl Quantity for ConstraintImpulse {
         &[THETA, DTHETA],
         &[output("dtheta_after", VECTOR, DTHETA.unit), output("impulse", &[Dim::Constraints], "N m s or N s")],
     )
+    .is_constrained()
     .divides();
 }
 impl Kernel for ConstraintImpulse {

@@ -1,7 +1,7 @@
 //! A(θ), Ȧθ̇ and the residual φ(θ) of the constraints (Modern Robotics, section 8.7).
 
 use super::relative_motion::{RelativeMotion, relative_motion, z_of};
-use crate::kinematics::joint_transforms;
+use crate::kinematics::{base_pose, joint_transforms};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::description::Closure;
@@ -53,6 +53,7 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
         assert!(found == expected || found == 0, "{what} has {found} entries, expected {expected}");
     }
     A.fill(S::zero());
+    let base = base_pose(model, theta);
     for tie in &model.ties.list {
         let rows = tie.first..tie.first + tie.kind.rows();
         let A = if A.is_empty() { &mut [][..] } else { &mut A[rows.start * n..rows.end * n] };
@@ -63,7 +64,7 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
                 joint_row(theta, dtheta, (joint, source.as_ref(), polynomial), A, dA_dtheta, phi);
             }
             TieKind::Frames { a, b, closure } => {
-                frame_rows(model, theta, dtheta, ([a, b], closure), workspace, A, dA_dtheta, phi);
+                frame_rows(model, base, dtheta, ([a, b], closure), workspace, A, dA_dtheta, phi);
             }
         }
     }
@@ -104,7 +105,7 @@ fn joint_row<S: Scalar + From<C>, C: Scalar>(
 #[allow(clippy::too_many_arguments)] // a state, a constraint, and its rows
 fn frame_rows<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
-    theta: &[S],
+    base: SE3<S>,
     dtheta: &[S],
     (ends, closure): ([&End<C>; 2], &Closure<C>),
     workspace: &mut Workspace<S>,
@@ -112,7 +113,7 @@ fn frame_rows<S: Scalar + From<C>, C: Scalar>(
     dA_dtheta: &mut [S],
     phi: &mut [S],
 ) {
-    let motion = relative_motion(model, theta, dtheta, ends, workspace);
+    let motion = relative_motion(model, base, dtheta, ends, workspace);
     let RelativeMotion { T, V, bias, .. } = &motion;
     let mut direction = Vec3::zero(); // which the rows of distances and wheels depend on
     match closure {
@@ -261,6 +262,7 @@ impl Quantity for ConstraintJacobian {
         &[THETA],
         &[output("A", &[Dim::Constraints, Dim::N], "1 or m")],
     )
+    .is_constrained()
     .at_rest();
 }
 impl Kernel for ConstraintJacobian {
@@ -283,6 +285,7 @@ impl Quantity for ConstraintBias {
         &[THETA, DTHETA],
         &[output("dA_dtheta", ROWS, "rad/s² or m/s²")],
     )
+    .is_constrained()
     .with_first_output(1);
 }
 
@@ -298,6 +301,7 @@ impl Quantity for ConstraintResidual {
         &[THETA],
         &[output("phi", ROWS, "rad or m")],
     )
+    .is_constrained()
     .at_rest()
     .with_first_output(2);
 }

@@ -59,6 +59,7 @@ impl Quantity for ConstraintProjection {
         &[THETA],
         &[output("P", MATRIX, "1, kg m or 1/m")],
     )
+    .is_constrained()
     .at_rest()
     .divides();
 }

@@ -1,6 +1,5 @@
 //! The motion of one anchor of a constraint relative to the other.
 
-use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{End, Model, Way, Workspace};
@@ -46,12 +45,12 @@ impl<S: Scalar> Side<S> {
 /// The motion of {b} relative to {a}. Both are followed to the link that carries them both, so that what moves this
 /// link does not enter.
 ///
-/// The workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the [`Way`] of the anchors, the columns
+/// `base` is the pose of the base, and the workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the [`Way`] of the anchors, the columns
 /// of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
 #[inline(always)]
 pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
-    theta: &[S],
+    base: SE3<S>,
     dtheta: &[S],
     [a, b]: [&End<C>; 2],
     workspace: &mut Workspace<S>,
@@ -78,7 +77,7 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
         let V_0 = side.T.Ad() * Twist::from_array(V_0);
         side.dV += V_0.ad() * side.V;
         side.V += V_0;
-        side.T = side.T * base_pose(model, theta).inverse();
+        side.T = side.T * base.inverse();
     }
 
     // both seen from {a}

@@ -86,8 +86,12 @@ impl<S: Scalar> Twist<S> {
     /// The six unit twists: rotations about x, y, z, then translations along them.
     #[inline(always)]
     pub fn axes() -> [Self; 6] {
-        let entry = |one| if one { S::one() } else { S::zero() };
-        core::array::from_fn(|r| Twist::from_array(core::array::from_fn(|k| entry(k == r))))
+        let mut axes = [Self::zero(); 6];
+        for k in 0..3 {
+            axes[k].w.0[k] = S::one();
+            axes[k + 3].v.0[k] = S::one();
+        }
+        axes
     }
 
     /// Each component by f.

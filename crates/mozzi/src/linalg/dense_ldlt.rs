@@ -3,42 +3,45 @@
 
 use crate::scalar::Scalar;
 
-/// Overwrites the lower triangle of G (row-major, m × m) with L (unit diagonal, not stored), and fills `one_over_d`
+/// Overwrites the upper triangle of G (row-major, m × m) with Lᵀ (unit diagonal, not stored), and fills `one_over_d`
 /// with 1/D.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar>(G: &mut [S], one_over_d: &mut [S]) {
     let m = one_over_d.len();
     for k in 0..m {
-        let inverse = S::one() / G[k * m + k];
+        let (row_k, below) = G[k * m..m * m].split_at_mut(m);
+        let inverse = S::one() / row_k[k];
         one_over_d[k] = inverse;
-        for i in (k + 1..m).rev() {
-            // rows above i still have column k as it was
-            let a = G[i * m + k] * inverse;
-            for j in k + 1..=i {
-                G[i * m + j] = G[j * m + k].mul_add(-a, G[i * m + j]);
+        for i in k + 1..m {
+            let (row_i, row_k) = (&mut below[(i - k - 1) * m..][..m][i..], &mut row_k[i..]);
+            let a = row_k[0] * inverse;
+            for (x, &y) in row_i.iter_mut().zip(&*row_k) {
+                *x = y.mul_add(-a, *x);
             }
-            G[i * m + k] = a;
+            row_k[0] = a;
         }
     }
 }
 
 /// Overwrites b with x, where LDLᵀx = b.
 #[cfg_attr(not(test), inline(always))]
-pub(crate) fn solve<S: Scalar>(L: &[S], one_over_d: &[S], b: &mut [S]) {
+pub(crate) fn solve<S: Scalar>(Lt: &[S], one_over_d: &[S], b: &mut [S]) {
     let m = one_over_d.len();
+    let b = &mut b[..m];
     for k in 0..m {
-        let x = -b[k];
-        for i in k + 1..m {
-            b[i] = L[i * m + k].mul_add(x, b[i]);
+        let (x, row) = (-b[k], &Lt[k * m..][..m]);
+        for (b, &l) in b[k + 1..].iter_mut().zip(&row[k + 1..]) {
+            *b = l.mul_add(x, *b);
         }
     }
     for k in 0..m {
         b[k] = b[k] * one_over_d[k];
     }
     for k in (0..m).rev() {
-        let (row, x) = (&L[k * m..][..k], -b[k]);
-        for (b, &l) in b[..k].iter_mut().zip(row) {
-            *b = l.mul_add(x, *b);
+        let (before, x) = b.split_at_mut(k);
+        let x = -x[0];
+        for (b, row) in before.iter_mut().zip(Lt.chunks_exact(m)) {
+            *b = row[k].mul_add(x, *b);
         }
     }
 }

@@ -94,7 +94,8 @@ impl<S: Scalar> Neg for Vec3<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|x| -x)
+        let [x, y, z] = self.0;
+        Vec3([-x, -y, -z])
     }
 }
 impl<S: Scalar> Mul<S> for Vec3<S> {

@@ -129,14 +129,16 @@ pub(crate) struct Structure {
 impl<C: Scalar> Model<C> {
     /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, three for a ball, six
     /// for a free joint, after six of a floating base.
+    #[inline(always)]
     pub fn n(&self) -> usize {
         self.armature.len()
     }
 
     /// The number of positions: the length of θ. n, and one more for a floating base, each ball and each free joint: a
     /// quaternion has four entries.
+    #[inline(always)]
     pub fn nq(&self) -> usize {
-        self.structure.space.0.last().map_or(0, |place| place.positions().end)
+        self.structure.names[0].len()
     }
 
     /// The mass of the moving links and of a floating base, kg.

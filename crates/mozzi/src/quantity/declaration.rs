@@ -27,6 +27,8 @@ pub struct Declaration {
     pub divides: bool,
     /// Whether it divides by the robot's mass.
     pub needs_mass: bool,
+    /// Whether the robot's constraints act in it.
+    pub is_constrained: bool,
     /// Whether it is equal for two robots with the same joint forces in every motion: see [`Model::reduced`]. False for
     /// energies and momenta.
     pub is_of_forces: bool,
@@ -51,6 +53,7 @@ impl Declaration {
             is_at_rest: false,
             divides: false,
             needs_mass: false,
+            is_constrained: false,
             is_of_forces: true,
         }
     }
@@ -68,6 +71,9 @@ impl Declaration {
     }
     pub(crate) const fn needs_mass(self) -> Self {
         Declaration { needs_mass: true, is_of_forces: false, ..self }
+    }
+    pub(crate) const fn is_constrained(self) -> Self {
+        Declaration { is_constrained: true, ..self }
     }
     pub(crate) const fn is_of_masses(self) -> Self {
         Declaration { is_of_forces: false, ..self }

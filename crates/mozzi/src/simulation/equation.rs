@@ -131,10 +131,7 @@ impl<'m, I: Input> Equation<'m, I> {
             Some(other) if self.wrenches.is_empty() => other.write(theta, dtheta, &self.force, ddtheta),
             _ => {
                 let query = self.query();
-                let outputs: &mut [&mut [f64]] = match self.lambda.as_mut_slice() {
-                    [] => &mut [&mut *ddtheta],
-                    lambda => &mut [&mut *ddtheta, lambda],
-                };
+                let outputs = &mut [&mut *ddtheta, &mut self.lambda][..query.declaration().outputs.len()];
                 fast::evaluate(&query, self.model, &state, &environment, &mut self.fast, outputs);
                 self.fast.are_pivots_clear(&query)
             }
@@ -249,7 +246,8 @@ fn are_below(values: &[f64], bound: f64) -> bool {
     values.iter().fold(true, |fine, x| fine & (x.abs() < bound))
 }
 
-/// The quantity by which a robot moves: forward dynamics, with constraints if it has some.
+/// The quantity by which a robot moves: forward dynamics, with constraints if it has some. Its outputs are θ̈ and, with
+/// constraints, λ.
 pub fn forward_dynamics_of(model: &Model) -> Query<'static> {
     match model.constraint_rows() {
         0 => quantities::ForwardDynamics.into(),

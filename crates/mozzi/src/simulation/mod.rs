@@ -21,6 +21,7 @@
 
 mod closing;
 mod condition;
+mod course;
 mod dense;
 mod dormand_prince;
 mod driven;
@@ -30,6 +31,7 @@ mod held;
 mod input;
 mod method;
 mod midpoint;
+mod motion;
 mod options;
 mod policy;
 mod recorder;
@@ -57,7 +59,8 @@ pub use dormand_prince::dormand_prince_by_equal_steps;
 pub use equation::{Equation, ForwardDynamics, Powers, forward_dynamics_of};
 pub use events::{Direction, Event, EventFunction, Occurrence};
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
-pub use method::{Explicit, Method, Motion};
+pub use method::{Explicit, Method};
+pub use motion::Motion;
 pub use options::{Friction, LARGEST, Options};
 pub use policy::Policy;
 pub use recorder::{Account, Recorder, Thinned, stride};

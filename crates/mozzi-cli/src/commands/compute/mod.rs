@@ -6,7 +6,7 @@ mod one_state;
 mod subject;
 mod table;
 
-use super::assemble::violation;
+use super::assemble::{needs_constraints, violation};
 use crate::failure::{self, Failure, Result};
 use crate::inputs::{InputArguments, STATE};
 use crate::json;
@@ -67,7 +67,7 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
     }
     let inputs = arguments.inputs.read(query.declaration(), &model)?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-    if is_constrained(query) {
+    if query.declaration().is_constrained {
         let open = violation(&model, slices[0])?;
         if open > 1e-6 {
             failure::note(&format!("θ violates the constraints by {}; `mozzi assemble` closes them", about(open)));
@@ -80,19 +80,12 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
     })
 }
 
-/// Does the quantity depend on the robot's constraints?
-fn is_constrained(query: Query) -> bool {
-    query.name().starts_with("constrain")
-}
-
 /// Constraints where they are needed, and a note where they are left out.
 fn check_constraints(query: Query, model: &Model) -> Result<()> {
-    let m = model.constraint_rows();
-    if is_constrained(query) && m == 0 {
-        let (name, robot) = (hyphenated(query.name()), &model.description().name);
-        return Err(Failure::wrong(format!("{name}: {robot} has no constraints; --constraints FILE adds some")));
+    if query.declaration().is_constrained {
+        needs_constraints(model)?;
     }
-    if m > 0 && query.name().starts_with("forward_dynamics") {
+    if model.constraint_rows() > 0 && query.name().starts_with("forward_dynamics") {
         failure::note(
             "the robot's constraints do not act in this quantity; `constrained-forward-dynamics` applies them",
         );

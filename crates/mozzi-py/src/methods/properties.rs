@@ -1,0 +1,162 @@
+//! What a robot is: names, sizes, limits, parameters, the book's lists.
+
+use crate::failure::of_model;
+use crate::model::{PyModel, array};
+use crate::results::named;
+use pyo3::prelude::*;
+
+#[pymethods]
+impl PyModel {
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.robot().model.description().name
+    }
+
+    /// Velocities: one of each independent joint, three of a ball, six of a free joint and of a floating base.
+    #[getter]
+    fn n(&self) -> usize {
+        self.robot().model.n()
+    }
+
+    /// Positions: n, and one more for a floating base, each ball and each free joint: a quaternion has four numbers.
+    #[getter]
+    fn nq(&self) -> usize {
+        self.robot().model.nq()
+    }
+
+    /// The independent joints, in the order of θ.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.robot().model.joint_names().collect()
+    }
+
+    /// The names of the nq positions: a joint's own name, of a ball `joint.qw` to `joint.qz`, of a free joint
+    /// `joint.qw` to `joint.z`; of a floating base, which comes first, `base.qw` to `base.z`.
+    #[getter]
+    fn position_names(&self) -> Vec<&str> {
+        self.robot().model.position_names().collect()
+    }
+
+    /// The names of the n velocities and forces: a joint's own name, of a ball `joint.wx` to `joint.wz`, of a free
+    /// joint `joint.wx` to `joint.vz`; of a floating base, which comes first, `base.wx` to `base.vz`.
+    #[getter]
+    fn velocity_names(&self) -> Vec<&str> {
+        self.robot().model.velocity_names().collect()
+    }
+
+    /// The links, in the order of the file.
+    #[getter]
+    fn link_names(&self) -> Vec<&str> {
+        self.robot().model.description().links.iter().map(|link| link.name.as_str()).collect()
+    }
+
+    /// The names of all frames: links, and frames that were added.
+    #[getter]
+    fn frames(&self) -> Vec<&str> {
+        self.robot().model.frames().map(|(_, name)| name).collect()
+    }
+
+    /// The end effector's name; None where it is not obvious.
+    #[getter]
+    fn end_effector(&self) -> Option<&str> {
+        self.robot().model.end_effector().ok().map(|frame| self.robot().model.frame_name(frame))
+    }
+
+    /// Is the base floating?
+    #[getter]
+    fn is_floating(&self) -> bool {
+        self.robot().model.is_floating()
+    }
+
+    /// The mass of all that moves, kg.
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.robot().model.mass()
+    }
+
+    /// Gravity in {s}, shape (3,), m/s².
+    #[getter]
+    fn gravity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, &[3], self.robot().model.gravity().0)
+    }
+
+    /// Lowest and highest position of each joint, shape (joints, 2), infinite where there is none; rad or m.
+    #[getter]
+    fn position_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let none = [f64::NEG_INFINITY, f64::INFINITY];
+        let limits = self.robot().model.joints().flat_map(|joint| joint.limits.position.unwrap_or(none));
+        array(py, &[self.robot().model.joint_names().len(), 2], limits)
+    }
+
+    /// Highest speed of each joint, shape (joints,), infinite where there is none; rad/s or m/s.
+    #[getter]
+    fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let limits = self.robot().model.joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY));
+        array(py, &[self.robot().model.joint_names().len()], limits)
+    }
+
+    /// Highest torque or force of each joint, shape (joints,), infinite where there is none; N m or N.
+    #[getter]
+    fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let limits = self.robot().model.joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY));
+        array(py, &[self.robot().model.joint_names().len()], limits)
+    }
+
+    /// π: ten numbers a body, five a joint. See `regressor`.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let parameters = self.robot().model.parameters();
+        array(py, &[parameters.len()], parameters)
+    }
+
+    /// The names of `parameters`.
+    #[getter]
+    fn parameter_names(&self) -> Vec<String> {
+        self.robot().model.parameter_names()
+    }
+
+    /// All joints at 0, a floating base at {s}.
+    #[getter]
+    fn neutral_configuration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let theta: Vec<f64> = self.robot().model.neutral_configuration();
+        array(py, &[theta.len()], theta)
+    }
+
+    /// The book's lists of this robot, over its N moving links, base to tips: `joints`, `links`, `parents`, `M` (N, 4,
+    /// 4) and `M_relative`, `S`, `A` and `B` (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
+    ///
+    /// Raises `ValueError` for a robot with a ball or a free joint, which have no one screw axis.
+    fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lists = self.robot().model.screws().map_err(of_model)?;
+        let (poses, axes) = (
+            |list: &[mozzi::SE3]| {
+                array(py, &[list.len(), 4, 4], list.iter().flat_map(|M| M.to_matrix().into_iter().flatten()))
+            },
+            |list: &[mozzi::ScrewAxis]| {
+                let columns: Vec<[f64; 6]> = list.iter().map(|axis| axis.twist().to_array()).collect();
+                array(py, &[6, list.len()], (0..6).flat_map(|row| columns.iter().map(move |column| column[row])))
+            },
+        );
+        let G = lists.G.iter().flat_map(|G| G.to_matrix().into_iter().flatten());
+        let end_effector = match &lists.end_effector {
+            Some((name, M)) => {
+                (name, array(py, &[4, 4], M.to_matrix().into_iter().flatten())?).into_pyobject(py)?.into_any()
+            }
+            None => py.None().into_bound(py),
+        };
+        let fields = vec![
+            lists.joints.clone().into_pyobject(py)?,
+            lists.links.clone().into_pyobject(py)?,
+            lists.parents.clone().into_pyobject(py)?,
+            poses(&lists.M)?,
+            poses(&lists.M_relative)?,
+            axes(&lists.S)?,
+            axes(&lists.A)?,
+            axes(&lists.B)?,
+            array(py, &[lists.G.len(), 6, 6], G)?,
+            end_effector,
+        ];
+        named(py, "ScrewLists", fields)
+    }
+}

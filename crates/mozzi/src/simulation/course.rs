@@ -1,0 +1,321 @@
+//! The one loop: steps, what happens on the way, and the rows that are recorded.
+
+use super::dense::Dense;
+use super::dormand_prince::DormandPrince;
+use super::driven::Driven;
+use super::events::{Event, Occurrence, first_zero};
+use super::midpoint::Midpoint;
+use super::options::check;
+use super::stall::{Stall, Trouble};
+use super::state::State;
+use super::stops::Stops;
+use super::{Ending, Equation, Explicit, Input, Method, Motion, Options, Recorder, Sample, Simulation};
+use crate::model::{Error, Model};
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+/// What takes the steps.
+enum Integrator {
+    Explicit(Explicit),
+    DormandPrince(Box<DormandPrince>),
+    Midpoint(Box<Midpoint>),
+}
+
+impl Integrator {
+    fn new(method: Method, model: &Model) -> Result<Self, Error> {
+        Ok(match method {
+            Method::DormandPrince { tolerance } => {
+                Integrator::DormandPrince(Box::new(DormandPrince::new(model.n(), model.nq(), tolerance)))
+            }
+            Method::Midpoint => Integrator::Midpoint(Box::new(Midpoint::new(model))),
+            method => Integrator::Explicit(method.explicit()?),
+        })
+    }
+
+    /// What makes steps short, if the method knows it.
+    fn trouble(&mut self) -> Option<&mut Trouble> {
+        if let Integrator::DormandPrince(method) = self { Some(&mut method.trouble) } else { None }
+    }
+
+    /// The state was changed from outside.
+    fn restart(&mut self) {
+        if let Integrator::Midpoint(method) = self {
+            method.restart();
+        }
+    }
+}
+
+/// A simulation on its way.
+pub(super) struct Course<'r> {
+    options: Options,
+    events: &'r [Event<'r>],
+    integrator: Integrator,
+    pub driven: Driven<'r>,
+    pub stops: Stops,
+    stall: Stall,
+    motion: Motion<f64, 3>,
+    /// Where the step began; kept where something may happen within it.
+    from: State,
+    /// Can anything happen within a step, or are there rows within it?
+    is_watched: bool,
+    /// The number of the next row's step, where steps are watched.
+    next: usize,
+    recorder: &'r mut dyn Recorder,
+    /// Has the recorder ended the simulation?
+    is_closed: bool,
+    pub ending: Ending,
+}
+
+impl<'r> Course<'r> {
+    pub fn new(
+        simulation: &'r Simulation<'_>,
+        model: &'r Model,
+        [theta, dtheta]: [&[f64]; 2],
+        input: &'r mut (dyn Input + 'r),
+        recorder: &'r mut dyn Recorder,
+    ) -> Result<Self, Error> {
+        let options = simulation.options;
+        model.check_lengths(theta, [("dtheta", dtheta)])?;
+        for (what, values) in [("theta", theta), ("dtheta", dtheta)] {
+            let finite = values.iter().all(|x| x.is_finite());
+            check(finite, what, format!("{values:?}"), "finite numbers")?;
+        }
+        options.check()?;
+        let equation = Equation::new(model, input, &options).with_forward_dynamics(simulation.forward_dynamics)?;
+        let mut driven = Driven::new(equation);
+        let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
+        driven.close_start(&mut theta, &mut dtheta)?;
+        let (theta, dtheta) = (&theta[..], &dtheta[..]);
+        let integrator = Integrator::new(options.method, model)?;
+        let stops = Stops::new(model, options.joint_limits, theta)?;
+        let motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
+            driven.evaluate(t, q, dq, ddq)
+        })?;
+        Ok(Course {
+            is_watched: !matches!(integrator, Integrator::Explicit(_))
+                || !simulation.events.is_empty()
+                || stops.are_respected(),
+            options,
+            events: &simulation.events,
+            integrator,
+            driven,
+            stops,
+            stall: Stall::new(&options),
+            from: State::of(&motion),
+            motion,
+            next: options.record_every,
+            recorder,
+            is_closed: false,
+            ending: Ending::default(),
+        })
+    }
+
+    pub fn run(&mut self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), Error> {
+        let Options { steps, duration, .. } = self.options;
+        self.stops.report_at(0.0, &self.motion.theta);
+        self.record();
+        if duration == 0.0 {
+            self.ending.complete = true;
+            return Ok(());
+        }
+        if self.stops.are_respected() {
+            let mut state = State::of(&self.motion);
+            self.stops.stop_at_limits(&mut state, &mut self.driven)?;
+            state.copy_to(&mut self.motion);
+        }
+        let mut over = false;
+        while !over && !self.is_closed {
+            let done = self.ending.steps + 1;
+            let is_due = if self.is_watched {
+                over = self.watched_step(done)?;
+                self.is_near_next()
+            } else {
+                self.plain_step(done)?;
+                self.options.is_recorded(done)
+            };
+            let t = self.motion.t;
+            self.stops.report_at(t, &self.motion.theta);
+            self.ending.complete = if self.is_watched { t >= duration } else { done == steps };
+            over |= progress(t).is_break() | self.ending.complete;
+            if (is_due || over) && !self.is_closed {
+                if self.is_watched {
+                    self.complete()?; // τ is that of the row
+                    self.next += self.options.record_every;
+                }
+                self.record();
+            }
+        }
+        Ok(())
+    }
+
+    /// Nothing can happen within a step: steps of equal length, which end at their own times.
+    fn plain_step(&mut self, done: usize) -> Result<(), Error> {
+        let (h, end) = (self.options.step(), self.options.time(done));
+        self.driven.at_step(done, h);
+        if let Integrator::Explicit(method) = self.integrator {
+            let driven = &mut self.driven;
+            self.motion.advance(method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+            self.close()?;
+            self.complete()?;
+        }
+        self.ending.steps = done;
+        Ok(())
+    }
+
+    /// A step to where something happens, and the rows before it. Is the simulation over there?
+    fn watched_step(&mut self, done: usize) -> Result<bool, Error> {
+        let Options { duration, method, .. } = self.options;
+        let (model, step) = (self.driven.model, self.options.step());
+        self.from.copy_from(&self.motion);
+        self.driven.at_step(done, if method.is_adaptive() { duration } else { step });
+        let dense = self.step(step)?;
+        self.ending.steps = done;
+
+        let reached = self.motion.t;
+        let respected = self.stops.are_respected();
+        let impact = if respected { self.stops.first_impact(model, &dense, reached, &self.driven.held) } else { None };
+        let mut end = impact.map_or(reached, |(t, ..)| t);
+        let until = if impact.is_some() { dense.at(model, end) } else { State::of(&self.motion) };
+        let release = self.stops.first_release(&dense, &until, &mut self.driven)?;
+        let impact = impact.filter(|_| release.is_none());
+        end = release.unwrap_or(end);
+        let over = self.events_until(&dense, &mut end);
+        self.rows_until(&dense, end)?;
+        let happens = impact.is_some() || release.is_some();
+        if end < reached || happens {
+            dense.at(model, end).copy_to(&mut self.motion);
+            self.close()?;
+            self.complete()?;
+        }
+        let mut state = State::of(&self.motion);
+        match impact.filter(|(t, ..)| *t <= end) {
+            Some((_, k, side)) => self.stops.stop(&mut state, k, side, &mut self.driven)?,
+            None => {
+                self.driven.keep_at_limits(&mut state)?;
+                self.driven.release(&mut state)?;
+            }
+        }
+        if respected {
+            self.stops.stop_at_limits(&mut state, &mut self.driven)?;
+        }
+        self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
+        state.copy_to(&mut self.motion);
+        if end != dense.t + dense.h || happens {
+            self.integrator.restart();
+        }
+        Ok(over)
+    }
+
+    /// A whole step, and what lies within it.
+    fn step(&mut self, step: f64) -> Result<Dense, Error> {
+        let Course { options: Options { duration, .. }, integrator, driven, motion, from, .. } = self;
+        let (h, end) = step_to(step, from.t, *duration);
+        match integrator {
+            Integrator::Explicit(method) => {
+                motion.advance(*method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
+                self.close()?;
+                self.complete()?;
+            }
+            Integrator::Midpoint(method) => {
+                method.step(from, h, end, driven)?.copy_to(motion);
+                self.close_again()?;
+            }
+            Integrator::DormandPrince(method) => {
+                let (to, dense) = method.step(from, *duration, driven)?;
+                to.copy_to(motion);
+                self.close_again()?;
+                return Ok(dense);
+            }
+        }
+        let Course { driven, motion, from, .. } = self;
+        Ok(Dense::hermite(driven.model, from, &State::of(motion)))
+    }
+
+    /// Events within the step; where one of them ends the simulation, that is the end, and the answer is true.
+    fn events_until(&mut self, dense: &Dense, end: &mut f64) -> bool {
+        let model = self.driven.model;
+        let mut found = Vec::new();
+        for (k, event) in self.events.iter().enumerate() {
+            let f = |state: &State| (event.function)(state.t, &state.theta, &state.dtheta);
+            found.extend(first_zero(model, dense, *end, event.direction, f).map(|t| (t, k)));
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (t, k) in found {
+            let State { theta, dtheta, .. } = dense.at(model, t);
+            let Event { name, stop, .. } = &self.events[k];
+            self.ending.events.push(Occurrence { name: name.clone(), t, theta, dtheta, stop: *stop });
+            if *stop {
+                *end = t;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Rows before the end of what counts of the step.
+    fn rows_until(&mut self, dense: &Dense, end: f64) -> Result<(), Error> {
+        let end = end - self.tolerance();
+        while !self.is_closed && self.next < self.options.steps && self.options.time(self.next) < end {
+            let mut row = dense.at(self.driven.model, self.options.time(self.next));
+            self.driven.close(row.t, &mut row.theta, &mut row.dtheta)?;
+            self.driven.keep_at_limits(&mut row)?;
+            self.driven.complete(&mut row)?;
+            self.next += self.options.record_every;
+            let energy = self.driven.energy(&row.theta, &row.dtheta, row.works);
+            let State { t, theta, dtheta, ddtheta, .. } = &row;
+            let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy };
+            self.is_closed = self.recorder.take(&row).is_break();
+        }
+        Ok(())
+    }
+
+    /// Times nearer than this are one.
+    fn tolerance(&self) -> f64 {
+        1e-12 * self.options.duration
+    }
+
+    /// Does the step end where the next row is?
+    fn is_near_next(&self) -> bool {
+        let next = self.options.time(self.next.min(self.options.steps));
+        (next - self.motion.t).abs() <= self.tolerance()
+    }
+
+    /// The state brought back onto the constraints.
+    fn close(&mut self) -> Result<(), Error> {
+        let Motion { t, theta, dtheta, .. } = &mut self.motion;
+        self.driven.close(*t, theta, dtheta)
+    }
+
+    /// The same for a state whose rates are known.
+    fn close_again(&mut self) -> Result<(), Error> {
+        if !self.driven.has_constraints() {
+            return Ok(());
+        }
+        self.close()?;
+        self.complete()?;
+        self.integrator.restart();
+        Ok(())
+    }
+
+    /// Fills in θ̈ and the powers.
+    fn complete(&mut self) -> Result<(), Error> {
+        let Motion { t, theta, dtheta, ddtheta, rates, .. } = &mut self.motion;
+        *rates = self.driven.evaluate(*t, theta, dtheta, ddtheta)?;
+        Ok(())
+    }
+
+    /// The state as a row.
+    fn record(&mut self) {
+        let Motion { t, theta, dtheta, ddtheta, integrals, .. } = &self.motion;
+        let energy = self.driven.energy(theta, dtheta, *integrals);
+        let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy };
+        self.is_closed = self.recorder.take(&row).is_break();
+    }
+}
+
+/// A step from t, and where it ends: of its own length, or to `until`, where rounding leaves no crumb for a last one.
+fn step_to(step: f64, t: f64, until: f64) -> (f64, f64) {
+    if t + 1.001 * step >= until { (until - t, until) } else { (step, t + step) }
+}
