@@ -57,7 +57,7 @@ pub(crate) fn run<K: Kernel, L: Lane>(
     let read = chunk.inputs.iter().map(|table| table.width).sum();
     let missing = if declaration.is_at_rest { read..read + model.n() } else { 0..0 };
     let place = |k: usize| if k < own { ends[k]..ends[k + 1] } else { missing.clone() };
-    let places = [place(0), place(1), place(2)];
+    let places = [place(0), place(1), place(2), place(3)];
     input.resize(read + model.n(), L::zero());
     input[read..].fill(L::zero());
     let mut widths = [0; MOST_OUTPUTS];
@@ -77,7 +77,8 @@ pub(crate) fn run<K: Kernel, L: Lane>(
         }
         let environment = &Environment { gravity, applied, ..around };
         // without closures or loops: what is not inlined is not compiled for the instruction set
-        let inputs = [&input[places[0].clone()], &input[places[1].clone()], &input[places[2].clone()]];
+        let [a, b, c, d] = &places;
+        let inputs = [&input[a.clone()], &input[b.clone()], &input[c.clone()], &input[d.clone()]];
         let (first_output, rest) = output.split_at_mut(widths[0]);
         let (second, rest) = rest.split_at_mut(widths[1]);
         let (third, fourth) = rest.split_at_mut(widths[2]);

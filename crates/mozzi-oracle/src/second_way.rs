@@ -155,6 +155,15 @@ second_ways! {
         let (d_theta, d_dtheta) = (-&inverse * d_theta, -&inverse * d_dtheta);
         vec![ddtheta, rows(&d_theta), rows(&d_dtheta), rows(&inverse)]
     };
+    InverseDynamicsVjp: |g| {
+        let x = vector(g.inputs[3]);
+        g.tau_derivatives(g.inputs[2]).iter().map(|X| list(&X.tr_mul(&x))).collect()
+    };
+    ForwardDynamicsVjp [1e-6]: |g| {
+        let [d_theta, d_dtheta, M] = g.tau_derivatives(&list(&g.acceleration()));
+        let y = inverse(&M).expect("regular") * vector(g.inputs[3]);
+        vec![list(&-d_theta.tr_mul(&y)), list(&-d_dtheta.tr_mul(&y)), list(&y)]
+    };
     GravityForcesDerivative: |g| vec![rows(&g.by_theta(|form| list(&form.gravity_forces())))];
     TipForcesDerivative: |g| vec![rows(&g.by_theta(|form| list(&form.tip_forces())))];
     MassMatrixProductDerivative: |g| {

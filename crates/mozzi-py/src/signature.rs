@@ -34,7 +34,7 @@ macro_rules! optional {
         /// Which argument it is, of those that any method has.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[allow(missing_docs)] // their names
-        pub enum Slot { Input0, Input1, Input2, $($slot),* }
+        pub enum Slot { Input0, Input1, Input2, Input3, $($slot),* }
 
         $(const $constant: Argument = Argument {
             slot: Slot::$slot, name: $name, default: Some($default), stub: $stub, about: [$kind, $about],
@@ -79,7 +79,7 @@ const SEVERAL_OUT: Argument = Argument {
 /// How many slots there are.
 pub const SLOTS: usize = Slot::Threads as usize + 1;
 /// Those of the state, in the order of the declaration.
-pub const INPUTS: [Slot; 3] = [Slot::Input0, Slot::Input1, Slot::Input2];
+pub const INPUTS: [Slot; 4] = [Slot::Input0, Slot::Input1, Slot::Input2, Slot::Input3];
 /// Those of the environment.
 pub const ENVIRONMENT: RangeInclusive<usize> = Slot::TipWrench as usize..=Slot::Parameters as usize;
 

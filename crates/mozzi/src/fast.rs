@@ -84,9 +84,8 @@ pub fn evaluate(
     match &mut workspace.0 {
         Inner::Plain(memory) => query.evaluate_f64(model, inputs, environment, memory, outputs),
         Inner::Fused(memory, applied) => {
-            let [a, b, c] = query.inputs(inputs);
+            let given = query.inputs(inputs).map(as_fused);
             let [x, y, z, w] = query.outputs(outputs);
-            let given = [as_fused(a), as_fused(b), as_fused(c)];
             let mut found = [as_fused_mut(x), as_fused_mut(y), as_fused_mut(z), as_fused_mut(w)];
             let entry = ENTRIES[query.index()];
             // SAFETY: a Memory<Fused> is made by `Workspace::new` alone, where the processor has FMA.

@@ -56,7 +56,7 @@ pub mod testing;
 
 pub use api::{
     BodyFrame, ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, ForwardDynamicsDerivatives,
-    InverseDynamicsDerivatives, NewtonEuler, Reduction, TaskSpaceDynamics,
+    ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler, Reduction, TaskSpaceDynamics,
 };
 pub use constraints::*;
 pub use dynamics::*;

@@ -64,7 +64,7 @@ struct Case<'a> {
     name: &'a str,
     model: &'a Model,
     frame: FrameId,
-    states: Vec<[Vec<f64>; 3]>,
+    states: Vec<[Vec<f64>; 4]>,
     applied: [(FrameId, Wrench); 2],
     rows: Vec<usize>,
 }
@@ -88,10 +88,11 @@ impl Case<'_> {
         }
     }
 
-    fn inputs<'s>(&self, query: Query, state: &'s [Vec<f64>; 3]) -> Vec<&'s [f64]> {
+    fn inputs<'s>(&self, query: Query, state: &'s [Vec<f64>; 4]) -> Vec<&'s [f64]> {
         let which = |name: &str| match name {
             "theta" => 0,
-            "dtheta" | "x" => 1,
+            "dtheta" => 1,
+            "x" => 3,
             _ => 2,
         };
         query.declaration().inputs.iter().map(|input| &state[which(input.name)][..]).collect()
@@ -325,7 +326,11 @@ fn every_quantity_in_every_way() {
         for (name, model) in &robots {
             scope.spawn(move || {
                 let frame = model.end_effector().expect("named");
-                let states: Vec<_> = (0..5).map(|seed| state(model, seed)).collect();
+                let states = (0..5).map(|seed| {
+                    let ([theta, dtheta, ddtheta], [_, x, _]) = (state(model, seed), state(model, seed + 100));
+                    [theta, dtheta, ddtheta, x]
+                });
+                let states: Vec<_> = states.collect();
                 let rows = a_row(model, frame, &states[0][0]);
                 let other = model.frame(if model.n() == 0 { "link0" } else { "link1" }).expect("a link");
                 let applied = [(frame, wrench(11)), (other, wrench(12))];

@@ -115,7 +115,7 @@ pub fn quantities(model: &Model) -> Vec<Query<'static>> {
 pub fn inputs<'s>(query: Query, state: &'s [Vec<f64>; 3]) -> Vec<&'s [f64]> {
     let array = |name| match name {
         "theta" => &state[0],
-        "dtheta" => &state[1],
+        "dtheta" | "x" => &state[1],
         _ => &state[2],
     };
     query.declaration().inputs.iter().map(|input| &array(input.name)[..]).collect()

@@ -11,11 +11,13 @@ mod momentum;
 mod newton_euler;
 mod regressor;
 mod task_space;
+mod vjp;
 
 pub use constraints::{ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, Reduction};
 pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 pub use task_space::TaskSpaceDynamics;
+pub use vjp::{ForwardDynamicsVjp, InverseDynamicsVjp};
 
 use crate::lie::length_off_unit;
 use crate::model::{Environment, Error, FrameId, Freedom, Model};

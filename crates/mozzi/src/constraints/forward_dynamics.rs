@@ -79,7 +79,7 @@ impl Quantity for ConstrainedForwardDynamics {
 impl Kernel for ConstrainedForwardDynamics {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, tau], [ddtheta, lambda, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, tau, ..], [ddtheta, lambda, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, constraints, .. } = c.memory;
         let memory = constraints.get_or_insert_with(|| ConstraintMemory::new(c.model));
         constrained_forward_dynamics(c.model, theta, dtheta, tau, c.environment, workspace, memory, ddtheta, lambda);

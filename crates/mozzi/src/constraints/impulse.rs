@@ -66,7 +66,7 @@ impl Quantity for ConstraintImpulse {
 impl Kernel for ConstraintImpulse {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [after, impulse, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ..], [after, impulse, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, constraints, .. } = c.memory;
         let memory = constraints.get_or_insert_with(|| ConstraintMemory::new(c.model));
         constraint_impulse(c.model, theta, dtheta, workspace, memory, after, impulse);

@@ -268,7 +268,7 @@ impl Quantity for ConstraintJacobian {
 impl Kernel for ConstraintJacobian {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [A, dA_dtheta, phi, _]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ..], [A, dA_dtheta, phi, _]) = (c.inputs, c.outputs);
         constraint_jacobian(c.model, theta, dtheta, &mut c.memory.workspace, A, dA_dtheta, phi);
     }
 }

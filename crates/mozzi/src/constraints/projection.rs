@@ -66,7 +66,7 @@ impl Quantity for ConstraintProjection {
 impl Kernel for ConstraintProjection {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [P, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ..], [P, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, constraints, .. } = c.memory;
         let memory = constraints.get_or_insert_with(|| ConstraintMemory::new(c.model));
         constraint_projection(c.model, theta, dtheta, workspace, memory, P);

@@ -69,6 +69,23 @@ pub(super) fn add_velocity_product_rates<S: Scalar + From<C>, C: Scalar>(model: 
     }
 }
 
+/// Adds λᵀ∂(a ω × v)/∂θ̇.
+#[cfg_attr(not(test), inline(always))]
+pub(super) fn add_velocity_product_vjp<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    dtheta: &[S],
+    lambda: &[S],
+    d_dtheta: &mut [S],
+) {
+    for &j in &model.structure.free {
+        let ((w, v), (_, lambda)) = (of_free_joint(dtheta, j), of_free_joint(lambda, j));
+        let a = S::from(model.armature[j]);
+        for (k, x) in [v.cross(lambda), lambda.cross(w)].into_iter().flat_map(|x| x.0).enumerate() {
+            d_dtheta[j + k] = a.mul_add(x, d_dtheta[j + k]);
+        }
+    }
+}
+
 /// Adds to C what gives a ω × v, and is skew-symmetric since the armature's part of M is constant: a`[ω]` in the linear
 /// block.
 #[cfg_attr(not(test), inline(always))]

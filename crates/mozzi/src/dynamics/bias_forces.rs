@@ -123,7 +123,7 @@ impl Quantity for BiasForces {
 impl Kernel for BiasForces {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [h, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ..], [h, ..]) = (c.inputs, c.outputs);
         bias_forces(c.model, theta, dtheta, c.environment, &mut c.memory.workspace, h);
     }
 }

@@ -91,7 +91,7 @@ impl Quantity for CenterOfMassVelocity {
 impl Kernel for CenterOfMassVelocity {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [dc, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ..], [dc, ..]) = (c.inputs, c.outputs);
         let f = momentum(c.model, theta, dtheta, &mut c.memory.workspace).f;
         dc.copy_from_slice(&(f * one_over_mass(c.model)).0);
     }
@@ -114,7 +114,7 @@ impl Quantity for CenterOfMassAcceleration {
 impl Kernel for CenterOfMassAcceleration {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, ddtheta], [ddc, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ddtheta, ..], [ddc, ..]) = (c.inputs, c.outputs);
         let df = momentum_rate(c.model, theta, dtheta, ddtheta, &mut c.memory.workspace).f;
         ddc.copy_from_slice(&(df * one_over_mass(c.model)).0);
     }

@@ -51,7 +51,7 @@ impl Quantity for CentroidalMomentumBias {
 impl Kernel for CentroidalMomentumBias {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, zero], [b, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
+        let ([theta, dtheta, zero, ..], [b, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
         let T_bg = centroidal_frame(c.model, theta, w);
         let rate = rate_in_base(c.model, theta, dtheta, zero, w);
         b.copy_from_slice(&(T_bg.Ad().transpose() * rate).to_array());

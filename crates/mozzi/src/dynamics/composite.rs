@@ -56,7 +56,7 @@ impl<S: Scalar> BaseRates<S> {
 
     /// The six numbers r_eᵀ F + s_eᵀ m.
     #[inline(always)]
-    fn dot(&self, F: Wrench<S>, m: Vec3<S>) -> Wrench<S> {
+    pub(super) fn dot(&self, F: Wrench<S>, m: Vec3<S>) -> Wrench<S> {
         let row = self.X.ad().transpose() * F + Wrench { m: m * self.sigma, f: Vec3::zero() };
         match self.Y {
             None => row,

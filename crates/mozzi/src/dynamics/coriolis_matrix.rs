@@ -96,7 +96,7 @@ impl Quantity for CoriolisMatrix {
 impl Kernel for CoriolisMatrix {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [C, dM, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
+        let ([theta, dtheta, ..], [C, dM, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
         // one text for both, compiled once
         let (base, X) = match dM.is_empty() {
             true => (base_twist(c.model, theta, dtheta, Twist::zero()), C),

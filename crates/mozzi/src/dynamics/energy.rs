@@ -83,7 +83,7 @@ impl Quantity for KineticEnergy {
 impl Kernel for KineticEnergy {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [energy, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ..], [energy, ..]) = (c.inputs, c.outputs);
         energy[0] = kinetic_energy(c.model, theta, dtheta, c.environment.base_twist, &mut c.memory.workspace);
     }
 }

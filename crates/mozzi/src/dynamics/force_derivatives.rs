@@ -136,7 +136,7 @@ impl Quantity for MassMatrixProductDerivative {
 impl Kernel for MassMatrixProductDerivative {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, x, _], [dMx, ..]) = (c.inputs, c.outputs);
+        let ([theta, x, ..], [dMx, ..]) = (c.inputs, c.outputs);
         mass_matrix_product_derivative(c.model, theta, x, &mut c.memory.workspace, dMx);
     }
 }

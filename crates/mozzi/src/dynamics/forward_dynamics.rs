@@ -161,7 +161,7 @@ impl Quantity for ForwardDynamics {
 impl Kernel for ForwardDynamics {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, tau], [ddtheta, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, tau, ..], [ddtheta, ..]) = (c.inputs, c.outputs);
         forward_dynamics(c.model, theta, dtheta, tau, c.environment, &mut c.memory.workspace, ddtheta);
     }
 }

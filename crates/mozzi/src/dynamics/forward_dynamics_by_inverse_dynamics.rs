@@ -63,7 +63,7 @@ impl Quantity for ForwardDynamicsByInverseDynamics {
 impl Kernel for ForwardDynamicsByInverseDynamics {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, tau], [ddtheta, ..], n) = (c.inputs, c.outputs, c.model.n());
+        let ([theta, dtheta, tau, ..], [ddtheta, ..], n) = (c.inputs, c.outputs, c.model.n());
         let Memory { workspace, matrix, vector, dense, .. } = c.memory;
         let (e, zeros) = sized(vector, 2 * n, S::zero()).split_at_mut(n);
         zeros.fill(S::zero());

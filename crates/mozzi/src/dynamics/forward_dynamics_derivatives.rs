@@ -102,7 +102,7 @@ impl Quantity for ForwardDynamicsDerivatives {
 impl Kernel for ForwardDynamicsDerivatives {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, tau], [ddtheta, a, b, d_tau], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
+        let ([theta, dtheta, tau, ..], [ddtheta, a, b, d_tau], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
         forward_dynamics_derivatives(c.model, theta, dtheta, tau, c.environment, w, ddtheta, [a, b, d_tau]);
     }
 }

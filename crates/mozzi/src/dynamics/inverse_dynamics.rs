@@ -155,7 +155,7 @@ impl Quantity for InverseDynamics {
 impl Kernel for InverseDynamics {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, ddtheta], [tau, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ddtheta, ..], [tau, ..]) = (c.inputs, c.outputs);
         inverse_dynamics(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, tau);
     }
 }

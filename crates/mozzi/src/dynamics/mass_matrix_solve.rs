@@ -60,7 +60,7 @@ impl Quantity for ForwardDynamicsByMassMatrix {
 impl Kernel for ForwardDynamicsByMassMatrix {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, tau], [ddtheta, ..], n) = (c.inputs, c.outputs, c.model.n());
+        let ([theta, dtheta, tau, ..], [ddtheta, ..], n) = (c.inputs, c.outputs, c.model.n());
         let Memory { workspace, matrix, .. } = c.memory;
         let M = sized(matrix, n * n, S::zero());
         forward_dynamics_by_mass_matrix(c.model, theta, dtheta, tau, c.environment, workspace, M, ddtheta);

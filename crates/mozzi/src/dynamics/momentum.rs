@@ -165,7 +165,7 @@ impl Quantity for Momentum {
 impl Kernel for Momentum {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [h, ..], point) = (c.inputs, c.outputs, c.point);
+        let ([theta, dtheta, ..], [h, ..], point) = (c.inputs, c.outputs, c.point);
         h.copy_from_slice(&momentum(c.model, theta, dtheta, &mut c.memory.workspace).about(point).to_array());
     }
 }
@@ -188,7 +188,7 @@ impl Quantity for MomentumRate {
 impl Kernel for MomentumRate {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, ddtheta], [dh, ..], point) = (c.inputs, c.outputs, c.point);
+        let ([theta, dtheta, ddtheta, ..], [dh, ..], point) = (c.inputs, c.outputs, c.point);
         let rate = momentum_rate(c.model, theta, dtheta, ddtheta, &mut c.memory.workspace);
         dh.copy_from_slice(&rate.about(point).to_array());
     }

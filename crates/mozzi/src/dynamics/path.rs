@@ -73,14 +73,11 @@ impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
     }
     #[inline(always)]
     fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
-        let ByTheta { r, s: [x, y] } = self.pairs.by_theta[k];
-        let [u, v, _] = BtA.0;
-        x.mul_add(u, y.mul_add(v, r.dot(GA)))
+        self.pairs.by_theta[k].dot(GA, BtA)
     }
     #[inline(always)]
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
-        let ByRates { r, s } = self.pairs.by_rates[k];
-        s.mul_add(BtA.0[2], r.dot(GA))
+        self.pairs.by_rates[k].dot(GA, BtA)
     }
     #[inline(always)]
     fn row(&self, _: usize) -> Option<(&Run, &Row<S>)> {

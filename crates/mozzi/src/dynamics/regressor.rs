@@ -168,7 +168,7 @@ impl Quantity for Regressor {
 impl Kernel for Regressor {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, ddtheta], [Y, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ddtheta, ..], [Y, ..]) = (c.inputs, c.outputs);
         regressor(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, Y);
     }
 }
@@ -194,7 +194,7 @@ impl Quantity for EnergyRegressors {
 impl Kernel for EnergyRegressors {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [kinetic, potential, ..], e) = (c.inputs, c.outputs, c.environment);
+        let ([theta, dtheta, ..], [kinetic, potential, ..], e) = (c.inputs, c.outputs, c.environment);
         energy_regressors(c.model, theta, dtheta, e.base_twist, e.gravity, &mut c.memory.workspace, kinetic, potential);
     }
 }

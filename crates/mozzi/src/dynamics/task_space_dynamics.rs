@@ -89,7 +89,7 @@ impl Quantity for TaskSpaceDynamics {
 impl Kernel for TaskSpaceDynamics {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [Lambda, eta, ..], task) = (c.inputs, c.outputs, c.of.task());
+        let ([theta, dtheta, ..], [Lambda, eta, ..], task) = (c.inputs, c.outputs, c.of.task());
         let Memory { workspace, task: memory, .. } = c.memory;
         memory.take_if(|(rows, _)| *rows != task.rows.len());
         let (_, own) = memory.get_or_insert_with(|| (task.rows.len(), TaskMemory::new(c.model, task.rows.len())));

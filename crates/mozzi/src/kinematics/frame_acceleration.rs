@@ -60,7 +60,7 @@ impl Quantity for FrameAcceleration {
 impl Kernel for FrameAcceleration {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, ddtheta], [a, ..]) = (c.inputs, c.outputs);
+        let ([theta, dtheta, ddtheta, ..], [a, ..]) = (c.inputs, c.outputs);
         a.copy_from_slice(&frame_acceleration(c.model, theta, dtheta, ddtheta, c.of.frame()).to_array());
     }
 }

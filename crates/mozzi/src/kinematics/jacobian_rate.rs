@@ -109,7 +109,7 @@ impl Quantity for SpaceJacobianRate {
 impl Kernel for SpaceJacobianRate {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
+        let ([theta, dtheta, ..], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
         space_jacobian_rate(c.model, theta, dtheta, frame, &mut c.memory.workspace, columns);
         by_rows(columns.iter().map(|column| column.to_array()), dJ);
@@ -133,7 +133,7 @@ impl Quantity for BodyJacobianRate {
 impl Kernel for BodyJacobianRate {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
-        let ([theta, dtheta, _], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
+        let ([theta, dtheta, ..], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
         body_jacobian_rate(c.model, theta, dtheta, frame, columns);
         by_rows(columns.iter().map(|column| column.to_array()), dJ);

@@ -34,6 +34,13 @@ impl<S: Scalar> ByTheta<S> {
     pub fn column(self, G: SpatialInertia<S>, B: CoriolisFactor<S>) -> Wrench<S> {
         G * self.r + B * self.s
     }
+
+    /// rᵀF + sᵀm.
+    #[inline(always)]
+    pub fn dot(self, F: Wrench<S>, m: Vec3<S>) -> S {
+        let ([x, y], [u, v, _]) = (self.s, m.0);
+        x.mul_add(u, y.mul_add(v, self.r.dot(F)))
+    }
 }
 
 impl<S: Scalar> ByRates<S> {
@@ -46,6 +53,12 @@ impl<S: Scalar> ByRates<S> {
     #[inline(always)]
     pub fn column(self, G: SpatialInertia<S>, B: CoriolisFactor<S>) -> Wrench<S> {
         G * self.r + B * JointAxis { a: self.s, b: S::zero() }
+    }
+
+    /// rᵀF + sᵀm.
+    #[inline(always)]
+    pub fn dot(self, F: Wrench<S>, m: Vec3<S>) -> S {
+        self.s.mul_add(m.0[2], self.r.dot(F))
     }
 }
 

@@ -40,7 +40,7 @@ macro_rules! quantities {
             SpaceJacobianDerivative BodyJacobianDerivative FrameAcceleration TaskSpaceDynamics
             ConstrainedForwardDynamics ConstraintJacobian ConstraintBias ConstraintResidual ConstraintProjection
             ConstraintImpulse
-            InverseDynamicsDerivatives ForwardDynamicsDerivatives
+            InverseDynamicsDerivatives ForwardDynamicsDerivatives InverseDynamicsVjp ForwardDynamicsVjp
             GravityForcesDerivative TipForcesDerivative MassMatrixProductDerivative
             CenterOfMass CenterOfMassVelocity CenterOfMassAcceleration CenterOfMassJacobian
             Momentum MomentumRate CentroidalMomentumMatrix CentroidalMomentumBias
@@ -122,7 +122,7 @@ impl Query<'_> {
     pub(crate) fn inputs<'a, S>(&self, given: &[&'a [S]]) -> Inputs<'a, S> {
         assert!(given.len() == self.declaration().inputs.len(), "{} inputs of {}", given.len(), self.name());
         let input = |k: usize| if k < given.len() { given[k] } else { &[] };
-        [input(0), input(1), input(2)]
+        [input(0), input(1), input(2), input(3)]
     }
 
     /// Likewise.

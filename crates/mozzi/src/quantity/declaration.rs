@@ -176,7 +176,7 @@ pub const DDTHETA: Input = input("ddtheta", "θ̈", "rad/s² or m/s²", "acceler
 /// τ.
 pub const TAU: Input = input("tau", "τ", FORCE, "joint forces and torques");
 /// A constant vector.
-pub const CONSTANT_VECTOR: Input = input("x", "x", "any", "a constant vector");
+pub const CONSTANT_VECTOR: Input = input("x", "x", ANY, "a constant vector");
 
 /// All inputs that quantities have.
 pub const INPUTS: [Input; 5] = [THETA, DTHETA, DDTHETA, TAU, CONSTANT_VECTOR];
@@ -209,6 +209,8 @@ pub(crate) const fn output(name: &'static str, dims: &'static [Dim], unit: &'sta
 
 pub(crate) const FORCE: &str = "N m or N";
 pub(crate) const ACCELERATION: &str = DDTHETA.unit;
+/// A unit that depends on that of a given vector.
+pub(crate) const ANY: &str = "any";
 /// Of ∂τ and of ∂θ̈.
 pub(crate) const D_FORCE: &str = "N m or N, each per unit of its column";
 pub(crate) const D_ACCELERATION: &str = "rad/s² or m/s², each per unit of its column";

@@ -47,7 +47,7 @@ impl Kernel for Rare {
 }
 
 /// The most inputs of a kernel.
-pub const MOST_INPUTS: usize = 3;
+pub const MOST_INPUTS: usize = 4;
 /// The most outputs of a kernel.
 pub const MOST_OUTPUTS: usize = 4;
 

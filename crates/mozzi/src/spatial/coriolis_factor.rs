@@ -43,6 +43,12 @@ impl<S: Scalar> CoriolisFactor<S> {
         let ([x, y, z], [fx, fy, _], b) = (self.K.z.0, self.f.0, A.b + A.b);
         Vec3([A.a.mul_add(x, b * fy), A.a.mul_add(y, -(b * fx)), A.a * z])
     }
+
+    /// The same of any twist.
+    #[inline(always)]
+    pub fn transpose_mul_twist(self, V: Twist<S>) -> Vec3<S> {
+        (self.f + self.f).cross_add(V.v, self.K.transpose_mul(V.w))
+    }
 }
 
 /// 𝓑A, by A's angular part: the linear one meets zeros.
@@ -80,6 +86,8 @@ mod tests {
         let A = JointAxis { a: 0.7, b: -0.3 };
         assert!((B * A - B * A.twist().w).norm() < 1e-15);
         assert!((B.transpose_mul(A).dot(X.w) - A.twist().dot(defined(X))).abs() < 1e-13);
+        assert!((B.transpose_mul_twist(A.twist()) - B.transpose_mul(A)).norm() < 1e-13);
+        assert!((B.transpose_mul_twist(V).dot(X.w) - V.dot(defined(X))).abs() < 1e-13);
         // about another point: of the body's inertia and twist there
         let p = Vec3([0.3, -0.2, 0.5]);
         let (G, V) = (G.about(p), SE3 { p: -p, ..SE3::identity() }.Ad() * V);

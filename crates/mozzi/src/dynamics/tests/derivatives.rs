@@ -2,6 +2,7 @@
 
 use super::{close, models};
 use crate::kinematics::integrate;
+use crate::quantities::{ForwardDynamicsVjp, InverseDynamicsVjp};
 use crate::model::{Environment, FrameId, Model, Workspace};
 use crate::testing::{moving, state, tree, twist, wrench};
 use crate::{Dual, Scalar, Vec3, Wrench, dynamics as kernel};
@@ -106,6 +107,43 @@ fn of_forward_dynamics_equal_dual_numbers() {
         let one = DMatrix::identity(model.n(), model.n());
         close(&(&M * &found.d_tau), &one, M.amax() * found.d_tau.amax(), 100.0, "M ∂θ̈/∂τ = 1");
         assert_eq!(found.d_tau, found.d_tau.transpose());
+    }
+}
+
+#[test]
+fn products_with_a_vector_are_those_of_the_matrices() {
+    for (seed, model) in models() {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let [_, x, _] = state(&model, seed + 1);
+        let x_ = DVector::from_column_slice(&x);
+        let (n, applied) = (model.n(), applied(&model, seed));
+        let product = |X: &DMatrix<f64>, x: &DVector<f64>| DMatrix::from_columns(&[X.transpose() * x]);
+        for environment in [model.environment(), everything(&model, seed, &applied)] {
+            let at = |ddtheta: &[f64]| {
+                model.inverse_dynamics_derivatives(&theta, &dtheta, ddtheta, &environment).expect("lengths")
+            };
+            let full = at(&ddtheta);
+            let terms = full.d_ddtheta.amax() * dtheta.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+            let state = [&theta[..], &dtheta, &ddtheta, &x];
+            let found = model.compute(InverseDynamicsVjp, &state, &environment).expect("lengths");
+            for (found, X) in found.iter().zip([&full.d_theta, &full.d_dtheta, &full.d_ddtheta]) {
+                let scale = (X.amax() + terms) * x_.amax();
+                close(&DMatrix::from_column_slice(n, 1, found), &product(X, &x_), scale, 1000.0, "xᵀ∂τ");
+            }
+
+            let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &environment).expect("lengths");
+            let state = [&theta[..], &dtheta, tau.as_slice(), &x];
+            let found = model.compute(ForwardDynamicsVjp, &state, &environment).expect("regular");
+            let [d_theta, d_dtheta, y] = [0, 1, 2].map(|k| DVector::from_column_slice(&found[k]));
+            let scale = full.d_ddtheta.amax() * y.amax();
+            close(&product(&full.d_ddtheta, &y), &DMatrix::from_columns(&[x_.clone()]), scale, 1000.0, "M y = x");
+            let ddtheta = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment).expect("regular");
+            let full = at(ddtheta.as_slice());
+            for (found, X) in [(d_theta, &full.d_theta), (d_dtheta, &full.d_dtheta)] {
+                let scale = (X.amax() + terms) * y.amax();
+                close(&DMatrix::from_columns(&[found]), &-product(X, &y), scale, 1000.0, "xᵀ∂θ̈");
+            }
+        }
     }
 }
 
