@@ -1,9 +1,9 @@
 //! The rotary inverted pendulum of Furuta (Modern Robotics, exercise 8.4): equations by hand, and its torque ellipsoid.
 //!
 //! 𝔪1 = 𝔪2 = 2, L1 = L2 = 1, g = 10, I1 = diag(0, 4, 4), I2 = diag(4, 4, 0) in the link frames. The book's figure is
-//! not at hand; assumed: joint 1 turns about z at the origin, link 1 lies along x with its frame at its tip (L1, 0,
-//! 0), joint 2 turns about x there, link 2 stands along +z with its frame at (L1, 0, L2), all axes parallel at θ = 0.
-//! Were link 2 to hang along −z, L2 would change its sign in what follows: shown too.
+//! not available; assumed: joint 1 turns about z at the origin, link 1 lies along x with its frame at its tip (L1, 0,
+//! 0), joint 2 turns about x there, link 2 points along +z with its frame at (L1, 0, L2), all axes parallel at θ = 0.
+//! If link 2 hung along −z, L2 would change its sign below: this is shown, too.
 //!
 //! Seen from axes that turn with link 1, with s2 = sin θ2, c2 = cos θ2, the links have
 //!
@@ -28,7 +28,7 @@ use nalgebra::DMatrix;
 use std::error::Error;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// As the exercise gives it; L2 < 0 hangs link 2 along −z.
+/// The exercise's robot; L2 < 0 hangs link 2 along −z.
 fn furuta(L2: f64) -> Result<Model, Box<dyn Error>> {
     let M = [SE3::translation([1.0, 0.0, 0.0]), SE3::translation([1.0, 0.0, L2])];
     let G = [Sym3::diagonal(0.0, 4.0, 4.0), Sym3::diagonal(4.0, 4.0, 0.0)];
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         draw(&mut plot, &M, side, L2 > 0.0);
         println!();
     }
-    // the same robot comes along as a URDF file, which carries no gravity
+    // the same robot is also embedded as a URDF file, which contains no gravity
     let file = mozzi_urdf::open("furuta_pendulum")?.build()?.with_gravity([0.0, 0.0, -10.0])?;
     agree("g of the embedded URDF", &file.gravity_forces(&theta)?, &furuta(1.0)?.gravity_forces(&theta)?, 1e-14);
 

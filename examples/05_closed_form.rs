@@ -5,7 +5,7 @@
 //!
 //! > 𝒱 = 𝒲𝒱 + 𝒜θ̇,  𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇]𝒲𝒱 + 𝒱̇_base,  𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip,  τ = 𝒜ᵀ𝓕
 //!
-//! 𝒲 passes quantities one link on, so 𝒲ⁿ = 0 and ℒ = (I − 𝒲)⁻¹ = I + 𝒲 + … + 𝒲ⁿ⁻¹ exists for every θ. Solved:
+//! 𝒲 maps quantities to the next link, so 𝒲ⁿ = 0 and ℒ = (I − 𝒲)⁻¹ = I + 𝒲 + … + 𝒲ⁿ⁻¹ exists for every θ. Solved:
 //!
 //! > M = 𝒜ᵀℒᵀ𝒢ℒ𝒜,  c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + [ad_𝒱]ᵀ𝒢)ℒ𝒜θ̇,  g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base,  τ = Mθ̈ + c + g + 𝒜ᵀℒᵀ𝓕_tip
 
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{name:>8}: {}", vector.len());
     }
 
-    // 𝒲 is nilpotent: the sum of its powers ends
+    // 𝒲 is nilpotent: the sum of its powers is finite
     println!("\nlargest entry of the powers of 𝒲, which move quantities 1, 2, … links on:");
     let (mut power, mut sum) = (form.W.clone(), DMatrix::identity(6 * n, 6 * n));
     for k in 1..n {
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     agree("ℒ and (I − 𝒲)⁻¹", &form.L, &inverse, 1e-14);
     agree("ℒ and I + 𝒲 + … + 𝒲ⁿ⁻¹", &form.L, &sum, 1e-14);
 
-    // the formulas, as they stand
+    // the formulas, literally
     let (A, G, W, L) = (&form.A, &form.G, &form.W, &form.L);
     let (At, Lt, dtheta_vector) = (A.transpose(), L.transpose(), nalgebra::DVector::from_column_slice(&dtheta));
     let M = &At * &Lt * G * L * A;

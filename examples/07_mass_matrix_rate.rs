@@ -1,12 +1,12 @@
-//! The rate of the mass matrix (Modern Robotics, exercise 8.7), and which C makes Ṁ − 2C skew-symmetric.
+//! The rate of the mass matrix (Modern Robotics, exercise 8.7), and the C for which Ṁ − 2C is skew-symmetric.
 //!
 //! In M = 𝒜ᵀℒᵀ𝒢ℒ𝒜 only ℒ = (I − 𝒲)⁻¹ depends on θ. From d/dt Ad_{T_{i,i−1}} = −ad_{A_iθ̇_i}Ad_{T_{i,i−1}} follow
 //!
 //! > 𝒲̇ = −[ad_𝒜θ̇]𝒲,  ℒ̇ = ℒ𝒲̇ℒ = −ℒ[ad_𝒜θ̇]𝒲ℒ
 //! > Ṁ = 𝒜ᵀℒ̇ᵀ𝒢ℒ𝒜 + 𝒜ᵀℒᵀ𝒢ℒ̇𝒜 = −(X + Xᵀ) with X = 𝒜ᵀℒᵀ𝒢ℒ[ad_𝒜θ̇]𝒲ℒ𝒜
 //!
-//! The text writes c = Cθ̇ with C = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + [ad_𝒱]ᵀ𝒢)ℒ𝒜. A matrix with Cθ̇ = c is not unique, and this
-//! one lacks what control theory wants of it: Ṁ − 2C + its transpose = 2𝒜ᵀℒᵀ([ad_𝒱]ᵀ𝒢 + 𝒢[ad_𝒱])ℒ𝒜, which is not 0.
+//! The book writes c = Cθ̇ with C = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + [ad_𝒱]ᵀ𝒢)ℒ𝒜. A matrix with Cθ̇ = c is not unique, and this one
+//! lacks the property that control theory needs: Ṁ − 2C + its transpose = 2𝒜ᵀℒᵀ([ad_𝒱]ᵀ𝒢 + 𝒢[ad_𝒱])ℒ𝒜, which is not 0.
 //! The C of the Christoffel symbols has it: Ṁ = C + Cᵀ, so that Ṁ − 2C = Cᵀ − C. Both give θ̇ᵀ(Ṁ − 2C)θ̇ = 0, the
 //! conservation of energy.
 

@@ -6,15 +6,15 @@
 //!
 //! > f_b = −m R_sbᵀg,  m_b = p × f_b,  τ = g(θ) + J_bᵀ(m_b, f_b)
 //!
-//! The same weight fixed to the hand at p is a payload: the mass matrix grows, and so does g(θ). Held still, both
-//! need the same torques; moved, the payload's inertia shows, and a constant wrench knows nothing of it.
+//! The same weight fixed to the hand at p is a payload: it increases the mass matrix and g(θ). At rest, both need the
+//! same torques; in motion, the payload has inertia, which a constant wrench does not model.
 
 use mozzi::{Environment, SpatialInertia, Vec3, Wrench};
 use mozzi_examples::{agree, difference, row};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // the fingers held open: 7 joints are left
+    // the fingers locked in the open position: 7 joints are left
     let model = mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.03)])?;
     let hand = model.frame("panda_hand")?;
     let (mass, p) = (2.0, Vec3([0.02, 0.0, 0.11]));
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sum = model.gravity_forces(&theta)? + J.transpose_mul(held_up);
     agree("g + J_bᵀF", sum.as_slice(), &tau_wrench, 1e-14);
 
-    // moved: the difference is what accelerates the point mass, m p̈ at p
+    // in motion: the difference accelerates the point mass, m p̈ at p
     let (dtheta, ddtheta) = ([0.4, -0.3, 0.6, 0.5, -0.8, 0.3, 0.9], [1.0, 0.5, -1.0, 2.0, 1.5, -0.5, 1.0]);
     let tau_wrench = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &hanging)?;
     let tau_payload = loaded.inverse_dynamics(&theta, &dtheta, &ddtheta, &loaded.environment())?;

@@ -8,8 +8,8 @@
 //! 3. Articulated bodies: what each link, with all that hangs from it free to move, would feel like to a push. O(n),
 //!    and what `forward_dynamics` does.
 //!
-//! With θ̈, inverse dynamics gives τ back. (Where joints follow others articulated bodies do not do, and
-//! `forward_dynamics` goes the second way.)
+//! From θ̈, inverse dynamics recovers τ. (For robots with mimic joints the articulated-body algorithm does not apply,
+//! and `forward_dynamics` uses the second way.)
 
 use mozzi::{Environment, Model, Vec3, Wrench};
 use mozzi_examples::{agree, row};
@@ -19,7 +19,7 @@ use std::error::Error;
 fn main() -> Result<(), Box<dyn Error>> {
     let ur5 = mozzi_urdf::open("ur5")?.build()?;
     compare("UR5", &ur5, "tool0")?;
-    // its second finger follows the first: both held, so that all joints are free
+    // its second finger is a mimic joint of the first: both are locked, so that all joints are independent
     let panda = mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.03)])?;
     compare("Panda", &panda, "panda_hand")
 }

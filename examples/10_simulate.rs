@@ -5,11 +5,11 @@
 //!
 //! > θ[k+1] = θ[k] + θ̇[k]δt,  θ̇[k+1] = θ̇[k] + θ̈[k]δt,  θ̈[k] = FD(θ[k], θ̇[k], τ(kδt), F_tip(kδt))
 //!
-//! A step leaves out what Taylor's series has from δt² on; N = t_f/δt of them add up to an error that falls as δt:
-//! order 1. Semi-implicit Euler takes the new θ̇ for the step of θ: order 1 too, but no steady gain of energy.
-//! Runge-Kutta's method asks FD four times a step, and its error falls as δt⁴. The order that one sees is log2 of the
-//! quotient of the errors with N and 2N steps. Without motors or friction the energy 𝒦 + 𝒫 should stay what it was:
-//! its drift is a second witness.
+//! A step leaves out the terms of the Taylor series from δt² on; N = t_f/δt steps accumulate an error proportional to
+//! δt: order 1. Semi-implicit Euler uses the new θ̇ for the step of θ: order 1 too, but no steady gain of energy. The
+//! Runge-Kutta method calls FD four times in each step, and its error is proportional to δt⁴. The observed order is
+//! log2 of the ratio of the errors with N and 2N steps. Without motors or friction the energy 𝒦 + 𝒫 should be constant:
+//! its drift is a second check.
 
 use mozzi::Model;
 use mozzi::simulation::{Method, Options, Zero};
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     agree("θ, by hand and by the library", found.last().theta, &theta, 1e-10);
     agree("θ̇", found.last().dtheta, &dtheta, 1e-10);
 
-    // the reference: Runge-Kutta with steps so small that rounding is all that is left
+    // the reference: Runge-Kutta with steps so small that only rounding errors remain
     let reference = run(Method::RungeKutta4, 16_000)?;
     println!("\nwith Runge-Kutta's, 16000 steps: θ = [{}] rad\n", row(reference.last().theta));
 

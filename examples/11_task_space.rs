@@ -1,15 +1,15 @@
-//! Dynamics in the task space (Modern Robotics, section 8.6): what mass does the hand show, and what pushes it?
+//! Dynamics in the task space (Modern Robotics, section 8.6): the apparent mass of the hand, and the wrenches on it.
 //!
 //! From 𝒱 = Jθ̇ follows 𝒱̇ = J̇θ̇ + Jθ̈. Put into τ = Mθ̈ + h and multiplied by J⁻ᵀ:
 //!
 //! > 𝓕 = Λ𝒱̇ + η,  Λ = J⁻ᵀMJ⁻¹,  η = J⁻ᵀh − ΛJ̇J⁻¹𝒱,  τ = Jᵀ𝓕
 //!
-//! Where the robot has more joints than the task has rows J has no inverse. A wrench on the hand alone then accelerates
-//! it by 𝒱̇ = J̇θ̇ + JM⁻¹(Jᵀ𝓕 − h), whence
+//! If the robot has more joints than the task has rows, J has no inverse. A wrench on the hand alone then accelerates
+//! it by 𝒱̇ = J̇θ̇ + JM⁻¹(Jᵀ𝓕 − h), which gives
 //!
 //! > Λ = (JM⁻¹Jᵀ)⁻¹,  η = Λ(JM⁻¹h − J̇θ̇)
 //!
-//! which for a square J is the same. Either way τ = Jᵀ(Λa + η) makes 𝒱̇ = a: the heart of computed-force control.
+//! which is the same if J is square. Either way τ = Jᵀ(Λa + η) makes 𝒱̇ = a: the basis of computed-force control.
 
 use mozzi::{Model, Task, TaskFrame};
 use mozzi_examples::{agree, row, show};
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("η = [{}] N", row(&found.eta));
     computed_force(&panda, &theta, &dtheta, task, &[1.0, -2.0, 0.5])?;
 
-    // where the arm is stretched out the rows cannot be moved independently: an error with the numbers
+    // with the arm stretched out, the rows cannot be moved independently: the error contains the numbers
     let stretched = ur5.task_space_dynamics(
         &[0.0; 6],
         &[0.0; 6],
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Chooses the task's acceleration a, applies τ = Jᵀ(Λa + η), and looks at what forward dynamics makes of it.
+/// Chooses the task's acceleration a, applies τ = Jᵀ(Λa + η), and checks the result with forward dynamics.
 fn computed_force(model: &Model, theta: &[f64], dtheta: &[f64], task: Task, a: &[f64]) -> Result<(), Box<dyn Error>> {
     let dynamics = model.task_space_dynamics(theta, dtheta, task, &model.environment())?;
     let a = DVector::from_column_slice(a);

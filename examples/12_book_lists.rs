@@ -1,14 +1,14 @@
 //! A robot from the lists of the Modern Robotics package: home frames M_{i−1,i}, spatial inertias G_i, screw axes S_i.
 //!
-//! The package's documentation works with an arm of three joints, the first of the UR5. Its first screw axis there is
-//! (1, 0, 1, 0, 1, 0): ‖ω‖ = √2, not a unit screw, so that θ_1 is no angle: 1 of it is a turn by √2 rad. Here such an
-//! axis is refused, or rescaled knowingly. With V = kA, A unit, the joint described by V and θ is described by A and
-//! kθ, for e^{[V]θ} = e^{[A]kθ}; with rates kθ̇ and kθ̈; and since the power τθ̇ stays, with the torque τ/k. With K =
-//! diag(k, 1, 1):
+//! The package's documentation uses an arm of three joints, the first of the UR5. Its first screw axis there is (1, 0,
+//! 1, 0, 1, 0): ‖ω‖ = √2, not a unit screw, so that θ_1 is not an angle: θ_1 = 1 is a rotation by √2 rad. mozzi refuses
+//! such an axis unless it is explicitly rescaled. With V = kA, A unit, the joint described by V and θ is described by A
+//! and kθ, for e^{[V]θ} = e^{[A]kθ}; with rates kθ̇ and kθ̈; and because the power τθ̇ is the same, with the torque
+//! τ/k. With K = diag(k, 1, 1):
 //!
 //! > τ_V(θ, θ̇, θ̈) = K τ_A(Kθ, Kθ̇, Kθ̈),  M_V(θ) = K M_A(Kθ) K,  θ̈_V(θ, θ̇, τ) = K⁻¹ θ̈_A(Kθ, Kθ̇, K⁻¹τ)
 //!
-//! That gives the published numbers. The axis that was meant, (0, 0, 1, 0, 0, 0), needs none of it: k = 1.
+//! That gives the published numbers. The intended axis, (0, 0, 1, 0, 0, 0), needs no rescaling: k = 1.
 
 use mozzi::model::{HomeFrames, Screws};
 use mozzi::{Description, Environment, Model, SE3, ScrewAxis, SpatialInertia, Twist, Wrench};
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     compare(&oracle["three_link_unit_screws"], ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3])?, 1.0)
 }
 
-/// Everything that the package computes, for the robot whose first joint has the axis A and the size k.
+/// All results of the package, for the robot whose first joint has the axis A and the magnitude k.
 fn compare(example: &Value, A: ScrewAxis, k: f64) -> Result<(), Box<dyn Error>> {
     let numbers = |key: &str| list(&example[key]);
     let K = |key: &str| numbers(key).map(|list| [k * list[0], list[1], list[2]]);

@@ -1,13 +1,13 @@
-//! A quadruped falls onto its feet: ANYmal, its base floating, and the books of its momentum.
+//! A quadruped falls onto its feet: ANYmal with a floating base, and its momentum balance.
 //!
-//! The base's configuration T_sb stands first among the positions, its twist 𝒱_b first among the velocities, the wrench
-//! on it first among the forces; nothing drives it, so those six are 0. What changes the momentum of all that moves is
-//! what comes from outside, gravity at the centre of mass and the ground at the feet:
+//! The base's configuration T_sb comes first among the positions, its twist 𝒱_b first among the velocities, the wrench
+//! on it first among the forces; no motor drives it, so those six forces are 0. Only external forces change the total
+//! momentum: gravity at the centre of mass, and the ground at the feet:
 //!
 //! > ḣ = (0, m g) + Σ F_ground, about the centre of mass, whatever the twelve motors do
 //!
-//! h is Σ [Ad]ᵀ𝒢𝒱 over the links. The balance is drawn twice: ḣ at each time against the forces at that time, and h(t)
-//! − h(0) against the forces added up over the time.
+//! h is Σ [Ad]ᵀ𝒢𝒱 over the links. The balance is checked in two plots: ḣ at each time against the forces at that time,
+//! and h(t) − h(0) against the time integral of the forces.
 
 use mozzi::simulation::{Input, Options};
 use mozzi::{FrameId, Model, Vec3, Wrench};
@@ -19,14 +19,14 @@ const STANCE: [f64; 12] = [-0.1, 0.7, -1.0, -0.1, -0.7, 1.0, 0.1, 0.7, -1.0, 0.1
 const DURATION: f64 = 0.6;
 const STEPS: usize = 6000;
 
-/// Motors that hold the stance, and a ground at z = 0 under the feet.
+/// Motors that hold the stance, and the ground at z = 0 under the feet.
 struct Legs<'m> {
     model: &'m Model,
     feet: Vec<FrameId>,
 }
 
 impl Legs<'_> {
-    /// What the ground applies to a foot, {s} axes: a damped spring, and friction against sliding.
+    /// The force of the ground on a foot, in {s} axes: a damped spring, and friction against sliding.
     fn ground(&self, theta: &[f64], dtheta: &[f64], foot: FrameId) -> Result<(Vec3, Vec3), mozzi::Error> {
         let T = self.model.forward_kinematics(theta, foot)?;
         let V_b = &self.model.body_jacobian(theta, foot)? * dtheta;
@@ -56,7 +56,7 @@ impl Input for &Legs<'_> {
         for &foot in &self.feet {
             let R = self.model.forward_kinematics(theta, foot)?.R;
             let (_, f) = self.ground(theta, dtheta, foot)?;
-            // mozzi's wrenches are what the robot applies to the environment: less what the ground applies to it
+            // mozzi's wrenches are applied by the robot to the environment: the negative of the ground's force on it
             wrenches.push((foot, Wrench { m: Vec3::zero(), f: -R.inverse_mul(f) }));
         }
         Ok(())
@@ -87,7 +87,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             legs.feet.iter().map(|&foot| legs.ground(now.theta, now.dtheta, foot)).collect();
         let grounds = grounds?;
         let total = grounds.iter().fold(Vec3::zero(), |sum, &(_, f)| sum + f);
-        // about the origin of {s}: each foot's force with its lever, the weight with the centre's
+        // about the origin of {s}: each foot's force with its lever arm, and the weight with that of the centre of mass
         let pushed = grounds
             .iter()
             .fold(Wrench { m: c.cross(weight.f), f: weight.f }, |sum, &(p, f)| sum + Wrench { m: p.cross(f), f });
@@ -105,7 +105,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!();
     agree("ḣ and the forces, at the worst time", &[1.0 + worst], &[1.0], 1e-11);
     let end = anymal.momentum(fall.last().theta, fall.last().dtheta, Vec3::zero())?;
-    // the forces jump where a foot touches: the trapezoidal rule does not
+    // the forces are discontinuous when a foot touches the ground; the trapezoidal rule assumes that they are
+    // continuous
     agree("h(t) − h(0) and the impulses", &(end - start).to_array(), &impulse.to_array(), 5e-3);
     println!(
         "\n(the energies' books are out by {:.1e} J of up to {:.0} J)",

@@ -1,13 +1,13 @@
-//! A humanoid stands on two feet: the joints' torques for given wrenches at the soles.
+//! A humanoid stands on two feet: joint torques for given wrenches at the soles.
 //!
 //! With a floating base τ = M θ̈ + c + g + JᵀF has six rows more than there are motors. At rest g + JᵀF must be 0 in
-//! these six: the wrenches at the soles carry the weight. There are twelve numbers for six equations; here the smallest
-//! that do it are taken (least squares). Then the other rows are the motors' torques. The proof is forward dynamics:
-//! with those torques and those wrenches, nothing moves.
+//! these six: the wrenches at the soles carry the weight. There are twelve unknowns for six equations; this example
+//! uses the least-norm solution (least squares). The other rows are then the motors' torques. Forward dynamics verifies
+//! the result: with those torques and those wrenches, all accelerations are 0.
 //!
-//! Talos is not among the robots that mozzi brings along: `pip install example-robot-data`, then give the file
-//! `cmeel.prefix/share/example-robot-data/robots/talos_data/robots/talos_reduced.urdf` of its folder, or name the
-//! folder of robots in the variable MOZZI_ROBOTS.
+//! mozzi does not include Talos: run `pip install example-robot-data`, then give the file
+//! `cmeel.prefix/share/example-robot-data/robots/talos_data/robots/talos_reduced.urdf` of its folder, or set the
+//! variable MOZZI_ROBOTS to the folder of robots.
 
 use mozzi::nalgebra::DMatrix;
 use mozzi::{Environment, Wrench};
@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// From the command line, or from the folder of robots.
+/// The path from the command line, or from the folder of robots.
 fn file() -> Option<PathBuf> {
     let given = std::env::args_os().nth(1).map(PathBuf::from);
     let folder = || std::env::var_os("MOZZI_ROBOTS");

@@ -1,11 +1,11 @@
-//! The falling cat: an arm adrift in space turns its base by moving, though its angular momentum stays 0.
+//! The falling cat: a free-floating arm turns its base by moving its joints, although its angular momentum stays 0.
 //!
-//! With A(θ) the matrix of the momentum h = A θ̇ and its base columns apart, h = A_b 𝒱_b + A_j θ̇_j = 0 gives the
-//! base's twist for any motion of the joints: 𝒱_b = −A_b⁻¹ A_j θ̇_j. A closed loop of the joints, there and back to the
-//! same posture, leaves the base turned, by an angle that depends on the loop and not on the time it takes; run
-//! backwards, it turns it back.
+//! With A(θ) the matrix of the momentum h = A θ̇ and its base columns separated, h = A_b 𝒱_b + A_j θ̇_j = 0 gives the
+//! base's twist for any motion of the joints: 𝒱_b = −A_b⁻¹ A_j θ̇_j. After a closed loop of the joints, back to the
+//! same posture, the base is rotated by an angle that depends on the loop but not on its duration. The reversed loop
+//! rotates it back.
 //!
-//! The same by forces: motors that make the joints follow the loop, no wrench on the base, forward dynamics.
+//! The same by forward dynamics: motors make the joints follow the loop, and no wrench acts on the base.
 
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::simulation::{Options, torque};
@@ -14,7 +14,7 @@ use mozzi_examples::agree;
 use std::error::Error;
 use std::f64::consts::TAU;
 
-/// The loop: a circle of the shoulder's and the elbow's angles, out of the posture POSE and back.
+/// The loop: a circle of the shoulder's and the elbow's angles that starts and ends at the posture POSE.
 const POSE: [f64; 6] = [0.0, -1.2, 0.9, 0.3, 0.4, 0.0];
 const RADIUS: f64 = 1.4;
 
@@ -87,8 +87,8 @@ fn by_momentum(arm: &Model, steps: usize, backwards: bool) -> Result<SE3, Box<dy
     Ok(SE3::from_pose(*theta.first_chunk().ok_or("a base")?))
 }
 
-/// The same by motors: with the joints' accelerations given, the base's rows of M θ̈ + h = 0 give the base's, the
-/// others the torques.
+/// The same by motors: the joints' accelerations are given; the base's rows of M θ̈ + h = 0 give the base's
+/// acceleration, the other rows give the torques.
 fn by_forces(arm: &Model) -> Result<SE3, Box<dyn Error>> {
     let motors = torque(|t, theta, dtheta, tau| {
         let [q, dq, ddq] = on_the_loop(t);

@@ -1,12 +1,12 @@
-//! Swing-up of the Furuta pendulum by iLQR: one motor, at the arm; the rod hangs at the start and stands at the end.
+//! Swing-up of the Furuta pendulum by iLQR: one motor, at the arm; the rod hangs at the start and points up at the end.
 //!
 //! The iterative linear-quadratic regulator (Li and Todorov 2004) takes a motion x[k], u[k] and the derivatives A =
-//! ∂x[k+1]/∂x[k] and B = ∂x[k+1]/∂u[k] along it, here exact for the Runge-Kutta steps that are taken. With v and V the
-//! slope and curvature of the cost of all that follows, and the cost ½ Σ xᵀWx + ½ Σ R u²,
+//! ∂x[k+1]/∂x[k] and B = ∂x[k+1]/∂u[k] along it, here exact derivatives of the Runge-Kutta steps. With v and V the
+//! slope and curvature of the cost-to-go, and the cost ½ Σ xᵀWx + ½ Σ R u²,
 //!
 //! > Q_u = Ru + Bᵀv, Q_uu = R + BᵀVB, Q_ux = BᵀVA, δu = −Q_uu⁻¹ (Q_u + Q_ux δx)
 //!
-//! found backwards in time, is then tried forwards, in smaller parts until the cost falls.
+//! is computed backwards in time, then applied forwards, with a step size that is reduced until the cost falls.
 
 use mozzi::nalgebra::{Matrix4, RowVector4, Vector4};
 use mozzi::{Error, Model, simulation::Options};
@@ -17,7 +17,7 @@ const SECONDS: f64 = 4.0;
 /// The weight of torque, in the cost and added to Q_uu so that δu stays small.
 const R: f64 = 1e-3;
 
-/// x[0] … x[N], with x = (θ, θ̇) and all of it 0 at the top, and u[0] … u[N−1].
+/// x[0] … x[N], with x = (θ, θ̇) and x = 0 at the top, and u[0] … u[N−1].
 struct Motion {
     x: Vec<Vector4<f64>>,
     u: Vec<f64>,
@@ -54,7 +54,7 @@ fn angle(motion: &Motion) -> f64 {
     motion.x[STEPS][1].to_degrees()
 }
 
-/// W: next to nothing along the way, much at the end.
+/// W: very small along the way, large at the end.
 fn weights(k: usize) -> Matrix4<f64> {
     Matrix4::from_diagonal(&if k < STEPS { [1e-3, 0.0, 1e-3, 1e-3] } else { [1e5, 1e6, 1e4, 1e5] }.into())
 }
@@ -64,7 +64,7 @@ fn cost(Motion { x, u }: &Motion) -> f64 {
     0.5 * (of_states + R * u.iter().map(|u| u * u).sum::<f64>())
 }
 
-/// From rest, hanging, under a torque u(k, x[k]).
+/// The motion from rest, hanging, under a torque u(k, x[k]).
 fn follow(pendulum: &Model, torque: impl Fn(usize, &Vector4<f64>) -> f64) -> Result<Motion, Error> {
     let (mut x, mut u) = (vec![Vector4::new(0.0, PI, 0.0, 0.0)], Vec::new());
     for k in 0..STEPS {
@@ -76,7 +76,7 @@ fn follow(pendulum: &Model, torque: impl Fn(usize, &Vector4<f64>) -> f64) -> Res
     Ok(Motion { x, u })
 }
 
-/// The change δu of each step, and its feedback: the factor of δx.
+/// The change δu of each step, and its feedback gain on δx.
 fn improve(pendulum: &Model, Motion { x, u }: &Motion) -> Result<Vec<(f64, RowVector4<f64>)>, Error> {
     let (mut V, mut v, mut policy) = (weights(STEPS), weights(STEPS) * x[STEPS], Vec::new());
     for k in (0..STEPS).rev() {

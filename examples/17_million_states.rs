@@ -1,8 +1,8 @@
-//! A million inverse dynamics of the UR5: one row a state, as NumPy would have it, on the machine's widest registers
-//! and all cores.
+//! A million inverse dynamics of the UR5: one row for each state, as in NumPy, on the machine's widest registers and
+//! all cores.
 //!
-//! `cargo run --release -p mozzi-examples --example 17_million_states` takes a million; a number behind `--` that many.
-//! Without optimisation it takes a thousand.
+//! `cargo run --release -p mozzi-examples --example 17_million_states` computes a million states; a number after `--`
+//! sets another count. Without optimisation the default is a thousand.
 
 use mozzi::Environment;
 use mozzi::quantities::InverseDynamics;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rate = states as f64 / seconds;
     println!("f64, {}: {states} states in {seconds:.4} s, {rate:.3e} states/s", batch.instruction_set().name());
 
-    // half the bits, twice the states in a register
+    // half the bits, and twice as many states in a register
     let [theta32, dtheta32, ddtheta32] =
         [&theta, &dtheta, &ddtheta].map(|table| table.iter().map(|&x| x as f32).collect::<Vec<f32>>());
     let single = Batch::<f32>::of(&ur5);

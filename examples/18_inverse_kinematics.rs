@@ -1,12 +1,13 @@
-//! Inverse kinematics (Modern Robotics, chapter 6): where do the joints have to be, so that the hand is there?
+//! Inverse kinematics (Modern Robotics, chapter 6): joint positions that place the hand at a desired pose.
 //!
-//! With e = log(T⁻¹T_d) the body twist that leads from the hand's pose to the goal in one second, J_b δ = e is Newton
-//! and Raphson's step. Near singular positions δ has no bound; Levenberg and Marquardt's is the minimum of
+//! With e = log(T⁻¹T_d) the body twist that moves the hand's pose to the goal in one second, J_b δ = e is the
+//! Newton-Raphson step. Near singular positions δ is unbounded; the Levenberg-Marquardt step minimizes
 //!
 //! > ‖J_b δ − e‖² + λ‖δ‖²,  δ = Jᵀ(JJᵀ + λI)⁻¹e
 //!
-//! Here it is done by hand on the UR5 first, then by the library, which adds limits, starts and, for the Panda's
-//! seventh joint, a secondary goal: of all positions with the hand at its goal, the one nearest to a posture.
+//! This example computes it by hand on the UR5 first, then with the library, which adds limits, random starts and, for
+//! the Panda's seventh joint, a secondary goal: among all positions with the hand at its goal, the one nearest to a
+//! posture.
 
 use mozzi::nalgebra::DVector;
 use mozzi::{Model, SE3, body_jacobian, forward_kinematics};
@@ -27,12 +28,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("by the library: {} iterations, {} away", found.iterations, found.residual);
     agree("θ, by hand and by the library", &found.theta, &by_hand, 1e-7);
 
-    // from anywhere, within the limits
+    // from any start, within the limits
     let far = InverseKinematics::new(&ur5, tool)?.solve(Goal::Pose(goal), &[3.0, 2.0, -2.5, 1.0, -3.0, 0.0])?;
     println!("from afar: θ = [{}], {} starts", row(&far.theta), far.starts);
     agree("the pose there and the goal", &pose(&ur5, &far.theta)?, &goal.to_pose(), 1e-7);
 
-    // out of reach: an error that says how near it came
+    // out of reach: the error gives the remaining distance
     let away = InverseKinematics::new(&ur5, tool)?.solve(Goal::Pose(SE3::translation([2.0, 0.0, 0.0])), &guess);
     println!("2 m away: {}", away.err().ok_or("the UR5 does not reach that far")?);
 

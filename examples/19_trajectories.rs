@@ -1,14 +1,15 @@
-//! Trajectories (Modern Robotics, chapter 9): where, and when. A path θ(s) and a time scaling s(t) give
+//! Trajectories (Modern Robotics, chapter 9): a path θ(s) and a time scaling s(t) give
 //!
 //! > θ̇ = θ′ṡ,  θ̈ = θ″ṡ² + θ′s̈,  τ = M(θ)θ′ s̈ + (M(θ)θ″ + c(θ, θ′)) ṡ² + g(θ)
 //!
-//! so that along a path every limit is linear in s̈ and ṡ². First the fastest swing of a pendulum against its closed
-//! solution: the motor gives all it has, forwards to a place and backwards from there,
+//! so that along a path every limit is linear in s̈ and ṡ². The first part compares the fastest swing of a pendulum
+//! with its closed-form solution: full motor torque forwards up to a switching point, and full torque backwards from
+//! there,
 //!
 //! > ½Iθ̇² = τθ + mgl(cos θ − 1) up to where it meets ½Iθ̇² = τ(θ₁ − θ) + mgl(cos θ − cos θ₁).
 //!
-//! Then the UR5: a path through points, run through by four profiles under the same limits; and its tool along a
-//! straight line.
+//! Then the UR5: a path through via points, timed by four profiles under the same limits; and its tool along a straight
+//! line.
 
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
@@ -74,7 +75,7 @@ fn pendulum() -> Result<(), Box<dyn Error>> {
         .build()?;
     let limits = Limits { torque: vec![tau], ..Limits::none(&robot) };
     let swing = time_optimal(&robot, &Line::new(&robot, &[0.0], &[end])?, &limits, 500)?;
-    // T = ∫ dθ/θ̇, by the substitution θ = θ₁ sin²(x/2), which takes the roots at both ends away
+    // T = ∫ dθ/θ̇, with the substitution θ = θ₁ sin²(x/2), which removes the square-root singularities at both ends
     let weight = |q: f64| m * 9.81 * l * q.cos();
     let speed = |q: f64| {
         let (rise, fall) = (tau * q + weight(q) - weight(0.0), tau * (end - q) + weight(q) - weight(end));

@@ -1,8 +1,8 @@
 //! PD control with gravity compensation (Modern Robotics, section 11.4.2), τ = g(θ) + K_p e + K_d ė.
 //!
-//! It holds any posture: with 𝒦 + ½ eᵀK_p e as Lyapunov's function the robot comes to rest where e = 0. It knows of no
-//! accelerations, and so lags behind a motion; a load that is not in its model it carries by its springs, which is an
-//! error that stays: K_p e = the load's torques.
+//! It holds any posture: with 𝒦 + ½ eᵀK_p e as Lyapunov function, the robot comes to rest with e = 0. It ignores
+//! accelerations, and so lags behind a motion. A load that is missing in its model causes a steady-state error: K_p e =
+//! the load's torques.
 
 use mozzi_examples::tracking::{Arm, both_loads};
 use mozzi_motion::controllers::{Gains, PdGravity};

@@ -1,7 +1,8 @@
 //! Computed torque control (Modern Robotics, section 11.4.3), τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇).
 //!
-//! Put into the equation of motion it leaves ë + K_d ė + K_p e = 0, with nothing of the robot in it: an arm that is as
-//! modelled follows but for the integration's rounding. A load that is not in the model comes in as M⁻¹ of its torques.
+//! Inserted into the equation of motion it leaves ë + K_d ė + K_p e = 0, which does not depend on the robot: an arm
+//! that matches its model tracks up to the integration error. A load that is missing in the model adds M⁻¹ times its
+//! torques.
 
 use mozzi_examples::tracking::{Arm, both_loads};
 use mozzi_motion::controllers::{ComputedTorque, Gains};

@@ -1,9 +1,9 @@
-//! Impedance control (Modern Robotics, section 11.7; Hogan 1985): the tool yields as a spring and a damper would,
+//! Impedance control (Modern Robotics, section 11.7; Hogan 1985): the tool behaves as a spring and a damper,
 //!
 //! > τ = Jᵀ(Λa + η + B𝒱_e + KX_e),  so that Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕,
 //!
-//! the wrench that it applies to its surroundings. Nothing is measured but the joints. First a motion is followed; then
-//! the tool is held against a wall that takes 15 N, and yields by KX_e = 𝓕.
+//! the wrench that it applies to its environment. Only the joints are measured. First the tool follows a motion; then
+//! it pushes against a wall with 15 N, and yields by KX_e = 𝓕.
 
 use mozzi::simulation::{Options, applied};
 use mozzi::{Vec3, Wrench};

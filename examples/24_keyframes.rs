@@ -1,8 +1,8 @@
-//! Keyframes of a model in MJCF: a stone above a table and an arm, from the states that the file names.
+//! Keyframes of a model in MJCF: a stone above a table and an arm, started from the states in the file.
 //!
-//! MuJoCo starts at `qpos0`, where the file draws the bodies, even if there is a keyframe `home`; so does mozzi. A
-//! keyframe is a state by name: its `qpos` and `qvel` come as θ and θ̇, the stone's quaternion first and its velocity
-//! in its own axes.
+//! MuJoCo starts at `qpos0`, the pose of the bodies in the file, even if there is a keyframe `home`; so does mozzi. A
+//! keyframe is a named state: its `qpos` and `qvel` are converted to θ and θ̇, the stone's quaternion first and its
+//! velocity in its own axes.
 
 use mozzi::model::State;
 use mozzi::simulation::{Options, Zero};
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{name:>7}: θ = {}", row(&model.state(name)?.theta));
     }
 
-    // where the file draws it: the stone at z = 2, the elbow at its `ref`
+    // the pose in the file: the stone at z = 2, the elbow at its `ref`
     let start = model.start();
     agree(
         "the stone starts where the file puts it",
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let expected = [1.0 - time, 0.0, 1.0 + 3.0 * time - 0.5 * 9.81 * time * time];
     agree("a throw is a parabola", &found, &expected, 1e-9);
 
-    // a state of one's own, and an edit of the robot
+    // a user-defined state, and an edit of the robot
     let end = flight.last();
     let state = State { time, theta: end.theta.to_vec(), dtheta: end.dtheta.to_vec() };
     let landed = model.with_state("landed", &state)?;

@@ -1,5 +1,5 @@
 //! A four-bar linkage two ways (Modern Robotics, section 8.7): by multipliers, τ = Mθ̈ + h + Aᵀλ with Aθ̈ + Ȧθ̇ = 0, in
-//! three coordinates; and by reduction, Nᵀτ = (NᵀMN)u̇ + Nᵀ(h + Mn₀), in the crank's angle alone. Both are the same
+//! three coordinates; and by reduction, Nᵀτ = (NᵀMN)u̇ + Nᵀ(h + Mn₀), in the crank's angle alone. Both give the same
 //! motion.
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
@@ -8,7 +8,7 @@ use mozzi::simulation::{Options, Simulation, Zero};
 use mozzi::{Description, Error, Model, SE3, ScrewAxis, Solid, SpatialInertia, Twist, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Ground, crank, coupler and rocker, m; rods of 1 kg a metre.
+/// Lengths of ground, crank, coupler and rocker, m; the rods have 1 kg/m.
 const LENGTHS: [f64; 4] = [0.9, 0.3, 0.8, 0.6];
 
 fn four_bar() -> Result<Model, Error> {
@@ -35,7 +35,7 @@ fn four_bar() -> Result<Model, Error> {
         .build()
 }
 
-/// u̇ of the crank without torque, at a θ that is close to closed.
+/// u̇ of the crank without torque, at a θ that nearly closes the loop.
 fn reduced(model: &Model, theta: &mut Vec<f64>, angle: f64, rate: f64) -> Result<f64, Error> {
     theta[0] = angle;
     *theta = model.assemble(theta, &["crank_pivot"])?;
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let options = Options { record_every: 200, ..Options::new(2.0, 2000) };
     let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero)?;
 
-    // its crank alone, by Runge and Kutta's method
+    // its crank alone, by the Runge-Kutta method
     let (mut u, mut near) = ([theta[0], dtheta[0]], theta.clone());
     let h = 0.001;
     let mut rate = |[angle, rate]: [f64; 2]| Ok::<_, Error>([rate, reduced(&model, &mut near, angle, rate)?]);

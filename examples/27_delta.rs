@@ -1,7 +1,7 @@
-//! A Delta robot under computed torque. Three arms on a ring turn by motors; two rods of equal length lead from each
-//! elbow to the platform and keep it parallel to the ring, so that it has three slides. Each pair of rods is a
-//! `distance` between elbow and platform, half of its mass at either end (Codourey 1998). The numbers are our own, of
-//! the size of a pick-and-place machine.
+//! A Delta robot under computed torque. Three motor-driven arms are mounted on a ring; two rods of equal length connect
+//! each elbow to the platform and keep it parallel to the ring, so that it can only translate. Each pair of rods is a
+//! `distance` constraint between elbow and platform, with half of its mass at either end (Codourey 1998). The numbers
+//! are our own, of the size of a pick-and-place machine.
 //!
 //! Only the three arms have motors: the torques come from constrained inverse dynamics.
 
@@ -38,7 +38,7 @@ fn delta() -> Result<Model, Error> {
         ));
         parent = child;
     }
-    // the arms: in its own axes each points along x and turns about y
+    // the arms: in its own axes, each arm points along x and turns about y
     for k in 1..=3 {
         let turn = SE3 { R: SO3::from_rpy(0.0, 0.0, TAU / 3.0 * f64::from(k)), p: Vec3([0.0; 3]) };
         let out = |x: f64| SE3::translation([x, 0.0, 0.0]);
@@ -55,7 +55,7 @@ fn delta() -> Result<Model, Error> {
     robot.build()
 }
 
-/// A circle of the platform, and the joints that belong to it.
+/// A circle of the platform, and the corresponding joint motion.
 struct Circle<'m> {
     model: &'m Model,
     start: Vec<f64>,
@@ -101,7 +101,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         held.lambda.as_slice()
     );
 
-    // 5 mm beside the circle, and the error dies out as ë + K_d ė + K_p e = 0 says
+    // 5 mm off the circle; the error decays according to ë + K_d ė + K_p e = 0
     let mut beside = begin.theta.clone();
     beside[0] += 0.005;
     let beside = model.assemble(&beside, &["x", "y", "z"])?;

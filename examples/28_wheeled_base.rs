@@ -1,6 +1,6 @@
 //! A wheeled base: two driven wheels that roll without slipping (Modern Robotics, sections 8.7 and 13.3). Their
-//! constraints are Pfaffian: they restrict velocities and no positions. With equal constant wheel speeds the base drives
-//! straight, with different ones on a circle, as the kinematics of a unicycle says.
+//! constraints are Pfaffian: they restrict velocities but not positions. With equal constant wheel speeds the base
+//! drives straight, with different ones along a circle, in agreement with the kinematics of a unicycle.
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
 use mozzi::simulation::{Options, Simulation, torque};
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("redundant: {}\n", rank.redundant.join(", "));
     assert_eq!((rank.rank, rank.freedom), (3, 2));
 
-    // wheel speeds 4 and 6 rad/s; nothing drives and nothing brakes: it goes on like that
+    // wheel speeds 4 and 6 rad/s; without drive or brakes the motion is steady
     let wheels = ["left_axle", "right_axle"];
     let dtheta = model.assemble_velocities(&theta, &[0.0, 0.0, 0.0, 4.0, 6.0], &wheels)?;
     let speed = RADIUS * (4.0 + 6.0) / 2.0;
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     assert!(worst < 1e-9, "{worst:e}");
 
-    // equal torques from rest: straight on, with all mass and both wheels' inertia to accelerate
+    // equal torques from rest: straight motion that accelerates the total mass and both wheels' inertia
     let push = torque(|_, _, _, tau: &mut [f64]| (tau[3], tau[4]) = (0.2, 0.2));
     let straight = Simulation::new(options).run(&model, &theta, &[0.0; 5], push)?;
     let wheel = 0.5 * 0.5 * RADIUS * RADIUS; // of a disc

@@ -1,4 +1,4 @@
-//! Each kernel alone, by criterion: one state an iteration, going round the states.
+//! Each kernel alone, by criterion: one state for each iteration, cycling through the states.
 #![allow(missing_docs)] // criterion's main
 
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
@@ -8,7 +8,7 @@ use mozzi_benches::{QUANTITIES, States, inputs, robots};
 use std::hint::black_box;
 use std::time::Duration;
 
-/// Besides the quantities of the tables.
+/// In addition to the quantities of the tables.
 const FURTHER: [&str; 4] = ["velocity_product", "gravity_forces_derivative", "body_jacobian", "forward_kinematics"];
 
 fn kernels(criterion: &mut Criterion) {

@@ -1,14 +1,14 @@
-//! The robots: two arms, a body with a head and four limbs, a long chain, and two that walk.
+//! The robots: two arms, a body with a head and four limbs, a long chain, and two legged robots.
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
 use mozzi::testing::Random;
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 use std::path::Path;
 
-/// Those that are built in, each with its name.
+/// The embedded robots, each with its name.
 ///
 /// # Panics
-/// When one of them is broken.
+/// If one of them is invalid.
 pub fn all() -> [(&'static str, Model); 3] {
     [("Panda", panda()), ("UR5", ur5()), ("tree of 32", tree())]
 }
@@ -16,7 +16,7 @@ pub fn all() -> [(&'static str, Model); 3] {
 /// Legged robots with a floating base, from the folder of robots of PyPI's `example-robot-data`.
 ///
 /// # Errors
-/// When one of them cannot be read.
+/// If one of them cannot be read.
 pub fn legged(folder: &Path) -> Result<[(&'static str, Model); 2], String> {
     let read = |file| {
         let path = folder.join(file);
@@ -33,10 +33,11 @@ pub fn legged(folder: &Path) -> Result<[(&'static str, Model); 2], String> {
     ])
 }
 
-/// ANYmal on its four feet, whose points are pinned to where they are in the neutral configuration of the legs.
+/// ANYmal on its four feet, whose contact points are pinned at their positions in the neutral configuration of the
+/// legs.
 ///
 /// # Errors
-/// When its feet are not there.
+/// If its feet are missing.
 pub fn on_four_feet(anymal: &Model) -> Result<Model, String> {
     let theta: Vec<f64> = anymal.neutral_configuration();
     let mut robot = merged(anymal);
@@ -113,7 +114,7 @@ fn of_limbs(name: &str, limbs: &[(&str, &str, usize)]) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// A body of 1 to 3 kg: a ball with a point mass beside its centre.
+/// A body of 1 to 3 kg: a ball with a point mass off its centre.
 fn body(random: &mut Random) -> SpatialInertia {
     let axis = Vec3(random.array());
     let moment = 0.02 + 0.01 * axis.dot(axis);
@@ -121,12 +122,12 @@ fn body(random: &mut Random) -> SpatialInertia {
     SpatialInertia::new(2.0 + random.next(), Vec3(random.array()) * 0.1, moments)
 }
 
-/// The same robot as every library gets it: fixed links merged into what carries them, joint k between a link of the
-/// base's or of another joint's number and link `k`, no friction, no armature, no limits, and the standard's gravity,
-/// which dynibo has built in.
+/// The same robot in the form given to every library: fixed links are merged into the links that carry them, joint k
+/// connects a link of the base's or of another joint's number and link `k`, no friction, no armature, no limits, and
+/// standard gravity, which is built into dynibo.
 ///
 /// # Panics
-/// On joints beside their links' origins, which most libraries have no words for.
+/// If a joint is not at its link's origin, which most libraries cannot express.
 pub fn merged(model: &Model) -> Description {
     let original = model.description();
     let moving: Vec<&Joint> = model.moving_joints().collect();
@@ -150,7 +151,7 @@ pub fn merged(model: &Model) -> Description {
     robot
 }
 
-/// The number of the moving joint that carries a link (0: none, the base) and the link's frame seen from it.
+/// The index of the moving joint that carries a link (0 for the base), and the link's frame relative to it.
 fn place(description: &Description, moving: &[&Joint], link: &str) -> (usize, SE3) {
     let (mut T, mut link) = (SE3::identity(), link);
     while let Some(joint) = description.joints.iter().find(|joint| joint.child == link) {

@@ -7,7 +7,7 @@ use mozzi::{Model, SE3, Twist, Vec3};
 /// (θ, θ̇, θ̈, τ).
 pub type State<'a> = [&'a [f64]; 4];
 
-/// Those of (θ, θ̇, θ̈, τ) that a quantity depends on.
+/// The parts of (θ, θ̇, θ̈, τ) on which a quantity depends.
 pub fn inputs<T: Copy>(query: Query, [theta, dtheta, ddtheta, tau]: [T; 4]) -> Vec<T> {
     let input = |name| match name {
         "theta" => theta,
@@ -27,15 +27,15 @@ pub struct States {
 }
 
 impl States {
-    /// How many, of a robot that is not very long.
+    /// The number of states, for a robot that is not very long.
     pub const COUNT: usize = 256;
 
-    /// States all around the circle, at speeds and torques that an arm has.
+    /// Angles all around the circle, with an arm's typical speeds and torques.
     pub fn new(model: &Model) -> Self {
         Self::with_count(model, Self::COUNT)
     }
 
-    /// So many of them.
+    /// This many states.
     pub fn with_count(model: &Model, count: usize) -> Self {
         let (mut random, nq, n) = (Random(1763), model.nq(), model.n());
         let mut numbers = Vec::new();
@@ -52,7 +52,7 @@ impl States {
         States { nq, n, numbers }
     }
 
-    /// How many there are.
+    /// The number of states.
     pub fn count(&self) -> usize {
         self.numbers.len() / (self.nq + 3 * self.n)
     }

@@ -7,7 +7,7 @@ const HEIGHT: f64 = 300.0;
 const LEFT: f64 = 90.0;
 const TOP: f64 = 60.0;
 
-/// Colours that are told apart also by who sees few.
+/// Colours that people with colour blindness can distinguish, too.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 /// A curve: its name, and (t, value) from left to right.

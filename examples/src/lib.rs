@@ -1,4 +1,4 @@
-//! What the examples share: agreement within a tolerance, numbers in print, and a drawing.
+//! Helpers shared by the examples: agreement within a tolerance, printed numbers, and plots.
 
 pub mod chart;
 pub mod plot;
@@ -6,8 +6,8 @@ pub mod tracking;
 
 use nalgebra::DMatrix;
 
-/// Panics unless two lists of numbers agree to a tolerance, relative to the largest number expected; says how well they
-/// do.
+/// Panics unless two lists of numbers agree to a tolerance, relative to the largest number expected; prints the largest
+/// difference.
 pub fn agree<'a>(
     what: &str,
     found: impl IntoIterator<Item = &'a f64>,

@@ -1,8 +1,8 @@
-//! A drawing of curves in a plane, equal scales on both axes, as an SVG file.
+//! Plots of curves in a plane, with equal scales on both axes, as an SVG file.
 
 use std::fmt::Write;
 
-/// Pixels: the width of the plane's part that is drawn, and the margins around it.
+/// Pixels: the width of the plotted part of the plane, and the margins around it.
 const WIDTH: f64 = 660.0;
 const LEFT: f64 = 80.0;
 const RIGHT: f64 = 30.0;
@@ -57,7 +57,7 @@ impl Plot {
         self.add(&format!("<polyline points='{points}' fill='none' stroke='{colour}' stroke-width='{width}'{dash}/>"));
     }
 
-    /// A line with a head, from the origin.
+    /// An arrow from the origin.
     pub fn arrow(&mut self, to: [f64; 2], colour: &str) {
         self.curve([[0.0; 2], to], colour, 2.2, false);
         let ([x, y], [x0, y0]) = (self.pixel(to), self.pixel([0.0; 2]));
@@ -73,7 +73,7 @@ impl Plot {
         self.add(&format!("<circle cx='{x:.2}' cy='{y:.2}' r='4.5' fill='{colour}'/>"));
     }
 
-    /// Words at a point, on a white edge; `anchor` is `start`, `middle` or `end`.
+    /// Text at a point, with a white outline; `anchor` is `start`, `middle` or `end`.
     pub fn text(&mut self, at: [f64; 2], anchor: &str, colour: &str, words: &str) {
         let [x, y] = self.pixel(at);
         self.add(&format!(

@@ -1,5 +1,5 @@
-//! What the examples of controllers share: two arms, a motion for each, and how well it is followed, with the load that
-//! the controller knows of and with one that it does not.
+//! Helpers shared by the controller examples: two arms, a motion for each, and the tracking errors, without and with a
+//! load that is missing in the controller's model.
 
 use crate::chart::{Curve, chart};
 use mozzi::simulation::{Input, Options};
@@ -9,10 +9,10 @@ use mozzi_motion::controllers::{Saturated, tracking_error};
 use mozzi_motion::trajectories::{Line, Profile, Reference, Timed};
 use std::error::Error;
 
-/// What is in the hand and not in the controller's model, kg.
+/// The load in the hand that the controller's model lacks, kg.
 const LOADS: [f64; 2] = [0.0, 2.0];
 
-/// An arm with a motion to make.
+/// An arm with a desired motion.
 pub struct Arm {
     /// "UR5" or "Panda".
     pub name: &'static str,
@@ -41,7 +41,7 @@ impl Arm {
         Ok(Timed::new(Line::new(&self.model, &self.from, &self.to)?, Profile::quintic(1.2)?))
     }
 
-    /// Simulates the arm with a load in its hand, under a controller that does not know of it.
+    /// Simulates the arm with a load in its hand, under a controller whose model lacks the load.
     pub fn follow(&self, load: f64, motors: impl Input) -> Result<mozzi::Trajectory, Box<dyn Error>> {
         let mut robot = self.model.clone();
         if load > 0.0 {

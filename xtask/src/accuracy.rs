@@ -7,7 +7,7 @@ use crate::report::Outcome;
 use crate::venv;
 use crate::workspace::Workspace;
 
-/// What the program is run with unless other robots are named.
+/// The program's arguments unless other robots are named.
 const PAGE: &str = "docs/accuracy.md";
 
 pub fn run(workspace: &Workspace, options: &[&str]) -> Outcome {

@@ -1,4 +1,5 @@
-//! Known vulnerabilities of the dependencies, if cargo-deny or cargo-audit is installed and its database can be had.
+//! Checks the dependencies for known vulnerabilities, if cargo-deny or cargo-audit is installed and its database can be
+//! fetched.
 
 use crate::command;
 use crate::report::Outcome;
@@ -15,7 +16,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// The database first, so that a missing network is not taken for a vulnerability.
+/// Fetches the database first, so that a missing network is not reported as a vulnerability.
 fn deny(workspace: &Workspace) -> Outcome {
     match command::run(workspace.cargo(&["deny", "fetch", "db"])) {
         Ok(()) => command::outcome(workspace.cargo(&["deny", "check", "--disable-fetch", "advisories"])),

@@ -1,10 +1,10 @@
-//! Running a program: what is run is printed, nothing is read from the terminal.
+//! Runs programs: the command is printed, and nothing is read from the terminal.
 
 use crate::report::Outcome;
 use std::borrow::BorrowMut;
 use std::process::{Command, Stdio};
 
-/// Run it, showing what it prints; `Err` says what went wrong.
+/// Run it and show its output; `Err` gives the reason of a failure.
 pub fn run(mut command: impl BorrowMut<Command>) -> Result<(), String> {
     let command = command.borrow_mut();
     println!("$ {}", shown(command));
@@ -15,7 +15,8 @@ pub fn run(mut command: impl BorrowMut<Command>) -> Result<(), String> {
     }
 }
 
-/// Run it and keep its standard output, whatever its exit status; `Err` if it failed to start or was no text.
+/// Run it and keep its standard output, whatever its exit status; `Err` if it failed to start or the output is not
+/// text.
 pub fn output(mut command: impl BorrowMut<Command>) -> Result<(bool, String), String> {
     let command = command.borrow_mut();
     let output = command.stdin(Stdio::null()).stderr(Stdio::inherit()).output();
@@ -38,7 +39,7 @@ pub fn exists(command: &mut Command) -> bool {
     quiet.status().is_ok_and(|status| status.success())
 }
 
-/// As one would type it.
+/// The command as one would type it.
 pub fn shown(command: &Command) -> String {
     let program = std::path::Path::new(command.get_program()).file_name().unwrap_or(command.get_program());
     let words = std::iter::once(program).chain(command.get_args());

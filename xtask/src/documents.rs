@@ -3,10 +3,10 @@
 use crate::report::Outcome;
 use crate::workspace::Workspace;
 
-/// A document and the most words it may have.
+/// A document and its largest number of words.
 const LIMITS: [(&str, usize); 2] = [("README.md", 1200), ("DESIGN.md", 2500)];
 
-/// Fails if a document is too long: what does not fit belongs on a page of docs/.
+/// Fails if a document is too long: longer text belongs on a page of docs/.
 pub fn check(workspace: &Workspace) -> Outcome {
     let mut counts = Vec::new();
     let mut too_long = Vec::new();

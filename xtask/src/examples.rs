@@ -13,7 +13,7 @@ use std::process::Command;
 /// The Rust examples' programs, by name.
 pub type Programs = BTreeMap<String, PathBuf>;
 
-/// Those of the whole workspace, in the profile in which `cargo test` has just built them: nothing is built twice.
+/// Those of the whole workspace, in the profile that `cargo test` has just built, so that nothing is built twice.
 pub fn build(workspace: &Workspace, programs: &mut Programs) -> Outcome {
     let arguments = ["build", "--quiet", "--workspace", "--examples", "--profile", "test", "--message-format", "json"];
     let messages = match command::output(workspace.cargo(&arguments).args(FEATURES)) {
@@ -31,11 +31,11 @@ pub fn build(workspace: &Workspace, programs: &mut Programs) -> Outcome {
 pub enum Example {
     Rust(String),
     Python(PathBuf),
-    /// The folder has none.
+    /// The folder has no examples.
     None,
 }
 
-/// In the order of their numbers, the Rust one before its twin; never empty, so that the report has a line.
+/// In the order of their numbers, each Rust example before its twin; never empty, so that the report has a line.
 pub fn list(workspace: &Workspace) -> Vec<Example> {
     let entries = std::fs::read_dir(workspace.path("examples"));
     let mut files: Vec<_> = entries.into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path()).collect();
@@ -61,7 +61,7 @@ impl Example {
         }
     }
 
-    /// In an empty folder under `target/`, where it may write.
+    /// In an empty folder under `target/`, to which it may write.
     pub fn run(&self, workspace: &Workspace, programs: &Programs) -> Outcome {
         let folder = match workspace.scratch(&self.name()) {
             Ok(folder) => folder,

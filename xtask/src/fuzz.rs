@@ -1,12 +1,12 @@
-//! The fuzz targets under their plain driver, for some seconds each, or `MOZZI_FUZZ_SECONDS` (5 where it is not set).
+//! Runs each fuzz target with its plain driver for `MOZZI_FUZZ_SECONDS` (5 by default).
 
 use crate::command;
 use crate::report::Outcome;
 use crate::workspace::{FEATURES, Workspace};
 
 pub fn run(workspace: &Workspace, seconds: Option<u32>) -> Outcome {
-    // Of the whole workspace, as the tests before: fewer packages would ask for fewer features, and everything would be
-    // built again.
+    // Built for the whole workspace, like the tests before: a smaller set of packages would enable fewer features and
+    // rebuild everything.
     let mut cargo = workspace.cargo(&["test", "--workspace", "--test", "fuzz"]);
     if let Some(seconds) = seconds {
         cargo.env("MOZZI_FUZZ_SECONDS", seconds.to_string());

@@ -5,8 +5,8 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Where `unsafe` may stand: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's methods. A
-/// file that starts so.
+/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's
+/// methods. Each entry is a path prefix.
 const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi/src/fast",
     "crates/mozzi-batch/src/number",
@@ -16,7 +16,7 @@ const UNSAFE_ALLOWED: [&str; 6] = [
     "crates/mozzi-py/src/methods/attach",
 ];
 
-/// Characters in a line.
+/// The most characters in a line.
 const WIDE: usize = 120;
 /// Files longer than this should be split.
 const LONG: usize = 400;
@@ -55,7 +55,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// The lines of comments that are too long, tables left out; those of code are formatted by rustfmt.
+/// Comment lines that are too long, except tables; rustfmt formats code lines.
 fn long_comments(source: &str) -> impl Iterator<Item = usize> {
     let is_table = |line: &str| line.trim_start().trim_start_matches(['/', '!']).trim_start().starts_with('|');
     let is_long =
@@ -71,7 +71,7 @@ fn is_library_code(name: &str) -> bool {
         && !parts.iter().any(|part| ["tests", "tests.rs"].contains(part))
 }
 
-/// The line and the rule of each breach.
+/// The line and the rule of each violation.
 fn broken_rules(name: &str, source: &str) -> Vec<(usize, &'static str)> {
     let code = without_tests(&code_only(source));
     let unsafe_allowed = UNSAFE_ALLOWED.iter().any(|start| name.starts_with(start));
@@ -88,7 +88,7 @@ fn broken_rules(name: &str, source: &str) -> Vec<(usize, &'static str)> {
     broken
 }
 
-/// Whether `word` stands in the line, not as a part of a longer name.
+/// True if the line contains `word`, and not only as a part of a longer name.
 fn has_word(line: &str, word: &str) -> bool {
     let in_name = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
     line.match_indices(word).any(|(at, _)| {

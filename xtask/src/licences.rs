@@ -1,12 +1,13 @@
-//! Whether everything that we build on may be used under the licences that we accept.
+//! Checks that the licences of all dependencies are among the accepted ones.
 
 use crate::metadata;
 use crate::report::Outcome;
 use crate::spdx;
 use crate::workspace::Workspace;
 
-/// Permissive licences: they ask for their notice at most. MPL-2.0 (changes to the licensed files stay under it) would
-/// do no harm either, but nothing that we use needs it; so that adding such a package is a decision, it is not here.
+/// Permissive licences: they require at most that their notice is kept. MPL-2.0 (changes to the licensed files stay
+/// under it) would be acceptable too, but no dependency needs it; it is not listed, so that adding such a package is a
+/// decision.
 const ALLOWED: [&str; 10] = [
     "MIT",
     "Apache-2.0",
@@ -20,7 +21,7 @@ const ALLOWED: [&str; 10] = [
     "CC0-1.0",
 ];
 
-/// Packages that name a file instead of an expression, in the versions whose file was read: what it is.
+/// Packages that name a file instead of an expression, with the version whose file was read, and its licence.
 const READ: [(&str, &str); 5] = [
     ("f256 0.11.3", "BSD-3-Clause"),
     ("f256_pow10_div_pow2_lut 0.11.3", "BSD-3-Clause"),

@@ -149,7 +149,8 @@ fn check(workspace: &Workspace) -> ExitCode {
         command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
     });
     report.step("documentation", || {
-        // Libraries: the program `mozzi` would be written over the library of the same name, at the same time.
+        // Libraries only: the program `mozzi` would overwrite the library of the same name, which is written at the
+        // same time.
         let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);
         command::outcome(doc.env("RUSTDOCFLAGS", "-Dwarnings"))
     });
@@ -160,7 +161,7 @@ fn check(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
-/// A command of one step.
+/// A command with a single step.
 fn one(name: &str, step: impl FnOnce() -> report::Outcome) -> ExitCode {
     let mut report = Report::default();
     report.step(name, step);

@@ -1,10 +1,10 @@
-//! The packages on which the workspace stands, as `cargo metadata` tells.
+//! The packages on which the workspace depends, as `cargo metadata` lists them.
 
 use crate::command;
 use crate::workspace::Workspace;
 use serde_json::Value;
 
-/// A package from elsewhere.
+/// A third-party package.
 pub struct Dependency {
     /// Name and version.
     pub name: String,
@@ -12,7 +12,7 @@ pub struct Dependency {
     pub licence: Option<String>,
 }
 
-/// Every one in `Cargo.lock`, whatever the platform; the workspace's own packages left out.
+/// All packages in `Cargo.lock`, for any platform, except the workspace's own.
 pub fn dependencies(workspace: &Workspace) -> Result<Vec<Dependency>, String> {
     let (true, text) = command::output(workspace.cargo(&["metadata", "--all-features", "--format-version", "1"]))?
     else {

@@ -1,5 +1,5 @@
-//! What takes hours: long simulations, fuzzing with and without the guidance of coverage, accuracy at many states. The
-//! log of a night is `target/nightly/DATE.md`; a step is written when it ends.
+//! Checks that take hours: long simulations, fuzzing with and without coverage guidance, accuracy at many states. The
+//! log of a night is `target/nightly/DATE.md`; each step is written when it ends.
 
 use crate::accuracy;
 use crate::command;
@@ -14,7 +14,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// For each fuzz target, unless `--seconds` says otherwise.
 pub const SECONDS: u32 = 3600;
 const FOLDER: &str = "target/nightly";
-/// What a target begins with besides its corpus.
+/// Initial inputs of a target in addition to its corpus.
 const SEEDS: [(&str, &[&str]); 3] = [
     ("urdf", &["models", "crates/mozzi-urdf/tests/broken"]),
     ("mjcf", &["oracles", "crates/mozzi-urdf/tests/broken/mjcf"]),
@@ -46,7 +46,7 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
     report.finish()
 }
 
-/// Random expressions, others each night.
+/// Random expressions, different ones each night.
 fn xacro(workspace: &Workspace, seconds: u32) -> Outcome {
     if let Err(why) = command::run(workspace.cargo(&["build", "--release", "-p", "mozzi-xacro", "--example", "batch"]))
     {
@@ -71,7 +71,7 @@ fn guided(workspace: &Workspace, target: &str, seconds: u32) -> Outcome {
     if !command::exists(&mut workspace.cargo(&["fuzz"])) {
         return Outcome::Skipped("`cargo install cargo-fuzz` installs what it needs".into());
     }
-    let corpus = format!("fuzz/corpus/{target}"); // the first folder takes what is found
+    let corpus = format!("fuzz/corpus/{target}"); // new inputs are written to the first folder
     if let Err(why) = std::fs::create_dir_all(workspace.path(&corpus)) {
         return Outcome::Failed(format!("{corpus}: {why}"));
     }
@@ -87,7 +87,7 @@ fn today() -> String {
     date(i64::try_from(seconds / 86_400).unwrap_or_default())
 }
 
-/// Of the days since 1970. Years are taken to begin in March: a leap day is then a year's last.
+/// The date of a number of days since 1970. Years begin in March here, so that a leap day is the last day of a year.
 fn date(days: i64) -> String {
     let days = days + 719_468; // since 1 March 0000
     let (era, day) = (days.div_euclid(146_097), days.rem_euclid(146_097));

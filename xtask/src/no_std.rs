@@ -1,7 +1,8 @@
-//! Is the library `no_std`? A `#![no_std]` static library with its own panic handler is built on it, for this machine.
+//! Checks that the library is `no_std`: builds a `#![no_std]` static library with its own panic handler on it, for this
+//! machine.
 //!
-//! The crate is `xtask/no_std_check`. It has a panic handler, as `std` has one: if anything pulled `std` in, the
-//! compiler would refuse the second. It is built for the host: no bare-metal target is checked.
+//! The crate is `xtask/no_std_check`. It defines a panic handler, as `std` does: if a dependency used `std`, the
+//! compiler would refuse the second one. It is built for the host: no bare-metal target is checked.
 
 use crate::command;
 use crate::report::Outcome;
@@ -12,7 +13,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     if !library.contains("no_std") {
         return Outcome::Skipped("crates/mozzi/src/lib.rs does not say no_std yet".into());
     }
-    // Its own workspace, so that no other package's features reach the library; but the same versions.
+    // It is a separate workspace, so that no other package's features reach the library; but the versions are the same.
     let lock = workspace.path("xtask/no_std_check/Cargo.lock");
     if let Err(error) = std::fs::copy(workspace.path("Cargo.lock"), &lock) {
         return Outcome::Failed(format!("{}: {error}", lock.display()));

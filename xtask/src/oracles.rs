@@ -1,6 +1,6 @@
-//! The reference numbers: the scripts of `oracles/` compute them, `make.py` with Pinocchio on the robots of
-//! example-robot-data, fixed, `make_floating.py` with floating bases, `make_mjcf.py` with MuJoCo on the models of
-//! gymnasium and dm_control.
+//! Makes the reference numbers with the scripts of `oracles/`: `make.py` with Pinocchio on the robots of
+//! example-robot-data, with fixed bases, `make_floating.py` with floating bases, `make_mjcf.py` with MuJoCo on the
+//! models of gymnasium and dm_control.
 
 use crate::command;
 use crate::report::Outcome;
@@ -10,12 +10,12 @@ use crate::workspace::Workspace;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Each script, and where in the folder of numbers its files go.
+/// Each script, and the subfolder for its files in the folder of numbers.
 const SCRIPTS: [(&str, &str); 3] =
     [("oracles/make.py", ""), ("oracles/make_floating.py", "floating"), ("oracles/make_mjcf.py", "")];
 const STATES: &str = "100";
 
-/// Where the example_robot_data robots are: the package has no Python module, but it lists its files.
+/// Finds the example_robot_data robots: the package has no Python module, but it lists its files.
 const ROBOTS: &str = "\
 import importlib.metadata as metadata, pathlib
 try:
@@ -29,7 +29,7 @@ for file in files:
         print(folders[0])
         break";
 
-/// Make them, unless they were made already from the same sources.
+/// Make them, unless they already exist for the same sources.
 pub fn make(workspace: &Workspace) -> Outcome {
     match try_make(workspace) {
         Ok(note) => Outcome::Passed(note),
@@ -43,7 +43,7 @@ fn try_make(workspace: &Workspace) -> Result<String, String> {
     if stamp.is_fresh() {
         return Ok("made already".into());
     }
-    let folder = workspace.fresh_folder("target/oracles")?; // without the stamp: an interrupted run is no finished one
+    let folder = workspace.fresh_folder("target/oracles")?; // also removes the stamp
     for (script, part) in SCRIPTS {
         let mut python = Command::new(venv::python(workspace));
         python.current_dir(&workspace.root).arg(script).args(["--states", STATES, "--out"]);
@@ -53,20 +53,19 @@ fn try_make(workspace: &Workspace) -> Result<String, String> {
     Ok(format!("{STATES} states a robot"))
 }
 
-/// The finished folder of reference numbers: none if they were not made, or not from the sources of today.
+/// The finished folder of reference numbers; none if it does not exist, or the sources have changed.
 pub fn folder(workspace: &Workspace) -> Option<PathBuf> {
     stamp(workspace).ok()?.is_fresh().then(|| workspace.path("target/oracles"))
 }
 
-/// The folder of the robots' URDF files, found by asking Python.
+/// The folder of the robots' URDF files, found with Python.
 pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
     let (_, text) = command::output(Command::new(venv::python(workspace)).args(["-c", ROBOTS])).ok()?;
     let folder = text.trim();
     (!folder.is_empty()).then(|| PathBuf::from(folder))
 }
 
-/// What the numbers are made from: scripts, requirements, robots and models under `oracles/`, and the robots of
-/// `models/`.
+/// The sources of the numbers: scripts, requirements, robots and models under `oracles/`, and the robots of `models/`.
 fn stamp(workspace: &Workspace) -> Result<Stamp, String> {
     let mut files = Vec::new();
     let folders = [

@@ -1,4 +1,4 @@
-//! The Python package as `pip` would install it, under `target/python`: the library that `cargo test` built, beside the
+//! The Python package as `pip` would install it, under `target/python`: the library that `cargo test` built, with the
 //! files of `crates/mozzi-py/python`; and its tests.
 
 use crate::command;
@@ -11,19 +11,19 @@ use std::process::Command;
 
 const SOURCES: &str = "crates/mozzi-py/python/mozzi";
 
-/// What `PYTHONPATH` is to be.
+/// The value of `PYTHONPATH`.
 pub fn folder(workspace: &Workspace) -> PathBuf {
     workspace.path("target/python")
 }
 
-/// A Python that imports the package.
+/// A Python that can import the package.
 pub fn python(workspace: &Workspace) -> Command {
     let mut python = Command::new(venv::python(workspace));
     python.env("PYTHONPATH", folder(workspace));
     python
 }
 
-/// Put together, and tested.
+/// Assembles and tests the package.
 pub fn test(workspace: &Workspace, count: &mut Count) -> Outcome {
     if let Err(why) = stage(workspace) {
         count.fail();
@@ -35,7 +35,7 @@ pub fn test(workspace: &Workspace, count: &mut Count) -> Outcome {
 }
 
 fn stage(workspace: &Workspace) -> Result<(), String> {
-    // built already, with the tests; by itself it would be built once more, with other features of its dependencies
+    // already built with the tests; a separate build would use other features of its dependencies
     let cargo = [&["test", "--quiet", "--workspace", "--no-run"], &FEATURES[..]].concat();
     put_together(workspace, &folder(workspace), &cargo, "debug")
 }
@@ -56,7 +56,7 @@ pub fn put_together(workspace: &Workspace, to: &Path, cargo: &[&str], profile: &
     Ok(())
 }
 
-/// A folder with all in it, but for what Python left there.
+/// Copies a folder, except files that Python created there.
 pub fn copy(from: &Path, to: &Path) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{}: {error}", from.display());
     std::fs::create_dir_all(to).map_err(failed)?;

@@ -1,4 +1,5 @@
-//! The bundle of `page/`, which is committed: built by npm, and held to its sources by a stamp that needs no Node.
+//! The bundle of `page/`, which is committed: npm builds it, and a stamp that needs no Node compares it with its
+//! sources.
 
 use crate::command;
 use crate::report::Outcome;
@@ -9,10 +10,10 @@ use std::process::Command;
 const BUNDLE: &str = "crates/mozzi-report/bundle/page.html";
 const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
 
-/// What browsers that can run the tests are called.
+/// Names of the browsers that can run the tests.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// Writes the bundle anew.
+/// Rebuilds the bundle.
 pub fn write(workspace: &Workspace) -> Outcome {
     match build(workspace, &workspace.path(BUNDLE)) {
         Ok(()) => Outcome::Passed(BUNDLE.into()),
@@ -38,7 +39,7 @@ fn build(workspace: &Workspace, file: &std::path::Path) -> Result<(), String> {
     command::run(Command::new("node").current_dir(&page).arg("build.mjs").arg(file))
 }
 
-/// Does the bundle carry the stamp of today's sources?
+/// True if the bundle has the stamp of the current sources.
 pub fn is_current(workspace: &Workspace) -> Outcome {
     let bundle = match std::fs::read_to_string(workspace.path(BUNDLE)) {
         Ok(bundle) => bundle,
@@ -51,7 +52,7 @@ pub fn is_current(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// As `page/build.mjs` has it: 64-bit FNV-1a of names and texts.
+/// The hash of `page/build.mjs`: 64-bit FNV-1a of names and texts.
 fn stamp(workspace: &Workspace) -> Result<String, String> {
     let mut files: Vec<String> =
         ["build.mjs", "index.html", "package-lock.json", "package.json", "style.css"].map(String::from).to_vec();

@@ -1,11 +1,11 @@
-//! What each step did: a heading when it starts, a line in the list at the end.
+//! The report of the steps: a heading when a step starts, a line in the list at the end.
 
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// How a step ended, with what there is to say about it (empty for nothing).
+/// The result of a step, with a remark (may be empty).
 #[derive(Debug, PartialEq)]
 pub enum Outcome {
     Passed(String),
@@ -18,12 +18,12 @@ pub enum Outcome {
 pub struct Report {
     lines: Vec<String>,
     failed: Vec<String>,
-    /// Where each line goes as soon as it is known.
+    /// The file to which each line is written as soon as it is known.
     log: Option<PathBuf>,
 }
 
 impl Report {
-    /// With a file that begins with `head` and takes a line when a step ends.
+    /// Also writes to a file that begins with `head`; a line is added when a step ends.
     pub fn with_log(file: PathBuf, head: &str) -> Self {
         let folder = file.parent().map_or(Ok(()), std::fs::create_dir_all);
         if let Err(error) = folder.and_then(|()| std::fs::write(&file, head)) {

@@ -1,4 +1,4 @@
-//! Rust source as rules read it: comments, strings and tests blanked, every line still at its number.
+//! Rust source prepared for the rules: comments, strings and tests are blanked; line numbers stay the same.
 
 /// Blank comments, strings and character literals; newlines stay.
 pub fn code_only(source: &str) -> String {
@@ -26,7 +26,7 @@ pub fn code_only(source: &str) -> String {
     code
 }
 
-/// Length of a block comment, the nested ones with it.
+/// Length of a block comment, including nested ones.
 fn block_comment(text: &str) -> usize {
     let (mut depth, mut at) = (0, 0);
     while at < text.len() {
@@ -57,7 +57,7 @@ fn string(text: &str) -> usize {
     text.len()
 }
 
-/// Length of `r"…"` or `r#"…"#`; 0 if it is none.
+/// Length of `r"…"` or `r#"…"#`; 0 if it is not a raw string.
 fn raw_string(text: &str) -> usize {
     let hashes = text[1..].bytes().take_while(|&b| b == b'#').count();
     if text.as_bytes().get(1 + hashes) != Some(&b'"') {
@@ -95,7 +95,7 @@ pub fn without_tests(code: &str) -> String {
     kept + rest
 }
 
-/// Where an item ends: at its closing brace, or at a semicolon outside every bracket.
+/// The end of an item: its closing brace, or a semicolon outside every bracket.
 fn item_end(text: &str, from: usize) -> usize {
     let mut depth = 0;
     for (at, c) in text.char_indices().skip_while(|&(at, _)| at < from) {

@@ -1,4 +1,4 @@
-//! A stamp: the text from which something was made, kept beside it. Same text, nothing to do.
+//! A stamp: the text of the sources of a build, stored with its result. If the text is unchanged, nothing is rebuilt.
 
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ impl Stamp {
         std::fs::read_to_string(&self.file).is_ok_and(|text| text == self.text)
     }
 
-    /// Before making: an interrupted run must not look finished.
+    /// Call before the build: an interrupted run must not look finished.
     pub fn remove(&self) -> Result<(), String> {
         match std::fs::remove_file(&self.file) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(self.complaint(&error)),
@@ -24,7 +24,7 @@ impl Stamp {
         }
     }
 
-    /// After making.
+    /// Call after the build.
     pub fn write(&self) -> Result<(), String> {
         std::fs::write(&self.file, &self.text).map_err(|error| self.complaint(&error))
     }

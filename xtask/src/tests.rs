@@ -35,7 +35,7 @@ impl Count {
 }
 
 impl Count {
-    /// Something did not come to the point where its tests are counted.
+    /// Records a failure before the tests could be counted.
     pub fn fail(&mut self) {
         self.failed = self.failed.max(1);
     }
@@ -64,7 +64,7 @@ impl fmt::Display for Count {
     }
 }
 
-/// Run every test, whichever fails before it.
+/// Run all tests, even if some fail.
 pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     let mut cargo = workspace.cargo(&["test", "--workspace", "--no-fail-fast"]);
     cargo.args(FEATURES);
@@ -76,7 +76,7 @@ pub fn run(workspace: &Workspace, count: &mut Count) -> Outcome {
     run_counted(&mut cargo, count, Count::add)
 }
 
-/// Runs tests whose output tells how many there were.
+/// Runs tests whose output reports how many there were.
 pub fn run_counted(command: &mut Command, count: &mut Count, add: impl Fn(&mut Count, &str)) -> Outcome {
     let (program, mut here) = (command::shown(command), Count::default());
     println!("$ {program}");
@@ -84,7 +84,7 @@ pub fn run_counted(command: &mut Command, count: &mut Count, add: impl Fn(&mut C
         Err(error) => Outcome::Failed(format!("`{program}` did not start: {error}")),
         Ok(true) => Outcome::Passed(format!("{here}, {} ignored", here.ignored)),
         Ok(false) => {
-            here.fail(); // a program that did not build, or died, has no line of results of its own
+            here.fail(); // a program that did not build, or crashed, has no result line
             Outcome::Failed(here.to_string())
         }
     };
@@ -94,7 +94,7 @@ pub fn run_counted(command: &mut Command, count: &mut Count, add: impl Fn(&mut C
     outcome
 }
 
-/// Names a path to the tests, where it is there.
+/// Passes a path to the tests, if it exists.
 pub fn give(cargo: &mut Command, variable: &str, path: Option<std::path::PathBuf>) {
     match path {
         Some(path) => {
@@ -105,7 +105,7 @@ pub fn give(cargo: &mut Command, variable: &str, path: Option<std::path::PathBuf
     }
 }
 
-/// Show its standard output and hand each line on; whether it succeeded.
+/// Prints its standard output and passes each line on; returns whether it succeeded.
 fn stream(command: &mut Command, mut each: impl FnMut(&str)) -> std::io::Result<bool> {
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn()?;
     if let Some(stdout) = child.stdout.take() {

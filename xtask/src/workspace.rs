@@ -1,11 +1,11 @@
-//! Where things are, and how to call cargo there.
+//! Paths of the workspace, and cargo calls in it.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is built in besides the defaults wherever tests are built, once and for all of them: each choice is a build of
-/// its own.
+/// Features that are enabled in addition to the defaults wherever tests are built: the same set for all of them,
+/// because each set needs a build of its own.
 pub const FEATURES: [&str; 2] = ["--features", "mozzi-cli/mcap,mozzi-cli/parquet,mozzi-cli/png"];
 
 pub struct Workspace {
@@ -23,12 +23,12 @@ impl Workspace {
         self.root.join(relative)
     }
 
-    /// Where cargo puts what it builds.
+    /// The folder of cargo's build results.
     pub fn target(&self) -> PathBuf {
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| self.path("target"), |target| self.root.join(target))
     }
 
-    /// That folder, made anew and empty.
+    /// This folder, emptied or created.
     pub fn fresh_folder(&self, relative: &str) -> Result<PathBuf, String> {
         let folder = self.path(relative);
         let remove = if folder.exists() { std::fs::remove_dir_all(&folder) } else { Ok(()) };
@@ -36,7 +36,7 @@ impl Workspace {
         made.map(|()| folder).map_err(|error| format!("{relative}: {error}"))
     }
 
-    /// An empty folder for a program that writes where it is started.
+    /// An empty folder for a program that writes to its working directory.
     pub fn scratch(&self, name: &str) -> Result<PathBuf, String> {
         self.fresh_folder(&format!("target/xtask/{name}"))
     }

@@ -1,4 +1,4 @@
-//! What `cargo xtask bench` asks for.
+//! The arguments from `cargo xtask bench`.
 
 pub const USAGE: &str = "\
 usage: compare [--peer NAME=LIBRARY]... [--missing NAME=REASON]... [--models FOLDER]
@@ -9,7 +9,7 @@ usage: compare [--peer NAME=LIBRARY]... [--missing NAME=REASON]... [--models FOL
 pub struct Arguments {
     /// Name and library.
     pub peers: Vec<(String, String)>,
-    /// Name and the reason why it is not here.
+    /// Name and the reason why it is not available.
     pub missing: Vec<(String, String)>,
     /// The robots of PyPI's `example-robot-data`.
     pub models: Option<String>,
@@ -17,9 +17,9 @@ pub struct Arguments {
     pub robots: Option<Vec<String>>,
     /// For each robot.
     pub seconds: Option<f64>,
-    /// Where RESULTS.md and results.svg go.
+    /// The folder for RESULTS.md and results.svg.
     pub write: Option<String>,
-    /// Where the robots' numbers go, for what generates code.
+    /// The folder for the robots' numbers, used by code generators.
     pub describe: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! mozzi at many states at once, on one thread: tables in rows, as a caller has them, or in blocks.
+//! mozzi at many states at once, on one thread: tables in rows, as callers have them, or in blocks.
 
 use crate::compiled;
 use crate::contestant::Contestant;
@@ -12,7 +12,7 @@ use std::hint::black_box;
 /// All states in one call.
 pub struct Batched {
     batch: Batch,
-    /// With the flops of their programs, where they have one.
+    /// With the flops of their programs, if they have any.
     quantities: Vec<(Query<'static>, Option<usize>)>,
     /// θ, θ̇, θ̈, τ.
     tables: [Vec<f64>; 4],
@@ -20,7 +20,7 @@ pub struct Batched {
 }
 
 impl Batched {
-    /// By the kernels, or by machine code; none where the machine has no such registers.
+    /// By the kernels, or by machine code; none if the machine has no such registers.
     pub fn new(model: &Model, states: &States, set: InstructionSet, layout: Layout, is_compiled: bool) -> Option<Self> {
         let batch = Batch::new(model).with_instruction_set(set).and_then(|batch| batch.with_threads(1)).ok()?;
         let mut batch = batch.with_layout(layout);
@@ -63,7 +63,7 @@ impl Contestant for Batched {
     fn run(&mut self, algorithm: usize) {
         let result = self.evaluate(self.quantities[algorithm].0);
         black_box(&mut self.outputs);
-        result.expect("states that were computed before"); // `result` found their errors
+        result.expect("states that were computed before"); // `result` checked them for errors
     }
 
     fn result(&mut self, algorithm: usize, state: usize) -> Result<Vec<f64>, String> {

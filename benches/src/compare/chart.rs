@@ -4,7 +4,7 @@
 use crate::race::Table;
 use std::fmt::Write;
 
-/// Colours between black and white, so that they stand out from either.
+/// Medium colours, with contrast on black and on white.
 const INK: &str = "#808080";
 const COLOURS: [&str; 9] =
     ["#3f87e0", "#e07b2e", "#2aa36b", "#b45fd6", "#e0506e", "#17a2b8", "#a08a1f", "#7a6ff0", "#c46a9a"];
@@ -121,7 +121,7 @@ fn panel(
     }
 }
 
-/// A mark of the k-th library: told apart by shape as well as by colour.
+/// A mark of the k-th library: libraries differ by shape as well as by colour.
 fn mark(svg: &mut String, k: usize, x: f64, y: f64) {
     let colour = COLOURS[k % COLOURS.len()];
     let polygon = |points: &[(f64, f64)]| {

@@ -1,4 +1,4 @@
-//! mozzi's machine code for the one robot.
+//! mozzi's machine code for one robot.
 
 use crate::quantity;
 use mozzi::Model;
@@ -9,7 +9,7 @@ use mozzi_codegen::{Arguments, Kernel, record_quantity};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Those that became machine code, with the flops of their programs.
+/// The quantities that have machine code, with the flops of their programs.
 pub fn quantities(model: &Model, engine: impl Fn(Query) -> Engine) -> Vec<(Query<'static>, Option<usize>)> {
     let with_flops = |query| {
         let Engine::MachineCode(shape, _) = engine(query) else { return None };

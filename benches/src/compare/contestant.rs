@@ -1,4 +1,4 @@
-//! What takes part: a library, or one of mozzi's ways, with one robot and its states.
+//! A contestant: a library, or one of mozzi's ways to compute, with one robot and its states.
 
 use crate::mozzi_ways;
 use crate::peak::Width;
@@ -9,11 +9,11 @@ use mozzi_benches::States;
 
 /// One library, or one way of mozzi, that holds a robot and all states.
 pub trait Contestant {
-    /// What it computes, and what it calls each.
+    /// Its quantities, and its names for the algorithms.
     fn algorithms(&self) -> Vec<(Query<'static>, String)>;
     /// The k-th algorithm at all states.
     fn run(&mut self, algorithm: usize);
-    /// The flops of its own program, where it has one; else the kernels' are counted.
+    /// The flops of its own program, if it has one; else the kernels' are counted.
     fn flops(&self, _algorithm: usize) -> Option<usize> {
         None
     }
@@ -24,12 +24,12 @@ pub trait Contestant {
 /// Its column.
 pub struct Entry<'a> {
     pub name: String,
-    /// Of mozzi's ways the instructions that it runs on; none of a peer.
+    /// For mozzi's ways, the instructions used; none for a peer.
     pub width: Option<Width>,
     pub contestant: Box<dyn Contestant + 'a>,
 }
 
-/// All that can hold this robot; the first is mozzi at one state, which gives the reference and the unit.
+/// All contestants that support this robot; the first is mozzi at one state, which gives the reference and the unit.
 pub fn all<'a>(name: &str, model: &'a Model, states: &'a States, peers: &'a [Peer]) -> Result<Vec<Entry<'a>>, String> {
     let mut entries = mozzi_ways::all(model, states)?;
     for peer in peers {

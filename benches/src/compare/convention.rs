@@ -1,4 +1,4 @@
-//! A peer's states and results in its own convention, by `mozzi::conventions`.
+//! Converts to and from a peer's convention with `mozzi::conventions`.
 
 use crate::quantity::has_matrices;
 use mozzi::conventions::{MuJoCo, Pinocchio};
@@ -7,7 +7,7 @@ use mozzi::quantities::{BiasForces, ForwardDynamics, Query};
 use mozzi::{Error, Model};
 use mozzi_benches::State;
 
-/// How a peer orders and measures a floating base.
+/// A peer's order and frames for a floating base.
 pub enum Convention {
     Mozzi,
     Pinocchio(Pinocchio),
@@ -15,7 +15,7 @@ pub enum Convention {
 }
 
 impl Convention {
-    /// By the name that the peer gives.
+    /// The convention of this name, as the peer reports it.
     pub fn named(name: &str, model: &Model) -> Result<Self, String> {
         let joints: Vec<&str> = model.joint_names().collect();
         match name {

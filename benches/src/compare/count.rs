@@ -1,4 +1,4 @@
-//! What mozzi's kernels ask of the machine: they run on a scalar that counts.
+//! Operation counts of mozzi's kernels, measured with a counting scalar.
 
 use mozzi::quantities::{Memory, Query};
 use mozzi::{Model, Scalar};
@@ -21,7 +21,7 @@ pub struct Count {
 }
 
 impl Count {
-    /// Floating-point operations: a fused one is two, sine and cosine are none.
+    /// Floating-point operations: a fused multiply-add counts as two, sine and cosine as none.
     pub fn flops(self) -> u64 {
         self.sums + self.products + 2 * self.fused + self.divisions
     }
@@ -31,7 +31,7 @@ std::thread_local!(static COUNT: Cell<Count> = const {
     Cell::new(Count { sums: 0, products: 0, fused: 0, divisions: 0, sin_cos: 0 })
 });
 
-/// A number that counts what is done with it.
+/// A number that counts the operations on it.
 #[derive(Clone, Copy, Debug)]
 struct Counted(f64);
 
@@ -65,7 +65,7 @@ impl SubAssign for Counted {
 impl Neg for Counted {
     type Output = Self;
     fn neg(self) -> Self {
-        Counted(-self.0) // the next operation takes it with it
+        Counted(-self.0) // merged into the next operation
     }
 }
 impl From<f64> for Counted {

@@ -1,9 +1,9 @@
-//! The machine that measures.
+//! The machine that runs the benchmarks.
 
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Bind this process to the processor that it runs on, so that the kernel of the system does not move it about.
+/// Bind this process to its current processor, so that the operating system does not migrate it.
 #[cfg(target_os = "linux")]
 pub fn stay_on_one_processor() {
     // SAFETY: a zeroed set is an empty set; the processor's number is the system's own, and -1 (unknown) is left out.
@@ -17,7 +17,7 @@ pub fn stay_on_one_processor() {
     }
 }
 
-/// Elsewhere the system is trusted.
+/// On other systems nothing is bound.
 #[cfg(not(target_os = "linux"))]
 pub fn stay_on_one_processor() {}
 

@@ -1,4 +1,4 @@
-//! mozzi beside its peers: the same robots, the same states, one process, one clock, one core, in turn.
+//! Compares mozzi with its peers: the same robots, states, process, clock and core, in turn.
 //!
 //! `cargo xtask bench` builds the peers and calls this.
 
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
 /// A robot: title, short name, and the model that every library gets.
 type Robot = (&'static str, &'static str, Model);
 
-/// The robots that are asked for.
+/// The requested robots.
 fn chosen(arguments: &Arguments) -> Result<Vec<Robot>, String> {
     let mut list = vec![
         ("UR5", "ur5", robots::ur5()),
@@ -97,7 +97,7 @@ fn compare(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// Each robot's numbers, for what generates code: gravity, whether the base floats, then the bodies, one a line.
+/// Each robot's numbers for code generators: gravity, whether the base floats, then the bodies, one on each line.
 fn describe(arguments: &Arguments, folder: &Path) -> Result<(), String> {
     for (_, slug, model) in chosen(arguments)? {
         let words = |numbers: &[f64]| numbers.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(" ");

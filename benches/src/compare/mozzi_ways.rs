@@ -42,10 +42,10 @@ pub fn all<'a>(model: &'a Model, states: &'a States) -> Result<Vec<Entry<'a>>, S
     Ok(entries)
 }
 
-/// One state a call.
+/// One call for each state.
 struct OneState<'a, F> {
     model: &'a Model,
-    /// With the flops of their programs, where they have one.
+    /// With the flops of their programs, if they have any.
     quantities: Vec<(Query<'static>, Option<usize>)>,
     /// Of each at each state.
     inputs: Vec<Vec<Vec<&'a [f64]>>>,

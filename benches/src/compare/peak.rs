@@ -1,11 +1,11 @@
-//! How many fused multiply-adds the machine can do: chains of them that do not wait for each other.
+//! The machine's peak rate of fused multiply-adds, measured with independent chains.
 
 use std::time::Instant;
 
-/// The instructions that a way of computing runs on.
+/// The instructions that a way of computing uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// One number an instruction.
+    /// One number for each instruction.
     Scalar,
     /// Four: AVX2.
     Four,
@@ -25,7 +25,7 @@ impl Width {
     }
 }
 
-/// Floating-point operations a nanosecond, a fused multiply-add being two; none where the processor has no such
+/// Floating-point operations per nanosecond, a fused multiply-add counts as two; none if the processor lacks the
 /// instructions.
 pub fn measure(width: Width) -> Option<f64> {
     #[cfg(target_arch = "x86_64")]
@@ -39,7 +39,7 @@ pub fn measure(width: Width) -> Option<f64> {
         };
         let times = (0..500).map(|_| {
             let start = Instant::now();
-            // SAFETY: the processor has the instructions, as was just asked.
+            // SAFETY: the check above shows that the processor has the instructions.
             std::hint::black_box(unsafe { run(x86::ROUNDS) });
             start.elapsed().as_secs_f64() * 1e9
         });
@@ -57,11 +57,11 @@ mod x86 {
         _mm512_fmadd_pd, _mm512_set1_pd,
     };
 
-    /// Two units of latency 4 or 5 are busy with 10.
+    /// Ten chains saturate two units of latency 4 or 5.
     pub const CHAINS: usize = 12;
     pub const ROUNDS: usize = 20_000;
 
-    /// x ↦ a·x + b in 12 chains, from numbers that the compiler does not know.
+    /// x ↦ a·x + b in 12 chains, with values unknown to the compiler.
     macro_rules! chains {
         ($name:ident, $features:literal, $set:ident, $fmadd:ident, $get:ident) => {
             #[target_feature(enable = $features)]
@@ -77,7 +77,7 @@ mod x86 {
             }
         };
     }
-    // Pairs take as long as single numbers; those a compiler would gather into fours.
+    // Pairs take as long as single numbers, but a compiler would merge single numbers into groups of four.
     chains!(one, "avx2,fma", _mm_set1_pd, _mm_fmadd_pd, _mm_cvtsd_f64);
     chains!(four, "avx2,fma", _mm256_set1_pd, _mm256_fmadd_pd, _mm256_cvtsd_f64);
     chains!(eight, "avx512f", _mm512_set1_pd, _mm512_fmadd_pd, _mm512_cvtsd_f64);

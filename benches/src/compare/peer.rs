@@ -59,19 +59,19 @@ unsafe fn function<'l, F>(library: &'l Library, name: &str) -> Result<Symbol<'l,
 }
 
 /// # Safety
-/// Null, or text that ends and stays.
+/// The argument is null, or a null-terminated string that stays valid.
 unsafe fn text(pointer: *const c_char) -> Option<String> {
     // SAFETY: by the caller.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
-/// What the library has for a robot of its own.
+/// The library's optional functions for a robot.
 ///
 /// # Safety
 /// `robot` is the library's, and alive.
 unsafe fn algorithms(library: &Library, robot: *mut Opaque) -> Result<Vec<(Query<'static>, String)>, String> {
     let mut list = Vec::new();
-    // SAFETY: the types are those of peer.hpp; the second function is asked only for what the first one knows.
+    // SAFETY: the types are those of peer.hpp; the second function is called only with values from the first one.
     unsafe {
         let quantity_of = function::<TextOf>(library, "peer_quantity")?;
         let name_of = function::<TextOf>(library, "peer_algorithm")?;
@@ -87,7 +87,7 @@ unsafe fn algorithms(library: &Library, robot: *mut Opaque) -> Result<Vec<(Query
 
 impl Peer {
     pub fn load(name: &str, path: &str) -> Result<Self, String> {
-        // SAFETY: what the library runs when it is loaded is its own.
+        // SAFETY: the library's initialisers are its own responsibility.
         let library = unsafe { Library::new(path) }.map_err(|error| format!("{path}: {error}"))?;
         Ok(Peer { name: name.into(), library })
     }
@@ -98,12 +98,12 @@ impl Peer {
     }
 
     fn text(&self, name: &str) -> Result<String, String> {
-        // SAFETY: all three are `const char* f()`, and answer with text that stays.
+        // SAFETY: all three are `const char* f()`, and return strings that stay valid.
         unsafe { text(function::<Text>(&self.library, name)?()) }.ok_or_else(|| format!("{name}: no text"))
     }
 
-    /// The robot, which [`merged`](mozzi_benches::robots::merged) made, at the same states; none if the library cannot
-    /// hold it.
+    /// The robot, made by [`merged`](mozzi_benches::robots::merged), at the same states; none if the library does not
+    /// support it.
     pub fn robot<'a>(&'a self, name: &str, model: &'a Model, states: &'a States) -> Result<Option<Robot<'a>>, String> {
         let (description, library) = (model.description(), &self.library);
         let convention = Convention::named(&self.text("peer_convention")?, model)?;
@@ -114,8 +114,8 @@ impl Peer {
         let c_text = |text: &str| CString::new(text).map_err(|error| format!("{name}: {error}"));
         let (c_name, urdf) = (c_text(name)?, c_text(&urdf(description)?)?);
         let rows = bodies(description);
-        // SAFETY: the types are those of peer.hpp; every pointer is to as many numbers as it reads there, and texts
-        // end.
+        // SAFETY: the types are those of peer.hpp; every pointer is to as many numbers as the library reads, and
+        // strings are null-terminated.
         unsafe {
             let (make, set) =
                 (function::<NewRobot>(library, "peer_robot")?, function::<SetStates>(library, "peer_states")?);
@@ -127,7 +127,7 @@ impl Peer {
             }
             set(this, numbers.as_ptr(), states.count() as c_int);
             for (body, point, place) in pins(description) {
-                // a library without it has no constraints
+                // a library without this function has no constraints
                 let Ok(pin) = function::<Pin>(library, "peer_pin") else {
                     function::<Free>(library, "peer_free")?(this);
                     return Ok(None);
@@ -141,10 +141,10 @@ impl Peer {
 }
 
 impl Robot<'_> {
-    /// The state after 1 s from this one by an algorithm of forward dynamics, where the library can.
+    /// The state 1 s after this one, by an algorithm of forward dynamics, if the library can simulate.
     ///
     /// # Panics
-    /// On slices of a wrong length.
+    /// If slices have a wrong length.
     pub fn simulate(&mut self, algorithm: usize, method: Method, [theta, dtheta]: [&mut [f64]; 2]) -> Option<()> {
         assert!(theta.len() == self.model.n() && dtheta.len() == self.model.n() && algorithm < self.algorithms.len());
         let is_runge_kutta = (method == Method::RungeKutta4).into();
@@ -193,7 +193,7 @@ impl Drop for Robot<'_> {
     }
 }
 
-/// The URDF of the robot, its base fixed, for a library that reads nothing else. It has no words for gravity.
+/// The robot's URDF, with a fixed base, for a library that reads nothing else. URDF cannot express gravity.
 pub fn urdf(description: &Description) -> Result<String, String> {
     let constraints = Vec::new();
     let standard =

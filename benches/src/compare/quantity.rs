@@ -1,4 +1,4 @@
-//! What is computed.
+//! The quantities that are compared.
 
 use mozzi::Model;
 use mozzi::quantities::{ConstrainedForwardDynamics, MOST_OUTPUTS, Query};
@@ -9,18 +9,18 @@ pub fn all() -> impl Iterator<Item = Query<'static>> {
     QUANTITIES.into_iter().map(|name| Query::named(name).expect("one of mozzi's"))
 }
 
-/// Those of a robot: of one with constraints only the constrained dynamics.
+/// The quantities for a robot; a robot with constraints has only the constrained dynamics.
 pub fn of(model: &Model) -> impl Iterator<Item = Query<'static>> {
     let is_constrained = model.constraint_rows() > 0;
     all().filter(move |&query| (query == ConstrainedForwardDynamics.into()) == is_constrained)
 }
 
-/// Is it by matrices?
+/// True if the outputs are matrices.
 pub fn has_matrices(query: Query) -> bool {
     query.declaration().outputs.iter().any(|output| output.dims.len() == 2)
 }
 
-/// The places of the outputs that are compared: where there are matrices, these, which are all that peers give.
+/// The indices of the compared outputs: if there are matrices, only these, because peers give nothing else.
 pub fn compared(query: Query) -> impl Iterator<Item = usize> {
     let (outputs, is_matrix) = (query.declaration().outputs, has_matrices(query));
     // λ differs in signs and axes
@@ -28,13 +28,13 @@ pub fn compared(query: Query) -> impl Iterator<Item = usize> {
         .filter(move |&place| (outputs[place].dims.len() == 2) == is_matrix && outputs[place].name != "multipliers")
 }
 
-/// How many numbers those are, matrices by rows.
+/// The count of those numbers, matrices by rows.
 pub fn length(query: Query, model: &Model) -> usize {
     let lengths: Vec<usize> = query.output_lengths(model).collect();
     compared(query).map(|place| lengths[place]).sum()
 }
 
-/// The largest difference over the largest entry, of the vector or of each matrix; NaN where something is.
+/// The largest difference relative to the largest entry, of the vector or of each matrix; NaN if an entry is.
 pub fn difference(query: Query, x: &[f64], reference: &[f64]) -> f64 {
     let block = reference.len() / compared(query).count();
     let largest = |worst: f64, x: f64| if x <= worst { worst } else { x }; // NaN stays
@@ -47,7 +47,7 @@ pub fn difference(query: Query, x: &[f64], reference: &[f64]) -> f64 {
     worst
 }
 
-/// Memory for the outputs of any of them at some states.
+/// Memory for the outputs of any quantity at some states.
 pub struct Outputs {
     states: usize,
     arrays: [Vec<f64>; MOST_OUTPUTS],

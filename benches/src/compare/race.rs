@@ -1,4 +1,4 @@
-//! One robot: first that all values agree, then everything in turn, again and again.
+//! One robot: checks that all values agree, then times all algorithms in turn, repeatedly.
 
 use crate::compiled;
 use crate::contestant::{self, Entry};
@@ -11,22 +11,22 @@ use mozzi::quantities::Query;
 use mozzi_benches::States;
 use std::time::{Duration, Instant};
 
-/// Further apart than this, over the largest entry, two libraries do not compute the same. The longest chain needs it:
-/// its M is so badly conditioned that accelerations keep ten digits.
+/// The tolerance, relative to the largest entry, above which two libraries do not compute the same. The longest chain
+/// needs it: its M is so badly conditioned that accelerations keep ten digits.
 pub const LARGEST_DIFFERENCE: f64 = 1e-8;
 
-/// What ran before leaves its own caches and branch history, and the units of wide registers asleep: these wake for the
-/// first hundreds of microseconds of their use, during which they are several times slower.
+/// Warm-up time. Code that ran before leaves its own caches and branch history, and the wide vector units powered down:
+/// after their first use they are several times slower for hundreds of microseconds.
 const WARMING: Duration = Duration::from_micros(500);
 
 /// The times of one algorithm, in nanoseconds for one evaluation.
 #[derive(Clone, Debug)]
 pub struct Time {
-    /// What the library calls it.
+    /// The library's name for it.
     pub algorithm: String,
     pub least: f64,
     pub median: f64,
-    /// Of the column's own program, where it has one.
+    /// The flops of the column's own program, if it has one.
     pub flops: Option<usize>,
 }
 
@@ -34,7 +34,7 @@ pub struct Time {
 pub struct Row {
     pub quantity: Query<'static>,
     pub count: Count,
-    /// The fastest algorithm of each column, where it has any.
+    /// The fastest algorithm of each column, if it has any.
     pub times: Vec<Option<Time>>,
 }
 
@@ -68,7 +68,7 @@ struct Runner {
     times: Vec<f64>,
 }
 
-/// Everything on one robot.
+/// Measures all contestants on one robot.
 pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Table, String> {
     let states = States::with_count(model, if model.n() > 50 { States::COUNT / 8 } else { States::COUNT });
     let mut entries = contestant::all(slug, model, &states, peers)?;
@@ -106,7 +106,7 @@ pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Durati
     Ok(Table { robot: title.into(), n: model.n(), states: states.count(), rounds, to_first_result, columns, rows })
 }
 
-/// The columns, once every algorithm gave the first one's numbers at every state.
+/// The columns, after checking that every algorithm agrees with the first one at every state.
 fn checked(title: &str, model: &Model, states: &States, entries: &mut [Entry]) -> Result<Vec<Column>, String> {
     let mut differences = vec![0.0_f64; entries.len()];
     for query in quantity::of(model) {
@@ -149,7 +149,7 @@ fn fastest(runners: &[Runner], entry: usize, query: Query) -> Option<Time> {
     times.min_by(|a, b| a.least.total_cmp(&b.least))
 }
 
-/// Of all rounds; none where it did not run.
+/// Statistics of all rounds; none if it did not run.
 pub fn of_runs(algorithm: &str, flops: Option<usize>, mut times: Vec<f64>) -> Option<Time> {
     times.sort_by(f64::total_cmp);
     Some(Time { algorithm: algorithm.into(), least: *times.first()?, median: times[times.len() / 2], flops })

@@ -9,7 +9,7 @@ use crate::simulation::{BRAKE, METHODS, STEP, STEPS, Simulated};
 use mozzi::quantities::Query;
 use std::fmt::Write;
 
-/// Everything, with where and how it was measured.
+/// The whole report, with the conditions of the measurement.
 pub fn text(
     tables: &[Table],
     simulated: &[Simulated],
@@ -77,7 +77,7 @@ fn how() -> String {
 /// What is written for one robot, and no library that takes any.
 const GENERATED: &str = "CasADi";
 
-/// The columns of ours that the peers are set against.
+/// mozzi's columns with which the peers are compared.
 const WAYS: [(&str, &str); 6] = [
     ("mozzi", "One state a call"),
     ("compiled", "One state a call, compiled"),
@@ -96,7 +96,8 @@ fn row_of<'t>(table: &'t Table, quantity: Query<'static>) -> Option<&'t Row> {
     table.rows.iter().find(|row| row.quantity == quantity)
 }
 
-/// Of each robot and quantity the fastest of the peers over one of ours, libraries or generated code.
+/// For each robot and quantity, the time of the fastest peer, library or generated code, over that of one of mozzi's
+/// columns.
 fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool, ours: &str) {
     let head = tables.iter().map(|table| table.robot.as_str()).collect::<Vec<_>>();
     line(text, &format!("\n| | {} |", head.join(" | ")));
@@ -118,12 +119,12 @@ fn fastest_peers(text: &mut String, tables: &[Table], is_generated: bool, ours: 
     }
 }
 
-/// How many times as long: of the least / of the medians.
+/// The ratio of times: of the least / of the medians.
 fn ratio(time: &Time, unit: &Time) -> String {
     format!("**{:.2}** / {:.2}", time.least / unit.least, time.median / unit.median)
 }
 
-/// How soon machine code answers.
+/// The time from the model to the first result by machine code.
 fn first_results(text: &mut String, tables: &[Table]) {
     *text += "\nFrom the model to its first inverse dynamics by machine code, the least of a few: ";
     let of = |table: &Table| Some(format!("{} {:.2} ms", table.robot, table.to_first_result?));
@@ -190,12 +191,12 @@ fn robot(text: &mut String, table: &Table, peaks: &[(Width, Option<f64>)]) {
     }
 }
 
-/// Three digits at least.
+/// At least three digits.
 fn nanoseconds(x: f64) -> String {
     if x < 100.0 { format!("{x:.1}") } else { format!("{x:.0}") }
 }
 
-/// What part of the peak of its instructions each of mozzi's ways reaches, in the columns' order.
+/// The fraction of its instructions' peak that each of mozzi's ways reaches, in the columns' order.
 fn shares(table: &Table, row: &Row, peaks: &[(Width, Option<f64>)]) -> String {
     let ours = table.columns.iter().zip(&row.times).filter_map(|(column, time)| {
         let peak = peaks.iter().find(|(width, _)| Some(*width) == column.width)?.1?;
@@ -227,7 +228,7 @@ instructions that a way runs on, for each of mozzi's columns; of compiled ones t
     }
 }
 
-/// What each peer's fastest function was.
+/// The name of each peer's fastest function.
 fn functions(text: &mut String, tables: &[Table]) {
     *text += "\n## What was called\n\n";
     let mut peers: Vec<&str> = Vec::new();

@@ -1,5 +1,5 @@
-//! A second of a fixed arm, its motors braking, step after step: each step waits for the one before, other than where
-//! states are known.
+//! One second of a fixed arm with braking motors, step after step: each step waits for the one before, unlike
+//! evaluations at known states.
 
 use crate::contestant::Contestant;
 use crate::peer::Peer;
@@ -17,16 +17,16 @@ pub const STEP: f64 = 1e-3;
 /// τ = −BRAKE θ̇, in N m s.
 pub const BRAKE: f64 = 0.1;
 
-/// Whose loop is timed.
+/// The methods whose loop is timed.
 pub const METHODS: [Method; 2] = [Method::Euler, Method::RungeKutta4];
 
-/// One robot: nanoseconds of a step, by each method, of each contestant; the first is mozzi.
+/// One robot: nanoseconds for each step, by method and contestant; the first is mozzi.
 pub struct Simulated {
     pub robot: String,
     pub columns: Vec<(String, [Option<Time>; 2])>,
 }
 
-/// (θ, θ̇) after the second, in place; none where it cannot.
+/// (θ, θ̇) after one second, in place; none if it cannot.
 type Run<'a> = Box<dyn FnMut(Method, [&mut [f64]; 2]) -> Option<()> + 'a>;
 
 struct Simulator<'a> {
@@ -57,7 +57,7 @@ fn by_mozzi<'a>(model: &'a Model, robot: Option<&'a Compiled>) -> Run<'a> {
     })
 }
 
-/// Everything in turn, again and again, after all ended in the same state.
+/// Times all contestants in turn, repeatedly, after checking that all end in the same state.
 pub fn simulate(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Simulated, String> {
     let n = model.n();
     let robot = compile(model, &[ForwardDynamics.into()]).map_err(|error| error.to_string())?;

@@ -1,4 +1,4 @@
-//! Do the references agree? The kernels on 71 digits against the second way on 71 digits, and on 31 against 71.
+//! Checks the references: the kernels on 71 digits against the second way on 71 digits, and on 31 against 71.
 
 use crate::reference::{Neighbours, applied, evaluate, widen};
 use crate::robot::Robot;
@@ -8,7 +8,7 @@ use mozzi::{Environment, Real, Scalar};
 use mozzi_oracle::{Given, Octuple, second_way};
 use rayon::prelude::*;
 
-/// The fewest digits, over all states, to which two computations agree; of the size of the terms.
+/// The smallest number of digits, over all states, to which two computations agree, relative to the size of the terms.
 #[derive(Clone, Copy, Debug)]
 pub struct Digits {
     /// The kernel on 71 digits, and the second way.
@@ -23,7 +23,7 @@ impl Digits {
     }
 }
 
-/// Of a quantity, at the first so many states.
+/// The agreement for a quantity, at this many first states.
 pub fn of(robot: &Robot, states: &States, count: usize, quantity: usize) -> Option<Digits> {
     let query = robot.query(quantity);
     let first = states.inputs(&query, 0, 1);

@@ -4,37 +4,37 @@ use crate::reference::Reference;
 use mozzi::Scalar;
 use mozzi_oracle::Double;
 
-/// What an entry that is 0 is in 31 digits, over the largest entry.
+/// Threshold for zero: a smaller entry, relative to the largest entry, is 0 in 31 digits.
 const ZERO: f64 = 1e-24;
 
-/// What the unit of such an entry is, over the largest: 31 digits' rounding over that of `f64`.
+/// The unit of such an entry relative to the largest: the rounding error of 31 digits over that of `f64`.
 const NO_UNIT: f64 = 1e-10;
 
-/// The errors of one quantity in one way.
+/// The errors of one quantity computed in one way.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
-    /// Of each state: the largest error of an output over the output's largest unit.
+    /// For each state: the largest error of an output over the output's largest unit.
     whole: Vec<f32>,
-    /// Of each state: the largest error of an entry over the entry's own unit; entries that are 0 do not count.
+    /// For each state: the largest error of an entry over the entry's own unit; entries that are 0 do not count.
     entries: Vec<f32>,
-    /// Of each state, where the formula's terms are known: the largest error of an output over ε times the output's
+    /// For each state, if the formula's terms are known: the largest error of an output over ε times the output's
     /// largest term.
     terms: Vec<f32>,
 }
 
-/// The largest, the one that 99.9 % of the states stay below, and the median.
+/// The largest error, the 99.9th percentile over the states, and the median.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Summary {
     /// The largest.
     pub max: f64,
-    /// 99.9 % are not larger.
+    /// The 99.9th percentile.
     pub most: f64,
-    /// Half are not larger.
+    /// The median.
     pub median: f64,
 }
 
 impl Errors {
-    /// Adds what was found at a state; `epsilon` is the number's own, over 2⁻⁵².
+    /// Adds the errors at a state; `epsilon` is the number type's ε over 2⁻⁵².
     pub fn add(&mut self, reference: &Reference, found: &[Vec<f64>], epsilon: f64) {
         let (mut whole, mut entries, mut terms) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (output, ((values, units), found)) in reference.values.iter().zip(&reference.units).zip(found).enumerate() {
@@ -59,24 +59,24 @@ impl Errors {
         self.terms.extend(reference.terms.is_some().then_some(terms as f32));
     }
 
-    /// Both together.
+    /// Merges both.
     pub fn join(&mut self, other: Errors) {
         self.whole.extend(other.whole);
         self.entries.extend(other.entries);
         self.terms.extend(other.terms);
     }
 
-    /// Of whole outputs.
+    /// Errors of whole outputs.
     pub fn whole(&self) -> Summary {
         Summary::of(&self.whole)
     }
 
-    /// Of whole outputs, in ε times the largest term of the formula.
+    /// Errors of whole outputs, in ε times the largest term of the formula.
     pub fn terms(&self) -> Option<Summary> {
         (!self.terms.is_empty()).then(|| Summary::of(&self.terms))
     }
 
-    /// Entry by entry.
+    /// Errors entry by entry.
     pub fn entries(&self) -> Summary {
         Summary::of(&self.entries)
     }

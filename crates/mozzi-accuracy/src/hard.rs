@@ -4,7 +4,7 @@ use crate::robot::Robot;
 use crate::states::Kind;
 use std::fmt::Write;
 
-/// A text that grows link by link.
+/// A URDF text, built link by link.
 struct Text(String);
 
 impl Text {
@@ -12,10 +12,10 @@ impl Text {
         Text(format!("<robot name=\"{name}\"><link name=\"base\"/>"))
     }
 
-    /// A link on a joint about `axis`, at `xyz` of its parent's frame, turned by `rpy`: a body of this mass whose size
-    /// is `length`.
+    /// Adds a link on a joint about `axis`, at `xyz` in its parent's frame, rotated by `rpy`: a body with this mass and
+    /// the size `length`.
     #[rustfmt::skip]
-    #[allow(clippy::too_many_arguments)] // what a link and its joint are
+    #[allow(clippy::too_many_arguments)] // the data of a link and its joint
     fn link(&mut self, name: &str, parent: &str, axis: &str, xyz: &str, rpy: &str, mass: f64, length: f64) {
         let I = |share: f64| format!("{:e}", (share * mass * length * length * 1e6).round() / 1e6);
         let I = |share: f64| if mass * length * length < 1e-3 { format!("{:e}", share * mass * length * length) } else { I(share) };
@@ -34,7 +34,7 @@ impl Text {
     }
 }
 
-/// A chain of links whose masses are given.
+/// A chain of links with given masses.
 fn chain(name: &str, masses: &[f64], length: f64) -> String {
     let (mut text, mut parent) = (Text::new(name), "base".to_string());
     for (i, &mass) in masses.iter().enumerate() {
@@ -65,7 +65,7 @@ fn hand() -> String {
     text.end()
 }
 
-/// Their names, and the most states that each is measured at.
+/// Their names, and the largest number of states at which each is measured.
 pub const NAMES: [(&str, usize); 10] = [
     ("masses from 1e-6 to 1e6 kg", usize::MAX),
     ("a hand on an arm", usize::MAX),
@@ -82,7 +82,7 @@ pub const NAMES: [(&str, usize); 10] = [
 /// One of them.
 ///
 /// # Errors
-/// As [`Robot::parse`].
+/// See [`Robot::parse`].
 pub fn robot(name: &str) -> Result<Robot, String> {
     let embedded = |robot: &str| mozzi_urdf::embedded::text(robot).unwrap_or_default().to_string();
     let (text, floats, kind) = match name {

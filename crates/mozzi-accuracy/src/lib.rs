@@ -4,8 +4,7 @@
 //! **The unit of an error.** One unit is the largest change of a result when each of the robot's constants and of the
 //! rates is changed by ε = 2⁻⁵² of itself, and each angle by ε radians, up or down at random (the largest of [`DRAWS`]
 //! draws), and no less than ε times the result. That is ε times the size of the terms, found without knowing the
-//! formula: of ab − cd it is about ε times √2 of (|ab| + |cd|), also where the difference is small. For `f32` ε is
-//! 2⁻²³.
+//! formula: for ab − cd it is about ε times √2 of (|ab| + |cd|), even if the difference is small. For `f32` ε is 2⁻²³.
 
 pub mod digits;
 pub mod errors;
@@ -20,5 +19,5 @@ pub mod states;
 pub mod terms;
 pub mod ways;
 
-/// Random changes of the constants from which a unit is found.
+/// The number of random perturbations of the constants that determine a unit.
 pub const DRAWS: usize = 3;

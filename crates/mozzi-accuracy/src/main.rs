@@ -46,7 +46,7 @@ struct Options {
 const ASKED: usize = 1000;
 /// Robots with more velocities are not sent to other libraries: their answers would be too long.
 const LARGEST_ASKED: usize = 200;
-/// Moving links above which the second way on 71 digits takes too long.
+/// Largest number of moving links for the second way on 71 digits, which takes too long above it.
 const LARGEST_SECOND: usize = 13;
 
 fn main() -> ExitCode {
@@ -161,7 +161,7 @@ fn command() -> String {
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
-            "--page" | "--python" | "--published" => drop(rest.next()), // of the machine: the command itself gives them
+            "--page" | "--python" | "--published" => drop(rest.next()), // set by the command itself
             other => shown.push(other.to_string()),
         }
     }

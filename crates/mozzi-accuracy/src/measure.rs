@@ -9,20 +9,20 @@ use crate::ways::{Computer, Way};
 use mozzi::quantities::LIST;
 use rayon::prelude::*;
 
-/// Numbers that a chunk of states holds, at most.
+/// Largest count of numbers in a chunk of states.
 const CHUNK: usize = 1 << 18;
 
-/// Velocities above which quantities are left out that take n³ operations, or have more than n² numbers.
+/// Largest number of velocities for quantities that take n³ operations or have more than n² numbers.
 const LONGEST: usize = 200;
 
-/// What was measured of a quantity.
+/// The measurement of a quantity.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The quantity's place in the list.
+    /// The quantity's index in the list.
     pub quantity: usize,
     /// The way, or another library's name.
     pub way: &'static str,
-    /// In units.
+    /// The errors in units.
     pub errors: Errors,
 }
 
@@ -31,7 +31,7 @@ pub fn all(robot: &Robot, states: &States, seed: u64) -> Vec<Row> {
     (0..LIST.len()).flat_map(|quantity| one(robot, states, seed, quantity)).collect()
 }
 
-/// One quantity: at the states, and in `f32` at the states as that has them.
+/// One quantity: at the states, and in `f32` at the states rounded to `f32`.
 pub fn one(robot: &Robot, states: &States, seed: u64, quantity: usize) -> Vec<Row> {
     let (single, double): (Vec<Way>, Vec<Way>) = Way::ALL.into_iter().partition(|&way| way == Way::Single);
     let mut rows = in_ways(robot, states, seed, quantity, &double);
@@ -43,7 +43,7 @@ fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[W
     let query = robot.query(quantity);
     let first = states.inputs(&query, 0, 1);
     if robot.model.compute(query, &first, &robot.model.environment()).is_err() {
-        return Vec::new(); // of a robot without mass, or whose mass matrix is singular
+        return Vec::new(); // the robot has no mass, or its mass matrix is singular
     }
     let size: usize = query.output_lengths(&robot.model).sum::<usize>().max(1);
     let declaration = query.declaration();
@@ -54,12 +54,12 @@ fn in_ways(robot: &Robot, states: &States, seed: u64, quantity: usize, ways: &[W
     let count = (CHUNK / size).clamp(1, 256);
     let neighbours = Neighbours::new(&robot.double, robot.frame);
     let firsts: Vec<usize> = (0..states.len()).step_by(count).collect();
-    // memory and machine code of each thread's own
+    // each thread has its own memory and machine code
     let make = || {
         let computer = |way| Some((way, Computer::new(robot, query, way)?));
         (neighbours.memory(), ways.iter().copied().filter_map(computer).collect::<Vec<(Way, Computer)>>())
     };
-    // a state at which mozzi answers with an error has no number to be judged
+    // a state at which mozzi returns an error has no result to compare
     let own = robot.model.environment();
     let is_regular = |state: usize| {
         !declaration.divides || robot.model.compute(query, &states.inputs(&query, state, 1), &own).is_ok()

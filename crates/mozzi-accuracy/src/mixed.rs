@@ -14,7 +14,7 @@ const TEXT: &str = include_str!("mixed.urdf");
 /// The tree, on a fixed or a floating base.
 ///
 /// # Errors
-/// As [`Robot::parse`].
+/// See [`Robot::parse`].
 pub fn robot(floats: bool) -> Result<Robot, String> {
     let name = if floats { "mixed joints, floating" } else { "mixed joints" };
     Robot::parse_with(name, TEXT, floats, Kind::Ordinary, |robot| {

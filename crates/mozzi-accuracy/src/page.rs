@@ -9,21 +9,21 @@ use crate::ways::Way;
 use mozzi::quantities::LIST;
 use std::fmt::Write;
 
-/// All that was measured of a robot.
+/// The measurements of a robot.
 pub struct Measured {
     /// Its name.
     pub name: String,
     /// The number of its velocities.
     pub n: usize,
-    /// Hard by design?
+    /// True if it is a hard case by design.
     pub is_hard: bool,
-    /// How many states.
+    /// The number of states.
     pub states: usize,
     /// mozzi's errors.
     pub rows: Vec<Row>,
     /// Other libraries'.
     pub peers: Vec<Answer>,
-    /// How many states the references were compared at, and each quantity's digits.
+    /// The number of states at which the references were compared, and each quantity's digits.
     pub references: (usize, Vec<(usize, Digits)>),
 }
 
@@ -37,7 +37,7 @@ impl Measured {
     }
 }
 
-/// A number of three digits at most.
+/// A number with at most three digits.
 fn short(x: f64) -> String {
     match x {
         x if x.is_infinite() => "∞".into(),
@@ -63,7 +63,7 @@ fn table(text: &mut String, head: &[String], rows: impl Iterator<Item = Vec<Stri
     text.push('\n');
 }
 
-/// The worst summary of some rows; None where there are none.
+/// The worst summary of some rows; None if there are none.
 fn worst<'r>(rows: impl Iterator<Item = &'r Row>, of: impl Fn(&Row) -> Summary) -> Option<Summary> {
     rows.map(of).reduce(Summary::worse)
 }
@@ -158,7 +158,7 @@ pub fn write(all: &[Measured], refused: &[String], seed: u64, command: &str, ver
     text
 }
 
-/// The rows above the limit, and why there are any.
+/// The rows above the limit, and the reasons.
 fn above(text: &mut String, all: &[Measured]) {
     writeln!(text, "## Above {LIMIT} units\n").expect("a text grows");
     text.push_str(
@@ -192,13 +192,13 @@ fn above(text: &mut String, all: &[Measured]) {
     text.push_str("\n\n");
 }
 
-/// A quantity's error in units, and in the formula's terms.
+/// A quantity's error in units, and relative to the formula's terms.
 fn told(name: &str, units: f64, terms: Option<f64>) -> String {
     let terms = terms.map_or(String::new(), |terms| format!(" ({})", short(terms)));
     format!("{name} {}{terms}", short(units))
 }
 
-/// mozzi beside the libraries.
+/// mozzi compared with the libraries.
 fn peers(text: &mut String, all: &[Measured]) {
     let asked: Vec<&Measured> = all.iter().filter(|robot| !robot.peers.is_empty()).collect();
     if asked.is_empty() {
@@ -252,7 +252,7 @@ fn peers(text: &mut String, all: &[Measured]) {
     text.push('\n');
 }
 
-/// Do the references agree?
+/// The agreement of the references.
 fn references(text: &mut String, all: &[Measured]) {
     text.push_str("## The references\n\n");
     text.push_str(

@@ -1,4 +1,4 @@
-//! What Pinocchio and MuJoCo compute at the same states of the same file.
+//! Pinocchio's and MuJoCo's results at the same states of the same file.
 
 use crate::errors::Errors;
 use crate::measure::Row;
@@ -15,15 +15,15 @@ use std::process::{Command, Stdio};
 
 const SCRIPT: &str = include_str!("peers.py");
 
-/// A library's errors, or why there are none.
+/// A library's errors, or the reason why there are none.
 pub struct Answer {
     /// "Pinocchio" or "MuJoCo".
     pub library: &'static str,
-    /// Its version and its errors; else what it said.
+    /// Its version and its errors, or its message.
     pub rows: Result<(String, Vec<Row>), String>,
 }
 
-/// Both libraries on a robot without friction and springs, at the first so many states.
+/// Both libraries on a robot without friction and springs, at this many first states.
 pub fn ask(python: &Path, robot: &Robot, states: &States, count: usize, seed: u64) -> Vec<Answer> {
     [("pinocchio", "Pinocchio"), ("mujoco", "MuJoCo")]
         .into_iter()
@@ -59,7 +59,7 @@ fn rows(
     if let Some(why) = answer["error"].as_str() {
         return Err(why.into());
     }
-    // of the same file without friction and springs, which the libraries do not count among the forces
+    // from the same file without friction and springs, which the libraries do not include in the forces
     let mut smooth = read_urdf::<Double>(&robot.text, model.description()).map_err(|error| error.to_string())?;
     for joint in &mut smooth.joints {
         (joint.damping, joint.friction, joint.stiffness) = (0.0.into(), 0.0.into(), 0.0.into());
@@ -85,13 +85,13 @@ fn numbers(value: &Value) -> Option<Vec<f64>> {
     value.as_array()?.iter().map(|x| if x.is_null() { Some(f64::NAN) } else { x.as_f64() }).collect()
 }
 
-/// The script on a question; an error for one that says nothing.
+/// Runs the script on a question; an error if it prints nothing.
 fn run(python: &Path, question: &Value) -> Result<Value, String> {
     let mut command = Command::new(python);
     command.arg("-c").arg(SCRIPT).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().map_err(|error| format!("{}: {error}", python.display()))?;
     if let Some(mut stdin) = child.stdin.take() {
-        // a script that ends before it has read says why by its exit
+        // if a script ends before it has read, its exit status gives the reason
         let _ = stdin.write_all(question.to_string().as_bytes());
     }
     let output = child.wait_with_output().map_err(|error| error.to_string())?;

@@ -1,4 +1,4 @@
-//! What is right, and the unit of an error.
+//! The reference values, and the unit of an error.
 
 use crate::DRAWS;
 use crate::robot::is_of_wrenches;
@@ -15,23 +15,24 @@ pub struct Reference {
     pub values: Vec<Vec<Double>>,
     /// The unit of an error of each entry, for ε = 2⁻⁵².
     pub units: Vec<Vec<f64>>,
-    /// The largest term of each output's formula, where [`terms`](crate::terms) knows it.
+    /// The largest term of each output's formula, if [`terms`](crate::terms) knows it.
     pub terms: Option<Vec<f64>>,
 }
 
-/// The push on the frame of those quantities that are of wrenches alone.
+/// The wrench on the frame, for quantities that depend on wrenches only.
 pub const PUSH: [f64; 6] = [0.5, -1.0, 2.0, 10.0, -4.0, 8.0];
 
 /// 0, in 31 digits.
 const NOTHING: f64 = 1e-26;
 
-/// The wrenches that a quantity is measured with: a push for a quantity of wrenches alone, none for the others.
+/// The wrenches used to measure a quantity: the wrench above for a quantity that depends on wrenches only, none for the
+/// others.
 pub fn applied<S: Scalar>(query: &Query, frame: FrameId) -> Vec<(FrameId, Wrench<S>)> {
     let push = (frame, Wrench::from_array(PUSH.map(S::from_f64)));
     is_of_wrenches(query).then_some(push).into_iter().collect()
 }
 
-/// The outputs on any number.
+/// The outputs in any number type.
 pub fn evaluate<S: Entry>(
     query: &Query,
     model: &Model<S>,
@@ -49,12 +50,12 @@ pub fn evaluate<S: Entry>(
     values
 }
 
-/// The same numbers, wider.
+/// The same numbers in a wider type.
 pub fn widen<S: Scalar>(inputs: &[&[f64]]) -> Vec<Vec<S>> {
     inputs.iter().map(|x| x.iter().map(|&x| S::from_f64(x)).collect()).collect()
 }
 
-/// A robot and its neighbours, whose constants differ by ε.
+/// A robot and perturbed copies, whose constants differ by ε.
 #[derive(Debug)]
 pub struct Neighbours {
     models: Vec<Model<Double>>,
@@ -62,7 +63,7 @@ pub struct Neighbours {
 }
 
 impl Neighbours {
-    /// Of this robot.
+    /// The reference for this robot.
     pub fn new(model: &Model<Double>, frame: FrameId) -> Self {
         let neighbour = |seed| {
             let random = RefCell::new(Random(seed));
@@ -101,7 +102,7 @@ impl Neighbours {
         }
         for (units, values) in units.iter_mut().zip(&values) {
             let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-            // of an output that is 0, whatever the constants: ε of the numbers that went in
+            // for an output that is 0 whatever the constants: ε of the inputs
             if values.iter().all(|&x| f64::from(x).abs() < NOTHING) && largest(units) < NOTHING {
                 let given = inputs.iter().fold(largest(&PUSH), |m, x| m.max(largest(x)));
                 units.fill(f64::EPSILON * given);
@@ -111,13 +112,13 @@ impl Neighbours {
     }
 }
 
-/// x (1 ± ε); 0 and ±1 are no measured numbers and stay.
+/// x (1 ± ε); 0 and ±1 are exact rather than measured, and stay.
 fn changed(x: Double, random: &mut Random) -> Double {
     let size = f64::from(x);
     if size == 0.0 || size.abs() == 1.0 { x } else { x + x * epsilon(random) }
 }
 
-/// x ± ε: of an angle, whatever its size, about what rounding its sine and cosine does.
+/// x ± ε: for an angle of any size, about the effect of rounding its sine and cosine.
 fn turned(x: Double, random: &mut Random) -> Double {
     x + epsilon(random)
 }

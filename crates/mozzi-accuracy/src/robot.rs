@@ -1,4 +1,4 @@
-//! A robot in three widths.
+//! A robot in three number types.
 
 use crate::mixed;
 use crate::states::Kind;
@@ -7,33 +7,33 @@ use mozzi::{Description, FrameId, Model, Task, TaskFrame, Vec3};
 use mozzi_oracle::{Double, Octuple, Wide, read_urdf};
 use std::path::Path;
 
-/// What is measured.
+/// A robot to be measured.
 #[derive(Debug)]
 pub struct Robot {
     /// Its name in the tables.
     pub name: String,
     /// The file's text, which other libraries read too.
     pub text: String,
-    /// As every user has it.
+    /// The ordinary model in `f64`.
     pub model: Model,
-    /// From the file's decimals.
+    /// Read from the file's decimals.
     pub double: Model<Double>,
     /// Likewise, with its description.
     pub octuple: (Description<Octuple>, Model<Octuple>),
-    /// Of the quantities of a frame.
+    /// The frame of the quantities that have one.
     pub frame: FrameId,
     /// The rows of the task.
     rows: Vec<usize>,
-    /// In which states.
+    /// The kind of states.
     pub kind: Kind,
 }
 
 impl Robot {
     /// A robot by the name of an embedded one, by that of the [mixed tree](crate::mixed), or by the path of a URDF
-    /// file; `:floating` behind it frees its base.
+    /// file; the suffix `:floating` frees its base.
     ///
     /// # Errors
-    /// The message for a robot that cannot be read.
+    /// A message for a robot that cannot be read.
     pub fn open(given: &str) -> Result<Self, String> {
         let (source, floats) = given.strip_suffix(":floating").map_or((given, false), |source| (source, true));
         if source == mixed::NAME {
@@ -51,7 +51,7 @@ impl Robot {
     /// A robot of this URDF text.
     ///
     /// # Errors
-    /// As [`open`](Self::open).
+    /// See [`open`](Self::open).
     pub fn parse(name: &str, text: &str, floats: bool, kind: Kind) -> Result<Self, String> {
         Robot::parse_with(name, text, floats, kind, |_| {})
     }
@@ -59,7 +59,7 @@ impl Robot {
     /// Likewise, after an edit that URDF cannot express: balls and rotor inertias.
     ///
     /// # Errors
-    /// As [`open`](Self::open).
+    /// See [`open`](Self::open).
     pub fn parse_with(
         name: &str,
         text: &str,
@@ -94,7 +94,7 @@ impl Robot {
         Task { frame: self.frame, coordinates: TaskFrame::Body, rows: &self.rows }
     }
 
-    /// The quantity of this place in the list, of this robot's frame and task.
+    /// The quantity at this index of the list, with this robot's frame and task.
     pub fn query(&self, index: usize) -> Query<'_> {
         let query = Query::at(index);
         match LIST[index].of {
@@ -106,12 +106,12 @@ impl Robot {
     }
 }
 
-/// Is it nothing but the effect of wrenches, so that the robot's own environment gives zeros?
+/// True if the quantity depends on wrenches only, so that it is zero in the robot's own environment.
 pub fn is_of_wrenches(query: &Query) -> bool {
     query.declaration().uses == Uses::WRENCHES
 }
 
-/// The frame's velocity where the robot has six freedoms; else the one row of its twist that moves most.
+/// The frame's velocity if the robot has six degrees of freedom; else the one row of its twist that moves most.
 fn task_rows(model: &Model, frame: FrameId) -> Vec<usize> {
     if model.n() >= 6 {
         return vec![3, 4, 5];

@@ -6,7 +6,7 @@ use mozzi::Model;
 use mozzi::quantities::Query;
 use mozzi::random::Random;
 
-/// Which states.
+/// The kind of states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Within the joints' limits, rates about 1.
@@ -17,7 +17,7 @@ pub enum Kind {
     LargeAngles,
     /// Rates up to 10⁴.
     Fast,
-    /// A free base 1 km from {s}.
+    /// A floating base 1 km from {s}.
     Far,
 }
 
@@ -30,7 +30,7 @@ pub struct States {
 }
 
 impl States {
-    /// As many states of a robot.
+    /// This many states of a robot.
     pub fn new(model: &Model, kind: Kind, count: usize, seed: u64) -> Self {
         let (nq, n, first) = (model.nq(), model.n(), model.base().positions());
         let mut random = Random(seed);
@@ -73,18 +73,18 @@ impl States {
         States { nq, n, tables: [theta, dtheta, ddtheta, tau] }
     }
 
-    /// The states as `f32` has them.
+    /// The states rounded to `f32`.
     pub fn rounded(&self) -> Self {
         let round = |table: &Vec<f64>| table.iter().map(|&x| f64::from(x as f32)).collect();
         States { tables: self.tables.each_ref().map(round), ..*self }
     }
 
-    /// How many.
+    /// The number of states.
     pub fn len(&self) -> usize {
         self.tables[0].len().checked_div(self.nq).unwrap_or(0)
     }
 
-    /// None?
+    /// True if there are no states.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -94,7 +94,7 @@ impl States {
         &self.tables[0][state * self.nq..][..self.nq]
     }
 
-    /// A quantity's inputs from some states on, each a table.
+    /// A quantity's inputs for a range of states, one table for each.
     pub fn inputs(&self, query: &Query, first: usize, count: usize) -> Vec<&[f64]> {
         let table = |name: &str| match name {
             "theta" => (0, self.nq),

@@ -1,4 +1,4 @@
-//! The size of the terms of what solves with the mass matrix, and of its rate, from the formula itself.
+//! The size of the terms, from the formula itself, for quantities that solve with the mass matrix and for its rate.
 
 use crate::robot::Robot;
 use mozzi::quantities::{

@@ -29,7 +29,7 @@ impl Way {
     pub const ALL: [Way; 6] =
         [Way::Plain, Way::Fused, Way::Lanes, Way::MachineCode, Way::MachineCodeLanes, Way::Single];
 
-    /// In the tables.
+    /// Its name in the tables.
     pub fn name(self) -> &'static str {
         match self {
             Way::Plain => "f64",
@@ -41,16 +41,16 @@ impl Way {
         }
     }
 
-    /// ε of the way's numbers over 2⁻⁵².
+    /// ε of the way's number type over 2⁻⁵².
     pub fn epsilon(self) -> f64 {
         if self == Way::Single { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 }
     }
 }
 
-/// Velocities above which no program is recorded: it would have millions of operations.
+/// Largest number of velocities for which a program is recorded; above it, programs would have millions of operations.
 const LARGEST_RECORDED: usize = 80;
 
-/// Do arrays of it run a kernel, or a recorded program?
+/// True if arrays of this quantity are computed by a kernel, not by a recorded program.
 fn has_registers(query: &Query) -> bool {
     macro_rules! answers {
         ($($Q:ident)*) => { &[$(<quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
@@ -66,7 +66,7 @@ pub struct Computer<'r> {
     engine: Inner,
 }
 
-#[allow(clippy::large_enum_variant)] // one a thread
+#[allow(clippy::large_enum_variant)] // one for each thread
 enum Inner {
     One(fast::Workspace),
     Many(Batch),
@@ -74,11 +74,11 @@ enum Inner {
     Compiled(Compiled),
 }
 
-/// Outputs from inputs.
+/// Computes outputs from inputs.
 type OneState<'o> = dyn FnMut(&[&[f64]], &mut [&mut [f64]]) + 'o;
 
 impl<'r> Computer<'r> {
-    /// None where there is no such way: without FMA or machine code on this machine, of a program that is too long.
+    /// None if the way is not available: this machine has no FMA or machine code, or the program is too long.
     pub fn new(robot: &'r Robot, query: Query<'r>, way: Way) -> Option<Self> {
         let model = &robot.model;
         let is_short = model.n() <= LARGEST_RECORDED;
@@ -163,7 +163,7 @@ fn many<T: Number>(
     let mut found: Vec<Vec<T>> = lengths.iter().map(|length| vec![nan; length * count]).collect();
     let mut outputs: Vec<&mut [T]> = found.iter_mut().map(Vec::as_mut_slice).collect();
     match batch.compute(query, &inputs, &(*environment).into(), &mut outputs) {
-        // of a singular state, after all are computed
+        // the error of a singular state comes after all states are computed
         Ok(()) | Err(mozzi_batch::Error::State { .. }) => {}
         Err(error) => panic!("{}: {error}", query.name()),
     }

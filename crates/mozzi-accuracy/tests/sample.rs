@@ -1,5 +1,5 @@
-//! A sample of docs/accuracy.md: every quantity in every way at a few states, within rounding of the reference; and the
-//! references agree.
+//! A sample of docs/accuracy.md: every quantity in every way at a few states is within rounding of the reference, and
+//! the references agree.
 #![allow(missing_docs)]
 
 use mozzi::quantities::LIST;

@@ -1,6 +1,6 @@
-//! Machine code beside `mozzi::fast` at one state and the kernels at many, and beside the emitted C by
-//! `gcc -O3 -march=native -std=gnu99` where there is a gcc, in one interleaved run on one thread: the least of many
-//! rounds, in nanoseconds a state.
+//! Compares machine code with `mozzi::fast` at one state, with the kernels at many, and with the emitted C compiled by
+//! `gcc -O3 -march=native -std=gnu99` if gcc is installed. One interleaved run on one thread; the result is the fastest
+//! of many rounds, in nanoseconds for each state.
 //!
 //! `cargo run --release -p mozzi-batch --example speed [ROBOT …]`
 
@@ -28,7 +28,7 @@ fn inputs<'x>(query: Query, tables: [&'x [f64]; 3]) -> Vec<&'x [f64]> {
     query.declaration().inputs.iter().map(|input| tables[place(input.name)]).collect()
 }
 
-/// Arrays of these lengths for so many states.
+/// Arrays of these lengths for this many states.
 fn arrays(lengths: impl Iterator<Item = usize>, states: usize) -> Vec<Vec<f64>> {
     lengths.map(|length| vec![0.0; states * length]).collect()
 }
@@ -36,7 +36,7 @@ fn slices(arrays: &mut [Vec<f64>]) -> Vec<&mut [f64]> {
     arrays.iter_mut().map(Vec::as_mut_slice).collect()
 }
 
-/// All states, one a call of `run`, which fills arrays of these lengths.
+/// Computes all states with one call of `run` for each, which fills arrays of these lengths.
 fn one_a_call<'r>(
     model: &Model,
     query: Query,
@@ -66,7 +66,7 @@ fn at_many_states<'r>(batch: &'r Batch, query: Query<'static>, tables: [&'r [f64
     })
 }
 
-/// The emitted C's function as gcc compiles it; none without a gcc.
+/// The emitted C's function as gcc compiles it; none without gcc.
 fn emitted(model: &Model, query: Query) -> Option<(libloading::Library, String)> {
     let folder = std::env::temp_dir().join(format!("mozzi_speed_{}", std::process::id()));
     emit_into(&folder, model, &[query], Arguments::default(), Language::C, Precision::F64).ok()?;
@@ -74,13 +74,13 @@ fn emitted(model: &Model, query: Query) -> Option<(libloading::Library, String)>
     let mut gcc = std::process::Command::new("gcc");
     gcc.args(["-O3", "-march=native", "-std=gnu99", "-shared", "-fPIC", "-o"]).arg(folder.join("robot.so"));
     let made = gcc.arg(folder.join(format!("{name}.c"))).arg("-lm").status().is_ok_and(|status| status.success());
-    // SAFETY: the library is what was emitted, and does nothing when it is loaded.
+    // SAFETY: the library is the emitted code, and runs nothing when it is loaded.
     let library = made.then(|| unsafe { libloading::Library::new(folder.join("robot.so")) }.ok());
     let _ = std::fs::remove_dir_all(&folder); // it stays loaded
     Some((library??, format!("{name}_{}", query.name())))
 }
 
-/// It at all states, one a call.
+/// Calls it at all states, one after the other.
 fn at_one_state_in_c<'r>(
     model: &Model,
     (library, name): &'r (libloading::Library, String),
@@ -91,11 +91,11 @@ fn at_one_state_in_c<'r>(
     macro_rules! run {
         ($($x:ident)*, $($y:ident)*) => {{
             type Function = unsafe extern "C" fn($(run!(@type $x, *const f64),)* $(run!(@type $y, *mut f64)),*);
-            // SAFETY: the header says so of the function of this name.
+            // SAFETY: the header declares the function of this name with this type.
             let function = *unsafe { library.get::<Function>(name.as_bytes()) }.ok()?;
             one_a_call(model, query, tables, lengths(), move |inputs, outputs| {
                 let ([$($x),*], [$($y),*]) = (inputs, outputs) else { return };
-                // SAFETY: arrays are as long as the robot's.
+                // SAFETY: the arrays have the robot's lengths.
                 unsafe { function($($x.as_ptr(),)* $($y.as_mut_ptr()),*) };
             })
         }};
@@ -110,7 +110,7 @@ fn at_one_state_in_c<'r>(
     })
 }
 
-/// Machine code alone, on one block that is already in its place.
+/// Times machine code alone, on one block whose columns are already in place.
 fn block<'r>(kernel: &'r Kernel, program: &Program) -> Run<'r> {
     let (lanes, mut random) = (kernel.shape().lanes(), Random(4));
     let inputs: Vec<_> = program.inputs().iter().map(|input| random.vector(input.length * lanes, 2.0)).collect();

@@ -18,10 +18,10 @@ use std::sync::Arc;
 /// A chunk's tables fill about half of a core's second cache.
 const CHUNK_BYTES: usize = 1 << 18;
 
-/// A table's name, its length and how many of its numbers are a state's.
+/// A table's name, its length and its number of columns for each state.
 type Size = (&'static str, usize, usize);
 
-/// A model with what it takes to ask it of many states: constants as `T`, registers, threads, the tables' layout.
+/// A model prepared for many states: constants as `T`, registers, threads, the tables' layout.
 ///
 /// Every method reads tables of N states, where N follows from the length of θ, and fills the caller's tables. The
 /// numbers of a state are contiguous (see [`Layout`]); matrices by rows.
@@ -32,11 +32,11 @@ pub struct Batch<T: Number = f64> {
     set: InstructionSet,
     layout: Layout,
     threads: Threads,
-    /// Workers of earlier calls.
+    /// Workers left by earlier calls.
     pool: Pool,
     /// The quantities compiled to machine code.
     compiled: Arc<Programs>,
-    /// Programs of earlier calls.
+    /// Programs left by earlier calls.
     programs: Cache,
 }
 
@@ -62,7 +62,7 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// On registers of this kind; what was [compiled](Self::compile) is forgotten.
+    /// Uses registers of this kind; [compiled](Self::compile) quantities are discarded.
     ///
     /// # Errors
     /// [`Error::UnsupportedInstructionSet`].
@@ -75,8 +75,8 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// On at most this many threads, never more than a call has pieces of work, or eight for each core; on one, on the
-    /// caller's. Results are the same to the bit for any number.
+    /// Uses at most this many threads, at most eight for each core, and at most one for each piece of work. With one
+    /// thread, the caller's thread does the work. Results are the same to the bit for any number of threads.
     ///
     /// # Errors
     /// [`Error::Threads`] for 0 threads.
@@ -122,7 +122,7 @@ impl<T: Number> Batch<T> {
         &self.threads
     }
 
-    /// The same on other threads.
+    /// The same batch with these threads.
     pub(crate) fn on(&self, threads: Threads) -> Self {
         Batch { threads, ..self.clone() }
     }
@@ -145,7 +145,8 @@ impl<T: Number> Batch<T> {
         (0..states).flat_map(|state| (0..width).map(move |column| blocks[place(state, column, width, lanes)])).collect()
     }
 
-    /// By the length of the first table; of a robot without joints, by the first table that has numbers for each state.
+    /// The number of states, from the length of the first table; for a robot without joints, of the first table that
+    /// has numbers for each state.
     fn states(&self, mut tables: impl Iterator<Item = Size>) -> Result<usize, Error> {
         let lanes = self.block();
         match tables.find(|&(_, _, width)| width > 0) {
@@ -157,7 +158,7 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// States that cannot be divided.
+    /// States in an indivisible block.
     fn block(&self) -> usize {
         match self.layout {
             Layout::Rows => 1,
@@ -170,7 +171,8 @@ impl<T: Number> Batch<T> {
         (0..width).map(|column| numbers[place(state, column, width, self.block())].into()).collect()
     }
 
-    /// The number of states; an error for tables that do not go with it, and frames of other models.
+    /// The number of states. Returns an error if a table's length does not match it, or a frame belongs to another
+    /// model.
     pub(crate) fn check(
         &self,
         inputs: &[Table<T>],
@@ -198,16 +200,18 @@ impl<T: Number> Batch<T> {
         Ok(states)
     }
 
-    /// A quantity at many states: the outputs, from tables of its inputs in their order. The length of the first tells
-    /// the number N of states (of a robot without joints, the first table that has numbers for each state). What the
-    /// quantity does not use of the environment has no effect. See [`LIST`](mozzi::quantities::LIST).
+    /// Computes a quantity at many states: fills the outputs from tables of its inputs, in their order. The number N of
+    /// states follows from the length of the first table (for a robot without joints, of the first table that has
+    /// numbers for each state). Parts of the environment that the quantity does not use have no effect. See
+    /// [`LIST`](mozzi::quantities::LIST).
     ///
     /// # Errors
-    /// Tables of a wrong length, named; a frame that is missing or another model's; a state's error with its number: of
-    /// a singular mass matrix or a singular task the first, after all states are computed.
+    /// A table has the wrong length (the error names it), a frame is missing or belongs to another model, or a state
+    /// fails (the error carries its index). For a singular mass matrix or a singular task, the first such state is
+    /// reported after all states are computed.
     ///
     /// # Panics
-    /// On another number of inputs or outputs than the quantity has.
+    /// If the number of inputs or outputs is not the quantity's.
     pub fn compute<'q>(
         &self,
         query: impl Into<Query<'q>>,
@@ -251,8 +255,9 @@ impl<T: Number> Batch<T> {
         }
     }
 
-    /// The program that computes this: of a compiled quantity in the robot's own environment, of inertial parameters
-    /// that differ from state to state, of a quantity without a kernel on registers. None for the kernel.
+    /// The program that computes this request, or `None` if a kernel computes it. A program is used for a compiled
+    /// quantity in the robot's own environment, for inertial parameters that differ between states, and for a quantity
+    /// without a kernel on registers.
     fn programmed(&self, request: &Request<T>, arguments: &Arguments) -> Result<Option<Arc<Programmed>>, Error> {
         let query = &request.query;
         let compiled = if self.compiled.is_empty() { None } else { find(&self.compiled, query, arguments) };
@@ -269,7 +274,7 @@ impl<T: Number> Batch<T> {
         Ok(self.programs.get_or_make(query, arguments, make)?)
     }
 
-    /// The same, these quantities of it as machine code in the robot's own environment, where there is code for this
+    /// The same batch with these quantities as machine code in the robot's own environment, if there is code for this
     /// machine: see [`engine`](Self::engine). Clones share the code.
     ///
     /// # Errors
@@ -280,7 +285,7 @@ impl<T: Number> Batch<T> {
             let arguments = alone(query);
             query.check_subject(&self.model)?;
             if is_too_long(&self.model, *query) {
-                continue; // to the kernels on registers, or a program when it is called
+                continue; // left to the kernels on registers, or to a program made when it is called
             }
             let programmed = Programmed::new::<T>(&self.model, *query, arguments, self.set)?;
             compiled.push((Key::new(query, &arguments), Arc::new(programmed)));
@@ -301,7 +306,7 @@ impl<T: Number> Batch<T> {
             }
             None => match self.program(query, arguments) {
                 Ok(programmed) => Engine::of_program(&programmed.code),
-                Err(_) => Engine::Kernels(Refusal::NotAsked), // of another model's frame: nothing computes it
+                Err(_) => Engine::Kernels(Refusal::NotAsked), // the frame belongs to another model
             },
         }
     }
@@ -345,7 +350,7 @@ impl<T: Number> Batch<T> {
     }
 }
 
-/// The arguments of a quantity's program in the robot's own environment: the point alone, where there is one.
+/// The arguments of a quantity's program in the robot's own environment: only the point, if there is one.
 fn alone(query: &Query) -> Arguments<'static> {
     Arguments { about: query.subject.point != mozzi::Vec3([0.0; 3]), ..Arguments::default() }
 }

@@ -1,4 +1,4 @@
-//! Some states on one thread: rows into registers, the computation, registers into rows.
+//! Some states on one thread: reads rows into registers, computes, writes registers into rows.
 
 use crate::columns::{Layout, place, read_block, read_rows, write_block, write_rows};
 use crate::lanes::Lane;
@@ -6,7 +6,7 @@ use crate::request::Request;
 use core::ops::{Deref, DerefMut};
 use mozzi::quantities::MOST_OUTPUTS;
 
-/// A table, by its name, and its numbers a state.
+/// A table with its name and its number of columns for each state.
 #[derive(Clone, Copy)]
 pub struct Table<'a, T> {
     pub name: &'static str,
@@ -14,22 +14,22 @@ pub struct Table<'a, T> {
     pub width: usize,
 }
 
-/// A table of this thread's states, and its numbers a state.
+/// A table of this thread's states, and its number of columns for each state.
 pub(crate) type TableMut<'a, T> = (&'a mut [T], usize);
 
 /// This thread's states.
 pub struct Chunk<'a, T> {
-    /// The number of the first.
+    /// The index of the first state.
     pub first: usize,
     pub states: usize,
     pub layout: Layout,
-    /// Of the whole call, in the order of [`Request::tables`].
+    /// The inputs of the whole call, in the order of [`Request::tables`].
     pub inputs: &'a [Table<'a, T>],
-    /// As many as the quantity has.
+    /// One table for each output of the quantity.
     pub outputs: Fixed<TableMut<'a, T>>,
 }
 
-/// As many things as a quantity has outputs, without memory of their own.
+/// An array with room for the outputs of any quantity, without heap memory.
 pub struct Fixed<X> {
     all: [X; MOST_OUTPUTS],
     count: usize,
@@ -60,7 +60,7 @@ impl<X> DerefMut for Fixed<X> {
 }
 
 impl<T: crate::Number> Chunk<'_, T> {
-    /// As many states of every input from `first` on, as columns of registers.
+    /// Reads `rows` states of every input, from `first` on, as columns of registers.
     #[inline(always)]
     pub fn read<L: Lane<Number = T>>(&self, first: usize, rows: usize, columns: &mut [L]) {
         let mut rest = columns;
@@ -71,7 +71,7 @@ impl<T: crate::Number> Chunk<'_, T> {
         }
     }
 
-    /// Of one input.
+    /// Reads one input.
     #[inline(always)]
     pub fn read_input<L: Lane<Number = T>>(&self, input: usize, first: usize, rows: usize, columns: &mut [L]) {
         let (table, first) = (self.inputs[input].numbers, self.first + first);
@@ -81,7 +81,7 @@ impl<T: crate::Number> Chunk<'_, T> {
         }
     }
 
-    /// The inverse of [`read`](Self::read), of the outputs.
+    /// The inverse of [`read`](Self::read), for the outputs.
     #[inline(always)]
     pub fn write<L: Lane<Number = T>>(&mut self, first: usize, rows: usize, columns: &[L]) {
         let mut rest = columns;
@@ -95,8 +95,8 @@ impl<T: crate::Number> Chunk<'_, T> {
         }
     }
 
-    /// A state that the quick tests do not pass, at one state and in `f64`: the error that names the joint or the task,
-    /// if there is one. With `replace`, its outputs are those of that computation.
+    /// Recomputes a state that failed the quick tests, alone and in `f64`. Returns the error that names the joint or
+    /// the task, if there is one. With `replace`, its outputs are replaced by the recomputed ones.
     #[cold]
     #[inline(never)]
     pub fn recheck(

@@ -1,31 +1,32 @@
-//! From rows to registers and back. A register holds one column of WIDTH states; the user's table has a state's numbers
-//! side by side.
+//! Converts rows to registers and back. A register holds one column of WIDTH states; in the user's table, the numbers
+//! of a state are contiguous.
 
 use crate::lanes::{Lane, MOST};
 use mozzi::Scalar;
 
-/// How the numbers of many states lie in a slice.
+/// Layout of the numbers of many states in a slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
     /// State by state: row-major (N, columns), as NumPy and torch have it.
     #[default]
     Rows,
-    /// In blocks of as many states as a register holds ([`Batch::lanes`](crate::Batch::lanes)), in each column by
-    /// column: (N / lanes, columns, lanes). No transposition; the last block is full, its further states whatever they
-    /// are.
+    /// In blocks of one register's states ([`Batch::lanes`](crate::Batch::lanes)), each block column by column: (N /
+    /// lanes, columns, lanes). No transposition is needed. The last block is complete; the values of its surplus states
+    /// do not matter.
     Blocks,
 }
 
-/// Where a number of a state stands in a table of `width` numbers a state, in blocks of `lanes`; rows are blocks of
-/// one. `lanes` is a power of two: shifts, since a division takes as long as a register's arithmetic for a whole link.
+/// The index of a state's number in a table of `width` columns, in blocks of `lanes` states; rows are blocks of one.
+/// `lanes` is a power of two, so this needs only shifts: a division takes as long as the register arithmetic of a whole
+/// link.
 #[inline(always)]
 pub(crate) fn place(state: usize, column: usize, width: usize, lanes: usize) -> usize {
     let places = lanes.trailing_zeros();
     (((state >> places) * width + column) << places) + (state & (lanes - 1))
 }
 
-/// A square of WIDTH registers, its rows and columns exchanged: each of log₂ WIDTH perfect shuffles turns the address
-/// of a number (row bits, column bits) by one place.
+/// Transposes a square of WIDTH registers: each of log₂ WIDTH perfect shuffles rotates the address of a number (row
+/// bits, column bits) by one bit.
 #[inline(always)]
 fn transpose<L: Lane>(mut square: [L; MOST]) -> [L; MOST] {
     let mut size = 1;
@@ -42,7 +43,7 @@ fn transpose<L: Lane>(mut square: [L; MOST]) -> [L; MOST] {
 }
 
 /// The registers of a slice, at most WIDTH; further ones are 0. Every index is a constant once the loop is unrolled, so
-/// that a square stays in registers: a copy of as many as there are would make it memory.
+/// that a square stays in registers: a copy of variable length would put it into memory.
 #[inline(always)]
 fn take<L: Lane>(part: &[L]) -> [L; MOST] {
     let mut square = [L::zero(); MOST];
@@ -68,9 +69,9 @@ fn put<L: Lane>(square: [L; MOST], part: &mut [L]) {
     }
 }
 
-/// `columns[c]` is column c of the `rows` ≤ WIDTH states from `first` on, in a table of `columns.len()` numbers a
-/// state; a block's remainder repeats its last state. A row is read a register at a time, past its end into the next,
-/// whose numbers are dropped.
+/// Sets `columns[c]` to column c of the `rows` ≤ WIDTH states from `first` on, in a table of `columns.len()` columns;
+/// the last state is repeated to fill a register. A row is read one register at a time; numbers read past its end are
+/// dropped.
 #[inline(always)]
 pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize, columns: &mut [L]) {
     let width = columns.len();
@@ -90,8 +91,8 @@ pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize,
     }
 }
 
-/// The inverse of [`read_rows`]. What a register writes past a row's end is overwritten by what follows: the last
-/// columns come first, and rows in their order.
+/// The inverse of [`read_rows`]. Numbers written past a row's end are overwritten later: the last columns are written
+/// first, and rows in their order.
 #[inline(always)]
 pub(crate) fn write_rows<L: Lane>(table: &mut [L::Number], first: usize, rows: usize, columns: &[L]) {
     let width = columns.len();
@@ -126,7 +127,7 @@ fn store_part<L: Lane>(x: L, to: &mut [L::Number]) {
     to.copy_from_slice(&whole[..count]);
 }
 
-/// Block `block` of a table in blocks.
+/// Reads block `block` of a table in blocks.
 #[inline(always)]
 pub(crate) fn read_block<L: Lane>(table: &[L::Number], block: usize, columns: &mut [L]) {
     let first = block * columns.len() * L::WIDTH;

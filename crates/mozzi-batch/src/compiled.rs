@@ -1,4 +1,4 @@
-//! A robot whose quantities are machine code.
+//! A robot with quantities as machine code.
 
 use crate::{Batch, Engine, Layout};
 use mozzi::quantities::{ForwardDynamics, Of, Query};
@@ -7,16 +7,16 @@ use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
 use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, is_too_long, pivot_names, record_quantity};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest,
-/// touching nothing. Results are equal to the model's up to rounding; errors are the same. Quantities that were not
+/// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest, no
+/// wrenches applied. Results are equal to the model's up to rounding; errors are the same. Quantities that were not
 /// compiled, or cannot be (see [`engine`](Self::engine)), are computed by the kernels.
 ///
-/// It is constant and belongs to no thread: share it. Clones share the code.
+/// It is immutable and can be shared between threads. Clones share the code.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     batch: Batch,
     machines: Arc<[Machine]>,
-    /// Memory for the kernels; a call that finds it in use makes its own.
+    /// Memory for the kernels; a call that finds it locked allocates its own.
     workspace: Arc<Mutex<fast::Workspace>>,
 }
 
@@ -24,13 +24,13 @@ pub struct Compiled {
 #[derive(Debug)]
 struct Machine {
     index: usize,
-    /// Of the robot alone, so that the index says it all.
+    /// The quantity has no frame, task or point, so that its index identifies it.
     is_of_robot: bool,
-    /// With its rows owned.
+    /// The task's rows, owned.
     rows: Vec<usize>,
     subject: (Option<mozzi::FrameId>, mozzi::TaskFrame, mozzi::Vec3),
     code: Result<Kernel, Refusal>,
-    /// How many kinds of pivots are behind its outputs.
+    /// The number of pivot outputs after the quantity's own.
     pivots: usize,
 }
 
@@ -64,7 +64,8 @@ impl Machine {
     }
 }
 
-/// The machine code of these quantities of a robot. About a quarter of a millisecond for an arm's inverse dynamics.
+/// Compiles these quantities of a robot to machine code. An arm's inverse dynamics takes about a quarter of a
+/// millisecond.
 ///
 /// ```
 /// use mozzi::quantities::{InverseDynamics, MassMatrix, Query};
@@ -88,10 +89,10 @@ pub fn compile(model: &Model, queries: &[Query]) -> Result<Compiled, Error> {
 }
 
 impl Compiled {
-    /// Many states as this batch has them: its instructions, its threads, its layout. See [`compile`].
+    /// Compiles for many states with this batch's instructions, threads and layout. See [`compile`].
     ///
     /// # Errors
-    /// As there.
+    /// See [`compile`].
     pub fn of(batch: Batch, queries: &[Query]) -> Result<Self, Error> {
         let machines =
             queries.iter().map(|&query| Machine::new(batch.model(), query)).collect::<Result<Vec<_>, _>>()?;
@@ -104,7 +105,7 @@ impl Compiled {
         Ok(Compiled { batch, machines, workspace })
     }
 
-    /// The robot.
+    /// The robot's model.
     pub fn model(&self) -> &Model {
         self.batch.model()
     }
@@ -142,12 +143,12 @@ impl Compiled {
         self.machines.iter().find(|machine| machine.is_of(query))
     }
 
-    /// The outputs of a quantity at one state, for control loops: where there is machine code nothing is allocated.
-    /// Arguments are not checked beyond their lengths: singular matrices and quaternions of any length go through. Are
-    /// the pivots clear of rounding?
+    /// Computes the outputs of a quantity at one state, for control loops: nothing is allocated if there is machine
+    /// code. Only the lengths of the arguments are checked: singular matrices and quaternions of any length are
+    /// accepted. Returns true if every pivot is well above rounding error.
     ///
     /// # Panics
-    /// On another number of arrays, or one of a wrong length.
+    /// If the number of arrays or the length of one is wrong.
     #[inline]
     pub fn evaluate<'q>(&self, query: impl Into<Query<'q>>, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> bool {
         let query = query.into();
@@ -176,10 +177,10 @@ impl Compiled {
         workspace.are_pivots_clear(&query)
     }
 
-    /// [`evaluate`](Self::evaluate) with checked arguments and judged pivots: see [`Model::compute`].
+    /// [`evaluate`](Self::evaluate) with checked arguments and checked pivots: see [`Model::compute`].
     ///
     /// # Errors
-    /// As there.
+    /// See [`Model::compute`].
     pub fn compute<'q>(
         &self,
         query: impl Into<Query<'q>>,
@@ -198,7 +199,8 @@ impl Compiled {
 }
 
 impl Machine {
-    /// None where an angle is beyond the reduction, or NaN; else, are the pivots clear of rounding?
+    /// None if an angle is NaN or beyond the range of exact reduction; else, whether the pivots are well above rounding
+    /// error.
     #[inline]
     fn run(&self, kernel: &Kernel, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> Option<bool> {
         let mut squares = [0.0];
@@ -206,7 +208,7 @@ impl Machine {
             kernel.call(state, outputs, &mut squares);
             return kernel.is_exact(squares[0]).then_some(true);
         }
-        // of each kind of pivots the least and the sum
+        // the smallest pivot and the sum, for each kind of pivots
         let [mut pivots, mut of_task] = [[0.0; 2]; 2];
         let mut all: [&mut [f64]; MOST_OUTPUTS] = Default::default();
         let own = outputs.len();
@@ -236,15 +238,15 @@ impl simulation::ForwardDynamics for Compiled {
 }
 
 impl Compiled {
-    /// Machine code for θ̈, where there is some: the [`forward_dynamics`](Simulation::forward_dynamics) of a simulation
+    /// Machine code for θ̈, if there is any: the [`forward_dynamics`](Simulation::forward_dynamics) of a simulation
     /// with events, recorders or progress.
     pub fn simulator(&self) -> Option<&dyn simulation::ForwardDynamics> {
         let is_code = matches!(self.engine(ForwardDynamics), Engine::MachineCode(..));
         is_code.then_some(self as &dyn simulation::ForwardDynamics)
     }
 
-    /// The motion from (θ(0), θ̇(0)): see [`Model::simulate`], with forward dynamics by machine code where it was asked
-    /// for, nothing is touched and gravity is the robot's own.
+    /// Simulates the motion from (θ(0), θ̇(0)): see [`Model::simulate`]. Forward dynamics is machine code if it was
+    /// compiled, no wrenches are applied and gravity is the robot's own.
     ///
     /// ```
     /// use mozzi::quantities::ForwardDynamics;
@@ -258,7 +260,7 @@ impl Compiled {
     /// ```
     ///
     /// # Errors
-    /// As there.
+    /// See [`Model::simulate`].
     pub fn simulate(
         &self,
         theta: &[f64],

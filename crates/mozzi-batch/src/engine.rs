@@ -8,9 +8,9 @@ use std::fmt;
 pub enum Engine {
     /// Machine code of this shape, and its length in bytes.
     MachineCode(Shape, usize),
-    /// The kernels, and why there is no machine code.
+    /// The kernels, and the reason why there is no machine code.
     Kernels(Refusal),
-    /// The recorded program, step by step on registers, and why it is no machine code.
+    /// The recorded program, interpreted step by step on registers, and the reason why there is no machine code.
     Interpreter(Refusal),
 }
 
@@ -22,7 +22,7 @@ impl Engine {
         }
     }
 
-    /// Of a quantity that has no kernel on registers.
+    /// The engine of a quantity that has no kernel on registers.
     pub(crate) fn of_program(code: &Result<Kernel, Refusal>) -> Self {
         match Engine::of(code) {
             Engine::Kernels(refusal) => Engine::Interpreter(refusal),

@@ -10,9 +10,9 @@ pub struct BatchEnvironment<'a, T = f64> {
     /// For each frame a table (N, 6): the wrench (m, f), in the frame's coordinates, that it applies to the environment
     /// in each state.
     pub wrenches: &'a [(FrameId, &'a [T])],
-    /// A table (N, 3): gravity in {s} in each state, in place of the environment's.
+    /// A table (N, 3): gravity in {s} in each state, instead of the environment's.
     pub gravity: Option<&'a [T]>,
-    /// A table (N, p): the inertial parameters of each state's robot, in place of the model's
+    /// A table (N, p): the inertial parameters of each state's robot, instead of the model's
     /// [`parameters`](mozzi::Model::parameters).
     pub parameters: Option<&'a [T]>,
 }

@@ -9,43 +9,43 @@ pub enum Error {
     /// A table of a wrong length.
     #[error("{what} has {found} numbers, expected {expected} ({states} states of {width}{})", padded(*lanes))]
     WrongLength {
-        /// Which table.
+        /// The table's name.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length that goes with θ's.
+        /// The length that matches θ's.
         expected: usize,
-        /// States, by θ.
+        /// The number of states, from θ.
         states: usize,
-        /// Numbers a state.
+        /// Numbers for each state.
         width: usize,
-        /// States in a block, where the layout is in blocks; else 1.
+        /// States in a block if the layout is in blocks; else 1.
         lanes: usize,
     },
     /// The first table, such as θ, is not a whole number of states.
     #[error("{what} has {found} numbers, expected a multiple of {width}: {width} numbers a state{}", padded(*lanes))]
     IncompleteState {
-        /// Which table: the first.
+        /// The table's name: the first table.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// Numbers a state.
+        /// Numbers for each state.
         width: usize,
-        /// States in a block, where the layout is in blocks; else 1.
+        /// States in a block if the layout is in blocks; else 1.
         lanes: usize,
     },
-    /// A state that has no answer.
+    /// A state that could not be computed.
     #[error("state {index} (counted from 0): {source}")]
     State {
-        /// Its row.
+        /// Its index.
         index: usize,
-        /// Why.
+        /// The reason.
         source: mozzi::Error,
     },
-    /// What concerns all states.
+    /// An error that concerns all states.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
-    /// The machine has not these registers.
+    /// The machine does not have these registers.
     #[error("this machine has no {}; it has {}", set.name(), names())]
     UnsupportedInstructionSet {
         /// The requested name.
@@ -62,7 +62,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// The same error of states that are counted from `first` on.
+    /// The same error, its state's index counted from `first` on.
     pub(crate) fn after(self, first: usize) -> Self {
         match self {
             Error::State { index, source } => Error::State { index: first + index, source },

@@ -1,21 +1,22 @@
-//! Programs without machine code: their steps one after the other, each on registers of 32 states.
+//! Interpreter for programs without machine code: executes the steps one after the other, each on registers of 32
+//! states.
 
 use crate::lanes::Lane;
 use mozzi_codegen::{Function, Program, Step};
 use std::collections::HashSet;
 
-/// What a step reads and writes: slots, which hold a value until the last step that needs it.
+/// A step's operation with its slots. A slot holds a value until the last step that needs it.
 #[derive(Clone, Copy, Debug)]
 enum Do {
     Constant(f64, u32),
-    /// A column of the inputs.
+    /// Reads a column of the inputs.
     Input(u32, u32),
     Apply(Function, [u32; 3], u32),
-    /// A slot into a column of the outputs.
+    /// Writes a slot to a column of the outputs.
     Output(u32, u32),
-    /// The least of what is in a column of the outputs and a slot, or the first.
+    /// Writes the smaller of a slot and an output column to that column; if the flag is set, writes the slot.
     Least(u32, u32, bool),
-    /// Likewise the sum.
+    /// The same for the sum.
     Sum(u32, u32, bool),
 }
 
@@ -27,14 +28,14 @@ pub(crate) struct Interpreter {
 }
 
 impl Interpreter {
-    /// Outputs from number `own` on become their least entry and their sum.
+    /// Outputs from index `own` on are replaced by their smallest entry and their sum.
     pub fn new(program: &Program, own: usize) -> Self {
         let columns: Vec<u32> = program
             .inputs()
             .iter()
             .scan(0, |next, input| Some(std::mem::replace(next, *next + input.length as u32)))
             .collect();
-        // where each value goes out, and the last step that needs it
+        // the output columns of each value, and the last step that needs it
         let mut goes: Vec<Vec<(u32, bool)>> = vec![Vec::new(); program.steps().len()];
         let mut column = 0;
         for (k, output) in program.outputs().iter().enumerate() {
@@ -74,7 +75,7 @@ impl Interpreter {
                 match is_condensed {
                     false => steps.push(Do::Output(slot, column)),
                     true => {
-                        // the first that goes there sets it
+                        // the first value of the column sets it
                         let is_first = begun.insert(column);
                         steps.extend([Do::Least(slot, column, is_first), Do::Sum(slot, column + 1, is_first)]);
                     }
@@ -87,7 +88,7 @@ impl Interpreter {
         Interpreter { steps, slots: slots as usize }
     }
 
-    /// The outputs of `abreast` registers side by side in every column.
+    /// Computes the outputs; every column is `abreast` registers side by side.
     #[inline(always)]
     pub fn run<L: Lane>(&self, abreast: usize, input: &[L], values: &mut Vec<L>, output: &mut [L]) {
         values.resize((self.slots * abreast).max(values.len()), L::zero());

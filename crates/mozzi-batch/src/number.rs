@@ -1,4 +1,4 @@
-//! The numbers that batches are of, with their registers; and the entries: the one place where code is compiled for an
+//! The number types of batches, with their registers; and the entries: the only place where code is compiled for an
 //! instruction set.
 //!
 //! Everything here is for `f64` or for `f32`, not for any number, so that kernels are compiled in this crate alone.
@@ -22,9 +22,10 @@ pub trait Number: Float + Bits<Number = Self> + Into<f64> + Send + Sync + Entrie
 impl Number for f64 {}
 impl Number for f32 {}
 
-/// A number's registers, and what runs on them.
+/// The registers of a number type, and the functions compiled for them.
 pub trait Entries: Sized {
-    /// One number on any processor: wider arrays are no faster, and take their width in time to compile.
+    /// One number on any processor: wider arrays are no faster, and take longer to compile in proportion to their
+    /// width.
     type Portable: Lane<Number = Self>;
     /// AVX2.
     #[cfg(target_arch = "x86_64")]
@@ -33,19 +34,19 @@ pub trait Entries: Sized {
     #[cfg(target_arch = "x86_64")]
     type Avx512: Lane<Number = Self>;
 
-    /// All chunks by the kernel of the quantity with this place in the list.
+    /// Runs all chunks by the kernel of the quantity at this index of the list.
     fn run_kernel(set: InstructionSet, index: usize, run: Run<Self>) -> Errors
     where
         Self: Number;
 
-    /// All chunks by a program, with the numbers that are the same in all states.
+    /// Runs all chunks by a program, with the numbers that are the same in all states.
     fn run_program(set: InstructionSet, program: ProgramCall, run: Run<Self>) -> Errors
     where
         Self: Number;
 }
 
-/// What is compiled for one kind of registers: a program's run, and each kernel, in a table in the order of the list.
-/// Quantities that share a kernel share its function.
+/// The functions compiled for one kind of registers: running a program, and each kernel, in a table in the order of the
+/// list. Quantities that share a kernel share its function.
 macro_rules! entries {
     ($name:ident, $T:ty, $L:ty, [$($features:literal)?]; $($Q:ident)*) => {
         mod $name {
@@ -58,8 +59,8 @@ macro_rules! entries {
                 ) {
                     registers::run::<K, $L>(request, model, worker, chunk);
                 }
-                #[allow(unused_unsafe)] // no features of the portable ones
-                // SAFETY: `run_kernel` has asked the processor.
+                #[allow(unused_unsafe)] // the portable entries have no target features
+                // SAFETY: `run_kernel` has checked that the processor has the instructions.
                 unsafe { entry::<K>(request, model, worker, chunk) }
             }
 
@@ -69,7 +70,7 @@ macro_rules! entries {
                     programmed::run::<$L>(program, request, worker, chunk);
                 }
                 #[allow(unused_unsafe)] // as above
-                // SAFETY: `run_program` has asked the processor.
+                // SAFETY: `run_program` has checked that the processor has the instructions.
                 unsafe { entry(program, request, worker, chunk) }
             }
 
@@ -105,7 +106,7 @@ macro_rules! number {
             type Avx512 = $Avx512;
 
             fn run_kernel(set: InstructionSet, index: usize, run: Run<$T>) -> Errors {
-                assert!(set.is_available(), "{} is not of this machine", set.name()); // checked where a batch is made
+                assert!(set.is_available(), "{} is not of this machine", set.name()); // checked when a batch is made
                 match set {
                     #[cfg(target_arch = "x86_64")]
                     InstructionSet::Avx512 => run.map($avx512::KERNELS[index]),

@@ -1,11 +1,10 @@
-//! Memory that calls leave behind for those that follow: for a few states it would take longer to make than they take
-//! to compute.
+//! Memory that is reused between calls: for a few states, allocating it would take longer than the computation.
 
 use std::any::Any;
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-/// What is not in use. Clones share it.
+/// The memory that is not in use. Clones share it.
 #[derive(Clone, Default)]
 pub(crate) struct Pool(Arc<Mutex<Vec<Box<dyn Any + Send>>>>);
 
@@ -15,7 +14,7 @@ impl fmt::Debug for Pool {
     }
 }
 
-/// Memory of one kind, from a pool if it has any; it returns there, but not from a panic.
+/// Memory of one kind, taken from a pool if the pool has any. It returns to the pool when dropped, except in a panic.
 pub(crate) struct Pooled<'s, M: Any + Send> {
     pool: &'s Pool,
     memory: Option<Box<M>>,
@@ -34,7 +33,7 @@ impl Pool {
 }
 
 impl<M: Any + Send> Pooled<'_, M> {
-    /// The memory, made if there is none.
+    /// Takes memory from the pool, or makes it if there is none.
     pub fn get(&mut self, make: impl FnOnce() -> M) -> &mut M {
         self.memory.get_or_insert_with(|| self.pool.find().unwrap_or_else(|| Box::new(make())))
     }

@@ -1,4 +1,4 @@
-//! Many states by a recorded program: as machine code, or by an interpreter.
+//! Many states by a recorded program: as machine code or by the interpreter.
 
 use crate::chunk::Chunk;
 use crate::interpreter::Interpreter;
@@ -14,10 +14,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// A quantity's program for blocks of states.
 #[derive(Debug)]
 pub struct Programmed {
-    /// The program's inputs and outputs, the pivots of each kind as two numbers.
+    /// The program's inputs and outputs; each kind of pivots is condensed to two numbers.
     inputs: Vec<usize>,
     outputs: Vec<usize>,
-    /// How many outputs are the quantity's own.
+    /// The number of the quantity's own outputs.
     own: usize,
     pub code: Result<Kernel, Refusal>,
     interpreter: Interpreter,
@@ -54,13 +54,13 @@ fn shape<T: Number>(set: InstructionSet) -> Option<Shape> {
     }
 }
 
-/// A program, and the numbers of its inputs after the state that are the same in all states.
+/// A program, and the values of its inputs that are the same in all states.
 pub type ProgramCall<'p> = (&'p Programmed, &'p [Option<Vec<f64>>]);
 
-/// The most arrays of a program.
+/// The largest number of arrays of a program.
 const MOST_ARRAYS: usize = 12;
 
-/// The states of a chunk, inlined into an entry.
+/// Computes the states of a chunk; inlined into an entry.
 #[inline(always)]
 pub(crate) fn run<L: Lane>(
     (programmed, constants): ProgramCall,
@@ -77,7 +77,7 @@ pub(crate) fn run<L: Lane>(
     input.resize(inputs.iter().sum::<usize>() * abreast, L::zero());
     output.resize(outputs.iter().sum::<usize>() * abreast, L::zero());
     let own_columns: usize = chunk.outputs.iter().map(|&(_, width)| width).sum();
-    // where each table's columns are among the inputs; what is the same in all states is written once
+    // the first input column of each table; values that are the same in all states are written once
     let (mut places, mut place) = (Vec::with_capacity(chunk.inputs.len()), 0);
     for (k, &width) in inputs.iter().enumerate() {
         match k.checked_sub(inputs.len() - constants.len()).and_then(|k| constants[k].as_ref()) {
@@ -124,7 +124,7 @@ pub(crate) fn run<L: Lane>(
                 columns.iter_mut().zip(output.chunks_exact(abreast)).for_each(|(to, from)| *to = from[r]);
                 chunk.write(first, rows, columns);
             }
-            // all states at once: angles that are reduced exactly, and no pivots
+            // quick test for all states at once: all angles are reduced exactly, and there are no pivots
             let kinds = outputs.len() - own;
             let limit = code.as_ref().map_or(f64::INFINITY, Kernel::angle_limit);
             if kinds == 0 && squares[0].within(L::Number::from_f64(limit)) {
@@ -148,7 +148,7 @@ pub(crate) fn run<L: Lane>(
     }
 }
 
-/// Machine code on columns that lie one after the other.
+/// Runs machine code on contiguous columns.
 #[inline(always)]
 fn call<L: Lane>(
     kernel: &Kernel,
@@ -171,7 +171,7 @@ fn call<L: Lane>(
     kernel.call(&given[..widths.len()], &mut found[..heights.len()], L::numbers_mut(squares));
 }
 
-/// Programs, each with what it is of.
+/// Programs, each with its key.
 pub(crate) type Programs = Vec<(Key, Arc<Programmed>)>;
 
 /// The program of this query with these arguments.
@@ -179,14 +179,14 @@ pub(crate) fn find<'p>(programs: &'p Programs, query: &Query, arguments: &Argume
     programs.iter().find(|(key, _)| key.is_of(query, arguments)).map(|(_, programmed)| programmed)
 }
 
-/// The programs of earlier calls, the latest [`KEPT`]. Clones share them.
+/// The programs of earlier calls: the latest [`KEPT`]. Clones share them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cache(Arc<Mutex<Programs>>);
 
-/// So many programs are kept.
+/// The number of programs that are kept.
 const KEPT: usize = 64;
 
-/// Which program.
+/// Identifies a program.
 #[derive(Clone, Debug)]
 pub(crate) struct Key {
     index: usize,
@@ -221,7 +221,7 @@ impl Key {
 }
 
 impl Cache {
-    /// The program, made if there is none.
+    /// The program; it is made if there is none.
     pub fn get_or_make(
         &self,
         query: &Query,

@@ -11,11 +11,11 @@ use mozzi::scalar::Bits;
 use mozzi::scalar::Float;
 use mozzi::{Environment, Model, Scalar, Vec3, Wrench};
 
-/// A chunk of states, on registers of one kind: the errors of its states.
+/// Computes a chunk of states on registers of one kind. Returns the errors of its states.
 pub(crate) type Entry<L> =
     fn(&Request<<L as Bits>::Number>, &Model<<L as Bits>::Number>, &mut Worker<L>, Chunk<<L as Bits>::Number>);
 
-/// Does this quantity have a kernel on registers?
+/// True if this quantity has a kernel on registers.
 pub(crate) fn has_registers(index: usize) -> bool {
     macro_rules! answers {
         ($($Q:ident)*) => { &[$(<quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
@@ -24,7 +24,7 @@ pub(crate) fn has_registers(index: usize) -> bool {
     ANSWERS[index]
 }
 
-/// The states of a chunk by a kernel, inlined into an entry.
+/// Computes the states of a chunk by a kernel; inlined into an entry.
 #[inline(always)]
 pub(crate) fn run<K: Kernel, L: Lane>(
     request: &Request<L::Number>,
@@ -76,7 +76,7 @@ pub(crate) fn run<K: Kernel, L: Lane>(
             F.1 = Wrench::from_array(*columns);
         }
         let environment = &Environment { gravity, applied, ..around };
-        // without closures or loops: what is not inlined is not compiled for the instruction set
+        // no closures or loops here: a function that is not inlined is not compiled for the instruction set
         let [a, b, c, d] = &places;
         let inputs = [&input[a.clone()], &input[b.clone()], &input[c.clone()], &input[d.clone()]];
         let (first_output, rest) = output.split_at_mut(widths[0]);
@@ -112,7 +112,7 @@ where
         for &pivot in rest {
             (least, sum) = (least.min(pivot), sum + pivot);
         }
-        // a NaN is kept, being the second operand; one of the mass matrix is one of the task, too
+        // as the second operand, a NaN is kept; a NaN pivot of the mass matrix makes the task's pivots NaN, too
         all = all.min(clearance(least, sum, L::Number::EPSILON));
     }
     let mut numbers = [L::Number::zero(); MOST];

@@ -1,4 +1,4 @@
-//! One call of a batch: the quantity, its tables, and what is the same for all states.
+//! One call of a batch: the quantity, its tables, and the arguments common to all states.
 
 use crate::chunk::Table;
 use crate::{BatchEnvironment, Number};
@@ -6,12 +6,12 @@ use mozzi::quantities::{Query, Uses};
 use mozzi::{Environment, Error, FrameId, Model, Vec3, Wrench};
 use mozzi_codegen::Arguments;
 
-/// What is computed. Its tables are the quantity's inputs, then those of the environment: parameters, gravity,
-/// wrenches.
+/// The quantity and its arguments. Its tables are the quantity's inputs, then those of the environment: parameters,
+/// gravity, wrenches.
 pub struct Request<'a, T> {
     pub query: Query<'a>,
     pub model: &'a Model,
-    /// Of the whole batch's environment, the parts that the quantity uses.
+    /// The parts of the whole batch's environment that the quantity uses.
     pub environment: Environment<'a>,
     pub parameters: Option<&'a [T]>,
     pub gravity: Option<&'a [T]>,
@@ -40,7 +40,7 @@ impl<'a, T: Number> Request<'a, T> {
         parameters.into_iter().chain(gravity).chain(wrenches)
     }
 
-    /// Is it the robot in its own gravity, its base at rest, touching nothing, with its own parameters?
+    /// True if the robot is in its own gravity, its base at rest, with no applied wrenches and its own parameters.
     pub fn is_own(&self) -> bool {
         let (its, own) = (&self.environment, self.query.declaration().uses.of(&self.model.environment()));
         let at_rest = its.base_twist == own.base_twist && its.base_acceleration == own.base_acceleration;
@@ -48,7 +48,7 @@ impl<'a, T: Number> Request<'a, T> {
         is_alike && at_rest && its.gravity == own.gravity && its.applied.is_empty()
     }
 
-    /// The arguments of a program that computes this, with `frames` as memory; none if the environment is the robot's
+    /// The arguments of a program for this request, with `frames` as memory; none if the environment is the robot's
     /// own.
     pub fn arguments<'f>(&self, frames: &'f mut Vec<FrameId>) -> Arguments<'f> {
         let own = self.model.environment::<f64>();
@@ -67,8 +67,7 @@ impl<'a, T: Number> Request<'a, T> {
         }
     }
 
-    /// The numbers of a program's inputs that are the same in all states, each with its place among the inputs after
-    /// the state.
+    /// The program's inputs that are the same in all states, each with its index among the inputs after the state.
     pub fn constants(&self, arguments: &Arguments) -> Vec<Option<Vec<f64>>> {
         let environment = &self.environment;
         let mut all = Vec::new();
@@ -83,7 +82,7 @@ impl<'a, T: Number> Request<'a, T> {
         all
     }
 
-    /// The quantity at one state, whose numbers stand in the order of the tables.
+    /// The quantity at one state, whose numbers are in the order of the tables.
     pub fn at_one_state(&self, numbers: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
         let (state, rest) = numbers.split_at(self.query.declaration().inputs.len());
         let state: Vec<&[f64]> = state.iter().map(Vec::as_slice).collect();

@@ -9,7 +9,7 @@ use crate::threads::Threads;
 use crate::worker::Worker;
 use mozzi::Model;
 
-/// What is to be computed, and by whom.
+/// One call's work: the request, its chunks, and the threads that compute them.
 pub struct Run<'r, 'a, T> {
     pub(crate) model: &'r Model<T>,
     pub(crate) threads: &'r Threads,
@@ -18,7 +18,7 @@ pub struct Run<'r, 'a, T> {
     pub(crate) chunks: Vec<Chunk<'a, T>>,
 }
 
-/// States without an answer.
+/// States that failed, with their errors.
 pub type Errors = Vec<(usize, mozzi::Error)>;
 
 impl<T: Number> Run<'_, '_, T> {

@@ -1,4 +1,4 @@
-//! Many robots of one model in time.
+//! Simulation of many robots of one model.
 
 use crate::chunk::Table;
 use crate::request::Request;
@@ -6,14 +6,14 @@ use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout, Number};
 use mozzi::simulation::{Closer, Method, Motion, forward_dynamics_of};
 
-/// Robots that one thread moves together: their states and the method's stages stay in its cache.
+/// The number of robots that one thread moves together, so that their states and the method's stages stay in its cache.
 const TOGETHER: usize = 512;
 
 impl<T: Number> Batch<T> {
-    /// (θ, θ̇) (N, nq) and (N, n) of every robot after `steps` steps of a method over `duration` seconds, in place,
-    /// under torques τ (N, n) and an environment that stay as they are: a controller's interval. Robots move by pieces
-    /// that fit the cache; those of a robot with constraints are brought back onto them after each step. See
-    /// [`mozzi::simulation`].
+    /// Replaces (θ, θ̇) (N, nq) and (N, n) of every robot by its state after `steps` steps of a method over `duration`
+    /// seconds, under constant torques τ (N, n) and a constant environment: one interval of a controller. Robots are
+    /// moved in pieces that fit the cache. The state of a robot with constraints is projected onto them after each
+    /// step. See [`mozzi::simulation`].
     ///
     /// # Errors
     /// A table has the wrong length, the method is not [explicit](Method::explicit), or a state fails (the error
@@ -48,7 +48,7 @@ impl<T: Number> Batch<T> {
             return Ok(());
         }
         if self.layout() == Layout::Blocks {
-            // robots move in rows: their quaternions are turned one by one
+            // robots are moved as rows: quaternions are integrated one by one
             let rows = |table: &[T], width| self.to_rows(table, width, states);
             let wrenches: Vec<_> = environment.wrenches.iter().map(|&(frame, table)| (frame, rows(table, 6))).collect();
             let wrenches: Vec<_> = wrenches.iter().map(|(frame, table)| (*frame, &table[..])).collect();
@@ -117,10 +117,10 @@ impl<T: Number> Batch<T> {
         results.into_iter().collect()
     }
 
-    /// Do these states, tables by rows, satisfy the robot's constraints? See [`Closer::check_start`].
+    /// Checks that these states, row-major tables, satisfy the robot's constraints. See [`Closer::check_start`].
     ///
     /// # Errors
-    /// [`mozzi::Error::OpenStart`] of the first state that does not.
+    /// [`mozzi::Error::OpenStart`] for the first state that violates them.
     pub fn check_closed(&self, theta: &[T], dtheta: &[T]) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let pieces = theta.chunks(TOGETHER * nq.max(1)).zip(dtheta.chunks(TOGETHER * n));
@@ -134,10 +134,11 @@ impl<T: Number> Batch<T> {
         })
     }
 
-    /// Brings states at time t, tables by rows, back onto the robot's constraints. See [`Closer::close`].
+    /// Projects states at time t, row-major tables, onto the robot's constraints. See [`Closer::close`].
     ///
     /// # Errors
-    /// [`mozzi::Error::Opened`] of the first state whose loops cannot be closed; of states that are not finite, none.
+    /// [`mozzi::Error::Opened`] for the first state whose loops cannot be closed; a state that is not finite gives no
+    /// error.
     pub fn close(&self, t: f64, theta: &mut [T], dtheta: &mut [T]) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let pieces = theta.chunks_mut(TOGETHER * nq.max(1)).zip(dtheta.chunks_mut(TOGETHER * n));
@@ -156,7 +157,7 @@ impl<T: Number> Batch<T> {
         Ok(())
     }
 
-    /// f of pieces of [`TOGETHER`] states; nothing where the robot has no constraints.
+    /// Applies f to pieces of [`TOGETHER`] states; does nothing if the robot has no constraints.
     fn each<I: Send>(
         &self,
         pieces: Vec<I>,
@@ -178,7 +179,7 @@ impl<T: Number> Batch<T> {
     }
 }
 
-/// The first number that was one and is none now.
+/// The index of the first number that was finite and is no longer.
 fn lost<T: Number>(before: &[T], after: &[T]) -> Option<usize> {
     let finite = |x: T| x * T::zero() == T::zero();
     before.iter().zip(after).position(|(&before, &after)| finite(before) && !finite(after))

@@ -1,4 +1,4 @@
-//! Who does the work.
+//! The threads that compute.
 
 use crate::Error;
 use rayon::prelude::*;
@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Threads of a batch.
 #[derive(Clone, Debug)]
 pub(crate) enum Threads {
-    /// rayon's own, one a core.
+    /// rayon's global pool, one thread for each core.
     All,
-    /// The caller's.
+    /// The caller's thread.
     One,
     Pool {
         most: usize,
@@ -17,14 +17,14 @@ pub(crate) enum Threads {
     },
 }
 
-/// The threads that calls have needed so far.
+/// The threads that earlier calls needed.
 type Started = Arc<Mutex<Option<Arc<rayon::ThreadPool>>>>;
 
-/// More threads than this for each core only wait for each other.
+/// The most threads for each core; more would only wait for each other.
 const PER_CORE: usize = 8;
 
 impl Threads {
-    /// At most so many, started when a call has pieces of work for them.
+    /// At most this many threads, started when a call has pieces of work for them.
     pub fn new(threads: usize) -> Result<Self, Error> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         match threads {
@@ -42,7 +42,8 @@ impl Threads {
         }
     }
 
-    /// f of every piece, in their order, with memory that a thread makes once and uses again.
+    /// Applies f to every piece; results are in the order of the pieces. Each thread makes its memory once and reuses
+    /// it.
     pub fn map<I: Send, M, R: Send>(
         &self,
         pieces: Vec<I>,
@@ -66,7 +67,7 @@ impl Threads {
     }
 }
 
-/// At least so many threads if the system gives them; what it gave before, or none, if not.
+/// At least this many threads if the system grants them; otherwise the earlier ones, or none.
 fn pool(started: &Started, threads: usize) -> Option<Arc<rayon::ThreadPool>> {
     let mut started = started.lock().unwrap_or_else(PoisonError::into_inner);
     if started.as_ref().is_none_or(|pool| pool.current_num_threads() < threads) {

@@ -4,7 +4,7 @@ use crate::lanes::Lane;
 use mozzi::quantities::Memory;
 use mozzi::{FrameId, Model, Wrench};
 
-/// Memory without meaning between calls.
+/// Scratch memory; its content means nothing between calls.
 pub struct Worker<L: Lane> {
     pub memory: Memory<L>,
     pub input: Vec<L>,
@@ -14,7 +14,7 @@ pub struct Worker<L: Lane> {
     pub scratch: Vec<L>,
     /// The slots of an interpreter.
     pub values: Vec<L>,
-    /// States without an answer.
+    /// States that failed.
     pub errors: Vec<(usize, mozzi::Error)>,
 }
 

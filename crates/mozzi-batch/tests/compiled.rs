@@ -1,4 +1,4 @@
-//! The compiled robot, with the model's methods and errors.
+//! The compiled robot: same results and errors as the model's methods.
 #![allow(missing_docs)]
 
 #[path = "../../mozzi-codegen/tests/common/mod.rs"]

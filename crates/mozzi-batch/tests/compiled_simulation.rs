@@ -1,4 +1,4 @@
-//! Simulation by machine code beside that by the kernels.
+//! Simulation by machine code, compared with simulation by the kernels.
 #![allow(missing_docs)]
 
 #[path = "../../mozzi-codegen/tests/common/mod.rs"]
@@ -27,7 +27,7 @@ fn a_motion_is_the_kernels() {
         let [theta, dtheta, tau] = &state(&model, 5);
         let motors = || torque(|_, _, _, x| x.iter_mut().zip(tau).for_each(|(x, tau)| *x += tau));
         for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
-            let options = Options { method, ..Options::new(4e-4, 40) }; // damped wrists of published robots are stiff
+            let options = Options { method, ..Options::new(4e-4, 40) }; // the robots' damped wrists are stiff
             let found = end(robot.simulate(theta, dtheta, motors(), &options));
             let expected = end(model.simulate(theta, dtheta, motors(), &options));
             let error = error(&found, &expected);

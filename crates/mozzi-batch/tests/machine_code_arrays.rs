@@ -1,4 +1,4 @@
-//! Many states by machine code, against one state by the kernels.
+//! Many states by machine code, compared with one state by the kernels.
 #![allow(missing_docs)]
 
 #[path = "../../mozzi-codegen/tests/common/mod.rs"]

@@ -1,4 +1,4 @@
-//! Many states: threads and layouts, states that have no answer, numbers of each kind, robots in time.
+//! Many states: threads and layouts, states that fail, both number types, simulation.
 #![allow(missing_docs)]
 
 use mozzi::quantities::{
@@ -10,7 +10,7 @@ use mozzi::testing::{Random, floating_tree, four_bar, state, tree};
 use mozzi::{Model, Task, TaskFrame};
 use mozzi_batch::{Batch, BatchEnvironment, InstructionSet, Layout, Number};
 
-/// States side by side.
+/// Concatenated states.
 struct States {
     theta: Vec<f64>,
     dtheta: Vec<f64>,
@@ -133,7 +133,7 @@ fn many_turns_are_reduced_exactly() {
 #[test]
 fn many_robots_move_as_each_alone() {
     for model in [tree(5, 3, 0), floating_tree(3, 3, 0), four_bar()] {
-        let (count, nq, n) = (601, model.nq(), model.n()); // more than a piece
+        let (count, nq, n) = (601, model.nq(), model.n()); // more than one piece
         let mut states = States::new(&model, count);
         states.dtheta.iter_mut().for_each(|x| *x *= 0.1);
         states.x.iter_mut().for_each(|x| *x *= if model.constraint_rows() > 0 { 0.1 } else { 1.0 });
@@ -157,7 +157,7 @@ fn many_robots_move_as_each_alone() {
                         assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{a} {b} on {}", set.name());
                     }
                 }
-                // in blocks, and on other threads, to the bit
+                // in blocks, and on other threads: identical to the bit
                 let blocks = batch.clone().with_layout(Layout::Blocks).with_threads(2).unwrap();
                 let (mut q2, mut v2) = (blocks.to_blocks(&states.theta, nq), blocks.to_blocks(&states.dtheta, n));
                 let tau = blocks.to_blocks(&states.x, n);

@@ -1,4 +1,5 @@
-//! `docs/quantities.md`: every quantity of the list, with its formula, inputs, outputs and what computes arrays of it.
+//! `docs/quantities.md`: every quantity of the list, with its formula, inputs, outputs and the engine that computes
+//! arrays of it.
 #![allow(missing_docs)]
 
 use mozzi::quantities::{Declaration, Input, LIST, Of, Output, Query, Uses};

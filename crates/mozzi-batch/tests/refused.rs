@@ -28,7 +28,7 @@ fn lengths() {
         );
         assert_eq!(text(M_of(&blocks)), expected);
     }
-    // no state is no error
+    // zero states give no error
     batch.compute(InverseDynamics, &[&[], &[], &[]], &s, &mut [&mut []]).unwrap();
 }
 
@@ -42,13 +42,13 @@ fn a_state_by_its_number() {
     let mut M_of = |theta: &[f64]| batch.compute(MassMatrix, &[theta], &model.environment().into(), &mut [&mut M]);
     let found = text(M_of(&theta));
     assert!(found.starts_with("state 17 (counted from 0): the base's orientation in theta is [0.9, "), "{found}");
-    theta[17 * model.nq()] = f64::NAN; // no number is no error, as at one state
+    theta[17 * model.nq()] = f64::NAN; // NaN gives no error, as at one state
     M_of(&theta).unwrap();
 }
 
 #[test]
 fn a_singular_state_names_its_joint() {
-    // two coaxial joints, the link between without inertia: singular everywhere
+    // two coaxial joints with a massless link between them: singular everywhere
     let axis = ScrewAxis::from_line([0.0, 0.0, 1.0], [0.0; 3], 0.0).unwrap();
     let joint = |name: &str, parent: &str, child: &str| {
         Joint::new(name, parent, child, SE3::identity(), JointKind::Screw(axis))

@@ -7,8 +7,8 @@ use mozzi::Model;
 use std::fmt::Write as _;
 use std::io::Write;
 
-/// The columns of a group: by number, `tau_1` … `tau_n`; where the base floats, by name, for then the joints' numbers
-/// in θ are others than in θ̇.
+/// The columns of a group: by number, `tau_1` … `tau_n`; with a floating base by name, since the joints' numbers in θ
+/// then differ from those in θ̇.
 pub fn names(model: &Model, group: &str) -> Vec<String> {
     let all: Vec<&str> =
         if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() };
@@ -31,7 +31,7 @@ impl Columns {
         self.values.push(values);
     }
 
-    /// The columns of `theta`, `dtheta`, `ddtheta` or `tau`, of rows.
+    /// Adds the columns of `theta`, `dtheta`, `ddtheta` or `tau`, from rows.
     pub fn add_group(&mut self, model: &Model, group: &str, rows: &[Vec<f64>]) {
         for (j, name) in names(model, group).into_iter().enumerate() {
             self.add(name, rows.iter().map(|row| row[j]).collect());

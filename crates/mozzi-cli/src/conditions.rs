@@ -6,7 +6,7 @@ use clap::Args;
 use mozzi::Model;
 use mozzi::simulation::{Event, Occurrence};
 
-/// As many events are listed one by one.
+/// At most this many events are listed individually.
 const LISTED: usize = 12;
 
 #[derive(Args, Debug)]
@@ -50,7 +50,7 @@ impl EventArguments {
     }
 }
 
-/// A sentence for each of the first events, and one for all others.
+/// A sentence for each of the first events, and one for the rest.
 pub fn happened(events: &[Occurrence]) -> Vec<String> {
     let about = |event: &Occurrence| {
         let end = if event.stop { ", where the motion ends" } else { "" };

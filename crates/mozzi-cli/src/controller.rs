@@ -9,7 +9,7 @@ use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace
 use mozzi_motion::trajectories::Reference;
 use serde_json::Value;
 
-/// A file, read; its robot, where it names one, loaded.
+/// A controller's file, and its robot if the file names one.
 pub struct Controller {
     file: JsonFile,
     kind: String,
@@ -66,7 +66,7 @@ impl Controller {
         format!("{} of {}", self.kind, self.file.name)
     }
 
-    /// Motors that follow a reference, of a robot that the file names, else of this one.
+    /// Motors that follow a reference, with the model of the file's robot or else of this one.
     pub fn follow<'a>(&'a self, robot: &'a Model, reference: &'a dyn Reference) -> Result<Box<dyn Input + 'a>> {
         let model = self.believed.as_ref().unwrap_or(robot);
         if model.n() != robot.n() || model.nq() != robot.nq() {
@@ -76,7 +76,7 @@ impl Controller {
                 format!("the robot has {found} velocities, expected {expected}, the number of the simulated robot"),
             ));
         }
-        // of each velocity of a joint; a floating base has no motors
+        // one gain for each velocity of a joint; a floating base has no motors
         let base = model.base().velocities();
         let list = |key: &str| Ok::<_, Failure>([vec![0.0; base], self.list(key, model.n() - base)?].concat());
         let gains = |p: &str, d: &str| Ok::<_, Failure>(Gains { p: list(p)?, d: list(d)? });

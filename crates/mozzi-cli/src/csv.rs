@@ -11,7 +11,7 @@ use csv::Reader;
 use mozzi::Model;
 use std::io::{self, Read};
 
-/// A longer line is an error; so is a zero byte, of which devices have no end.
+/// A longer line is an error; so is a zero byte, which devices may send endlessly.
 const LONGEST_LINE: u64 = 64 << 20;
 
 /// Reads a file, or standard input for `-`. The robot is chosen by the header.
@@ -49,7 +49,7 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model) -> Result<S
     Ok(Samples { lines, ..samples })
 }
 
-/// A file's records behind its header.
+/// The records of a file after its header.
 pub fn open(file: &str) -> Result<(Reader<Lines>, Vec<String>)> {
     let name = input::name(file);
     let lines = Lines { input: Input::open(file)?, line: 1, length: 0 };
@@ -71,7 +71,7 @@ pub fn open(file: &str) -> Result<(Reader<Lines>, Vec<String>)> {
     }
 }
 
-/// A header of so many columns, where there is one that fits; else its beginning.
+/// A plausible header with this many columns, if there is one; else its beginning.
 fn guess(model: &Model, count: usize) -> String {
     let with = |has_time: bool, groups: usize| -> Vec<String> {
         let time = has_time.then(|| "t".to_string());
@@ -87,7 +87,7 @@ fn guess(model: &Model, count: usize) -> String {
     names.join(",")
 }
 
-/// Bytes of a text, no line of which is without end.
+/// The bytes of a text with lines of limited length.
 pub struct Lines {
     input: Input,
     line: u64,

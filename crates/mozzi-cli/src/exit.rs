@@ -1,9 +1,9 @@
-//! Exit codes, and what they mean: the one list of them.
+//! Exit codes and their meaning: the only list of them.
 
 pub const SUCCESS: u8 = 0;
 pub const FAILED: u8 = 1;
 pub const USAGE: u8 = 2;
-/// What a shell expects of a program that SIGINT ended.
+/// The code that shells expect from a program ended by SIGINT.
 pub const STOPPED: u8 = 130;
 
 /// Each code with its meaning, as in docs/command-line.md.

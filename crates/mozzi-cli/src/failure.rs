@@ -1,4 +1,4 @@
-//! Why a command has no result.
+//! Why a command fails.
 
 use crate::terminal;
 use mozzi_urdf::{Diagnostic, LoadError, Style};
@@ -10,7 +10,7 @@ pub enum Failure {
     Wrong(String),
     /// The robot's file is wrong.
     Load(Box<LoadError>),
-    /// The answer, on standard output, is that something is wrong.
+    /// A negative result, on standard output: something is wrong.
     Answered(String),
     /// Stopped by Ctrl-C; the results so far, for standard output.
     Stopped(String),
@@ -39,7 +39,7 @@ pub fn write(text: &str) {
     write_styled(&terminal::message(text));
 }
 
-/// The same with colours, of a text in which nothing else controls the terminal.
+/// The same with colours, for a text without other control characters.
 fn write_styled(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }

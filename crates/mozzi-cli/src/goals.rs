@@ -1,5 +1,5 @@
-//! Where the end effector is to be: by flags, or tables of poses in CSV files with columns x y z of the origin and qw
-//! qx qy qz of the orientation, in {s}.
+//! Goals of the end effector: by flags, or tables of poses in CSV files with columns x y z of the origin and qw qx qy
+//! qz of the orientation, in {s}.
 
 use crate::csv::{self, csv_failure};
 use crate::failure::{Failure, Result};
@@ -24,7 +24,7 @@ pub struct GoalArguments {
 }
 
 impl GoalArguments {
-    /// A pose, a position or an orientation; nothing where no flag is given.
+    /// A pose, a position or an orientation; nothing if no flag is given.
     pub fn read(&self) -> Result<Option<Goal>> {
         let position = self.position.as_deref().map(|text| array("--position", text, ["x", "y", "z"])).transpose()?;
         let R = match (&self.rpy, &self.quaternion) {

@@ -63,7 +63,7 @@ impl Read for Input {
     }
 }
 
-/// How messages name a file.
+/// The name of a file in messages.
 pub fn name(file: &str) -> &str {
     if file == "-" { "standard input" } else { file }
 }
@@ -73,7 +73,7 @@ pub fn cannot(file: &str, error: &dyn std::fmt::Display) -> Failure {
     Failure::wrong(format!("{} cannot be read: {error}", name(file)))
 }
 
-/// A whole text of at most so many bytes.
+/// A whole text, of limited length.
 pub fn text(file: &str, most: usize) -> Result<String> {
     to_text(file, bytes(file, most)?)
 }
@@ -86,7 +86,7 @@ pub fn to_text(file: &str, bytes: Vec<u8>) -> Result<String> {
     })
 }
 
-/// All bytes, if there are not more than so many.
+/// All bytes, if there are at most this many.
 pub fn bytes(file: &str, most: usize) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = Input::open(file)?.take(most as u64 + 1).read_to_end(&mut bytes);

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The flag of a named state.
 pub const STATE: &str = "state";
 
-/// What was given, by the input's name. There is a flag for each input that quantities have.
+/// The given texts, by the input's name. There is a flag for each input of any quantity.
 #[derive(Debug)]
 pub struct InputArguments(BTreeMap<&'static str, String>);
 
@@ -59,7 +59,7 @@ impl FromArgMatches for InputArguments {
 }
 
 impl InputArguments {
-    /// Was it given?
+    /// Is the input given?
     pub fn has(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }

@@ -13,7 +13,7 @@ static UNFINISHED: Mutex<Option<Unfinished>> = Mutex::new(None);
 
 struct Unfinished {
     file: String,
-    /// Where it is until it is whole; none of a pipe or a device.
+    /// The temporary file until it is complete; none for a pipe or a device.
     part: Option<PathBuf>,
 }
 
@@ -41,7 +41,7 @@ pub fn asked() -> bool {
 pub struct Writing;
 
 impl Writing {
-    /// To this file; until it is whole, to another.
+    /// Writes to this file, or to the temporary file `part` until it is complete.
     pub fn to(file: &str, part: Option<&Path>) -> Self {
         listen();
         *unfinished() = Some(Unfinished { file: file.to_string(), part: part.map(Path::to_path_buf) });
@@ -61,7 +61,7 @@ fn unfinished() -> MutexGuard<'static, Option<Unfinished>> {
 
 fn answer() {
     let again = ASKED.swap(true, Ordering::Relaxed) || AT_ONCE.load(Ordering::Relaxed);
-    let file = unfinished(); // held, so that it is not finished meanwhile
+    let file = unfinished(); // the lock is held, so that the file is not finished meanwhile
     match (&*file, again) {
         (None, false) => {}
         (None, true) => std::process::exit(i32::from(exit::STOPPED)),

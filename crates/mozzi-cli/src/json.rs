@@ -48,7 +48,7 @@ pub fn names<'n>(names: impl Iterator<Item = &'n str>) -> Value {
     names.map(Value::from).collect()
 }
 
-/// An object about a robot: its name and those of its joints, positions and velocities, then these entries.
+/// An object about a robot: its name, the names of its joints, positions and velocities, then these entries.
 pub fn of_robot(model: &Model, entries: Value) -> Value {
     let mut object = json!({
         "robot": model.description().name,
@@ -80,7 +80,7 @@ pub fn screws(lists: &ScrewLists) -> Value {
     })
 }
 
-/// An object over lines: a list without lists or objects in it is one line.
+/// An object over several lines; a list without lists or objects in it takes one line.
 pub fn print(value: &Value) -> String {
     let mut text = String::new();
     write(value, 0, &mut text);

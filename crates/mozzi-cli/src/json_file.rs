@@ -30,7 +30,7 @@ pub struct JsonFile {
 #[derive(Debug)]
 pub struct Misplaced {
     file: String,
-    /// Line and column, from 1, unless the whole file is concerned.
+    /// Line and column, from 1; none if the error concerns the whole file.
     pub position: Option<(usize, usize)>,
     pub message: String,
 }
@@ -73,14 +73,14 @@ impl JsonFile {
         Ok(JsonFile { name: name.to_string(), value, text })
     }
 
-    /// A message about an entry; if there is no such entry, its line is that of the value that lacks it.
+    /// A message about an entry; if there is no such entry, its line is that of the value in which it is missing.
     pub fn wrong(&self, path: &[Step], message: impl Into<String>) -> Misplaced {
         let position = Some(position::find(&self.text, path));
         Misplaced { file: self.name.clone(), position, message: message.into() }
     }
 }
 
-/// Of `-`, standard input, which is the robot's.
+/// The text of a file; `-` is standard input, which contains the robot.
 fn text(file: &str) -> Result<String> {
     match file {
         "-" => input::to_text(file, input::robot_text().map_err(|error| input::cannot(file, &error))?.to_vec()),

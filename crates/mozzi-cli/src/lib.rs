@@ -54,7 +54,7 @@ struct Arguments {
     command: Option<Command>,
 }
 
-/// What follows the list of commands.
+/// The text after the list of commands.
 fn help() -> String {
     format!("{EXAMPLES}\n{}", exit::help())
 }
@@ -238,7 +238,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Would a terminal obey it, or be flooded by it?
+/// Could the text control a terminal, or flood it?
 fn is_odd(word: &str) -> bool {
     terminal::message(word) != word
 }

@@ -1,4 +1,4 @@
-//! What drives a simulated robot: the flags of `mozzi simulate` as inputs.
+//! The inputs of a simulated robot, from the flags of `mozzi simulate`.
 
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
@@ -77,7 +77,7 @@ impl MotorArguments {
         let times = samples.times()?;
         check_times(&samples, times)?;
         let theta = samples.need("theta", model)?;
-        // what the rows say of the base, and of the joints
+        // does the table describe the base and the joints, or the joints only?
         let whole = if is_of_joints { Base::Fixed } else { model.base() };
         let joints = |table: &[f64], base: usize| -> Vec<Vec<f64>> {
             table.chunks(table.len() / samples.count).map(|row| row[base..].to_vec()).collect()
@@ -109,7 +109,7 @@ impl MotorArguments {
         self.controller.as_deref().map(|file| Controller::read(file, robot)).transpose()
     }
 
-    /// --torque and the controller's.
+    /// The torques of --torque and of the controller.
     pub fn motors<'a>(
         &self,
         model: &'a Model,
@@ -177,7 +177,7 @@ pub fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
 /// A reference table.
 pub struct Followed {
     pub reference: Box<dyn Reference>,
-    /// θ and θ̇ where it begins.
+    /// θ and θ̇ at its beginning.
     pub start: [Vec<f64>; 2],
 }
 

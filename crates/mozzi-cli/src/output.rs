@@ -1,5 +1,5 @@
-//! A file that is written: next to its place, and renamed when it is whole. A full disk, an error or Ctrl-C leaves an
-//! older file as it is.
+//! An output file: written next to its place, and renamed when it is complete. A full disk, an error or Ctrl-C leaves
+//! an older file as it is.
 
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
@@ -21,12 +21,12 @@ impl Output {
         Ok(Output { file: file.to_string(), whole, _writing: writing })
     }
 
-    /// What to write to.
+    /// The file handle to write to.
     pub fn handle(&self) -> io::Result<File> {
         self.whole.handle()
     }
 
-    /// Writes all of it, and puts it in its place.
+    /// Writes the whole file, and moves it to its place.
     pub fn write(self, write: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
         match self.handle().and_then(|mut to| write(&mut to)) {
             Ok(()) => self.finish(),
@@ -34,7 +34,7 @@ impl Output {
         }
     }
 
-    /// Puts it in its place.
+    /// Moves the complete file to its place.
     pub fn finish(self) -> Result<()> {
         self.whole.finish().map_err(|error| failed(&self.file, &error))
     }

@@ -1,9 +1,9 @@
-//! Which column of a table is what, by its name.
+//! Assigns the columns of a table by their names.
 //!
 //! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry, from
 //! 1, or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z
-//! f_x f_y f_z` of the tip's wrench. Of each group all columns are there or none, in any order; the six of a floating
-//! base's wrench may be left out alone, and are then 0: no motor drives it.
+//! f_x f_y f_z` of the tip's wrench. Each group must be complete or absent; the order is free. Only the six columns of
+//! a floating base's wrench may be missing on their own, and are then 0: no motor drives it.
 
 use crate::columns;
 use crate::failure::{Failure, Result};
@@ -13,7 +13,7 @@ use mozzi::Freedom;
 use mozzi::Model;
 use mozzi::quantities::INPUTS;
 
-/// Columns that `mozzi simulate` writes in addition to the groups; read and not used.
+/// Columns that `mozzi simulate` writes in addition to the groups; they are read but not used.
 pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_work", "friction_loss", "applied_work"];
 
 /// The groups of columns: the inputs of quantities.
@@ -27,16 +27,16 @@ pub const GROUPS: [&str; INPUTS.len()] = {
     names
 };
 
-/// Which column is what.
+/// The meaning of the columns.
 pub struct Places {
     t: Option<usize>,
-    /// As [`GROUPS`]. None of an entry: its column was left out, and it is 0.
+    /// As [`GROUPS`]. An entry is None if its column is missing: it is then 0.
     groups: [Option<Vec<Option<usize>>>; GROUPS.len()],
     wrench: Option<[usize; 6]>,
 }
 
 impl Places {
-    /// The place is the header's: "table.csv:1".
+    /// `place` is the header's: "table.csv:1".
     pub fn find(place: &str, header: &[String], model: &Model) -> Result<Self> {
         let names = |group: &str| -> Vec<&str> {
             if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() }
@@ -100,7 +100,7 @@ impl Places {
         Ok(Places { t: t[0], groups: found, wrench })
     }
 
-    /// What the columns hold, by the number in a row and a column.
+    /// The contents of the columns; `number` takes a row and a column.
     pub fn samples(&self, file: &str, count: usize, number: impl Fn(usize, usize) -> f64) -> Samples {
         let table = |columns: &[Option<usize>]| -> Vec<f64> {
             let entry = |row: usize, column: &Option<usize>| column.map_or(0.0, |column| number(row, column));
@@ -117,7 +117,7 @@ impl Places {
         Samples { file: file.to_string(), count, t, tables, ..Samples::default() }
     }
 
-    /// The columns that are used, in their order; a file without any is an error.
+    /// The columns that are used, in order; a file without any is an error.
     pub fn used(&self, file: &str) -> Result<Vec<usize>> {
         let mut used: Vec<usize> = self.all().collect();
         used.sort_unstable();
@@ -133,7 +133,7 @@ impl Places {
     }
 }
 
-/// How the columns of a group go on.
+/// The possible endings of a group's column names.
 fn entries(model: &Model) -> String {
     let joints: Vec<&str> = model.joint_names().collect();
     if model.configuration_space().is_flat() {

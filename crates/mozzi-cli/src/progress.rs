@@ -4,10 +4,10 @@ use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, Prog
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// What takes less is not announced.
+/// Shorter computations show no progress.
 const QUIET: Duration = Duration::from_secs(1);
 
-/// Rate and remaining time with it; gone when dropped.
+/// A bar with rate and remaining time; removed when dropped.
 pub struct Progress {
     bar: ProgressBar,
     begin: Instant,
@@ -15,12 +15,12 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// "Runge-Kutta 4", of so many "steps".
+    /// `message` is the task, such as "Runge-Kutta 4"; `total` counts the units, such as "steps".
     pub fn new(message: impl Into<String>, total: usize, unit: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::hidden());
         let template = format!("{{msg:22}} {{bar:30}} {{human_pos}}/{{human_len}} {unit}, {{rate}}/s, {{eta}} left");
         if let Ok(style) = ProgressStyle::with_template(&template) {
-            // as many digits as help
+            // a useful number of digits
             bar.set_style(style.with_key("rate", |state: &ProgressState, to: &mut dyn std::fmt::Write| {
                 let rate = state.per_sec();
                 let _ = if rate < 10.0 { write!(to, "{rate:.1}") } else { write!(to, "{}", HumanCount(rate as u64)) };
@@ -30,11 +30,11 @@ impl Progress {
         Progress { bar, begin: Instant::now(), is_quiet: Cell::new(true) }
     }
 
-    /// So many are done.
+    /// Sets the number of units done.
     pub fn at(&self, done: usize) {
         if self.is_quiet.get() && self.begin.elapsed() >= QUIET {
             self.is_quiet.set(false);
-            self.bar.set_draw_target(ProgressDrawTarget::stderr()); // stays hidden where that is no terminal
+            self.bar.set_draw_target(ProgressDrawTarget::stderr()); // stays hidden without a terminal
         }
         self.bar.set_position(done as u64);
     }

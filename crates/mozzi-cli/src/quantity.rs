@@ -17,12 +17,12 @@ pub fn hyphenated(name: &str) -> String {
     name.replace('_', "-")
 }
 
-/// Is it of a frame?
+/// Does the quantity refer to a frame?
 pub fn is_of_a_frame(query: Query) -> bool {
     matches!(query.declaration().of, Of::Frame | Of::Task)
 }
 
-/// The quantity, of the end effector where it is of a frame.
+/// The quantity; if it refers to a frame, the end effector's.
 pub fn of_end_effector<'q>(query: Query<'q>, model: &Model) -> Result<Query<'q>> {
     Ok(if is_of_a_frame(query) { query.of(model.end_effector()?) } else { query })
 }

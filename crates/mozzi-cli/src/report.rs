@@ -14,10 +14,10 @@ use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// More are counted: the page lists them.
+/// Further notes are only counted: the page lists them.
 const NOTES: usize = 3;
 
-/// A larger page is announced, in bytes.
+/// A larger page is announced; in bytes.
 const LARGE: usize = 20_000_000;
 
 #[derive(Args, Debug)]
@@ -67,12 +67,12 @@ enum Which {
 }
 
 impl PageArguments {
-    /// Rows of a motion that have to be at hand, if there is to be a page.
+    /// The number of rows of a motion to keep, if a page is requested.
     pub fn rows(&self, is_wanted: bool) -> usize {
         if is_wanted { self.page_rows.0 } else { 0 }
     }
 
-    /// The page of a robot, by its name or its file, with a motion and the number of rows that it had.
+    /// The page of a robot, by its name or its file, with a motion and the motion's full number of rows.
     pub fn page(
         &self,
         robot: &RobotArguments,
@@ -116,7 +116,7 @@ impl PageArguments {
         Ok((page, size))
     }
 
-    /// The same into a file; answers with its size.
+    /// Writes the page to a file; returns a message with its size.
     pub fn write(
         &self,
         file: &str,
@@ -130,7 +130,7 @@ impl PageArguments {
     }
 }
 
-/// A simulated motion, with what the end effector applied in each of its rows.
+/// A simulated motion, with the end effector's wrench at each of its rows.
 pub fn simulated(title: String, motion: &Trajectory, mut wrench: impl Input) -> Result<Motion> {
     let mut applied = Vec::new();
     for row in motion.samples() {
@@ -142,7 +142,7 @@ pub fn simulated(title: String, motion: &Trajectory, mut wrench: impl Input) -> 
     Ok(Motion { tip_wrench: is_any.then_some(applied), ..Motion::simulated(title, motion) })
 }
 
-/// A table's motion; energies follow from it.
+/// A table's motion; the energies are computed from it.
 pub fn read(file: &str, model: &Model) -> Result<Motion> {
     let mut samples = table_file::read(file, model)?;
     let (t, theta) = (samples.times()?.to_vec(), samples.need("theta", model)?.to_vec());

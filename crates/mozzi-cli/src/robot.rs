@@ -11,7 +11,7 @@ use mozzi::{Description, FrameId, Model};
 use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Settings, Severity, constraints};
 use std::path::{Path, PathBuf};
 
-/// Of warnings that do not change the motion so many are printed; `mozzi check` prints all.
+/// The number of printed warnings that do not change the motion; `mozzi check` prints all.
 const WARNINGS: usize = 3;
 
 /// A file of constraints that often lies next to a robot's.
@@ -69,13 +69,13 @@ impl PolicyArguments {
         Ok(Loaded { description: self.freed(loaded.description), ..loaded })
     }
 
-    /// With its base freed by `--floating`.
+    /// The robot, with a floating base if `--floating` is given.
     pub fn freed(&self, robot: Description) -> Description {
         if self.floating { robot.floating() } else { robot }
     }
 
     /// As [`open`](Self::open), and prints every warning that changes the motion, some of the others, and the number of
-    /// attributes and elements that are not used.
+    /// unused attributes and elements.
     fn load(&self, name_or_path: &str) -> Result<Loaded> {
         let loaded = self.open(name_or_path)?;
         let code = |warning: &Diagnostic| mozzi_urdf::consequence(warning.code());
@@ -84,7 +84,8 @@ impl PolicyArguments {
         Ok(loaded)
     }
 
-    /// With the constraints of `--constraints`. Without them, a note of a `robot.yaml` next to the robot's file.
+    /// Adds the constraints of `--constraints`. Without the flag, prints a note if a `robot.yaml` is next to the
+    /// robot's file.
     pub fn constrained(&self, name_or_path: &str, robot: Description) -> Result<Description> {
         if let Some(file) = &self.constraints {
             return Ok(constraints::read(file, robot)?);
@@ -113,8 +114,8 @@ impl PolicyArguments {
         Ok(robot.build()?)
     }
 
-    /// Errors and warnings for a robot without source text. Nothing is repaired: repairs were made, if at all, when the
-    /// file was written.
+    /// Errors and warnings for a robot without source text. Nothing is repaired here: repairs were made, if requested,
+    /// when the file was written.
     pub fn problems(&self, robot: &Description) -> (Vec<Problem>, Vec<Problem>) {
         let is_error = |problem: &Problem| self.strict || problem.severity == Severity::Error;
         let (errors, mut warnings): (Vec<_>, Vec<_>) = robot.check().into_iter().partition(is_error);
@@ -123,7 +124,7 @@ impl PolicyArguments {
     }
 }
 
-/// Prints warnings, which are in the order of their consequence.
+/// Prints warnings, which are in order of consequence.
 fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence, text: impl Fn(&T) -> String) {
     let motion = warnings.iter().filter(|warning| consequence(warning) == Consequence::Motion).count();
     warnings.iter().take(motion + WARNINGS).for_each(|warning| failure::write(&text(warning)));
@@ -189,20 +190,20 @@ pub fn end_effector(model: &Model) -> Option<FrameId> {
     }
 }
 
-/// Which of a unit's alternatives this robot's joints have: those of turning joints, of sliding ones, or both.
+/// The alternatives of a unit for this robot's joints: turning joints, sliding joints, or both.
 pub enum Units {
     Turning,
     Sliding,
     Both,
 }
 
-/// What {s} is to this robot.
+/// The name of {s} for this robot.
 pub fn space_frame(model: &Model) -> &'static str {
     if model.is_floating() { "the space frame {s}" } else { "the base frame" }
 }
 
 impl Units {
-    /// A floating base turns and slides, too.
+    /// A floating base both turns and slides.
     pub fn of(model: &Model) -> Self {
         let is_free = |place: &mozzi::Place| place.freedom == mozzi::Freedom::Free;
         match model.joints().filter(|joint| joint.kind.name() == "prismatic").count() {
@@ -213,7 +214,7 @@ impl Units {
         }
     }
 
-    /// "N m" of "N m or N", the unit of turning joints before that of sliding ones.
+    /// "N m" from "N m or N"; the unit of turning joints precedes that of sliding ones.
     pub fn own(&self, unit: &str) -> String {
         let (units, each) = unit.split_at(unit.find(", each").unwrap_or(unit.len()));
         let mut alternatives = units.split(", ").flat_map(|part| part.split(" or "));
@@ -225,7 +226,7 @@ impl Units {
         format!("{}{each}", own.unwrap_or(units))
     }
 
-    /// Of positions, velocities, accelerations, forces: the first inputs of [`INPUTS`].
+    /// The unit of positions, velocities, accelerations or forces: the first inputs of [`INPUTS`].
     pub fn input(&self, index: usize) -> String {
         self.own(INPUTS[index].unit)
     }

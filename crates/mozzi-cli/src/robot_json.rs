@@ -60,7 +60,7 @@ pub fn write(model: &Model) -> String {
     }))
 }
 
-/// Is this file one that [`write`] made, by its name? Standard input is if it is an object.
+/// Is this file one that [`write`] made? Decided by its name; for standard input, by whether it is an object.
 pub fn is_json(name_or_path: &str) -> bool {
     if name_or_path == "-" {
         let text = input::robot_text().unwrap_or_default();
@@ -101,7 +101,7 @@ fn description(at: &At) -> Read<Description> {
     Ok(robot)
 }
 
-/// The entries of a list that may be missing.
+/// The entries of an optional list.
 fn all<T>(at: &At, read: impl Fn(&At) -> Read<T>) -> Read<Vec<T>> {
     at.some(At::list)?.unwrap_or_default().iter().map(read).collect()
 }
@@ -183,12 +183,12 @@ fn joint(at: &At) -> Read<Joint> {
     })
 }
 
-/// The lists follow from the links and joints. One that was edited would be ignored silently, so it is refused.
+/// The lists follow from the links and joints. An edited list would be ignored silently, so it is refused.
 fn lists_agree(at: &At, robot: &Description) -> Read<()> {
     if at.value.is_null() {
         return Ok(());
     }
-    let Ok(model) = robot.clone().build() else { return Ok(()) }; // whoever builds the robot reports why
+    let Ok(model) = robot.clone().build() else { return Ok(()) }; // building the robot reports the error
     let expected = json::screws(&model.screws().or_else(|error| at.error(error))?);
     let lists: Vec<&str> = expected.as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
     if let Some(error) = at.unknown(&lists).into_iter().next() {

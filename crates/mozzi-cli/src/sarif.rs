@@ -44,7 +44,7 @@ fn result(found: &Value, codes: &BTreeSet<&str>) -> Value {
     result
 }
 
-/// A path as a reference of RFC 3986: what is not allowed in it is escaped by its bytes.
+/// A path as a reference of RFC 3986, with percent-encoding of bytes that are not allowed.
 fn uri(path: &str) -> String {
     let escaped: String = path
         .replace('\\', "/")

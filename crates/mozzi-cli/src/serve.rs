@@ -1,4 +1,4 @@
-//! One page over HTTP, on 127.0.0.1 alone. Each connection has a thread and deadlines, so that none holds up another.
+//! One page over HTTP, on 127.0.0.1 alone. Each connection has a thread and deadlines, so that none blocks another.
 
 pub mod request;
 
@@ -10,23 +10,23 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Time in which the head arrives.
+/// Time limit for the request's head.
 const FOR_HEAD: Duration = Duration::from_secs(5);
-/// Time in which a piece of the answer is taken, and all of it.
+/// Time limits for sending a piece of the answer, and all of it.
 const FOR_PIECE: Duration = Duration::from_secs(10);
 const FOR_ANSWER: Duration = Duration::from_secs(600);
 const PIECE: usize = 1 << 16;
-/// Time and bytes for what a visitor still sends after the answer.
+/// Limits on time and bytes for data that a client still sends after the answer.
 const FOR_REST: Duration = Duration::from_secs(1);
 const LONGEST_REST: usize = 8 << 20;
-/// Connections at the same time; further ones wait.
+/// Connections at the same time; more have to wait.
 const MOST: usize = 256;
 const PAUSE: Duration = Duration::from_millis(20);
 
 pub struct Server(TcpListener);
 
 impl Server {
-    /// On this port; 0 is a free one.
+    /// Listens on this port; 0 is a free one.
     pub fn new(port: u16) -> Result<Self> {
         TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Server)
     }
@@ -35,7 +35,7 @@ impl Server {
         self.0.local_addr()
     }
 
-    /// Answers until Ctrl-C ends the program. No visitor ends it.
+    /// Answers until Ctrl-C ends the program. No client can end it.
     pub fn run(&self, page: String) -> Result<()> {
         interrupt::end_at_once();
         let (port, page) = (self.address()?.port(), Arc::<str>::from(page));
@@ -104,7 +104,7 @@ fn answer(mut stream: &TcpStream, status: &str, kind: &str, body: Option<&str>) 
     stream.flush()
 }
 
-/// Reads what still comes, for a while: closed before, the system would drop the answer.
+/// Reads remaining data for a while: if the connection were closed earlier, the system would drop the answer.
 fn rest(mut stream: &TcpStream) -> Result<()> {
     stream.shutdown(Shutdown::Write)?;
     let end = Instant::now() + FOR_REST;
@@ -174,10 +174,10 @@ mod tests {
         let us = format!("127.0.0.1:{}", address.port());
         let request = format!("GET / HTTP/1.1\r\nHost: {us}\r\n\r\n");
         let silent: Vec<_> = (0..100).map(|_| TcpStream::connect(address).expect("connected")).collect();
-        // takes none of the page
+        // does not read the page
         let mut stuck = TcpStream::connect(address).expect("connected");
         stuck.write_all(request.as_bytes()).expect("sent");
-        // sends a letter at a time
+        // sends one letter at a time
         let mut slow = TcpStream::connect(address).expect("connected");
         let dripping = thread::spawn(move || {
             let begin = Instant::now();

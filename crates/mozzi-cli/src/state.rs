@@ -52,7 +52,7 @@ pub struct MotionArguments {
     tip: TipArguments,
 }
 
-/// (θ, θ̇, θ̈), and the tip's wrench with its frame, where there is one.
+/// (θ, θ̇, θ̈), and the tip's wrench with its frame, if there is one.
 pub struct Motion {
     pub state: [Vec<f64>; 3],
     pub applied: Vec<(FrameId, Wrench)>,
@@ -81,7 +81,7 @@ impl StartArguments {
     }
 }
 
-/// (θ, θ̇) of a named state, or by numbers. What is not given is the robot's start; θ̇ is 0 if only θ is given.
+/// (θ, θ̇) of a named state, or from numbers. The default is the robot's start; θ̇ is 0 if only θ is given.
 pub fn start(
     model: &Model,
     state: Option<&str>,
@@ -100,7 +100,7 @@ pub fn start(
 }
 
 impl TipArguments {
-    /// The wrench with its frame; an error where there is a wrench and no end effector.
+    /// The wrench with its frame; an error if there is a wrench but no end effector.
     pub fn read(&self, model: &Model) -> Result<Vec<(FrameId, Wrench)>> {
         match &self.tip_wrench {
             None => Ok(Vec::new()),
@@ -125,7 +125,7 @@ impl WrenchArguments {
     }
 }
 
-/// Each frame's wrench is given once.
+/// Checks that each frame's wrench is given once.
 pub fn check_frames(model: &Model, frames: impl Iterator<Item = FrameId>) -> Result<()> {
     let mut seen = Vec::new();
     for frame in frames {
@@ -150,7 +150,7 @@ pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f6
     }
 }
 
-/// n numbers; zeros where the flag is not given.
+/// n numbers; zeros if the flag is not given.
 pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
     let base = match flag {
         "--tau" => "base wrench (m, f)",
@@ -164,10 +164,10 @@ pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f
     }
 }
 
-/// One number for each name; of a floating base, `layout` tells what stands before the joints.
+/// One number for each name; for a floating base, `layout` describes the entries before the joints.
 fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str) -> Result<Vec<f64>> {
     if !model.is_floating() {
-        return numbers_for(flag, text, names.into_iter()); // by name: a ball has several
+        return numbers_for(flag, text, names.into_iter()); // by name: a ball has several entries
     }
     let found = numbers(flag, text)?;
     if found.len() == names.len() {
@@ -181,7 +181,7 @@ fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str
     Err(wrong_count(flag, found.len(), names.len(), &format!("{layout}{joints}")))
 }
 
-/// The model's gravity, and what the robot applies.
+/// The model's gravity, and the wrenches that the robot applies.
 pub fn environment<'a>(model: &Model, applied: &'a [(FrameId, Wrench)]) -> Environment<'a> {
     Environment { applied, ..model.environment() }
 }

@@ -5,7 +5,7 @@ use crate::text::{Decimals, page_width, rows_of, table, width};
 use mozzi::Model;
 use mozzi::quantities::Input;
 
-/// A vector over the joints: its symbol, what it is, its unit.
+/// A vector over the joints: its symbol, name and unit.
 pub struct Quantity<'a> {
     pub symbol: &'a str,
     pub name: &'a str,
@@ -24,8 +24,8 @@ impl<'a> Quantity<'a> {
     }
 }
 
-/// Lines of quantities below the joints' numbers; where the base floats, columns beside the names of their entries, for
-/// then positions are more than velocities.
+/// Lines of quantities below the joints' numbers. With a floating base, columns next to the names of their entries,
+/// since there are more positions than velocities.
 pub fn quantities(model: &Model, list: &[Quantity], common: bool) -> Vec<String> {
     if model.configuration_space().is_flat() {
         return by_number(list, common);
@@ -41,7 +41,7 @@ pub fn quantities(model: &Model, list: &[Quantity], common: bool) -> Vec<String>
     lines
 }
 
-/// Columns of quantities beside the names of their entries.
+/// Columns of quantities next to the names of their entries.
 fn by_name(names: Vec<&str>, list: &[&Quantity], common: bool) -> Vec<String> {
     let all = Decimals::of(list.iter().flat_map(|quantity| quantity.values));
     let mut columns =
@@ -55,8 +55,8 @@ fn by_name(names: Vec<&str>, list: &[&Quantity], common: bool) -> Vec<String> {
     table(&rows_of(columns), "lr")
 }
 
-/// Lines of quantities below the joints' numbers; in groups of joints where there are many. With `common`, the decimal
-/// points of all stand below each other: for terms of one sum.
+/// Lines of quantities below the joints' numbers; in groups if there are many joints. With `common`, the decimal points
+/// of all are aligned: for terms of one sum.
 fn by_number(list: &[Quantity], common: bool) -> Vec<String> {
     let all = Decimals::of(list.iter().flat_map(|quantity| quantity.values));
     let cells: Vec<Vec<String>> = list
@@ -103,7 +103,7 @@ fn by_number(list: &[Quantity], common: bool) -> Vec<String> {
     lines
 }
 
-/// What stands right of the last digit before the decimal point.
+/// The width to the right of the last digit before the decimal point.
 fn tail(cell: &str) -> usize {
     match cell.find('.') {
         Some(point) => cell.len() - point,
@@ -111,7 +111,7 @@ fn tail(cell: &str) -> usize {
     }
 }
 
-/// A tuple with few digits, for what was computed.
+/// A tuple with few digits, for computed numbers.
 pub fn short(values: &[f64]) -> String {
     let decimals = Decimals::of(values);
     let entries: Vec<String> = values.iter().map(|&x| decimals.show(x).trim().to_string()).collect();

@@ -1,10 +1,10 @@
-//! Text on its way to a terminal: nothing in it controls the terminal, and nothing in it is without end.
+//! Text for a terminal: no control characters, no endless lines.
 
 use mozzi_urdf::visible;
 
 /// Longer lines are cut.
 const LONGEST: usize = 4000;
-/// Digits that tell a float64 from all others.
+/// Digits that identify a float64 uniquely.
 const DIGITS: usize = 17;
 
 /// A message: control characters are escaped, long lines cut, and numbers have at most 17 digits.
@@ -13,7 +13,7 @@ pub fn message(text: &str) -> String {
     lines.map(|line| short_numbers(&line)).collect()
 }
 
-/// A result: as a message, but whole.
+/// A result: escaped like a message, but not shortened.
 pub fn result(text: &str) -> String {
     visible(text)
 }
@@ -34,7 +34,7 @@ fn cut(line: &str) -> String {
     format!("{}… ({} characters) …{}", half(0), count - LONGEST, half(count - LONGEST / 2))
 }
 
-/// 1e300 in place of its three hundred digits; what is no float64 as Rust writes it stays.
+/// Writes 1e300 in place of its three hundred digits; text other than a float64 as Rust writes it is unchanged.
 fn short_numbers(line: &str) -> String {
     let is_part = |c: char| c.is_alphanumeric() || ".-_/`".contains(c);
     let mut text = String::with_capacity(line.len());

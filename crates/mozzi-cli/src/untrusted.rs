@@ -1,5 +1,5 @@
-//! What reads the files and requests of strangers, as the commands call it: for tests and fuzz targets that give it any
-//! bytes.
+//! The readers of untrusted files and requests, as the commands call them: for tests and fuzz targets that pass
+//! arbitrary bytes.
 
 use crate::failure::Failure;
 use crate::serve::request::{self, Head};
@@ -18,7 +18,7 @@ pub fn robot(file: &str) -> Result<Description, Vec<String>> {
     crate::robot_json::read(file).map_err(|errors| errors.iter().map(ToString::to_string).collect())
 }
 
-/// The robot as such a file.
+/// The robot as the text of such a file.
 pub fn robot_text(model: &Model) -> String {
     crate::robot_json::write(model)
 }
@@ -26,7 +26,7 @@ pub fn robot_text(model: &Model) -> String {
 /// A table of named columns or arrays, as `simulate --follow`, `plot` and `view` read it.
 ///
 /// # Errors
-/// What is wrong, with its place.
+/// The error with its place.
 pub fn table(file: &str, model: &Model) -> Result<Samples, String> {
     read::read(file, model).map_err(said)
 }
@@ -34,15 +34,15 @@ pub fn table(file: &str, model: &Model) -> Result<Samples, String> {
 /// The quantity's inputs at each state of a table, as `compute --in` reads them.
 ///
 /// # Errors
-/// What is wrong, with its place.
+/// The error with its place.
 pub fn inputs(file: &str, query: Query, model: &Model) -> Result<Vec<Vec<f64>>, String> {
     States::<f64>::read(file, query, model, &[]).map(|states| states.inputs).map_err(said)
 }
 
-/// The status and the body that the server of `mozzi view` answers; `read` is the connection.
+/// The status and the body of the answer from the server of `mozzi view`; `read` is the connection.
 ///
 /// # Errors
-/// The connection's.
+/// An error of the connection.
 pub fn answer(read: impl FnMut(&mut [u8]) -> IoResult<usize>, port: u16, page: &str) -> IoResult<(&'static str, &str)> {
     Ok(match request::head(read)? {
         Head::Late => ("408", ""),

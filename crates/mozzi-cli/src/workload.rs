@@ -1,14 +1,14 @@
-//! What a computation will cost, announced if it is much and refused if it is too much.
+//! The estimated cost of a computation, announced if it is large and refused if it is too large.
 
 use crate::failure::{self, Failure, Result};
 
-/// More steps, rows or bytes need a flag.
+/// More steps or bytes need a flag.
 const STEPS: f64 = 1e9;
 const BYTES: f64 = 16e9;
-/// From here on they are announced.
+/// From this share of the bounds on, costs are announced.
 const ANNOUNCED: f64 = 0.01;
 
-/// Bytes of a number in memory and binary files, and about those of one in a text.
+/// Bytes of a number in memory and binary files, and the approximate bytes of one in a text.
 pub const BINARY: f64 = 8.0;
 pub const TEXT: f64 = 20.0;
 
@@ -18,14 +18,14 @@ pub struct Workload {
     pub steps: f64,
     pub rows: f64,
     pub bytes: f64,
-    /// Where the bytes go: "motion.csv", "memory".
+    /// The destination of the bytes: "motion.csv", "memory".
     pub place: String,
     /// The flag that allows it.
     pub flag: Option<&'static str>,
 }
 
 impl Workload {
-    /// Announces it, or refuses it unless it is allowed.
+    /// Announces the workload, or refuses it unless it is allowed.
     pub fn check(&self, is_allowed: bool) -> Result<()> {
         let share = (self.steps / STEPS).max(self.bytes / BYTES);
         if share > 1.0 && !is_allowed {

@@ -1,4 +1,4 @@
-//! What a xacro file is expanded with.
+//! Arguments and packages for expanding a xacro file.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ impl XacroArguments {
     }
 }
 
-/// `name:=value`; without a value the default holds, as in ROS.
+/// `name:=value`; without a value the default applies, as in ROS.
 pub fn assignment(text: &str) -> Result<(String, String), String> {
     let parts: Vec<&str> = text.split(":=").map(str::trim).collect();
     match parts[..] {

@@ -1,4 +1,4 @@
-//! Each subcommand answers, in text and in JSON.
+//! Each subcommand gives a result, in text and in JSON.
 #![allow(non_snake_case)]
 
 mod common;

@@ -24,7 +24,7 @@ fn files_of_each_language() {
         }
         assert_eq!(told["files"].as_array().map(Vec::len), Some(files.len()));
     }
-    // gravity of the command line is built in; left open, it is an argument
+    // gravity of the command line is built in; with --argument it is an argument
     let header = |more: &[&str]| {
         let arguments = ["codegen", "ur5", "--quantity", "gravity-forces", "--lang", "c", "--out", out];
         text(&[&arguments[..], more].concat());
@@ -81,7 +81,7 @@ fn explain_tells_the_work() {
     for (entry, declaration) in work.iter().zip(LIST) {
         assert_eq!(entry["quantity"], declaration.name.replace('_', "-"));
         let flops = |when: &str| entry[when]["flops"].as_u64().expect("a count");
-        // no wrench is an argument, and the robot has neither friction nor springs nor constraints
+        // no wrench is an argument, and the robot has no friction, springs or constraints
         let is_of_rows = declaration.outputs.iter().all(|output| output.dims.contains(&Dim::Constraints));
         let is_nothing = declaration.uses == Uses::WRENCHES
             || is_of_rows
@@ -97,7 +97,7 @@ fn explain_tells_the_work() {
     let line = page.lines().find(|line| line.contains("inverse-dynamics")).expect("its line");
     assert!(line.split_whitespace().any(|word| word == after), "{page}");
     assert!(!page.contains("mass-matrix"), "{page}");
-    // fewer numbers are folded where more are arguments
+    // with more arguments, fewer numbers are folded
     let open = json(&["codegen", "panda", "--explain", "--quantity", "inverse-dynamics", "--argument", "parameters"]);
     assert!(open["work"][0]["after"]["flops"].as_u64() > work[0]["after"]["flops"].as_u64());
 }
@@ -132,7 +132,7 @@ fn wrong_usage_is_told() {
     let folder = folder("codegen_wrong");
     let file = common::file(&folder, "file", "no folder");
     wrong(&["ur5", "--quantity", "mass-matrix", "--lang", "c", "--out", &file], &[&file, "cannot be written"]);
-    // where the chain branches, what is of a frame is left out of all, and told
+    // if the chain branches, quantities of a frame are omitted, with a note
     let output = mozzi(&["codegen", "anymal", "--explain"]);
     let (page, note) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success() && !page.contains("body-jacobian") && note.contains("omitted"), "{page}{note}");

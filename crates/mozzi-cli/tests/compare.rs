@@ -1,4 +1,5 @@
-//! `mozzi compare`: its words where Python or the file is wrong, and a run with the real libraries where they are.
+//! `mozzi compare`: its messages if Python or the file is wrong, and a run with the real libraries if they are
+//! installed.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -8,7 +9,7 @@ use serde_json::Value;
 
 const PEERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-compare/tests/peers");
 
-/// A program that takes Python's place.
+/// A program that replaces Python.
 #[cfg(unix)]
 fn fake(name: &str, script: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
@@ -74,7 +75,7 @@ fn a_python_that_gives_no_answer() {
     assert!(text.contains("MuJoCo 9: refuses the file: too red"), "{text}");
 }
 
-/// Of `cargo xtask test`; without it, or without the libraries, there is nothing to run.
+/// The Python of `cargo xtask test`; without it, or without the libraries, the test is skipped.
 fn python() -> Option<String> {
     let python = std::env::var("MOZZI_PYTHON").ok()?;
     let mut import = std::process::Command::new(&python);
@@ -101,7 +102,7 @@ fn with_the_real_libraries() {
         assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "explained".into(), "explained".into()));
         assert_eq!(report["libraries"][0]["comparison"]["causes"].as_array().unwrap().len(), kinds, "{report}");
     }
-    // of one joint Pinocchio's Jacobian is a vector
+    // with one joint, Pinocchio's Jacobian is a vector
     for kind in ["revolute", "continuous", "prismatic"] {
         let one = format!(
             "<robot name='one'><link name='a'/><link name='b'><inertial><origin xyz='0.4 0.1 0'/><mass value='3'/>\
@@ -113,7 +114,7 @@ fn with_the_real_libraries() {
     }
     let (code, report) = run(&format!("{PEERS}/floating.urdf"));
     assert_eq!((code, status(&report, 0), status(&report, 1)), (0, "agrees".into(), "agrees".into()), "{report}");
-    // JSON is handed over as URDF; a file that mozzi refuses is shown to the others
+    // JSON is passed to the libraries as URDF; a file that mozzi refuses is still passed to them
     let folder = folder("compare");
     let json = folder.join("ur5.json").to_str().unwrap().to_string();
     common::text(&["convert", "ur5", &json]);
@@ -125,7 +126,7 @@ fn with_the_real_libraries() {
 
 #[test]
 fn a_base_that_is_freed_is_free_in_the_libraries() {
-    // it is freed for the libraries, too; a spatial robot whose base hangs in the air
+    // the libraries get a floating base, too; a spatial robot with a free-floating base
     let Some(python) = python() else {
         says(&["compare", "ur5", "--floating", "--python", "no/such/python"], &["did not start"]);
         return;

@@ -1,4 +1,4 @@
-//! What is wrong is said in a sentence, with what was found and expected, and by the exit code.
+//! Errors are reported in a sentence with the found and the expected value, and by the exit code.
 
 mod common;
 
@@ -38,7 +38,7 @@ fn wrong_robots() {
     let (code, found) = sarif(&robot);
     let result = &found["runs"][0]["results"][0];
     assert_eq!((code, &found["version"], &result["level"]), (Some(1), &"2.1.0".into(), &"error".into()), "{found}");
-    // what the schema of SARIF 2.1.0 requires
+    // the requirements of the schema of SARIF 2.1.0
     let driver = &found["runs"][0]["tool"]["driver"];
     assert!(driver["name"] == "mozzi" && driver["rules"][0]["id"].is_string(), "{driver}");
     assert!(result["message"]["text"].as_str().is_some_and(|text| text.contains("intertial")), "{result}");
@@ -185,7 +185,7 @@ fn wrong_frames_and_tasks() {
     wrong(&["screws", "panda", "--python"], &["serial chains"]);
     wrong(&["screws", "panda", "--python", "--end-effector", "panda_hand_tcp"], &["serial chains"]);
     wrong(&["terms", "ur5", "--task", "vx,vw"], &["no row `vw`", "wx, wy, wz"]);
-    // of a singular task a note; all other terms are there
+    // a singular task gives a note; all other terms are there
     let output = mozzi(&["terms", "ur5", "--task", "wx,vx"]);
     let (page, said) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success() && said.contains("note: Λ and η are omitted: the task is singular"), "{said}");

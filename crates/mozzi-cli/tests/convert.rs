@@ -1,4 +1,4 @@
-//! A robot written and read again is the same robot.
+//! Round trips: a robot that is written and read again is the same robot.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Damaged, hostile and endless tables: an answer or one sentence, and never much memory.
+//! Damaged, hostile and endless tables: a result or one sentence, with bounded memory.
 #![cfg(target_os = "linux")]
 
 mod common;
@@ -18,7 +18,7 @@ const MUTANTS: u64 = 120;
 /// Address space that the program may take, kB.
 const MEMORY: u64 = 3_000_000;
 
-/// Runs the program in little memory: a huge allocation ends it by a signal.
+/// Runs the program with little memory: a huge allocation ends it by a signal.
 fn bounded(arguments: &[&str]) -> Output {
     let script = format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");
@@ -26,7 +26,7 @@ fn bounded(arguments: &[&str]) -> Output {
     command.output().expect("the program runs")
 }
 
-/// It is refused, and why.
+/// Checks that the program refuses, and returns its message.
 fn refused(arguments: &[&str]) -> String {
     let output = bounded(arguments);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -41,7 +41,7 @@ fn read(file: &Path) -> Vec<&str> {
     [&DYNAMICS[..], &[file.to_str().expect("text")]].concat()
 }
 
-/// Numbers without a pattern (Steele, Lea, Flood 2014).
+/// Pseudo-random numbers (Steele, Lea, Flood 2014).
 struct Random(u64);
 
 impl Random {
@@ -53,7 +53,7 @@ impl Random {
     }
 }
 
-/// Bytes flipped, cut off, left out, twice, or made a length that is wrong.
+/// Bytes flipped, cut off, omitted, repeated, or turned into a wrong length.
 fn mutant(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=random.below(3) {
@@ -144,7 +144,7 @@ fn mutants_of_every_format_are_read_or_refused() {
             all += 1;
         }
     }
-    // most are refused, and some mutants are sound: a digit of a number is another
+    // most are refused; some mutants are valid, such as a number with another digit
     assert!(answered > 0 && 2 * answered < all, "{answered} of {all} were answered");
 }
 
@@ -180,7 +180,7 @@ fn devices_without_end_end() {
     assert!(refused(&["info", "/dev/zero"]).contains("/dev/zero"));
     let controller = ["simulate", "ur5", "--controller", "/dev/zero"];
     assert!(refused(&controller).contains("/dev/zero: cannot be read: it has more than"));
-    // a row without end, and rows without end
+    // an endless row, and endless rows
     let script = "yes 1,2,3,4 | tr -d '\\n' | \"$0\" compute two_link_planar inverse-dynamics --in -";
     let output = Command::new("sh").args(["-c", script, env!("CARGO_BIN_EXE_mozzi")]).output().expect("it runs");
     let said = String::from_utf8_lossy(&output.stderr);

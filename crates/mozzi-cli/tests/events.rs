@@ -1,4 +1,4 @@
-//! `--until` and `--report-event`: when, against Runge-Kutta's steps that end there; and what is said of them.
+//! `--until` and `--report-event`: their times, against Runge-Kutta's steps that end there, and their messages.
 
 mod common;
 
@@ -7,8 +7,8 @@ use mozzi::simulation::{Options, Zero};
 
 const SWING: [&str; 6] = ["simulate", "double_pendulum", "--theta", "2,1", "--time", "3"];
 
-/// The time near a guess at which g of (θ, θ̇) is 0: by secants, each motion in 3000 steps of Runge-Kutta 4 that end at
-/// the time.
+/// The time near a guess at which g of (θ, θ̇) is 0, by the secant method. Each motion has 3000 steps of Runge-Kutta 4
+/// that end at the time.
 fn root(guess: f64, g: impl Fn(&[f64], &[f64]) -> f64) -> f64 {
     let model = mozzi_urdf::open("double_pendulum").expect("embedded").build().expect("sound");
     let at = |t: f64| {
@@ -62,7 +62,7 @@ fn limits_of_joints_are_conditions() {
     let (event, theta) = (&found["events"][0], numbers(&found["events"][0]["theta"]));
     assert_eq!(event["condition"], "joint-limit: upper limit of panda_joint2");
     assert!((theta[1] - 1.7628).abs() < 1e-12 && found["joint_limits"][0]["joint"] == "panda_joint2");
-    // where joints rest at their limits, each is told as it comes there
+    // joints that rest at their limits are each reported on arrival
     let page = text(&[&fall[..], &["--report-event", "joint-limit", "--joint-limits", "respect"]].concat());
     assert!(page.contains("event: `joint-limit: upper limit of panda_finger_joint1` at t = 0.54"), "{page}");
 }

@@ -1,4 +1,4 @@
-//! A floating base on the command line: its layout, its names, and that every command takes it.
+//! A floating base on the command line: its layout and names; every command accepts it.
 
 mod common;
 
@@ -66,7 +66,7 @@ fn inverse_and_forward_dynamics_at_a_pose() {
 fn nothing_given_is_the_neutral_pose() {
     let terms = json(&["terms", "ur5", "--floating"]);
     assert_eq!(numbers(&terms["theta"])[..7], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    // all falls together
+    // free fall: everything falls together
     let fall = numbers(&json(&["compute", "ur5", "forward-dynamics", "--floating"])["ddtheta"]);
     assert_close(&fall, &[0.0, 0.0, 0.0, 0.0, 0.0, -9.81, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 1e-9);
 }
@@ -81,7 +81,7 @@ fn tables_name_their_columns() {
     let read = |path: &str| std::fs::read_to_string(path).expect("a file");
     assert!(read(&fall).starts_with("t,theta_base.qw,theta_base.qx,"), "{}", read(&fall));
     text(&["compute", TREE, "inverse-dynamics", "--floating", "--in", &fall, "--out", &torques]);
-    // what was simulated without torques needs none
+    // a motion simulated without torques needs none
     let needed = json(&["compute", TREE, "inverse-dynamics", "--floating", "--in", &torques]);
     for tau in rows(&needed["tau"]) {
         assert_close(&tau, &[0.0; 11], 1e-9);
@@ -106,7 +106,7 @@ fn tables_name_their_columns() {
 
 #[test]
 fn a_fall_is_seen_in_the_table() {
-    // ½ g t² = 0.4414 m, beside a quaternion that stays 1
+    // ½ g t² = 0.4414 m, next to a quaternion that stays 1
     let page = text(&["simulate", "anymal", "--floating", "--time", "0.3"]);
     assert!(page.contains("-0.441"), "{page}");
 }
@@ -151,7 +151,7 @@ fn files_carry_the_base() {
     text(&["convert", "ur5", "--floating", &python]);
     let literals = std::fs::read_to_string(&python).expect("a file");
     assert!(literals.contains("base = \"floating\"\nGbase = np.array("), "{literals}");
-    // a file that says nothing of the base has a fixed one
+    // a file that does not specify the base has a fixed one
     let robot: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&first).expect("it")).expect("JSON");
     let edited = |base: Option<&str>| {
         let mut robot = robot.clone();

@@ -38,7 +38,7 @@ fn tables_in_tables_out() {
     assert_eq!(numbers(&found["reached"]), [1.0, 1.0]);
     let row: Vec<f64> = rows.lines().nth(1).expect("a row").split(',').map(|x| x.parse().expect("a number")).collect();
     assert_close(&common::rows(&found["theta"])[0], &row[..6], 0.0);
-    // one out of reach: its row is the nearest that was found, and the exit code says so
+    // one pose out of reach: its row is the best result, and the exit code reports it
     let goals = file(&folder, "far.csv", "x,y,z,qw,qx,qy,qz\n0.4,0.2,0.5,1,0,0,0\n3,0,0,1,0,0,0\n");
     let output = mozzi(&["ik", "ur5", "--in", &goals, "--starts", "3"]);
     assert_eq!(output.status.code(), Some(1));

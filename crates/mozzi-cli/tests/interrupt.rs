@@ -1,5 +1,5 @@
-//! Ctrl-C in what takes long, and progress on a terminal and nowhere else. Where the program is too fast to be
-//! interrupted, a test says so.
+//! Ctrl-C in long computations, and progress on a terminal only. If the program is too fast to be interrupted, a test
+//! says so.
 #![cfg(unix)]
 
 mod common;
@@ -10,9 +10,9 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-/// When it is interrupted: after the first second, from which on progress is shown.
+/// The time of the interrupt: after the first second, since progress is shown from then on.
 const WAIT: Duration = Duration::from_millis(1700);
-/// Coriolis matrices in portable registers by a program that is not optimised: 15 s.
+/// Coriolis matrices in portable registers by an unoptimised program: 15 s.
 const STATES: usize = 20_000;
 
 /// θ and θ̇ of a UR5, `count` states.
@@ -30,7 +30,7 @@ fn batch<'a>(input: &'a str, output: &'a str) -> Vec<&'a str> {
     [&["compute", "ur5", "coriolis-matrix", "--in", input, "--out", output][..], &flags].concat()
 }
 
-/// What it leaves after a SIGINT; nothing where it was done before.
+/// The output after a SIGINT; nothing if the program had already ended.
 fn interrupted(arguments: &[&str]) -> Option<Output> {
     let program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
         .args(arguments)
@@ -100,7 +100,7 @@ fn progress_is_shown_on_a_terminal() {
         .chain(batch(&input, &out))
         .map(|word| format!("'{word}'"))
         .collect();
-    // util-linux's: runs a command on a terminal of its own, and types there what it reads
+    // util-linux's `script`: runs a command on a terminal of its own, and types its standard input there
     let script = Command::new("script")
         .args(["--quiet", "--return", "--flush", "--command", &command.join(" "), "/dev/null"])
         .env("TERM", "xterm")

@@ -11,7 +11,7 @@ use std::process::Command;
 const FALL: [&str; 9] = ["simulate", "anymal", "--floating", "--time", "0.05", "--step", "0.01", "--dtheta", RATES];
 const RATES: &str = "0.1,0.2,0.3,0,0,1,1,-1,0.5,0.3,0.2,0.1,0,0,0,0,0,0.4";
 
-/// Python with these modules, or why there is none.
+/// Python with these modules, or the reason why there is none.
 fn python(modules: &str) -> Result<PathBuf, String> {
     let python = PathBuf::from(std::env::var_os("MOZZI_PYTHON").ok_or("MOZZI_PYTHON is not set")?);
     let probe = Command::new(&python).args(["-c", &format!("import {modules}")]).output();
@@ -63,7 +63,7 @@ fn every_format_holds_the_motion() {
     }
 }
 
-/// Joint states by name, and every link's place as mozzi computes it, seen from {s}.
+/// Joint states by name, and every link's pose in {s} as mozzi computes it.
 fn assert_messages(messages: &Value, motion: &Value) {
     let model: Model = mozzi_urdf::open("anymal").expect("embedded").description.floating().build().expect("sound");
     let states = messages["joints"].as_array().expect("messages");
@@ -103,7 +103,7 @@ fn formats_that_are_not_known_or_not_built_in_are_named_before_the_motion_runs()
     }
 }
 
-/// The most memory that the program held, kB, as Linux counts it while it runs.
+/// The program's peak memory, kB, as Linux reports it while it runs.
 #[cfg(target_os = "linux")]
 fn peak(arguments: &[&str]) -> u64 {
     let mut program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
@@ -172,7 +172,7 @@ fn rows_are_those_of_the_motion_whoever_ends_it() {
     assert!(header.starts_with("{'descr': [('t', '<f8'), ('theta_1', '<f8'), "), "{header}");
     let numbers = bytes[10 + header.len()..].chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().expect("eight")));
     assert!(numbers.eq(table.concat()));
-    // what fails leaves no file
+    // a failed run leaves no file
     let file = folder.join("failed.csv").to_string_lossy().into_owned();
     let failing = ["simulate", "double_pendulum", "--method", "dopri", "--tolerance", "0", "--out", &file];
     assert_eq!(complaint(&failing).0, 1);

@@ -1,4 +1,4 @@
-//! `mozzi trajectory`, and what `mozzi simulate` makes of it: controllers, methods, limits, Ctrl-C.
+//! `mozzi trajectory`, and `mozzi simulate` with its tables: controllers, methods, limits, Ctrl-C.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn a_motion_is_made_and_followed() {
     assert_close(&theta[0], &[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], 0.0);
     assert_close(&theta[25], &[0.4, -1.0, 1.25, 0.15, 0.85, 0.25], 1e-12); // halfway in time, and in space
     assert_close(&dtheta[25], &[1.875 * 1.6, 1.875 * 0.8, -1.875, -1.875 * 0.6, -1.875, 1.875], 1e-12);
-    // followed by each controller; one that believes in another robot is off
+    // each controller follows it; a controller with another robot's model is off
     let follow = |json_text: &str, more: &[&str]| {
         let controller = file(&folder, "controller.json", json_text);
         json(&[&["simulate", "ur5", "--follow", way, "--controller", &controller][..], more].concat())
@@ -37,7 +37,7 @@ fn a_motion_is_made_and_followed() {
     let name = file(&folder, "other.urdf", &urdf.replace("8.393", "6.0")).replace('\\', "/");
     let wrong = follow(&format!(r#"{{"controller": "computed-torque", "p": 100, "d": 20, "model": "{name}"}}"#), &[]);
     assert!(worst(&wrong) > 1e-3, "{}", worst(&wrong));
-    // too weak a motor is told of, and held
+    // a motor that is too weak is reported, and limited
     let strong = r#"{"controller": "pd-gravity", "p": [3000, 3000, 3000, 50, 50, 50], "d": [200, 200, 200, 2, 2, 2]}"#;
     for (policy, held) in [("report", false), ("respect", true)] {
         let found =
@@ -79,7 +79,7 @@ fn joints_are_followed_while_the_base_falls() {
         text(&[&flags[..], &["--out", fall]].concat()); // a table with the base
         json(&flags)
     };
-    // its own table is followed as well as that of the joints alone
+    // the table with the base is followed as well as that of the joints alone
     let (found, again) = (follow(way), follow(fall));
     for found in [&found, &again] {
         let worst = numbers(&found["tracking_error"]["largest"]);
@@ -233,7 +233,7 @@ fn wrong_motions() {
         &["--profile and the column t", "both define the timing"],
     );
     wrong(&["trajectory", "ur5", "--to", "0,0,0,0,0,0"], &["expected a path along which something moves"]);
-    // beyond what was asked for, or what the robot can: told
+    // motions beyond the given limits, or beyond the robot's, are reported
     let output = common::mozzi(&["trajectory", "ur5", "--to", "9,-1,1,0,0.5,0", "--time", "1", "--out", "-"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && said.contains("velocity limit: `shoulder_pan_joint` reaches 16.87"), "{said}");
@@ -278,7 +278,7 @@ fn wrong_motions() {
     wrong(&["simulate", "ur5", "--method", "dopri", "--tolerance", "0"], &["tolerance is 0"]);
 }
 
-/// Ctrl-C ends a long simulation with what there is.
+/// Ctrl-C ends a long simulation and writes the results so far.
 #[cfg(unix)]
 #[test]
 fn an_interrupt_leaves_the_motion_so_far() {

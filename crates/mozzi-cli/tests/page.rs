@@ -1,4 +1,4 @@
-//! The page of `--report` and `view` in a real browser: what stands in the scene is what mozzi computes.
+//! The page of `--report` and `view` in a real browser: the scene agrees with mozzi's results.
 
 mod common;
 
@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 /// Positions go to the page as 32-bit floats.
 const SINGLE: f64 = 2e-6;
 
-/// A browser and a Python that drives it; or why there is none.
+/// A browser and a Python that drives it, or the reason why there is none.
 fn browser() -> Result<(PathBuf, PathBuf), String> {
     let given = |name: &str| std::env::var_os(name).map(PathBuf::from).ok_or(format!("{name} is not set"));
     let (browser, python) = (given("MOZZI_BROWSER")?, given("MOZZI_PYTHON")?);
@@ -62,8 +62,7 @@ fn assert_near(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     assert!(apart < tolerance * size, "{what}: {found:?} and {expected:?} differ by {apart:e}");
 }
 
-/// A state of the page is the one of mozzi at the same positions: poses, M, and twists and wrenches where rates are
-/// given.
+/// The page's state equals mozzi's at the same positions: poses, M, and, if rates are given, twists and wrenches.
 fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f64]; 2]>) {
     assert_near("theta", &numbers(&found["theta"]), theta, SINGLE);
     let poses = model.frame_poses(theta).expect("poses");
@@ -83,7 +82,7 @@ fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f6
     let (at_link, at_mass) = (of(BodyFrame::Link), of(BodyFrame::CenterOfMass));
     let link = |name: &str| model.forward_kinematics(theta, model.frame(name).expect("a link")).expect("a pose");
     for (k, joint) in model.moving_joints().enumerate() {
-        // moments are about the axis or the ball's centre, mozzi's about the link's origin
+        // moments are about the axis or the ball's centre; mozzi's are about the link's origin
         let point = match joint.kind {
             JointKind::Screw(A) => A.twist().w.cross(A.twist().v),
             JointKind::Ball(center) => center,
@@ -191,8 +190,8 @@ fn the_page_shows_what_mozzi_computes() {
         posed[place.positions()].iter_mut().skip(4).for_each(|x| *x = 0.3 - 0.2 * k as f64);
     }
 
-    // a table that changes the sign of a ball's quaternion from row to row: between them it turns on, 0.2 rad about x a
-    // row
+    // a table in which the sign of a ball's quaternion changes from row to row: the motion between rows stays
+    // continuous, 0.2 rad about x per row
     let shoulder = balls.places()[1].q;
     let turned = |half: f64, sign: f64| {
         let mut theta: Vec<f64> = balls.neutral_configuration();

@@ -1,4 +1,4 @@
-//! Where robots and tables come from: standard input, files named like embedded robots, tables of other programs.
+//! Sources of robots and tables: standard input, files named like embedded robots, tables of other programs.
 
 mod common;
 
@@ -82,7 +82,7 @@ fn a_file_named_like_an_embedded_robot_is_read() {
     assert!(found.starts_with("panda: ") && !said.contains("embedded robot"), "{found}{said}");
 }
 
-/// It is refused, with these words.
+/// Checks that the table is refused with these words.
 fn refused(table: &Path, words: &[&str]) {
     let (code, said) =
         complaint(&["compute", "two_link_planar", "gravity-forces", "--in", table.to_str().expect("text")]);
@@ -110,7 +110,7 @@ fn tables_of_other_programs_are_read_or_refused_with_a_remedy() {
     refused(&zstd, &["zstd.feather cannot be read: it is compressed by zstd", remedy, "df.write_ipc("]);
 }
 
-/// No rows, in which there is nothing that would have to be compressed.
+/// A table without rows, so that there is nothing to compress.
 fn write_zstd(path: &Path) {
     use arrow_array::{ArrayRef, Float64Array, RecordBatch};
     use arrow_ipc::CompressionType;

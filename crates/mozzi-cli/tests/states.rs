@@ -1,4 +1,4 @@
-//! Named states: listed, taken by name, kept by JSON, and the start of what is given no state.
+//! Named states: listed, used by name, kept in JSON, and the default start.
 
 mod common;
 
@@ -40,7 +40,7 @@ fn a_name_stands_for_its_numbers() {
         let named = json(&[command, &["--state", "home"]].concat());
         assert_eq!(named, json(&[command, &by_numbers].concat()));
         assert_ne!(named, json(&[command, &["--state", "still"]].concat()));
-        // positions alone, beside other velocities
+        // positions alone, with other velocities
         let rest = json(&[command, &["--theta", "home"]].concat());
         assert_eq!(rest, json(&[command, &["--theta", &theta]].concat()));
     }
@@ -107,7 +107,7 @@ fn json_keeps_states_and_urdf_says_that_it_does_not() {
     says(&|v| v["states"][1]["joints"][1]["name"] = "knee".into(), "state `home`: joints: there is no joint `knee`");
     says(&|v| v["start"] = "away".into(), "start: there is no state `away`, expected one of `qpos0`, `home`");
     says(&|v| v["states"][1]["joints"][0]["positions"][0] = 3.into(), "expected a unit quaternion");
-    // a robot that URDF has words for, but for its state
+    // a robot that URDF can express, except for its state
     let model = "<mujoco><worldbody><body name='b'><joint name='j' ref='90' axis='0 0 1'/><geom size='1'/></body></worldbody></mujoco>";
     let output = mozzi(&["convert", &file(&folder, "turned.xml", model), &path("turned.urdf")]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -6,7 +6,7 @@ use common::{assert_close, complaint, file, folder, json, mozzi, numbers, rows, 
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-/// A header's columns of a group, in the rows of a table.
+/// The columns of a group in the header, and their values in the rows of a table.
 fn group(table: &str, name: &str) -> Vec<Vec<f64>> {
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next().expect("a header").split(',').collect();

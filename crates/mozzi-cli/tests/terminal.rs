@@ -1,4 +1,4 @@
-//! What reaches the terminal: no control characters, no floods.
+//! Output to the terminal: no control characters, no floods.
 
 mod common;
 
@@ -6,7 +6,7 @@ use common::{file, folder, mozzi};
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Nothing that a terminal obeys, in what it prints.
+/// Checks that the output contains nothing that controls a terminal.
 fn assert_harmless(output: &Output, what: &str) -> String {
     let all = [&output.stdout[..], &output.stderr].concat();
     let text = String::from_utf8(all).expect("UTF-8");
@@ -18,7 +18,7 @@ fn assert_harmless(output: &Output, what: &str) -> String {
 
 /// A title, a clipboard, a colour, a bell, DEL, and C1's introducer.
 const ODD: &str = "\u{1b}]0;t\u{7}\u{1b}]52;c;aGFja2Vk\u{7}\u{1b}[31m\u{7f}\u{9b}31m\u{85}";
-/// Of these XML allows DEL and C1.
+/// Those of them that XML allows: DEL and C1.
 const ODD_OF_XML: &str = "\u{7f}\u{9b}31m\u{85}\u{9d}52;c;x\u{9c}";
 
 #[test]

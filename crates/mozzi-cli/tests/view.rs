@@ -1,4 +1,4 @@
-//! `mozzi view` as a server: Ctrl-C ends it, and nobody else does.
+//! `mozzi view` as a server: only Ctrl-C ends it.
 #![cfg(unix)]
 
 use std::io::{BufRead, BufReader, Read, Write};

@@ -1,4 +1,4 @@
-//! Files are whole or as they were; what a motion is written to, other commands read.
+//! Files are written completely or not at all; other commands can read the files of a motion.
 
 mod common;
 
@@ -69,7 +69,7 @@ fn a_motion_of_no_time_has_one_row() {
     }
 }
 
-/// Runs the program where no file may grow beyond 8 blocks of 512 or 1024 bytes, as if the disk were full.
+/// Runs the program with a file size limit of 8 blocks of 512 or 1024 bytes, as if the disk were full.
 #[cfg(target_os = "linux")]
 fn on_a_full_disk(arguments: &[&str]) -> (Option<i32>, String) {
     let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";

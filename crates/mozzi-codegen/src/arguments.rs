@@ -52,9 +52,9 @@ impl Arguments<'_> {
 }
 
 /// The program of a quantity of this robot: `mozzi`'s kernel, recorded. Its inputs are the quantity's, then the
-/// [`Arguments`]; its outputs the quantity's by their names, matrices by rows, then `pivots` where it divides by the
-/// mass matrix and `task_pivots` of a task. Forward dynamics is recorded by articulated bodies and by the mass matrix,
-/// and the shorter program kept.
+/// [`Arguments`]. Its outputs are the quantity's by name, matrices by rows, then `pivots` if it divides by the mass
+/// matrix and `task_pivots` for a task. Forward dynamics is recorded both by the articulated-body algorithm and by the
+/// mass matrix, and the shorter program is kept.
 ///
 /// # Errors
 /// [`Error::BadArgument`] if the frame is missing or belongs to another model; [`Error::NoMass`].
@@ -74,7 +74,7 @@ pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments
     Ok(by(query))
 }
 
-/// The program of a query by a kernel that computes the same.
+/// The program of a query, recorded from a kernel that computes the same quantity.
 fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) -> Program {
     let declaration = query.declaration();
     let reduced = declaration.is_of_forces.then(|| model.reduced());
@@ -108,8 +108,8 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
         let zero = Traced::from(0.0);
         let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
         let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        // without parameters on the model's own numbers, so that each is recorded where it is used first: what the
-        // machine code's speed hangs on
+        // without parameters, the model's own numbers are used, so that each is recorded where it is first used: the
+        // speed of the machine code depends on that
         match parameters {
             Some(parameters) => {
                 let model = model.with_parameters(parameters);
@@ -122,7 +122,7 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
     })
 }
 
-/// The outputs of a program after the quantity's own: what it divides by.
+/// The outputs of a program after the quantity's own: the pivots that it divides by.
 pub fn pivot_names(query: &Query) -> &'static [&'static str] {
     match query.declaration() {
         declaration if !declaration.divides => &[],
@@ -131,7 +131,7 @@ pub fn pivot_names(query: &Query) -> &'static [&'static str] {
     }
 }
 
-/// Instructions, a division being as long as eight.
+/// The cost in instructions; a division or square root counts as eight.
 fn work(program: &Program) -> usize {
     let count = program.count();
     count.instructions() + 7 * (count.div + count.sqrt)

@@ -11,9 +11,9 @@ pub struct Count {
     pub mul: usize,
     /// Fused multiply-adds.
     pub fma: usize,
-    /// Quotients.
+    /// Divisions.
     pub div: usize,
-    /// Roots.
+    /// Square roots.
     pub sqrt: usize,
     /// Sine and cosine pairs.
     pub sin_cos: usize,

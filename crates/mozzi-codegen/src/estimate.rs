@@ -1,23 +1,23 @@
-//! How long a program would be, without recording it.
+//! Estimates the length of a program without recording it.
 
 use crate::jit::LONGEST_CODE;
 use mozzi::Model;
 use mozzi::quantities::{ForwardDynamics, Query};
 use std::collections::HashMap;
 
-/// Operations of a link in a recursion, and in forward dynamics by articulated bodies.
+/// Operations for a link in a recursion, and in the articulated-body algorithm.
 const LINK: f64 = 100.0;
 const ARTICULATED: f64 = 300.0;
-/// Operations of an entry of a matrix between two joints.
+/// Operations for a matrix entry between two joints.
 const ENTRY: f64 = 30.0;
-/// Bytes of machine code of an operation, at least.
+/// Least bytes of machine code for an operation.
 const BYTES: f64 = 5.0;
 
-/// A source text with more operations is announced as too long: a compiler takes minutes to optimize it.
+/// A source text with more operations is reported as too long: a compiler takes minutes to optimize it.
 pub const LONGEST_TEXT: f64 = 150_000.0;
 
-/// About how many operations the program of this quantity has, at a cost of O(links): a robot with few zeros in its
-/// axes and placements, of which folding leaves the most.
+/// About how many operations the program of this quantity has, at a cost of O(links), for a robot with few zeros in its
+/// axes and placements, for which folding removes the least.
 pub fn estimate<'q>(model: &Model, query: impl Into<Query<'q>>) -> f64 {
     let query = query.into();
     let tree = Tree::of(model);
@@ -31,13 +31,14 @@ pub fn estimate<'q>(model: &Model, query: impl Into<Query<'q>>) -> f64 {
     LINK * tree.links + 2.0 * ENTRY * matrices * tree.depths + entries + divisions
 }
 
-/// Is forward dynamics by the mass matrix so much longer than by articulated bodies that it need not be recorded?
+/// True if forward dynamics by the mass matrix is so much longer than by the articulated-body algorithm that it need
+/// not be recorded.
 pub(crate) fn is_deep(model: &Model) -> bool {
     let tree = Tree::of(model);
     tree.by_mass_matrix() > 10.0 * ARTICULATED * tree.links
 }
 
-/// Would machine code be several times too long for the instruction cache?
+/// True if the machine code would be several times too long for the instruction cache.
 pub fn is_too_long<'q>(model: &Model, query: impl Into<Query<'q>>) -> bool {
     estimate(model, query) * BYTES > 4.0 * LONGEST_CODE as f64
 }
@@ -45,7 +46,7 @@ pub fn is_too_long<'q>(model: &Model, query: impl Into<Query<'q>>) -> bool {
 /// Sums over the moving links.
 struct Tree {
     links: f64,
-    /// Σ d, d being how many joints move a link.
+    /// Σ d, with d the number of joints that move a link.
     depths: f64,
     /// Σ d².
     squares: f64,
@@ -62,7 +63,7 @@ impl Tree {
         let mut depths: HashMap<&str, f64> = HashMap::new();
         let mut tree = Tree { links: model.moving_links() as f64 + 1.0, depths: 0.0, squares: 0.0 };
         for joint in &robot.joints {
-            // up to a link whose depth is known, and back
+            // up to a link whose depth is known, then down again
             let (mut way, mut link) = (Vec::new(), joint.child.as_str());
             while let (None, Some(&(parent, moves))) = (depths.get(link), parents.get(link)) {
                 way.push((link, moves));
@@ -78,7 +79,7 @@ impl Tree {
         tree
     }
 
-    /// M, its factors, and a solution.
+    /// The cost of M, its factorization, and a solution.
     fn by_mass_matrix(&self) -> f64 {
         LINK * self.links + ENTRY * self.depths + 0.5 * self.squares
     }

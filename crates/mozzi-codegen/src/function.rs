@@ -77,7 +77,7 @@ impl Function {
         Self::ALL.into_iter().find(|function| function.name() == name)
     }
 
-    /// Its value. Operands beyond [`arity`](Self::arity) are not looked at.
+    /// Its value. Operands beyond [`arity`](Self::arity) are ignored.
     pub fn apply<S: Scalar>(self, [a, b, c]: [S; 3]) -> S {
         match self {
             Add => a + b,

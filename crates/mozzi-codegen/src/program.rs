@@ -10,7 +10,7 @@ pub type Value = u32;
 /// One step of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// A number of the robot.
+    /// A constant of the robot.
     Constant(f64),
     /// An input: the array and the entry.
     Input(u32, u32),
@@ -19,7 +19,7 @@ pub enum Step {
 }
 
 impl Step {
-    /// The values that it needs.
+    /// The values that it uses.
     pub fn operands(&self) -> &[Value] {
         match self {
             Step::Apply(function, operands) => &operands[..function.arity()],
@@ -46,7 +46,7 @@ pub struct Output {
     pub values: Vec<Value>,
 }
 
-/// What a recording leaves of a computation on one robot: steps one after the other, without loops, branches or memory.
+/// A recorded computation on one robot: steps one after the other, without loops, branches or memory.
 ///
 /// ```
 /// use mozzi::Scalar;
@@ -67,7 +67,7 @@ pub struct Output {
 /// ");
 /// ```
 ///
-/// Its text ([`Display`](std::fmt::Display)) is read again by [`FromStr`](std::str::FromStr).
+/// Its text ([`Display`](std::fmt::Display)) can be parsed again by [`FromStr`](std::str::FromStr).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     pub(crate) name: String,
@@ -78,7 +78,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// What it computes.
+    /// The name of its computation.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -88,7 +88,7 @@ impl Program {
         &self.inputs
     }
 
-    /// The steps, each after those whose values it needs.
+    /// The steps, each after the steps whose values it uses.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -98,7 +98,7 @@ impl Program {
         &self.outputs
     }
 
-    /// The operations that it makes.
+    /// Its operation counts.
     pub fn count(&self) -> Count {
         let mut count = Count::default();
         for step in &self.steps {
@@ -110,7 +110,7 @@ impl Program {
                 Function::MulAdd | Function::MulSub | Function::NegMulAdd | Function::NegMulSub => &mut count.fma,
                 Function::Sqrt => &mut count.sqrt,
                 Function::Sin => &mut count.sin_cos,
-                Function::Cos => continue, // with its sine
+                Function::Cos => continue, // counted with its sine
                 Function::Neg | Function::Tanh | Function::Sgn => &mut count.other,
             } += 1;
         }
@@ -122,11 +122,11 @@ impl Program {
         self.asked
     }
 
-    /// The outputs at these inputs, by interpretation, in any scalar: what every other way to run the program is
-    /// compared with.
+    /// The outputs at these inputs, by interpretation, in any scalar type: the reference for every other way to run the
+    /// program.
     ///
     /// # Panics
-    /// When there are not as many inputs as [`inputs`](Self::inputs) says, or one is shorter than it says.
+    /// If the number of inputs differs from [`inputs`](Self::inputs), or one is too short.
     pub fn evaluate<S: Scalar>(&self, inputs: &[&[S]]) -> Vec<Vec<S>> {
         assert!(inputs.len() == self.inputs.len(), "{} arrays, expected {}", inputs.len(), self.inputs.len());
         for (given, Array { name, length }) in inputs.iter().zip(&self.inputs) {

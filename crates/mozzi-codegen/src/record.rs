@@ -25,8 +25,8 @@ pub fn record<'n>(
     Program { name: name.to_string(), inputs, steps, outputs, asked }
 }
 
-/// What the outputs need, in the order of the tape, products fused with sums, and signs computed where an output is the
-/// negative of a node.
+/// The steps that the outputs need, in the order of the tape: products are fused with sums, and the sign is computed if
+/// an output is the negative of a node.
 fn finish(tape: Tape, outputs: &[(&str, Vec<Traced>)]) -> (Vec<Step>, Vec<Output>) {
     let mut steps: Vec<Step> = tape
         .nodes
@@ -40,7 +40,8 @@ fn finish(tape: Tape, outputs: &[(&str, Vec<Traced>)]) -> (Vec<Step>, Vec<Output
     let roots = || outputs.iter().flat_map(|(_, values)| values.iter());
     let uses = uses(&steps, roots().map(|x| x.node()));
     fuse(&mut steps, &uses);
-    // a node that only goes out, as its negative, is computed so; else its negative is a step of its own
+    // a node that is used only as a negated output is computed with its sign changed; else the negation is a step of
+    // its own
     let mut negated: Vec<Option<Value>> = vec![None; steps.len()];
     for x in roots().filter(|x| x.is_negative()) {
         let node = x.node() as usize;
@@ -66,7 +67,7 @@ fn finish(tape: Tape, outputs: &[(&str, Vec<Traced>)]) -> (Vec<Step>, Vec<Output
     sweep(steps, outputs)
 }
 
-/// How often each step is needed, by steps that are needed themselves and by the roots.
+/// How often each step is used, by steps that are themselves used and by the roots.
 fn uses(steps: &[Step], roots: impl Iterator<Item = Value>) -> Vec<u32> {
     let mut uses = vec![0; steps.len()];
     roots.for_each(|root| uses[root as usize] += 1);
@@ -78,8 +79,8 @@ fn uses(steps: &[Step], roots: impl Iterator<Item = Value>) -> Vec<u32> {
     uses
 }
 
-/// A sum takes in a product that nothing else needs, of two the one that was recorded last; then products that only
-/// sums need, each of which can take it in.
+/// Fuses products into sums. A sum first takes a product that only it uses (if there are two, the one recorded last),
+/// then a product that only sums use, if each of them can take it.
 fn fuse(steps: &mut [Step], uses: &[u32]) {
     for place in 0..steps.len() {
         let single = |x: Value| uses[x as usize] == 1;
@@ -102,7 +103,7 @@ fn fuse(steps: &mut [Step], uses: &[u32]) {
     }
 }
 
-/// The last recorded product that this sum could take in, of those that may be, and what it is then.
+/// Among the products that `may_be` allows, the last recorded one that this sum can take, and the fused step.
 fn fused(steps: &[Step], place: usize, may_be: impl Fn(Value) -> bool) -> Option<(Value, Step)> {
     let Step::Apply(function @ (Function::Add | Function::Sub), [a, b, _]) = steps[place] else { return None };
     let (of_a, of_b) = match function {
@@ -118,7 +119,7 @@ fn fused(steps: &[Step], place: usize, may_be: impl Fn(Value) -> bool) -> Option
     })
 }
 
-/// The step that computes the negative, at no further cost.
+/// The step that computes the negative at no extra cost.
 fn negative(step: Step) -> Option<Step> {
     let Step::Apply(function, [a, b, c]) = step else { return None };
     let (function, operands) = match function {
@@ -132,7 +133,7 @@ fn negative(step: Step) -> Option<Step> {
     Some(Step::Apply(function, operands))
 }
 
-/// The steps that the outputs need, numbered anew.
+/// The steps that the outputs need, renumbered.
 fn sweep(steps: Vec<Step>, mut outputs: Vec<Output>) -> (Vec<Step>, Vec<Output>) {
     let uses = uses(&steps, outputs.iter().flat_map(|output| output.values.iter().copied()));
     let (mut kept, mut place) = (Vec::new(), vec![0; steps.len()]);

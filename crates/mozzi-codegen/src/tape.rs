@@ -1,8 +1,8 @@
-//! What a recording keeps: each different operation once, in the order in which it first occurred.
+//! The tape of a recording: each distinct operation once, in the order in which it first occurred.
 //!
-//! Folded away are operations on constants, x + 0, x − x, x · 0, x · 1 and −(−x). x · 0 is 0 for finite x alone: a NaN
-//! or ∞ goes nowhere where the robot's numbers have a zero. Signs are kept beside nodes ([`Traced`]), so that x and −x,
-//! a − b and b − a, are one node.
+//! Operations on constants, x + 0, x − x, x · 0, x · 1 and −(−x) are folded away. x · 0 is 0 for finite x only: if a
+//! number of the robot is zero, a NaN or ∞ does not propagate through its products. Signs are stored outside the nodes
+//! ([`Traced`]), so that x and −x, a − b and b − a, share one node.
 
 use crate::count::Count;
 use crate::function::Function;
@@ -12,14 +12,14 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// One operation, of nodes before it.
+/// One operation on earlier nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Node {
     /// The bits of a number whose sign is +.
     Constant(u64),
     /// Array and index.
     Input(u32, u32),
-    /// Commutative operands in increasing order; 0 where there is none.
+    /// Operands; those of a commutative operation are in increasing order; unused ones are 0.
     Apply(Function, [u32; 3]),
 }
 
@@ -27,18 +27,18 @@ pub(crate) enum Node {
 pub(crate) struct Tape {
     pub nodes: Vec<Node>,
     places: HashMap<Node, u32, BuildHasherDefault<MixHasher>>,
-    /// Operations of the kernel, before any was folded.
+    /// The kernel's operations before folding.
     pub asked: Count,
 }
 
 thread_local!(static TAPE: RefCell<Tape> = RefCell::default());
 
-/// Something done to this thread's tape.
+/// Runs a function on this thread's tape.
 pub(crate) fn with<R>(f: impl FnOnce(&mut Tape) -> R) -> R {
     TAPE.with_borrow_mut(f)
 }
 
-/// Puts a tape in place of this thread's, which is given back.
+/// Replaces this thread's tape, and returns the old one.
 pub(crate) fn replace(tape: Tape) -> Tape {
     TAPE.replace(tape)
 }
@@ -67,7 +67,7 @@ impl Tape {
         Traced::new(self.node(Node::Constant(size.to_bits())), is_negative)
     }
 
-    /// Its value, where it is a constant.
+    /// Its value, if it is a constant.
     fn value(&self, x: Traced) -> Option<f64> {
         match self.nodes[x.node() as usize] {
             Node::Constant(bits) if x.is_negative() => Some(-f64::from_bits(bits)),
@@ -104,7 +104,7 @@ impl Tape {
         self.product(a, b)
     }
 
-    /// a b where one of them is 0, ±1, or both are constants.
+    /// a b if one of them is 0 or ±1, or both are constants.
     fn trivial_product(&mut self, a: Traced, b: Traced) -> Option<Traced> {
         match (self.value(a), self.value(b)) {
             (Some(x), Some(y)) => Some(self.constant(x * y)),
@@ -157,7 +157,7 @@ impl Tape {
         match self.value(x) {
             Some(x) => self.constant(x.sqrt()),
             None => {
-                // the one function whose operand's sign has to be computed
+                // the only function for which the operand's sign must be computed
                 let neg = |tape: &mut Self| tape.apply(Function::Neg, [x.node(), 0, 0], false).node();
                 let operand = if x.is_negative() { neg(self) } else { x.node() };
                 self.apply(Function::Sqrt, [operand, 0, 0], false)
@@ -197,7 +197,7 @@ impl Tape {
     }
 }
 
-/// A hash of few small numbers, quickly: of a tape's nodes nobody chooses many that collide.
+/// A fast hash of a few small numbers. Collisions are no concern: tapes are not chosen by an attacker.
 #[derive(Default)]
 struct MixHasher(u64);
 

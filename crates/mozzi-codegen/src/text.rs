@@ -35,7 +35,7 @@ impl fmt::Display for Program {
 pub struct NotAProgram {
     /// The line, from 1.
     pub line: usize,
-    /// What was found, and what was expected.
+    /// The error: found, and expected.
     pub problem: String,
 }
 

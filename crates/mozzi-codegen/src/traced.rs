@@ -1,19 +1,19 @@
-//! The scalar that records.
+//! The scalar type that records.
 
 use crate::tape;
 use mozzi::Scalar;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A number of the recording that this thread makes: it has neither value nor order, so a kernel runs on it unchanged
-/// and leaves its operations on the tape. See [`record`](crate::record()).
+/// A number of this thread's recording. It has neither value nor order, so a kernel runs on it unchanged and leaves its
+/// operations on the tape. See [`record`](crate::record()).
 ///
-/// It is the place of a node on the tape and a sign: −x is x with the other sign, and is never computed for its own
-/// sake. It means nothing outside of the recording that made it.
+/// It consists of a node's index on the tape and a sign: −x is x with the other sign, and needs no operation of its
+/// own. It is meaningless outside the recording that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Traced(u32);
 
 impl Traced {
-    /// The number that a node has, or its negative.
+    /// The number of a node, or its negative.
     pub(crate) fn new(node: u32, is_negative: bool) -> Self {
         Traced(node << 1 | u32::from(is_negative))
     }
@@ -26,7 +26,7 @@ impl Traced {
         self.0 & 1 == 1
     }
 
-    /// −x where `negate`, else x.
+    /// −x if `negate`, else x.
     pub(crate) fn negate_if(self, negate: bool) -> Self {
         Traced(self.0 ^ u32::from(negate))
     }

@@ -1,4 +1,4 @@
-//! `examples/panda_controller`, as its build script and the compilers make it: the Rust and the C of it against the
+//! `examples/panda_controller`, as its build script and the compilers make it: its Rust and its C compared with the
 //! same loop on the library's own kernels.
 
 #[path = "../../../examples/panda_controller/build.rs"]
@@ -14,7 +14,7 @@ const STEP: f64 = 1e-3;
 const HOME: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
 const LIMITS: [f64; 7] = [87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0];
 
-/// The error that both programs print, by `mozzi` itself.
+/// The error that both programs print, computed by `mozzi` itself.
 fn error_of(arm: &Model, plant: &Model) -> f64 {
     let gravity = arm.environment();
     let (mut for_arm, mut for_plant) = (Workspace::new(arm), Workspace::new(plant));
@@ -51,7 +51,7 @@ fn error_of(arm: &Model, plant: &Model) -> f64 {
     (squares / (2000.0 * 7.0)).sqrt()
 }
 
-/// What a program prints: the error of each plant.
+/// The output of a program: the error of each plant.
 fn printed(program: &Path) -> Vec<(String, f64)> {
     let output = Command::new(program).output().expect("what was compiled");
     assert!(output.status.success(), "{}", output.status);
@@ -100,7 +100,7 @@ fn the_controllers_in_rust_and_c_do_as_the_library_does() {
     for program in programs {
         for ((name, found), (expected_name, expected)) in printed(&folder.join(program)).iter().zip(&expected) {
             assert_eq!(name, expected_name);
-            // to the digits that are printed
+            // to the printed digits
             assert!((found - expected).abs() < 2e-6 * expected, "{program}, {name}: {found:e}, expected {expected:e}");
         }
     }

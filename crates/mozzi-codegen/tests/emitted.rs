@@ -1,4 +1,4 @@
-//! Emitted text, compiled and run, against the interpreter.
+//! Emitted text, compiled and run, compared with the interpreter.
 #![allow(missing_docs)]
 
 mod common;
@@ -29,7 +29,7 @@ fn named(model: &Model, name: &str) -> Model {
     robot.build().expect("sound")
 }
 
-/// States of a robot: at random, at rest at zero, with an angle that is NaN, with one that is too large.
+/// States of a robot: random, at rest at zero, with a NaN angle, with an angle that is too large.
 fn states(model: &Model, program: &Program, angle: usize, precision: Precision) -> Vec<Vec<Vec<f64>>> {
     let filled = |[theta, dtheta, x]: [Vec<f64>; 3]| -> Vec<Vec<f64>> {
         let array = |name: &str| match name {
@@ -39,7 +39,7 @@ fn states(model: &Model, program: &Program, angle: usize, precision: Precision) 
             "parameters" => model.parameters(),
             "gravity" => vec![1.0, 2.0, -9.0],
             "about" => vec![0.3, -0.2, 0.1],
-            six => Random(six.bytes().map(u64::from).sum()).vector(6, 5.0), // of a twist or a wrench
+            six => Random(six.bytes().map(u64::from).sum()).vector(6, 5.0), // a twist or a wrench
         };
         let arrays = program.inputs().iter().map(|input| array(&input.name));
         arrays.map(|x| x.into_iter().map(|x| rounded(x, precision)).collect()).collect()
@@ -57,7 +57,7 @@ fn states(model: &Model, program: &Program, angle: usize, precision: Precision) 
     states
 }
 
-/// Sine, cosine, root and sign alone, at many numbers.
+/// Only sine, cosine, square root and sign, at many numbers.
 fn basics(language: Language, precision: Precision) -> Module {
     let program = record("basics", &[("x", 2)], |x| {
         let ((sin, cos), y) = (x[0][0].sin_cos(), x[0][1]);
@@ -78,7 +78,7 @@ fn basics(language: Language, precision: Precision) -> Module {
     Module { files, calls: vec![Call { function: "basics".to_string(), program, states }] }
 }
 
-/// The robots' text with what is called: fixed, free, with friction, with inputs left open; and a pose's, named by its
+/// The robots' texts and the calls: fixed and floating base, friction, further arguments; and a pose, named by its
 /// frame.
 fn modules(language: Language, precision: Precision) -> Vec<Module> {
     let last = |model: &Model| model.frames().last().expect("a frame").0;
@@ -129,7 +129,7 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
     robots.into_iter().map(of_robot).chain([basics(language, precision)]).collect()
 }
 
-/// In units of the precision's ε beside the largest entry: a few of a sum, more of solves.
+/// The tolerance in units of the precision's ε relative to the largest entry: a few for sums, more for solves.
 fn tolerance(function: &str) -> f64 {
     match function {
         "forward_dynamics" => 100.0,
@@ -138,7 +138,7 @@ fn tolerance(function: &str) -> f64 {
     }
 }
 
-/// What the program gave is what the interpreter gives in 64 bits; NaN where an angle is none, or too large.
+/// The test program's results agree with the interpreter's in 64 bits, and are NaN if an angle is NaN or too large.
 fn check(what: &str, precision: Precision, modules: &[Module], results: &[Vec<Vec<Vec<f64>>>]) {
     let epsilon = if precision == Precision::F64 { f64::EPSILON } else { f32::EPSILON.into() };
     let calls = modules.iter().flat_map(|module| module.calls.iter().map(move |call| (module.name(), call)));
@@ -156,12 +156,13 @@ fn check(what: &str, precision: Precision, modules: &[Module], results: &[Vec<Ve
             for (found, expected) in found.iter().zip(&expected) {
                 let place = format!("{what}, {robot} {} at state {k}: {found:?}, expected {expected:?}", call.function);
                 let pairs: Vec<(f64, f64)> = found.iter().copied().zip(expected.iter().copied()).collect();
-                // an angle too large for a sine is an entry of the regressor all the same: a spring's
+                // the regressor contains the angle itself, for a spring: an entry that is finite even if the angle is
+                // too large for a sine
                 let is_given = |x: f64, y: f64| y.is_nan() && call.function == "regressor" && given[0].contains(&x);
                 let pairs: Vec<_> = pairs.into_iter().filter(|&(x, y)| !is_given(x, y)).collect();
                 assert!(pairs.iter().all(|(x, y)| x.is_nan() == y.is_nan()), "{place}");
                 if call.function == "basics" {
-                    // each of them beside itself; a sine near 0 beside 1
+                    // relative to each result itself; a sine near 0 relative to 1
                     for (x, y) in pairs.iter().filter(|(x, y)| !x.is_nan() && x != y) {
                         let size = if y.abs() < f64::from(f32::MIN_POSITIVE) { 1.0 } else { y.abs() };
                         worst = worst.max((x - y).abs() / size);
@@ -212,7 +213,7 @@ fn c() {
         let name = format!("{compiler} {precision:?}");
         let folder = build(Language::C, precision, &modules, &name, compiler, &[&strict, flags].concat());
         check(&name, precision, &modules, &run(&folder, precision, &modules));
-        // sums in an order of the compiler's own are refused
+        // a compiler option that reorders sums is refused
         let fast = ["-ffast-math", "-fsyntax-only", "panda.c"];
         let output = Command::new(compiler).args(fast).current_dir(&folder).output().expect("a compiler");
         let said = String::from_utf8_lossy(&output.stderr);

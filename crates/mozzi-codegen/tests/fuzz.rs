@@ -1,5 +1,5 @@
-//! Random programs, as machine code and by the interpreter: for `MOZZI_FUZZ_SECONDS` (5 where it is not set) from the
-//! seed `MOZZI_FUZZ_SEED`. Not in a plain `cargo test`; `cargo xtask test` runs it. A program that fails is printed.
+//! Compares machine code with the interpreter on random programs: for `MOZZI_FUZZ_SECONDS` (5 by default) from the seed
+//! `MOZZI_FUZZ_SEED`. Not part of a plain `cargo test`; `cargo xtask test` runs it. A failing program is printed.
 #![allow(missing_docs)]
 
 use mozzi::Scalar;
@@ -7,8 +7,8 @@ use mozzi::testing::Random;
 use mozzi_codegen::{Kernel, Program, Shape, Traced, record};
 use std::time::{Duration, Instant};
 
-/// A program of operations that keep numbers of size 1 at size 1, and errors from growing, so that rounding explains no
-/// difference; in few or many registers.
+/// A program of operations that keep numbers at size 1 and errors from growing, so that rounding cannot explain a
+/// difference; with few or many values alive at once.
 fn program(random: &mut Random) -> Program {
     let lengths = [1 + random.below(4), 1 + random.below(60)];
     record("random", &[("a", lengths[0]), ("b", lengths[1])], |arrays| {
@@ -52,7 +52,7 @@ fn program(random: &mut Random) -> Program {
     })
 }
 
-/// Machine code in every shape gives what the interpreter gives.
+/// Machine code in every shape agrees with the interpreter.
 fn check(program: &Program, random: &mut Random) {
     for shape in Shape::ALL.into_iter().filter(|shape| shape.is_supported() && shape.is_f64()) {
         let Ok(kernel) = Kernel::new(program, shape) else { continue };

@@ -1,4 +1,4 @@
-//! Machine code of every shape that this processor runs, against the interpreter.
+//! Machine code of every shape that this processor runs, compared with the interpreter.
 #![allow(missing_docs)]
 
 mod common;
@@ -10,7 +10,7 @@ use mozzi::scalar::Float as Number;
 use mozzi::testing::Random;
 use mozzi_codegen::{Arguments, Kernel, Program, Refusal, Shape, record, record_quantity};
 
-/// The outputs of each lane, and the sums of squares, at one state for each lane.
+/// The outputs of each lane, and the sums of squares, for one state in each lane.
 fn run<S: Number>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> (Vec<Vec<Vec<S>>>, Vec<S>) {
     let lanes = kernel.shape().lanes();
     let nan = S::from_f64(f64::NAN);
@@ -37,7 +37,7 @@ fn states<S: Number>(model: &Model, query: Query, round: u64) -> Vec<Vec<Vec<S>>
     (0..16).map(of).collect()
 }
 
-/// The largest normalised error of a program on states, beside the interpreter in `f64`.
+/// The largest normalised error of a program on states, compared with the interpreter in `f64`.
 fn worst<S: Number + Into<f64>>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> f64 {
     let (found, squares) = run(kernel, program, states);
     let mut worst: f64 = 0.0;
@@ -123,7 +123,7 @@ fn sines_and_cosines_are_those_of_the_library() {
         }
         println!("{shape:?}: {worst:.2} ulp");
         assert!(worst <= if shape.is_f64() { 1.0 } else { 1.5 }, "{shape:?}: {worst} ulp");
-        // signs of everything, and what is no angle
+        // sgn of special numbers, and invalid angles
         let numbers =
             [0.0, -0.0, 5e-324, -5e-324, 1e-45, 1e300, -1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 2.5, -7.0];
         for x in numbers {

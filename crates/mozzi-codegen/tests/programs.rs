@@ -1,4 +1,4 @@
-//! What was recorded, interpreted, against the kernels.
+//! Recorded programs, interpreted, compared with the kernels.
 #![allow(missing_docs)]
 
 mod common;
@@ -36,7 +36,7 @@ fn folding_leaves_less_work() {
         for query in quantities(&model) {
             let program = record_quantity(&model, query, Arguments::default()).expect("its own frame");
             let (before, after) = (program.count_before_folding().expect("recorded"), program.count());
-            // of a robot without springs there is nothing to fold
+            // without springs there is nothing to fold
             assert!(
                 after.flops() < before.flops() || before.flops() == 0,
                 "{name}, {}: {before}; {after}",
@@ -115,7 +115,7 @@ fn programs_run_on_any_scalar() {
     let found: Vec<f64> = tau.iter().map(|x| x.derivative).collect();
     let expected: Vec<f64> = M.row_iter().map(|row| row.sum()).collect();
     assert!(error(&found, &expected) < 1e-14);
-    // f32 is f64 to seven digits
+    // f32 agrees with f64 to seven digits
     let single = [&theta, &dtheta, &ddtheta].map(|x| x.iter().map(|&x| x as f32).collect::<Vec<_>>());
     let rounded = single.each_ref().map(|x| x.iter().map(|&x| f64::from(x)).collect::<Vec<_>>());
     let tau = program.evaluate(&single.each_ref().map(Vec::as_slice)).remove(0);

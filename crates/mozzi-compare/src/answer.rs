@@ -1,4 +1,4 @@
-//! What a library answered.
+//! A library's answer.
 
 use crate::constants::{Constants, JointConstants, body};
 use crate::convention::velocity_names;
@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A way around what MuJoCo refuses.
+/// A workaround for a file that MuJoCo refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Workaround {
     /// Without visual and collision elements.
@@ -20,21 +20,21 @@ pub enum Workaround {
     Bound,
 }
 
-/// Why a library computes nothing.
+/// The reason why a library computed nothing.
 #[derive(Clone, Debug)]
 pub enum Unavailable {
     NotInstalled(String),
     Refuses(String),
-    /// The script ended without an answer, or was ended after the time limit.
+    /// The script ended without an answer, or was killed at the time limit.
     Died(String, Fault),
 }
 
-/// Whose fault a missing answer is.
+/// The part at fault for a missing answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The library's own code, or its installation.
     Library,
-    /// The program that was called as Python.
+    /// The program that was run as Python.
     Python,
     /// mozzi's script.
     Mozzi,
@@ -53,19 +53,19 @@ impl Fault {
     }
 }
 
-/// A library that has the robot.
+/// A library that loaded the robot.
 #[derive(Clone, Debug)]
 pub struct Robot {
     pub constants: Constants,
     pub side: Side,
-    /// τ without the forces of constraints, and what these are: "limits", "contacts".
+    /// τ without the forces of constraints, and the kinds of these constraints: "limits", "contacts".
     pub unconstrained: Vec<DVector<f64>>,
     pub constraints: BTreeSet<String>,
-    /// Other forces that τ contains and mozzi does not compute, by the library's name, one vector a state.
+    /// Other forces that τ contains and mozzi does not compute, by the library's name, one vector for each state.
     pub forces: BTreeMap<String, Vec<DVector<f64>>>,
-    /// Joints that the library holds to others by a constraint.
+    /// Joints that the library couples to others by a constraint.
     pub couplings: Vec<(String, String)>,
-    /// Bodies without an inertia in the file, whose shapes gave one.
+    /// Bodies without an inertia in the file, whose inertia the library computed from their shapes.
     pub from_geometry: Vec<String>,
     pub settings: Value,
 }
@@ -75,7 +75,7 @@ pub struct Answer {
     /// "Pinocchio" or "MuJoCo".
     pub library: &'static str,
     pub version: Option<String>,
-    /// What it said of the file as it stands, and what was done then.
+    /// Its message for the unchanged file, and the workaround that was applied.
     pub attempts: Vec<(String, Workaround)>,
     pub robot: Result<Robot, Unavailable>,
 }
@@ -89,7 +89,7 @@ impl Answer {
         Answer { library: name_of(library), version: None, attempts: Vec::new(), robot: Err(unavailable) }
     }
 
-    /// From the script's JSON; `None` where that is not as the script writes it.
+    /// Parses the script's JSON; `None` if it does not have the script's form.
     pub fn read(value: &Value) -> Option<Self> {
         let attempt = |step: &Value| {
             let workaround = match step["then"].as_str()? {

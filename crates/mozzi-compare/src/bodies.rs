@@ -1,4 +1,4 @@
-//! Bodies that weigh differently on the two sides, and why.
+//! Bodies whose inertial parameters differ between the two sides, and why.
 
 use crate::Result;
 use crate::answer::{Answer, Robot, Workaround};
@@ -6,7 +6,7 @@ use crate::cause::Cause;
 use crate::constants::{Constants, freed, home, same_body};
 use mozzi::{Description, SpatialInertia, Sym3};
 
-/// Why a body differs.
+/// The reason why a body differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
     /// MuJoCo made its moments those of a sphere (balanceinertia).
@@ -22,12 +22,12 @@ pub enum Reason {
     Unknown,
 }
 
-/// A body on either side, at home in the base frame.
+/// A body on both sides, at home in the base frame.
 #[derive(Clone, Debug)]
 pub struct BodyChange {
-    /// What moves it.
+    /// The joint that moves it.
     pub joint: String,
-    /// The moving link, then those that are fixed to it.
+    /// The moving link, then the links fixed to it.
     pub links: Vec<String>,
     pub mozzi: SpatialInertia,
     pub theirs: SpatialInertia,
@@ -53,7 +53,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot) -> Result<Ve
     Ok(groups.into_iter().map(|(reason, list)| Cause::Bodies(reason, list)).collect())
 }
 
-/// The reason of which the body's numbers are the result.
+/// The reason that yields the body's numbers.
 fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robot) -> Result<Reason> {
     if answer.library != "MuJoCo" {
         return Ok(Reason::Unknown);
@@ -79,7 +79,7 @@ fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robo
         let [least, ..] = link.inertia.verdict().principal_moments;
         link.inertia.mass < mass || least < moment
     };
-    // of bodies that are fixed to each other, MuJoCo may raise each or their sum: both are less than this
+    // MuJoCo may raise each of the bodies fixed to each other, or their sum: both are less than this
     let most = links().count() as f64;
     let raised = change.theirs.mass - change.mozzi.mass;
     if is_bounded && (tried_bound || links().any(is_light)) && raised >= 0.0 && raised <= most * mass * 1.001 {
@@ -92,7 +92,8 @@ fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robo
     Ok(if setting("settotalmass") > 0.0 { Reason::Scaled } else { Reason::Unknown })
 }
 
-/// As MuJoCo balances an inertia: one that breaks the triangle inequality becomes that of a sphere of the same trace.
+/// Balances an inertia as MuJoCo does: one that violates the triangle inequality becomes that of a sphere with the same
+/// trace.
 fn balanced(inertia: SpatialInertia) -> SpatialInertia {
     let [a, b, c] = inertia.verdict().principal_moments;
     if a + b >= c {

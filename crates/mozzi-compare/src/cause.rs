@@ -8,7 +8,7 @@ use crate::numbers::Side;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, ScrewAxis, SpatialInertia};
 
-/// A number of a joint on either side.
+/// A joint's number on both sides.
 #[derive(Clone, Debug)]
 pub struct Change {
     pub joint: String,
@@ -16,19 +16,19 @@ pub struct Change {
     pub theirs: f64,
 }
 
-/// A mimic joint that moves on its own there.
+/// A mimic joint that is independent in the library.
 #[derive(Clone, Debug)]
 pub struct Freed {
     pub joint: String,
     pub source: String,
-    /// The library holds it to its source joint by the force of a constraint.
+    /// The library couples it to its source joint by the force of a constraint.
     pub constrained: bool,
 }
 
 #[derive(Clone, Debug)]
 pub enum Cause {
     Mimics(Vec<Freed>),
-    /// These joints do not move there.
+    /// These joints do not move in the library.
     Held(Vec<String>),
     Gravity {
         mozzi: [f64; 3],
@@ -38,22 +38,23 @@ pub enum Cause {
     Damping(Vec<Change>),
     Friction(Vec<Change>),
     Stiffness(Vec<Change>),
-    /// The forces of such constraints, which their τ contains.
+    /// The forces of these constraints, which the library's τ contains.
     Constraints(Vec<String>),
-    /// A force that their τ contains.
+    /// A force that the library's τ contains.
     Force(String),
     Bodies(Reason, Vec<BodyChange>),
-    /// These joints have other axes there.
+    /// These joints have other axes in the library.
     Axes(Vec<(String, [f64; 6])>),
 }
 
 impl Cause {
-    /// Whether the cause is known, rather than only the place.
+    /// True if the cause is known, false if only the place of the difference is known.
     pub fn is_explanation(&self) -> bool {
         !matches!(self, Cause::Axes(_) | Cause::Bodies(Reason::Unknown, _))
     }
 
-    /// The library's way in mozzi's description, and what mozzi does not compute taken off theirs.
+    /// Applies the library's behaviour to mozzi's description, and subtracts forces that mozzi does not compute from
+    /// the library's results.
     pub fn apply(&self, robot: &mut Description, theirs: &mut Side, from: &Robot) -> Result<()> {
         let mut each = |changes: &[Change], set: fn(&mut Joint, f64)| {
             for change in changes {
@@ -69,7 +70,7 @@ impl Cause {
                 list.iter().for_each(|freed| joints(robot, &freed.joint).for_each(|joint| joint.mimic = None));
             }
             Cause::Held(list) => {
-                // which hold joints that are fixed from here on, and are not compared
+                // they contain joints that are fixed from here on, and are not compared
                 (robot.states, robot.start) = (Vec::new(), None);
                 for joint in &mut robot.joints {
                     if list.contains(&joint.name) {
@@ -81,7 +82,7 @@ impl Cause {
                 }
             }
             Cause::Gravity { theirs, .. } => robot.gravity = *theirs,
-            // before other forces are taken off: the causes are in this order
+            // must come before other forces are subtracted: the causes are in this order
             Cause::Constraints(_) => {
                 for (state, tau) in theirs.states.iter_mut().zip(&from.unconstrained) {
                     state.tau.copy_from(tau);
@@ -89,10 +90,10 @@ impl Cause {
             }
             Cause::Force(name) => {
                 if name == "spring" {
-                    robot.joints.iter_mut().for_each(|joint| joint.stiffness = 0.0); // the linear part is here, too
+                    robot.joints.iter_mut().for_each(|joint| joint.stiffness = 0.0); // in the force, too
                 }
                 for (state, force) in theirs.states.iter_mut().zip(from.forces.get(name).into_iter().flatten()) {
-                    state.tau += force; // the library's inverse dynamics is less by it
+                    state.tau += force; // the library's inverse dynamics is less by this force
                 }
             }
             Cause::Bodies(_, changes) => {
@@ -127,8 +128,8 @@ fn joints<'r>(robot: &'r mut Description, name: &str) -> impl Iterator<Item = &'
     robot.joints.iter_mut().filter(move |joint| joint.name == name)
 }
 
-/// Every cause that the two sides' constants suggest; each is then tested. `coupled`: the library was called with mimic
-/// joints coupled.
+/// Every cause that the two sides' constants suggest; each is tested afterwards. `coupled`: the library was called with
+/// coupled mimic joints.
 pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: bool) -> Result<Vec<Cause>> {
     let (theirs, mut causes) = (&from.constants, Vec::new());
     let mine = Constants::of(robot)?;
@@ -148,7 +149,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
         cause.apply(&mut robot, &mut from.side.clone(), from)?;
         causes.push(cause);
     }
-    let mine = Constants::of(&robot)?; // bodies of joints that are held are the bodies that carry them
+    let mine = Constants::of(&robot)?; // the bodies of fixed joints are merged into their parent bodies
     let freed = |joint: &Joint| {
         let source = joint.mimic.as_ref()?.joint.clone();
         let constrained = from.couplings.iter().any(|(mimic_joint, _)| *mimic_joint == joint.name);
@@ -167,15 +168,16 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
     type Number = fn(&JointConstants) -> f64;
     let changes = |pick: Number, ignored: bool| -> Vec<Change> {
         let change = |joint: &JointConstants| {
-            // a mimic joint that is coupled there has no numbers of its own; what τ leaves out, it leaves out of all
+            // a mimic joint that the library couples has no numbers of its own; a term that τ omits is omitted for all
+            // joints
             let theirs = if ignored { 0.0 } else { pick(theirs.joint(&joint.name)?) };
             let mozzi = pick(joint);
             apart(mozzi, theirs).then(|| Change { joint: joint.name.clone(), mozzi, theirs })
         };
         mine.joints.iter().filter_map(change).collect()
     };
-    // Pinocchio keeps damping and friction and leaves them out of its inverse dynamics, and has no springs; MuJoCo
-    // makes a constraint of dry friction; springs are reported by their forces
+    // Pinocchio stores damping and friction but omits them from its inverse dynamics, and has no springs; MuJoCo models
+    // dry friction as a constraint; springs are reported by their forces
     let pinocchio = answer.library == "Pinocchio";
     type Make = fn(Vec<Change>) -> Cause;
     let stiffness = if pinocchio { changes(|joint| joint.stiffness, true) } else { Vec::new() };

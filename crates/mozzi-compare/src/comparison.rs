@@ -1,4 +1,4 @@
-//! Asking, judging, and what came of it.
+//! Runs the libraries, compares, and collects the results.
 
 use crate::answer::{Answer, Robot, Unavailable};
 use crate::python::{self, Peer};
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Importing a library takes seconds, a robot's states fractions of one.
+/// Importing a library takes seconds, computing a robot's states a fraction of a second.
 pub const TIME_LIMIT: Duration = Duration::from_secs(60);
 
 /// How a robot is compared.
@@ -24,7 +24,7 @@ pub struct Options {
     pub states: usize,
     /// Seed of the random states; 1 by default.
     pub seed: u64,
-    /// A library that has not answered by then is ended; [`TIME_LIMIT`] by default.
+    /// Time limit after which a library's process is killed; [`TIME_LIMIT`] by default.
     pub time_limit: Duration,
 }
 
@@ -39,7 +39,7 @@ impl Default for Options {
 pub struct Comparison {
     question: Question,
     seed: u64,
-    /// None where mozzi refuses the robot.
+    /// None if mozzi refuses the robot.
     joints: Option<Vec<String>>,
     findings: Vec<Finding>,
 }

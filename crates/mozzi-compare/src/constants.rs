@@ -1,30 +1,30 @@
-//! A robot's constants in the base frame at home, where all joints are at 0: what two libraries can compare, whatever
-//! frames each of them keeps.
+//! A robot's constants in the base frame at home, with all joints at 0: two libraries can compare these whatever link
+//! frames they use.
 
 use crate::Result;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, Place, SE3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;
 
-/// A joint, and the body that it moves with all that is fixed to it.
+/// A joint, and the body that it moves, including all links fixed to it.
 #[derive(Clone, Debug)]
 pub struct JointConstants {
-    /// mozzi's name.
+    /// The name in mozzi.
     pub name: String,
-    /// The library's own.
+    /// The name in the library.
     pub called: String,
-    /// The joint that carries it.
+    /// The parent joint.
     pub parent: Option<usize>,
-    /// Positions that it takes, and velocities.
+    /// The numbers of its positions and of its velocities.
     pub nq: usize,
     pub nv: usize,
-    /// Its screw axis, one for each velocity: (ω, v). Zeros of a joint of several, here and in MuJoCo.
+    /// Its screw axes, one for each velocity: (ω, v). Zeros for a joint of several velocities, here and in MuJoCo.
     pub axes: Vec<[f64; 6]>,
     pub body: SpatialInertia,
     pub armature: f64,
     pub damping: f64,
     pub friction: f64,
-    /// 0 of a library, whose springs are among its forces.
+    /// 0 for a library, whose springs are reported by their forces.
     pub stiffness: f64,
 }
 
@@ -34,14 +34,14 @@ pub struct Constants {
     pub gravity: [f64; 3],
 }
 
-/// The robot with every mimic joint moving on its own.
+/// The robot with independent mimic joints.
 pub fn freed(robot: &Description) -> Description {
     let mut robot = robot.clone();
     robot.joints.iter_mut().for_each(|joint| joint.mimic = None);
     robot
 }
 
-/// Where each link is when every joint, mimic joints too, is at 0, and a floating base at {s}.
+/// Each link's pose with every joint, including mimic joints, at 0, and a floating base at {s}.
 pub fn home(robot: &Description) -> Result<BTreeMap<String, SE3>> {
     let model = freed(robot).build()?;
     let poses = model.frame_poses(&model.neutral_configuration::<f64>())?;
@@ -96,12 +96,12 @@ impl Constants {
     }
 }
 
-/// A body by its mass, its centre and the inertia about that, along the base's axes.
+/// A body: its mass, its centre of mass and the inertia about it, along the base's axes.
 pub fn body(mass: f64, center: [f64; 3], inertia: [[f64; 3]; 3]) -> SpatialInertia {
     SpatialInertia::new(mass, Vec3(center), Sym3::symmetric_part(mozzi::Mat3::from_rows(inertia)))
 }
 
-/// Are these the same body, to the digits that a file has?
+/// True if these bodies agree to the digits that a file has.
 pub fn same_body(a: &SpatialInertia, b: &SpatialInertia) -> bool {
     let (rows, others) = (a.to_matrix(), b.to_matrix());
     let size = |r: usize, c: usize| {

@@ -1,11 +1,11 @@
-//! States and results of a model in the coordinates of a library.
+//! Converts a model's states and results to the coordinates of a library.
 
 use crate::Result;
 use crate::numbers::Numbers;
 use mozzi::conventions::{MuJoCo, Pinocchio};
 use mozzi::{Freedom, Model, Place};
 
-/// Both libraries have the linear three of a free joint first; of a ball there are the last three.
+/// Both libraries order a free joint's velocities linear first; a ball has only the last three.
 const PARTS: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
 
 /// The names of a joint's velocities, in the order of the libraries.
@@ -23,11 +23,11 @@ pub enum Convention {
     MuJoCo(MuJoCo),
 }
 
-/// Positions, velocities and accelerations, of each joint its own.
+/// Positions, velocities and accelerations, one list for each joint.
 pub type Lists = [Vec<Vec<f64>>; 3];
 
 impl Convention {
-    /// Of "Pinocchio" or "MuJoCo".
+    /// The convention of "Pinocchio" or "MuJoCo".
     pub fn new(library: &str, model: &Model) -> Result<Self> {
         if library == "MuJoCo" {
             return Ok(Convention::MuJoCo(MuJoCo::new(model)));

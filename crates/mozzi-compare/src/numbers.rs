@@ -1,4 +1,4 @@
-//! M, g, h and τ at the states, and how far two sides are apart.
+//! M, g, h and τ at the states, and the difference between two sides.
 
 use crate::Result;
 use crate::convention::{Convention, velocity_names};
@@ -8,8 +8,8 @@ use mozzi::accuracy::{TermSizes, normalized_error};
 use mozzi::{Description, Place};
 use nalgebra::{DMatrix, DVector};
 
-/// More than this many ε of the size of the terms is a difference. Rounding, of files' digits through quaternions and
-/// eigenvectors too, stays a hundredfold below; a wrong digit in a file is a thousandfold above.
+/// The tolerance in ε of the size of the terms. Rounding, including that of files' digits through quaternions and
+/// eigenvectors, stays a hundred times below it; a wrong digit in a file is a thousand times above it.
 pub const BOUND: f64 = 1e6;
 
 pub const QUANTITIES: [&str; 4] = ["M", "g", "h", "τ"];
@@ -49,7 +49,7 @@ impl Errors {
 pub struct Entry {
     pub quantity: &'static str,
     pub state: usize,
-    /// The row's joint, and of M the column's.
+    /// The row's joint; for M also the column's.
     pub joints: Vec<String>,
     pub mozzi: f64,
     pub theirs: f64,
@@ -87,12 +87,12 @@ impl Side {
     }
 }
 
-/// Two sides, on the joints that both have.
+/// Two sides, restricted to the joints that both have.
 pub struct Pair<'a> {
     mozzi: &'a Side,
     theirs: &'a Side,
     question: &'a Question,
-    /// Places of the common joints on either side.
+    /// The indices of the common joints on either side.
     common: Vec<(usize, usize)>,
 }
 

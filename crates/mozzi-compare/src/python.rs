@@ -1,4 +1,4 @@
-//! Asking the libraries: the script in a Python, a question in, an answer out.
+//! Runs the libraries: a script in a Python process, a question in, an answer out.
 
 use crate::answer::{Answer, Fault, Unavailable, name_of};
 use crate::question::Question;
@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// One text: the parts use names of those before them.
+/// One text: each part uses names of the parts before it.
 const SCRIPT: &str = concat!(
     include_str!("peers/common.py"),
     include_str!("peers/pinocchio.py"),
@@ -18,11 +18,11 @@ const SCRIPT: &str = concat!(
     include_str!("peers/answer.py")
 );
 
-/// What is asked, and of whom.
+/// A question, and the library that gets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
     Pinocchio,
-    /// Pinocchio with its mimic joints coupled.
+    /// Pinocchio with coupled mimic joints.
     PinocchioMimic,
     MuJoCo,
 }
@@ -33,7 +33,7 @@ impl Peer {
     }
 }
 
-/// The one named, that of the virtual environment that is active, or `python3`.
+/// The given interpreter, that of the active virtual environment, or `python3`.
 pub fn find(named: Option<&str>) -> PathBuf {
     let (inside, global) = if cfg!(windows) { ("Scripts/python.exe", "python") } else { ("bin/python", "python3") };
     match (named, std::env::var_os("VIRTUAL_ENV")) {
@@ -43,7 +43,7 @@ pub fn find(named: Option<&str>) -> PathBuf {
     }
 }
 
-/// Each in a process of its own, at the same time: one that dies takes no other along.
+/// Runs each library in its own process, at the same time: a crash in one does not affect the others.
 pub fn ask(python: &Path, question: &Question, peers: &[Peer], limit: Duration) -> Result<Vec<Answer>> {
     let running: Vec<(Peer, Child)> = peers.iter().map(|&peer| Ok((peer, start(python)?))).collect::<Result<_>>()?;
     let answers = thread::scope(|scope| {
@@ -73,14 +73,14 @@ fn answer(child: Child, question: &Question, peer: Peer, limit: Duration) -> Ans
     answer.unwrap_or_else(|(why, fault)| Answer::silent(peer.key(), Unavailable::Died(why, fault)))
 }
 
-/// One answer as JSON, to be kept.
+/// One answer as JSON, to be stored.
 #[cfg(test)]
 pub fn raw(python: &Path, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
     let child = start(python).map_err(|error| error.to_string())?;
     value(child, question, peer, crate::TIME_LIMIT).map_err(|(why, _)| why)
 }
 
-/// Why there is no answer, and whose fault that is.
+/// The reason why there is no answer, and the part at fault.
 type Missing = (String, Fault);
 
 fn not_written(text: &str) -> Missing {
@@ -88,7 +88,7 @@ fn not_written(text: &str) -> Missing {
     (format!("its answer is not what the script writes: `{start}`"), Fault::Python)
 }
 
-/// What the script prints, or why there is none.
+/// The script's output, or the reason why there is none.
 fn value(
     mut child: Child,
     question: &Question,
@@ -98,7 +98,7 @@ fn value(
     let of_mozzi = |why: String| (why, Fault::Mozzi);
     let asked = question.json(peer.key(), peer == Peer::PinocchioMimic).map_err(|error| of_mozzi(error.to_string()))?;
     if let Some(mut stdin) = child.stdin.take() {
-        // a script that ends before it has read says why by its exit
+        // if a script ends before it has read, its exit status gives the reason
         thread::spawn(move || drop(stdin.write_all(asked.to_string().as_bytes())));
     }
     let (out, err) = (text_of(child.stdout.take()), text_of(child.stderr.take()));
@@ -115,14 +115,14 @@ fn value(
     let said = received(&err, deadline).unwrap_or_default();
     let last = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing").trim();
     if !status.success() {
-        // by a signal: the library's own code
+        // killed by a signal: the fault of the library's own code
         let fault = if status.code().is_none() { Fault::Library } else { Fault::Python };
         return Err((format!("Python ended with {status}: {last}"), fault));
     }
     serde_json::from_str(&text).map_err(|_| not_written(&text))
 }
 
-/// A pipe's text, when it is closed.
+/// A pipe's text, read until it is closed.
 fn text_of(pipe: Option<impl Read + Send + 'static>) -> Receiver<String> {
     let (sender, receiver) = channel();
     thread::spawn(move || {
@@ -139,7 +139,7 @@ fn received(text: &Receiver<String>, deadline: Instant) -> Option<String> {
     text.recv_timeout(deadline.saturating_duration_since(Instant::now())).ok()
 }
 
-/// How it ended, if it did in time.
+/// Its exit status, if it ended in time.
 fn ended(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     loop {
         match child.try_wait() {

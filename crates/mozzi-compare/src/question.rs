@@ -1,4 +1,4 @@
-//! What a library is asked: the file, and states of every joint by name.
+//! The input for a library: the file, and states of every joint by name.
 
 use crate::answer::name_of;
 use crate::constants::{Constants, freed};
@@ -14,12 +14,13 @@ pub struct Question {
     pub source: Source,
     /// Every joint that moves.
     pub names: Vec<String>,
-    /// Its screw axis at home, by which a library's joint of another name is known; of a ball or a free joint zeros.
+    /// Its screw axis at home, which identifies the joint if the library has another name for it; zeros for a ball or a
+    /// free joint.
     pub axes: Vec<[f64; 6]>,
     pub states: Vec<State>,
-    /// The robot with every mimic joint moving on its own: what the states are of. None where mozzi refuses the robot.
+    /// The robot with independent mimic joints, to which the states belong. None if mozzi refuses the robot.
     pub freed: Option<Model>,
-    /// The file's own base floats: it is compared at rest at {s}, where every convention has the same axes.
+    /// True if the file's own base floats: it is compared at rest at {s}, where the axes of all conventions agree.
     pub floating: bool,
 }
 
@@ -33,18 +34,19 @@ impl Question {
         Ok(Question { source, names, axes, states, freed: Some(model), floating: robot.base == Base::Floating })
     }
 
-    /// Where a joint's numbers stand in a state.
+    /// The place of a joint's numbers in a state.
     pub fn place(&self, joint: &str) -> Option<&Place> {
         let k = self.names.iter().position(|known| known == joint)?;
         self.freed.as_ref()?.places().get(k)
     }
 
-    /// The file alone: does the library load it?
+    /// Only the file, to check whether the library loads it.
     pub fn of_file(source: Source) -> Self {
         Question { source, names: Vec::new(), axes: Vec::new(), states: Vec::new(), freed: None, floating: false }
     }
 
-    /// As a library's script reads it, states in its own coordinates. `mimic` asks Pinocchio to couple mimic joints.
+    /// The JSON for a library's script, with states in the library's coordinates. `mimic` makes Pinocchio couple mimic
+    /// joints.
     pub fn json(&self, library: &str, mimic: bool) -> Result<Value> {
         let (mut home, mut states, mut joints) = (Value::Null, Vec::new(), Vec::new());
         if let Some(model) = &self.freed {

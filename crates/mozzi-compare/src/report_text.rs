@@ -7,12 +7,12 @@ use crate::verdict::Verdict;
 use crate::vocabulary;
 use mozzi_text::{Page, about, table};
 
-/// What was found of one library.
+/// The result for one library.
 #[derive(Debug)]
 pub struct Finding {
     pub answer: Answer,
     pub verdict: Option<Verdict>,
-    /// What Pinocchio says when it is asked to couple mimic joints, where it has been asked.
+    /// Pinocchio's answer with coupled mimic joints, if it was called that way.
     pub coupled: Option<(Answer, Option<Verdict>)>,
 }
 
@@ -32,7 +32,7 @@ pub fn write(page: &mut Page, question: &Question, finding: &Finding) {
             numbers(page, verdict, question);
             verdict.causes.iter().for_each(|found| {
                 page.line(format!("  - {}", vocabulary::cause(&found.cause, answer)));
-                // of a single cause it is the first row of the table
+                // a single cause is printed in the first row of the table
                 if verdict.after.agree() && verdict.causes.len() > 1 {
                     page.line(format!("    all but this: {}", errors(found.without)));
                 }

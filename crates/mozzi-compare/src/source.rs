@@ -1,4 +1,4 @@
-//! The robot as the libraries get it.
+//! The robot in the form that the libraries read.
 
 use crate::{Error, Result};
 use mozzi::Description;
@@ -12,15 +12,15 @@ pub struct Source {
     pub(crate) name: String,
     /// "urdf" or "mjcf".
     pub(crate) language: &'static str,
-    /// The file, if the library can read it.
+    /// The file, if the libraries can read it.
     pub(crate) path: Option<String>,
-    /// The text otherwise.
+    /// Otherwise the text.
     pub(crate) text: Option<String>,
 }
 
 impl Source {
-    /// The file where the libraries can read it (URDF, MJCF); of an embedded robot its text; of JSON, what `robot` is,
-    /// as URDF.
+    /// The file if the libraries can read it (URDF, MJCF); the text of an embedded robot; for JSON, `robot` written as
+    /// URDF.
     ///
     /// # Errors
     /// [`Error::Read`], [`Error::Write`].

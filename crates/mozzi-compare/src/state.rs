@@ -6,8 +6,8 @@ use mozzi::{Description, Freedom, Model, SE3, SO3, Vec3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// Of the robot in which mimic joints move on their own; here they are where they follow to. A floating base is at rest
-/// at {s}.
+/// A state of the robot with independent mimic joints; here the mimic joints follow their source joints. A floating
+/// base is at rest at {s}.
 #[derive(Clone, Debug)]
 pub struct State {
     pub theta: Vec<f64>,
@@ -47,7 +47,7 @@ impl State {
     }
 }
 
-/// Limits that exclude 0 by far are kept to.
+/// Random position, velocity and acceleration. Limits that exclude a range around 0 are respected.
 fn of_one_axis(joint: &Joint, random: &mut Random) -> [f64; 3] {
     let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
     let [low, high] = joint.limits.position.unwrap_or([-reach, reach]);
@@ -55,14 +55,14 @@ fn of_one_axis(joint: &Joint, random: &mut Random) -> [f64; 3] {
     [low + (high - low) * within(random), random.next(), 2.0 * random.next()]
 }
 
-/// Of a ball or a free joint: turned by an angle within the limit, the origin within 1 m.
+/// The pose of a ball or a free joint: rotated by an angle within the limit, the origin within 1 m.
 fn pose(joint: &Joint, random: &mut Random) -> [f64; 7] {
     let most = joint.limits.position.map_or(PI, |[_, high]| high.min(PI));
     let (w, p) = (Vec3(random.array()), Vec3(random.array()));
     SE3 { R: SO3::exp(w * (most * within(random) / w.norm())), p }.to_pose()
 }
 
-/// Half a per mille off the ends of 0 … 1.
+/// A random number in 0 … 1, half a per mille away from the ends.
 fn within(random: &mut Random) -> f64 {
     0.0005 + 0.999 * (0.5 + 0.5 * random.next())
 }

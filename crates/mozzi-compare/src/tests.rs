@@ -1,4 +1,4 @@
-//! Each explanation is reached from what the real libraries answered, recorded in `tests/peers/` by [`record`].
+//! Each explanation is found from the real libraries' answers, which [`record`] stored in `tests/peers/`.
 #![allow(clippy::unwrap_used)]
 
 use crate::Source;
@@ -48,7 +48,7 @@ fn answer(record: &str) -> Answer {
     Answer::read(&serde_json::from_str(&text).unwrap()).unwrap()
 }
 
-/// The verdict where mozzi has read the file a little differently.
+/// The verdict if mozzi read the file slightly differently.
 fn judged(record: usize, edit: impl Fn(&mut Description)) -> (Verdict, Answer) {
     let (file, peer, record) = RECORDS[record];
     let (mut robot, answer) = (robot(file), answer(record));
@@ -101,7 +101,7 @@ fn every_record_is_explained_by_its_causes() {
         &[],
         &["damping"],
         &[],
-        &["held", "gravity"], // its reader takes the first body of the world alone, and no <option>
+        &["held", "gravity"], // the library's reader takes only the first body of the world, and no <option>
         &[],
     ];
     for (k, expected) in expected.into_iter().enumerate() {
@@ -116,7 +116,7 @@ fn every_record_is_explained_by_its_causes() {
     let workarounds: Vec<Workaround> =
         answer("massless_mujoco.json").attempts.iter().map(|(_, workaround)| *workaround).collect();
     assert_eq!(workarounds, [Workaround::Geometry, Workaround::Fixed, Workaround::Bound]);
-    // other springs there
+    // the library has other springs
     let (verdict, _) = judged(6, |robot| robot.joints.iter_mut().for_each(|joint| joint.stiffness *= 2.0));
     assert!(kinds(&verdict).contains(&"spring") && verdict.is_explained(), "{verdict:?}");
     let (verdict, _) = judged(0, |_| {});
@@ -182,7 +182,7 @@ fn joints_that_move_on_one_side_only() {
     let whole = robot("massless.urdf");
     let mut fixed = whole.clone();
     fixed.joints[1].kind = JointKind::Fixed;
-    // each side in turn has the joint; the library's numbers are mozzi's of its robot
+    // the joint is missing on each side in turn; the library's numbers are mozzi's results for its robot
     for (here, there) in [(&whole, &fixed), (&fixed, &whole)] {
         let source = question("massless.urdf").source;
         let question = Question::new(source, here, 3, 1).unwrap();
@@ -258,7 +258,7 @@ fn answers_that_are_none() {
     assert!(!broken("/states/0/g", serde_json::json!([null, 0.0])), "NaN is a number that differs");
 }
 
-/// `MOZZI_PYTHON=… cargo test -p mozzi-compare -- --ignored record` asks the libraries anew.
+/// `MOZZI_PYTHON=… cargo test -p mozzi-compare -- --ignored record` calls the libraries again.
 #[test]
 #[ignore = "writes the records; needs Python with pin and mujoco"]
 fn record() {

@@ -1,4 +1,4 @@
-//! Does a library agree; if not, which causes make the difference vanish?
+//! Checks whether a library agrees and, if not, which causes make the difference vanish.
 
 use crate::Result;
 use crate::answer::{Answer, Robot};
@@ -7,26 +7,26 @@ use crate::numbers::{Entry, Errors, Pair, Side};
 use crate::question::Question;
 use mozzi::Description;
 
-/// A cause, and the errors where all others are accounted for and this is not.
+/// A cause, and the errors if all causes but this one are accounted for.
 #[derive(Clone, Debug)]
 pub struct Found {
     pub cause: Cause,
     pub without: Errors,
 }
 
-/// What comparing with a library that has the robot gave.
+/// The result of a comparison with a library that loaded the robot.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// As both read the file, on the joints that both have.
+    /// Before accounting for causes, on the joints that both have.
     pub before: Errors,
-    /// With the causes accounted for.
+    /// After accounting for the causes.
     pub after: Errors,
     pub causes: Vec<Found>,
-    /// Joints that move there and not here, with their velocities; held at 0.
+    /// Joints that move only in the library, with their velocities; held at 0.
     pub extra: Vec<(String, usize)>,
-    /// The first entry that differs still.
+    /// The first entry that still differs.
     pub first: Option<Entry>,
-    /// mozzi's numbers of the joints in the library's order, where that is another.
+    /// mozzi's indices of the joints in the library's order, if the orders differ.
     pub order: Option<Vec<usize>>,
 }
 
@@ -35,13 +35,13 @@ impl Verdict {
         self.before.agree() && self.causes.is_empty() && self.extra.is_empty()
     }
 
-    /// Agrees, or differs for reasons that are known.
+    /// True if it agrees, or differs for known reasons.
     pub fn is_explained(&self) -> bool {
         self.after.agree() && self.causes.iter().all(|found| found.cause.is_explanation())
     }
 }
 
-/// Tries the causes together, then drops those that make no difference. `coupled`: as in [`suspects`].
+/// Tests the causes together, then drops those that make no difference. `coupled`: see [`suspects`].
 pub fn judge(
     robot: &Description,
     question: &Question,
@@ -57,7 +57,7 @@ pub fn judge(
     let errors = |causes: &[&Cause]| -> Errors {
         match with(causes) {
             Ok((mine, theirs)) => Pair::new(&mine, &theirs, question).errors(),
-            Err(_) => Errors([f64::NAN; 4]), // a robot that mozzi does not build explains nothing
+            Err(_) => Errors([f64::NAN; 4]), // a robot that mozzi cannot build explains nothing
         }
     };
     let all = suspects(robot, answer, from, coupled)?;
@@ -67,14 +67,15 @@ pub fn judge(
     let mut kept: Vec<&Cause> = all.iter().collect();
     let mut after = errors(&kept);
     if !after.agree() {
-        // a free body may be elsewhere at home and move alike: its place is no cause then
+        // a free body may have another home pose but the same dynamics: then its place is no cause
         let known: Vec<&Cause> = kept.iter().copied().filter(|cause| cause.is_explanation()).collect();
         let errors = errors(&known);
         if errors.agree() {
             (kept, after) = (known, errors);
         }
     }
-    // what is known comes first: a body whose place alone is known is no explanation where a reason will do
+    // explanations are kept in preference: a body that only differs, without a reason, is dropped if a known reason
+    // suffices
     let mut droppable: Vec<&Cause> = kept.iter().copied().filter(|cause| !is_structure(cause)).collect();
     droppable.sort_by_key(|cause| cause.is_explanation());
     if after.agree() {
@@ -102,7 +103,7 @@ pub fn judge(
     Ok(Verdict { before, after, causes, extra, first, order: order(question, from) })
 }
 
-/// Places in mozzi's order of the joints in the library's.
+/// mozzi's indices of the joints in the library's order.
 fn order(question: &Question, from: &Robot) -> Option<Vec<usize>> {
     let names = from.constants.joints.iter().map(|joint| &joint.name);
     let order: Vec<usize> = names.filter_map(|name| question.names.iter().position(|known| known == name)).collect();

@@ -5,10 +5,10 @@ use crate::bodies::{BodyChange, Reason};
 use crate::cause::{Cause, Change};
 use mozzi_text::{about, scalar, tuple};
 
-/// More are counted.
+/// More items than this are only counted.
 const LISTED: usize = 4;
 
-/// A few, and how many more.
+/// The first few items, and the number of further ones.
 pub fn some<T>(list: &[T], say: impl Fn(&T) -> String) -> String {
     let mut words: Vec<String> = list.iter().take(LISTED).map(say).collect();
     if list.len() > LISTED {
@@ -17,7 +17,7 @@ pub fn some<T>(list: &[T], say: impl Fn(&T) -> String) -> String {
     words.join(", ")
 }
 
-/// What differs, and why.
+/// The difference and its cause.
 pub fn cause(cause: &Cause, answer: &Answer) -> String {
     let library = answer.library;
     match cause {
@@ -117,7 +117,7 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
     format!("inertia, here and in {library}: {why}: {}", some(list, here))
 }
 
-/// Of balls and free joints.
+/// Names for balls and free joints.
 pub fn coordinates(library: &str) -> &'static str {
     match library {
         "Pinocchio" => {
@@ -129,7 +129,7 @@ pub fn coordinates(library: &str) -> &'static str {
     }
 }
 
-/// What was done that the library takes the file.
+/// The change that made the library accept the file.
 pub fn workaround(workaround: Workaround) -> &'static str {
     match workaround {
         Workaround::Geometry => "without <visual> and <collision>",

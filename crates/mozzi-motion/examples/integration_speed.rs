@@ -1,5 +1,5 @@
-//! How long a simulation takes: 10 s of the Panda's seven joints at 1 ms, let go where it stands with a brake of 0.5 N
-//! m s/rad, by each method; the least of some runs.
+//! Duration of a simulation by each method: 10 s of the Panda's seven joints at 1 ms, released from the start with a
+//! brake of 0.5 N m s/rad; the fastest of some runs.
 //!
 //! `cargo run --release -p mozzi-motion --example integration_speed [RUNS]`
 
@@ -8,10 +8,10 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let runs: usize = std::env::args().nth(1).map_or(Ok(10), |text| text.parse())?;
-    // the fingers locked: their slide has no end, and falls out of the numbers
+    // the fingers are locked: their slide has no stop, and its position would overflow
     let panda = mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.02)])?;
     let (start, still) = ([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8], [0.0; 7]);
-    // a little friction, without which the fall is wilder than the first-order methods stand
+    // a little friction: without it the fall is too wild for the first-order methods
     let brake = || torque(|_, _, dtheta, tau| tau.iter_mut().zip(dtheta).for_each(|(tau, rate)| *tau -= 0.5 * rate));
     let least = |run: &dyn Fn() -> Result<f64, Box<dyn std::error::Error>>| {
         let mut best = (f64::INFINITY, 0.0);

@@ -19,7 +19,7 @@ const ROBOTS: [(&str, &str); 6] = [
     ("two_link_planar", "tip"),
 ];
 
-/// Within the limits; of a joint without, half a turn either way.
+/// Within the limits; half a turn either way for a joint without limits.
 fn random(model: &Model, random: &mut Random) -> Vec<f64> {
     let anywhere = |joint: &mozzi::model::description::Joint| {
         let [low, high] = joint.limits.position.unwrap_or([-PI, PI]);

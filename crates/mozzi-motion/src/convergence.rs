@@ -1,34 +1,34 @@
-//! How exact each method of a simulation is, and at what cost.
+//! Accuracy and cost of each simulation method.
 
 use crate::error::check;
 use mozzi::simulation::{Method, Options, Policy, Simulation, dormand_prince_by_equal_steps, torque};
 use mozzi::{Error, Model, difference};
 use std::cell::Cell;
 
-/// The reference takes so many times as many steps as the finest that is compared with it, by Dormand-Prince.
+/// The reference, by Dormand-Prince, takes this many times the steps of the finest motion that is compared with it.
 const FINER: usize = 4;
-/// For Dormand-Prince's order, steps are doubled so often from the longest on.
+/// To measure Dormand-Prince's order, the number of steps is doubled this often, from the longest step on.
 const COARSER: u32 = 4;
-/// Smaller errors, in rad or m, are close to rounding, and tell nothing of a method.
+/// Errors below this, in rad or m, are close to rounding and are not significant.
 const ROUNDING: f64 = 1e-12;
 
 /// Motions by one method compared with the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
-    /// The method's.
+    /// The method's name.
     pub name: &'static str,
     /// The order that its error has in the length of a step.
     pub order: u32,
-    /// From the coarsest to the finest; those that left the numbers, or had no solution, are left out.
+    /// From the coarsest to the finest; motions that diverged, or had no solution, are left out.
     pub measured: Vec<Measured>,
     /// Dormand-Prince only: the same by equal steps, without a tolerance, for its order.
     pub equal_steps: Vec<Measured>,
 }
 
-/// One of them.
+/// One measured motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Seconds; of [`Method::DormandPrince`] the tolerance.
+    /// Seconds; for [`Method::DormandPrince`] the tolerance.
     pub step: f64,
     /// How often θ̈ was computed.
     pub evaluations: usize,
@@ -37,8 +37,7 @@ pub struct Measured {
 }
 
 impl Convergence {
-    /// The order that errors of equal steps show: d ln(error)/d ln(step) of the two finest whose errors are not
-    /// rounding.
+    /// The order measured with equal steps: d ln(error)/d ln(step) of the two finest whose errors are not rounding.
     pub fn measured_order(&self) -> Option<f64> {
         let points = if self.is_adaptive() { &self.equal_steps } else { &self.measured };
         let pair = points.windows(2).rfind(|pair| pair[1].error > ROUNDING)?;
@@ -47,19 +46,19 @@ impl Convergence {
         Some(order).filter(|order| order.is_finite())
     }
 
-    /// Are its steps found by a tolerance?
+    /// Are its steps adaptive, chosen by a tolerance?
     pub fn is_adaptive(&self) -> bool {
         self.name == (Method::DormandPrince { tolerance: 1.0 }).name()
     }
 }
 
 /// The error of every method at the end of a motion with motors off. Fixed-step methods begin with the given number of
-/// steps, which is doubled for each further error; adaptive ones take as many tolerances, each a tenth of the one
-/// before, from 10⁻³ on. The reference is Dormand-Prince with a quarter of the shortest step. `progress(done, all)`
-/// counts evaluations of θ̈; `all` is an estimate.
+/// steps, which is doubled for each further error. Adaptive methods take the same number of tolerances, each a tenth of
+/// the one before, from 10⁻³ on. The reference is Dormand-Prince with a quarter of the shortest step.
+/// `progress(done, all)` counts evaluations of θ̈; `all` is an estimate.
 ///
 /// # Errors
-/// [`mozzi::Error`]s as of [`Model::simulate`].
+/// [`mozzi::Error`]s as for [`Model::simulate`].
 pub fn convergence(
     model: &Model,
     [theta, dtheta]: [&[f64]; 2],
@@ -72,7 +71,7 @@ pub fn convergence(
     check(coarsest >= 1, "the number of steps", coarsest, "at least 1")?;
     let finest = coarsest << halvings;
     let counted = Cell::new(0_usize);
-    // the reference's six a step are most of them; the others are of some 30 a step, twice the finest's
+    // most are the reference's, six per step; the others take some 30 per step, for twice the finest number of steps
     let all = 6 * FINER * finest + 60 * finest;
     let mut end = |method, steps, is_equal| {
         let before = counted.get();
@@ -94,7 +93,7 @@ pub fn convergence(
         let steps = (0..=halvings).map(|halving| coarsest << halving);
         steps.map(|steps| (duration / steps as f64, method, steps)).collect::<Vec<_>>()
     };
-    // its errors are rounding at the finest steps of the others
+    // at the finest steps of the others its errors are rounding
     let coarse = |method: Method| {
         let mut steps = of_method(method);
         let longer = (1..=COARSER).map(|k| coarsest >> k).take_while(|&steps| steps > 0);
@@ -114,7 +113,7 @@ pub fn convergence(
         for (step, method, steps) in each {
             let (theta, evaluations) = match end(method, steps, is_equal) {
                 Ok(end) => end,
-                // too long a step for this one: no point of the curve
+                // too long a step for this method: this point is left out
                 Err(Error::Diverged { .. } | Error::NoConvergence { .. } | Error::Stalled { .. }) => continue,
                 Err(other) => return Err(other),
             };
@@ -151,7 +150,7 @@ mod tests {
         let of = |k: usize| found[k].measured[0];
         // 8 steps: an evaluation each and one at the start; four of each
         assert_eq!((of(0).evaluations, of(3).evaluations), (9, 33));
-        // six of each step by Dormand-Prince, whose last is the next one's first
+        // Dormand-Prince: six per step, the last of which is the next step's first
         assert_eq!(found[4].equal_steps[3].evaluations, 6 * 8 + 1);
     }
 

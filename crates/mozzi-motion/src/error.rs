@@ -7,7 +7,7 @@ use mozzi::{Freedom, Model};
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The robot cannot be asked this.
+    /// An error of the robot's model.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
     /// Inverse kinematics ended before the goal.
@@ -16,20 +16,20 @@ pub enum Error {
         at_limits(limits)
     )]
     NotReached {
-        /// The frame that was to be there.
+        /// The frame.
         frame: String,
         /// The best positions that were found.
         theta: Vec<f64>,
-        /// What is left there.
+        /// The residual there.
         residual: Residual,
         /// The joints that are at a limit there.
         limits: Vec<String>,
         /// Starts, the given one included.
         starts: usize,
-        /// Of all starts.
+        /// Iterations of all starts.
         iterations: usize,
     },
-    /// A frame cannot be led along its path.
+    /// A frame cannot follow its path.
     #[error("at s = {s} of the path: {source}")]
     OffPath {
         /// Where on the path, 0 to 1.
@@ -37,7 +37,7 @@ pub enum Error {
         /// Why not: [`Error::NotReached`].
         source: Box<Error>,
     },
-    /// The joints' path along a frame's cannot be joined.
+    /// The joint solutions along a frame's path cannot be joined to one path.
     #[error(
         "the path of frame `{frame}` breaks at s = {s}: however close its solutions, the joints between them are {deviation:.1e} off it, more than \
          {tolerance:.1e} (a singular position, or a joint at its limit)"
@@ -52,7 +52,7 @@ pub enum Error {
         /// The tolerance of the path.
         tolerance: f64,
     },
-    /// A motor cannot carry the robot along its path.
+    /// A motor is too weak to move the robot along its path.
     #[error("the motor of `{joint}` is too weak at s = {s}: at rest it needs {needed} of its {limit} N m or N")]
     TooWeak {
         /// The joint.
@@ -64,7 +64,7 @@ pub enum Error {
         /// Its limit.
         limit: f64,
     },
-    /// Nothing keeps the robot from being infinitely fast.
+    /// No limit bounds the robot's speed.
     #[error("nothing limits the speed at s = {s} of the path: expected a limit of velocity, acceleration or torque")]
     Unlimited {
         /// Where on the path, 0 to 1.
@@ -81,7 +81,7 @@ fn at_limits(joints: &[String]) -> String {
     }
 }
 
-/// An argument that is not what it should be.
+/// Returns an error for an invalid argument.
 pub(crate) fn check(
     fine: bool,
     what: &'static str,
@@ -91,13 +91,13 @@ pub(crate) fn check(
     if fine { Ok(()) } else { Err(mozzi::Error::BadArgument { what, found: found.to_string(), expected }.into()) }
 }
 
-/// Has the robot no constraints?
+/// Checks that the robot has no constraints.
 pub(crate) fn check_open(model: &Model, what: &'static str) -> Result<(), Error> {
     let m = model.constraint_rows();
     check(m == 0, what, format!("with {m} constraint rows"), "a robot without constraints")
 }
 
-/// Has every velocity a motor? A floating base and a free joint have none.
+/// Checks that every velocity has a motor. A floating base and a free joint have none.
 pub(crate) fn check_driven(model: &Model, what: &'static str) -> Result<(), Error> {
     check(!model.is_floating(), what, "on a free base", "a fixed base: no motor moves a free one")?;
     let free = model.joints().zip(model.places()).find(|(_, place)| place.freedom == Freedom::Free);

@@ -1,6 +1,6 @@
-//! Motions for the robots of [`mozzi`]: where the joints have to be ([`inverse_kinematics`]), and what they are to do
-//! when ([`trajectories`]), motors that do it
-//! ([`controllers`]). How it then moves is [`mozzi::simulation`]; how exact its methods are, [`convergence`].
+//! Motions for the robots of [`mozzi`]: joint positions that reach a goal ([`inverse_kinematics`]), motions in time
+//! ([`trajectories`]), and motors that follow them ([`controllers`]). [`mozzi::simulation`] simulates the resulting
+//! motion; [`convergence`] measures the accuracy of its methods.
 //!
 //! ```
 //! use mozzi_motion::{Goal, InverseKinematics};

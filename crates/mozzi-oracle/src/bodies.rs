@@ -1,5 +1,5 @@
-//! Where each link is and how it moves, straight from the description: exponentials along the joints' own screws, link
-//! by link.
+//! Poses and motions of the links, straight from the description: exponentials along the joints' own screws, link by
+//! link.
 
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Base, Description, Model, Place, Real, SE3, SO3, Scalar, SpatialInertia, Twist, Vec3, Wrench};
@@ -13,7 +13,7 @@ pub struct Body<S> {
     pub T: SE3<S>,
     /// The columns of its body Jacobian.
     pub J: Vec<Twist<S>>,
-    /// In its own frame; none of what a fixed base carries.
+    /// In its own frame; none if a fixed base carries it.
     pub G: Option<SpatialInertia<S>>,
 }
 
@@ -27,7 +27,7 @@ pub fn source<'r, C: Scalar>(robot: &'r Description<C>, joint: &'r Joint<C>) -> 
     (source, ratio, offset)
 }
 
-/// The links of a robot, parents before children. Of `model` the order of its joints is taken, all numbers from
+/// The links of a robot, parents before children. `model` gives only the order of its joints; all numbers are from
 /// `robot`.
 pub fn bodies<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> Vec<Body<S>> {
     let n = model.n();
@@ -104,7 +104,7 @@ pub fn twist<S: Real>(J: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
     J.iter().zip(dtheta).fold(Twist::zero(), |V, (&column, &rate)| V + column * rate)
 }
 
-/// The columns of the momentum's matrix about the origin of {s}: Σ [Ad_T⁻¹]ᵀ 𝒢 J.
+/// The columns of the momentum matrix about the origin of {s}: Σ [Ad_T⁻¹]ᵀ 𝒢 J.
 pub fn momentum_columns<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> Vec<Wrench<S>> {
     let mut columns = vec![Wrench::zero(); model.n()];
     for body in bodies(robot, model, theta) {

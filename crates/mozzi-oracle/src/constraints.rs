@@ -1,4 +1,5 @@
-//! Constraints a second time: from the poses and Jacobians of the anchors in {s}, rates by dual numbers.
+//! An independent implementation of constraints: from the poses and Jacobians of the anchors in {s}, rates by dual
+//! numbers.
 
 use crate::bodies::{frame, source};
 use mozzi::model::description::{Anchor, Closure, ConstraintKind};
@@ -52,7 +53,7 @@ pub fn rows<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> R
                 match *closure {
                     Closure::Point => (0..3).for_each(|k| add(&|V| V.v.0[k], p.0[k])),
                     Closure::Weld => {
-                        // 2 sin(α/2) n, of the rotation vector α n
+                        // 2 sin(α/2) n for the rotation vector α n
                         let turn = T_ab.R.log();
                         let angle = turn.norm();
                         let size = if angle > S::zero() {
@@ -73,7 +74,8 @@ pub fn rows<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> R
                         add(&|V| p.dot(V.v) / d, (p.dot(p) - d * d) / (d + d));
                     }
                     Closure::Rolling(radius) => {
-                        // the wheel's rim is r(u cos s + w sin s); its lowest point is where the height's slope is 0
+                        // the wheel's rim is r(u cos s + w sin s); at its lowest point the derivative of the height is
+                        // 0
                         let normal = Vec3([S::zero(), S::zero(), S::one()]);
                         let side = z.cross(normal); // horizontal, in the wheel's plane
                         let side = side.map(|x| x / side.norm());
@@ -87,7 +89,7 @@ pub fn rows<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> R
                 }
             }
             ConstraintKind::Joint { joint, source: other, polynomial } => {
-                // a joint's own position, and the place and ratio of its source joint's rate
+                // a joint's own position, and the index and ratio of its source joint's rate
                 let own = |name: &str| {
                     let joint = robot.joints.iter().find(|joint| joint.name == name).expect("a joint");
                     let (source, ratio, offset) = source(robot, joint);
@@ -131,7 +133,7 @@ pub fn bias<S: Real>(
     moving.A.into_iter().map(speed).collect()
 }
 
-/// x and y of M x + Aᵀy = f, A x = a, with the whole matrix; columns of f and a together.
+/// x and y of M x + Aᵀy = f, A x = a, from the whole matrix; the columns of f and a are solved together.
 pub fn saddle<S: Entry>(M: &DMatrix<S>, A: &[Vec<S>], f: &DVector<S>, a: &[S]) -> (Vec<S>, Vec<S>) {
     let (n, m) = (M.nrows(), A.len());
     let mut K = DMatrix::from_element(n + m, n + m, <S as Scalar>::zero());

@@ -1,4 +1,4 @@
-//! A quantity's inputs, and what its second ways are made of: stacked equations, sums over bodies, dual numbers.
+//! A quantity's inputs, and the building blocks of its second ways: stacked equations, sums over bodies, dual numbers.
 
 use crate::bodies::{bodies, frame, moments, momentum_columns, source, twist};
 use crate::constraints;
@@ -11,7 +11,7 @@ use mozzi::{
     seed_direction,
 };
 
-/// What a quantity is computed of.
+/// The data from which a quantity is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a, S = f64> {
     /// The robot.
@@ -43,11 +43,11 @@ impl<S: Entry> Given<'_, S> {
     pub(crate) fn moving(&self) -> ClosedForm<S> {
         self.form(self.inputs[1], &Environment::with_gravity(Vec3::zero()))
     }
-    /// The robot as dual numbers, its own derivatives zero.
+    /// The robot in dual numbers, with zero derivatives.
     pub(crate) fn dual_robot(&self) -> (Description<Dual<S>>, Model<Dual<S>>) {
         (self.robot.map(Dual::constant), self.model.map(Dual::constant))
     }
-    /// The first columns of a function of θ that moves along each joint in turn: its derivative by θ.
+    /// The derivative of a function by θ, one column for each joint: θ moves along one joint at a time.
     pub(crate) fn by_each_joint(&self, of: impl Fn(&[Dual<S>]) -> Vec<S>) -> DMatrix<S> {
         let along = |j| seed_direction(self.model, self.theta(), &unit(self.n(), j));
         let columns: Vec<DVector<S>> = (0..self.n()).map(|j| vector(&of(&along(j)))).collect();
@@ -66,7 +66,7 @@ impl<S: Entry> Given<'_, S> {
     pub(crate) fn frame_name(&self) -> &str {
         self.model.frame_name(self.of.frame.expect("a frame"))
     }
-    /// J of the frame by its columns, in its own coordinates or those of {s}.
+    /// The columns of the frame's J, in its own coordinates or those of {s}.
     pub(crate) fn jacobian(&self, coordinates: TaskFrame) -> Vec<Twist<S>> {
         let (T, J) = self.pose_and_jacobian();
         match coordinates {
@@ -86,7 +86,7 @@ impl<S: Entry> Given<'_, S> {
         };
         moving.jacobian(coordinates).into_iter().map(|column| column.map(|x| x.derivative)).collect()
     }
-    /// ∂/∂θ of what the stacked equations at rest give: n columns.
+    /// ∂/∂θ of a function of the stacked equations at rest: n columns.
     pub(crate) fn by_theta(&self, of: impl Fn(ClosedForm<Dual<S>>) -> Vec<Dual<S>>) -> DMatrix<S> {
         let (still, (_, model), mut applied) = (Dual::constants(&zeros(self.n())), self.dual_robot(), Vec::new());
         let environment = self.environment.map(Dual::constant, &mut applied);
@@ -94,7 +94,7 @@ impl<S: Entry> Given<'_, S> {
             Environment { applied: environment.applied, ..Environment::with_gravity(environment.gravity) };
         self.by_each_joint(|theta| derivatives(of(model.closed_form(theta, &still, &environment).expect("lengths"))))
     }
-    /// ∂τ/∂(θ, θ̇, θ̈) at θ̈: of the stacked equations, by dual numbers.
+    /// ∂τ/∂(θ, θ̇, θ̈) at θ̈ from the stacked equations, by dual numbers.
     pub(crate) fn tau_derivatives(&self, ddtheta: &[S]) -> [DMatrix<S>; 3] {
         let (n, (_, model)) = (self.n(), self.dual_robot());
         let mut applied = Vec::new();
@@ -114,7 +114,7 @@ impl<S: Entry> Given<'_, S> {
             columns(&|j| tau(&theta, &dtheta, &along(&ddtheta, j))),
         ]
     }
-    /// θ̈ of τ by the stacked equations and a general solver.
+    /// θ̈ for τ by the stacked equations and a general solver.
     pub(crate) fn acceleration(&self) -> DVector<S> {
         let form = self.form(self.inputs[1], self.environment);
         let rest = form.inverse_dynamics(&DVector::zeros(self.n()));
@@ -128,7 +128,7 @@ impl<S: Entry> Given<'_, S> {
         let constant = of(&zeros(p)); // the springs' energy at θ = 0
         DMatrix::from_columns(&(0..p).map(|k| of(&unit(p, k)) - &constant).collect::<Vec<DVector<S>>>())
     }
-    /// Of each joint: the place of its source joint, and the joint's ratio and offset.
+    /// For each joint: the index of its source joint, and the joint's ratio and offset.
     pub(crate) fn joints(&self) -> impl Iterator<Item = (&Joint<S>, Place, S, S)> {
         let places: Vec<_> = self.model.joint_names().zip(self.model.places()).collect();
         self.robot.joints.iter().filter_map(move |joint| {
@@ -137,7 +137,8 @@ impl<S: Entry> Given<'_, S> {
             Some((joint, place, ratio, offset))
         })
     }
-    /// Of each velocity of each joint: the place of its source joint's, the joint's ratio, and what `of` says.
+    /// For each velocity of each joint: the index of its source joint's velocity, the joint's ratio, and the value of
+    /// `of`.
     pub(crate) fn at_joints(&self, of: impl Fn(&Joint<S>) -> [S; 2]) -> Vec<(usize, S, [S; 2])> {
         let at = |(joint, place, ratio, _): (&Joint<S>, Place, S, S)| {
             let of = of(joint);
@@ -145,8 +146,8 @@ impl<S: Entry> Given<'_, S> {
         };
         self.joints().flat_map(at).collect()
     }
-    /// Of each joint's spring: the place of its source joint among the velocities, k, its stretch q − θ₀ and the
-    /// joint's ratio. Of a ball each part of the logarithm of its rotation.
+    /// For each joint's spring: the index of its source joint among the velocities, k, its stretch q − θ₀ and the
+    /// joint's ratio. A ball gives one entry for each component of the logarithm of its rotation.
     pub(crate) fn springs(&self) -> Vec<(usize, [S; 3])> {
         let at = |(joint, place, ratio, offset): (&Joint<S>, Place, S, S)| {
             let stretches = match self.theta()[place.positions()] {
@@ -159,7 +160,7 @@ impl<S: Entry> Given<'_, S> {
         };
         self.joints().flat_map(at).collect()
     }
-    /// Of each rotor its armature, and J θ̇ by its gears.
+    /// For each rotor: its armature, and J θ̇ through its gears.
     pub(crate) fn rotors(&self, dtheta: &[S]) -> Vec<[S; 2]> {
         let rate = |gear: &Gear<S>| {
             let joint = self.robot.joints.iter().find(|joint| joint.name == gear.joint).expect("checked");
@@ -201,7 +202,7 @@ impl<S: Entry> Given<'_, S> {
             .zip(self.inputs[1])
             .fold(Wrench::zero(), |h, (column, &rate)| h + column * rate)
     }
-    /// ḣ with θ̇ moving by θ̈.
+    /// ḣ while θ̇ changes at the rate θ̈.
     pub(crate) fn momentum_rate(&self, ddtheta: &[S]) -> Wrench<S> {
         let (robot, model) = self.dual_robot();
         let columns = momentum_columns(&robot, &model, &seed_direction(self.model, self.theta(), self.inputs[1]));
@@ -216,7 +217,7 @@ impl<S: Entry> Given<'_, S> {
         let (mass, first) = self.moments();
         first.map(|x| x / mass)
     }
-    /// Of a vector over the robot's mass.
+    /// A vector divided by the robot's mass.
     pub(crate) fn over_mass(&self, x: Vec3<S>) -> Vec<Vec<S>> {
         let (mass, _) = self.moments();
         vec![x.map(|x| x / mass).0.to_vec()]

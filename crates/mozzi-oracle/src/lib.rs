@@ -1,7 +1,7 @@
-//! What the tests measure mozzi by: every quantity a [second way](SecondWay), numbers of [31 and 71 digits](wide) that
-//! both ways can be computed in, and a [second reader](read_urdf) of URDF that keeps every digit of the file.
+//! References for testing mozzi: a [second way](SecondWay) to compute every quantity, numbers of [31 and 71
+//! digits](wide) for both ways, and a [second reader](read_urdf) of URDF that keeps every digit of the file.
 //!
-//! Not published: it depends on `mozzi` alone, whose crates depend on it in tests.
+//! Not published: it depends only on `mozzi`, whose crates depend on it in tests.
 
 pub mod bodies;
 mod constraints;

@@ -1,9 +1,9 @@
-//! Linear equations in any number: Gauss' elimination with row pivots.
+//! Linear equations in any number type: Gaussian elimination with row pivots.
 
 use mozzi::nalgebra::DMatrix;
 use mozzi::{Entry, Scalar};
 
-/// X with AX = B; None where A is singular.
+/// X with AX = B; None if A is singular.
 pub fn solve<S: Entry>(A: &DMatrix<S>, B: &DMatrix<S>) -> Option<DMatrix<S>> {
     let (n, mut A, mut X) = (A.nrows(), A.clone(), B.clone());
     for k in 0..n {
@@ -34,7 +34,7 @@ pub fn solve<S: Entry>(A: &DMatrix<S>, B: &DMatrix<S>) -> Option<DMatrix<S>> {
     Some(X)
 }
 
-/// A⁻¹; None where A is singular.
+/// A⁻¹; None if A is singular.
 pub fn inverse<S: Entry>(A: &DMatrix<S>) -> Option<DMatrix<S>> {
     solve(A, &DMatrix::identity(A.nrows(), A.nrows()))
 }

@@ -1,5 +1,5 @@
-//! Every quantity a second time, by other means than its kernel: the book's stacked equations, links one by one from
-//! the description, dual numbers, linearity in the parameters.
+//! A second way to compute every quantity, independent of its kernel: the book's stacked equations, links one by one
+//! from the description, dual numbers, linearity in the parameters.
 
 use crate::bodies::{frame, twist};
 use crate::constraints::saddle;
@@ -9,9 +9,9 @@ use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
 use mozzi::{Dual, Entry, Environment, SE3, Scalar, TaskFrame, Twist, Vec3, seed_direction};
 
-/// A quantity's second way; one without does not compile.
+/// A quantity's second way. A quantity without one does not compile.
 pub trait SecondWay: Quantity {
-    /// How far, over the largest entry, the kernel in `f64` may be off.
+    /// The tolerance of the kernel in `f64`, relative to the largest entry.
     const TOLERANCE: f64 = 1e-11;
     /// The outputs, matrices by rows.
     fn second_way<S: Entry>(given: Given<S>) -> Vec<Vec<S>>;
@@ -19,7 +19,7 @@ pub trait SecondWay: Quantity {
 
 type Way<S> = fn(Given<S>) -> Vec<Vec<S>>;
 
-/// The outputs of the quantity of this place in the [list](LIST).
+/// The outputs of the quantity at this index of the [list](LIST).
 pub fn second_way<S: Entry>(index: usize, given: Given<S>) -> Vec<Vec<S>> {
     macro_rules! ways {
         ($($Q:ident)*) => { &[$(<$Q as SecondWay>::second_way::<S>),*] };
@@ -28,7 +28,7 @@ pub fn second_way<S: Entry>(index: usize, given: Given<S>) -> Vec<Vec<S>> {
     ways[index](given)
 }
 
-/// The rows of a Jacobian, or of the matrix of momentum, from its columns.
+/// The rows of a Jacobian, or of the momentum matrix, from its columns.
 fn six_rows<S: Entry>(columns: &[[S; 6]]) -> Vec<S> {
     (0..6).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
 }
@@ -69,7 +69,7 @@ second_ways! {
         vec![list(&g.form(&zeros(g.n()), &Environment::with_gravity(g.environment.gravity)).gravity_forces())]
     };
     BiasForces: |g| {
-        // friction and springs are the difference of τ and c where nothing else acts
+        // friction and springs are the difference of τ and c if nothing else acts
         let (still, moving) = (DVector::zeros(g.n()), g.moving());
         let friction = moving.inverse_dynamics(&still) - moving.velocity_product();
         vec![list(&(g.form(g.inputs[1], g.environment).inverse_dynamics(&still) - friction))]
@@ -103,7 +103,7 @@ second_ways! {
     SpaceJacobianDerivative: |g| jacobian_derivative(g, TaskFrame::Space);
     BodyJacobianDerivative: |g| jacobian_derivative(g, TaskFrame::Body);
     FrameAcceleration: |g| {
-        // along the motion, the rates of ω and ṗ in {s}, turned into the frame's coordinates
+        // the rates of ω and ṗ in {s} along the motion, rotated into the frame's coordinates
         let (robot, model) = g.dual_robot();
         let theta = seed_direction(g.model, g.theta(), g.inputs[1]);
         let (T, J) = frame(&robot, &model, &theta, g.frame_name());
@@ -135,7 +135,7 @@ second_ways! {
         vec![ddtheta, lambda]
     };
     ConstraintProjection [1e-6]: |g| {
-        // column by column: the part of a force that the constraints do not take
+        // column by column: the part of a force that the constraints do not absorb
         let (n, A, M) = (g.n(), g.constraints().A, g.at_rest().mass_matrix());
         let still = zeros(A.len());
         let column = |j: usize| &M * vector(&saddle(&M, &A, &vector(&unit(n, j)), &still).0);

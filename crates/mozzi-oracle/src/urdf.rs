@@ -1,4 +1,4 @@
-//! A second reader of URDF, for numbers of any width: the tree is taken from the first reader's description, each
+//! A second reader of URDF, for numbers of any width: it takes the tree from the first reader's description, and each
 //! number from the file's decimals.
 
 use crate::wide::Wide;
@@ -8,7 +8,7 @@ use mozzi::{Description, SE3, SO3, ScrewAxis, SpatialInertia, Twist, Vec3};
 use roxmltree::{Document, Node};
 use std::fmt;
 
-/// Why a file was not read a second time.
+/// The reason why a file was not read a second time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotRead(String);
 
@@ -25,7 +25,7 @@ fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.has_tag_name(name))
 }
 
-/// The numbers of an attribute, `default` where there is none.
+/// The numbers of an attribute, `default` if it is missing.
 fn numbers<W: Wide, const N: usize>(node: Option<Node>, name: &str, default: &str) -> Read<[W; N]> {
     let text = node.and_then(|node| node.attribute(name)).unwrap_or(default);
     let all: Option<Vec<W>> = text.split_whitespace().map(W::parse).collect();
@@ -58,7 +58,7 @@ fn inertia<W: Wide>(link: Node) -> Read<SpatialInertia<W>> {
     Ok(SpatialInertia::new(number(child(inertial, "mass"), "value", "")?, T.p, I.congruence(T.R.matrix())))
 }
 
-/// A ball, which URDF cannot say, is the description's.
+/// A ball, which URDF cannot express, is taken from the description.
 fn kind<W: Wide>(joint: Node, described: JointKind<W>) -> Read<JointKind<W>> {
     if let JointKind::Ball(_) = described {
         return Ok(described);
@@ -75,12 +75,12 @@ fn kind<W: Wide>(joint: Node, described: JointKind<W>) -> Read<JointKind<W>> {
     Ok(JointKind::Screw(axis.0))
 }
 
-/// The description that the first reader made of a file, with the file's decimals in wide numbers. Gravity, which no
-/// file gives, is the description's shortest decimals; balls and rotor inertias, which URDF cannot say, are the
-/// description's numbers.
+/// The first reader's description of a file, with the file's decimals in wide numbers. Gravity, which files do not
+/// contain, is taken from the description's shortest decimals; balls and rotor inertias, which URDF cannot express, are
+/// the description's numbers.
 ///
 /// # Errors
-/// [`NotRead`] for what the second reader does not know, and where the two readers disagree.
+/// [`NotRead`] if the second reader does not know an element, or the two readers disagree.
 pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description<W>, NotRead> {
     let document = Document::parse(text).map_err(|error| NotRead(error.to_string()))?;
     let named = |tag: &str, name: &str| {
@@ -98,7 +98,7 @@ pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description
     for joint in &mut wide.joints {
         let node = named("joint", &joint.name)?;
         (joint.origin, joint.kind) = (origin(node)?, kind(node, joint.kind)?);
-        let dynamics = child(node, "dynamics").filter(|_| joint.kind != JointKind::Free); // of which it says nothing
+        let dynamics = child(node, "dynamics").filter(|_| joint.kind != JointKind::Free); // not for free joints
         (joint.damping, joint.friction) = (number(dynamics, "damping", "0")?, number(dynamics, "friction", "0")?);
         joint.stiffness = number(dynamics, "spring_stiffness", "0")?;
         joint.spring_reference = number(dynamics, "spring_reference", "0")?;
@@ -111,7 +111,7 @@ pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description
     Ok(wide)
 }
 
-/// Both readers read the same robot, to rounding.
+/// Checks that both readers read the same robot, to rounding.
 fn agree(second: &Description, first: &Description) -> Read<()> {
     let near = |what: &str, a: &[f64], b: &[f64]| {
         let size = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

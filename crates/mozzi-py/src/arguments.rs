@@ -1,5 +1,5 @@
-//! Arguments as Python passed them, each in its slot; what is missing, unknown or given twice is named in Python's
-//! words.
+//! Arguments as Python passed them, each in its slot. A missing, unknown or repeated argument raises an error in
+//! Python's words.
 
 use crate::signature::{ENVIRONMENT, INPUTS, SLOTS, Signature, Slot};
 use pyo3::exceptions::PyTypeError;
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 use std::fmt::Arguments as Words;
 
-/// An argument that may be left out.
+/// An optional argument.
 pub type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// The arguments of a call by their slots.
@@ -15,7 +15,7 @@ pub type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 pub struct Arguments<'a, 'py>([Option<Borrowed<'a, 'py, PyAny>>; SLOTS]);
 
 impl<'a, 'py> Arguments<'a, 'py> {
-    /// These alone.
+    /// Only these arguments.
     pub fn of(given: impl IntoIterator<Item = (Slot, Given<'a, 'py>)>) -> Self
     where
         'py: 'a,
@@ -28,7 +28,7 @@ impl<'a, 'py> Arguments<'a, 'py> {
     /// From positional values, and values with their names.
     ///
     /// # Errors
-    /// `TypeError` for what is not in the signature.
+    /// `TypeError` for an argument that is not in the signature.
     #[inline(always)]
     pub fn fill(
         &mut self,
@@ -66,7 +66,7 @@ impl<'a, 'py> Arguments<'a, 'py> {
         Ok(())
     }
 
-    /// Was anything of the environment given?
+    /// True if an argument of the environment was given.
     #[inline(always)]
     pub fn have_environment(&self) -> bool {
         self.0[ENVIRONMENT].iter().flatten().any(|value| !value.is_none())

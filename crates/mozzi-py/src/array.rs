@@ -1,4 +1,4 @@
-//! What Python gives for an array, as numbers in C's order; shapes that do not fit, named.
+//! Converts Python's arguments to numbers in C order, and names shapes that do not match.
 
 use crate::numpy::{self, Element, Fresh};
 use mozzi::nalgebra::DMatrix;
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyFloat, PyInt, PyList};
 
-/// An argument as an array of float64 or float32, without gaps.
+/// An argument as a contiguous array of float64 or float32.
 pub struct Numbers<'py> {
     pub name: &'static str,
     pub array: Bound<'py, PyAny>,
@@ -22,10 +22,10 @@ pub fn function<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>>
 }
 
 impl<'py> Numbers<'py> {
-    /// Takes arrays as they are, and lets NumPy convert everything else.
+    /// Takes arrays as they are, and lets NumPy convert all other objects.
     ///
     /// # Errors
-    /// `TypeError` for what is not real numbers.
+    /// `TypeError` for an object that does not consist of real numbers.
     pub fn new(name: &'static str, given: &Bound<'py, PyAny>) -> PyResult<Self> {
         if let Some((shape, _)) = numpy::view::<f64>(given) {
             return Ok(Numbers { name, array: given.clone(), shape: shape.to_vec(), is_single: false });
@@ -58,7 +58,7 @@ impl<'py> Numbers<'py> {
         let count =
             |condition: Bound<'py, PyAny>| function(py, "count_nonzero")?.call1((condition,))?.extract::<usize>();
         if kind == 'O' && array.call_method1("ravel", ())?.call_method0("tolist")?.contains(py.None())? {
-            return Err(refused(format!("{name} holds None, expected real numbers"), None)); // NumPy would make NaN of it
+            return Err(refused(format!("{name} holds None, expected real numbers"), None)); // NumPy would give NaN
         }
         if given.hasattr("mask")? && given.hasattr("filled")? && count(given.getattr("mask")?)? > 0 {
             return Err(refused(format!("{name} has masked entries, expected real numbers"), None));
@@ -76,7 +76,7 @@ impl<'py> Numbers<'py> {
         &self.shape[..self.shape.len() - tail]
     }
 
-    /// In this type of numbers, repeated along leading axes until they are these.
+    /// Converts to this number type and broadcasts to these leading axes.
     pub fn spread<T: Element>(&mut self, leading: &[usize], tail: usize) -> PyResult<()> {
         let py = self.array.py();
         if !are_same(self.leading(tail), leading) {
@@ -114,7 +114,7 @@ impl<'py> Numbers<'py> {
         }
     }
 
-    /// As many numbers as are known to be there.
+    /// The numbers as an array whose length was already checked.
     pub fn few<const K: usize>(mut self) -> PyResult<[f64; K]> {
         self.spread::<f64>(&[], 1)?;
         let mut few = [0.0; K];
@@ -141,7 +141,7 @@ impl<'py> Numbers<'py> {
     }
 }
 
-/// A list of Python's own numbers, without asking NumPy.
+/// A list of Python's own numbers, converted without NumPy.
 fn plain<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<Fresh<'py, f64>>> {
     let Ok(list) = given.cast_exact::<PyList>() else { return Ok(None) };
     let mut fresh = Fresh::<f64>::new(given.py(), &[list.len()])?;
@@ -149,13 +149,13 @@ fn plain<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<Fresh<'py, f64>>> {
         if !(item.is_exact_instance_of::<PyFloat>() || item.is_exact_instance_of::<PyInt>()) {
             return Ok(None);
         }
-        let Ok(x) = item.extract() else { return Ok(None) }; // an int beyond float64: NumPy tells
+        let Ok(x) = item.extract() else { return Ok(None) }; // an int beyond float64: NumPy reports it
         *place = x;
     }
     Ok((!list.is_empty()).then_some(fresh))
 }
 
-/// A matrix that is stored by columns, by rows.
+/// Converts a matrix from column-major to row-major order.
 pub fn by_rows(M: &DMatrix<f64>, out: &mut [f64]) {
     let columns = M.ncols();
     out.iter_mut().enumerate().for_each(|(k, x)| *x = M[(k / columns, k % columns)]);
@@ -164,7 +164,7 @@ pub fn by_rows(M: &DMatrix<f64>, out: &mut [f64]) {
 /// The numbers of an argument of this shape.
 ///
 /// # Errors
-/// `TypeError`, `ValueError` for what are no numbers, or of another shape.
+/// `TypeError`, `ValueError` if the argument is not numeric or has another shape.
 pub fn list(name: &'static str, given: &Bound<'_, PyAny>, shape: &[usize]) -> PyResult<Vec<f64>> {
     let mut numbers = Numbers::new(name, given)?;
     if numbers.shape != shape {
@@ -179,7 +179,7 @@ pub fn wrong_shape(name: &str, found: &[usize], expected: impl std::fmt::Display
     PyValueError::new_err(format!("{name} has shape {}, expected {expected}", shown(found)))
 }
 
-/// As Python writes a shape.
+/// A shape as Python writes it.
 pub fn shown(shape: &[usize]) -> String {
     match shape {
         [only] => format!("({only},)"),
@@ -187,16 +187,16 @@ pub fn shown(shape: &[usize]) -> String {
     }
 }
 
-/// Mostly both are empty: `==` would call `memcmp`, which takes a hundred nanoseconds for no bytes at an address
-/// without memory.
+/// Usually both are empty: `==` would call `memcmp`, which takes a hundred nanoseconds for zero bytes at a dangling
+/// address.
 fn are_same(a: &[usize], b: &[usize]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b)
 }
 
-/// NumPy's rule: axes are counted from the last, and a length of 1 is repeated.
+/// NumPy's broadcasting rule: axes are aligned at the last, and a length of 1 is repeated.
 ///
 /// # Errors
-/// `ValueError` naming both.
+/// `ValueError` that names both shapes.
 pub fn common_leading<'a>(shapes: impl IntoIterator<Item = (&'static str, &'a [usize])>) -> PyResult<Vec<usize>> {
     let mut common: Vec<usize> = Vec::new();
     for (name, shape) in shapes {

@@ -1,4 +1,5 @@
-//! From arguments to results: one state at once if nothing needs converting, everything else through NumPy and a batch.
+//! From arguments to results: one state directly if nothing needs converting; all other calls go through NumPy and a
+//! batch.
 
 use crate::arguments::{Arguments, Given};
 use crate::array::{Numbers, common_leading, wrong_shape};
@@ -16,7 +17,7 @@ use pyo3::types::PyFloat;
 /// The most axes of a result at one state.
 const MOST_AXES: usize = 3;
 
-// inputs are of velocities or of positions, for `Robot::length`
+// each input has n or nq numbers, as `Robot::length` assumes
 const _: () = {
     let (mut input, mut quantity) = (0, 0);
     while input < INPUTS.len() {
@@ -51,8 +52,8 @@ impl Robot {
         }
     }
 
-    /// The one result at one state of arrays that need no conversion, in the robot's own environment; `None` for all
-    /// others.
+    /// The single result at one state, for arrays that need no conversion and the robot's own environment; `None` for
+    /// all other calls.
     #[inline]
     pub fn at_one_state<'py>(
         &self,
@@ -94,18 +95,18 @@ impl Robot {
         }))
     }
 
-    /// How many numbers an input has at one state.
+    /// The length of an input at one state.
     #[inline(always)]
     fn length(&self, input: &Input) -> usize {
         if input.dim == Dim::Nq { self.model.nq() } else { self.model.n() }
     }
 
-    /// Is the last axis as long as it must be?
+    /// Checks the length of the last axis.
     pub fn check_shape(&self, numbers: &Numbers) -> PyResult<()> {
         self.check_shape_as(numbers, numbers.name)
     }
 
-    /// As [`check_shape`](Self::check_shape), of an argument that is another's kind by another name: a guess is a
+    /// Like [`check_shape`](Self::check_shape), for an argument with another name but the same kind: a guess is a
     /// `theta`.
     pub fn check_shape_as(&self, numbers: &Numbers, kind: &str) -> PyResult<()> {
         let length = if kind == "theta" { self.model.nq() } else { self.model.n() };
@@ -116,7 +117,7 @@ impl Robot {
         Err(wrong_shape(numbers.name, &numbers.shape, expected))
     }
 
-    /// What the numbers of an argument are: `one value per joint of 'ur5' (shoulder_pan_joint, …)`.
+    /// The meaning of an argument's numbers: `one value per joint of 'ur5' (shoulder_pan_joint, …)`.
     fn entries(&self, name: &str) -> String {
         let (model, joints) = (&self.model, self.model.joint_names().len());
         let first = model

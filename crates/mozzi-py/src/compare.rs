@@ -1,4 +1,4 @@
-//! What other libraries make of the same robot: `mozzi.compare`.
+//! Comparison with other libraries on the same robot: `mozzi.compare`.
 
 use crate::failure::{of_loader, of_model};
 use crate::load;
@@ -42,7 +42,7 @@ pub fn _compare(
             let source = Source::read(&name, model.description()).map_err(of_comparison)?;
             py.detach(|| compare(&model, source, &options)).map(|c| report(&c)).map_err(of_comparison)
         }
-        // the file is there, and wrong: whether others load it is worth knowing
+        // the file exists but is invalid: report whether the other libraries load it
         Err(refusal @ LoadError::Refused { .. }) => {
             let source = Source::read(&name, &mozzi::Description::new("refused")).map_err(of_comparison)?;
             let found = py.detach(|| ask(source, &options)).map_err(of_comparison)?;

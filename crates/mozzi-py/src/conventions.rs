@@ -1,6 +1,6 @@
-//! `mozzi.conventions`: states, forces and matrices in the order, frames and signs of Pinocchio and MuJoCo, there and
-//! back.
-#![allow(clippy::wrong_self_convention)] // `from_` another library's convention, of the robot that self is
+//! `mozzi.conventions`: converts states, forces and matrices to and from the order, frames and signs of Pinocchio and
+//! MuJoCo.
+#![allow(clippy::wrong_self_convention)] // `from_`: converts from another library's convention, for the robot self
 
 use crate::array::{Numbers, by_rows, common_leading, wrong_shape};
 use crate::failure::{of_model, of_state};
@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 type Given<'a, 'py> = (&'static str, &'a Bound<'py, PyAny>);
 type Found<'py> = PyResult<Bound<'py, PyAny>>;
 
-/// f of each state: of vectors, and perhaps last a matrix; it is a matrix or a column.
+/// Applies f to each state's vectors and, as an optional last argument, a matrix; the result is a matrix or a column.
 fn each<'py, const K: usize>(
     py: Python<'py>,
     vectors: [Given<'_, 'py>; K],
@@ -56,7 +56,7 @@ fn each<'py, const K: usize>(
     }
     match out {
         Some(out) => Ok(out.into_array()),
-        None => Ok(given.swap_remove(given.len() - 1).array), // no state: as empty
+        None => Ok(given.swap_remove(given.len() - 1).array), // no state: the result is empty, like the input
     }
 }
 

@@ -1,4 +1,4 @@
-//! A robot's description as plain tuples, which Python can pickle, and back.
+//! Converts a robot's description to plain tuples, which Python can pickle, and back.
 
 use mozzi::model::Base;
 use mozzi::model::description::{
@@ -12,7 +12,7 @@ type Pose = [[f64; 4]; 4];
 type LinkState = (String, [f64; 10]);
 type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>);
 type MimicState = Option<(String, f64, f64)>;
-/// What moves a joint, and its numbers: a screw axis, a ball's centre.
+/// A joint's kind, and its numbers: a screw axis, a ball's centre.
 type KindState = (String, Vec<f64>);
 type JointState = (String, String, String, Pose, KindState, LimitState, [f64; 5], MimicState);
 type FrameState = (String, String, Pose);
@@ -22,7 +22,7 @@ type Numbers = (Vec<f64>, Vec<f64>);
 /// Name and time, the base's pose and twist, each joint's positions and velocities.
 type StateState = ((String, f64), Option<([f64; 7], [f64; 6])>, Vec<(String, Numbers)>);
 
-/// Everything of a [`Description`]; at last its constraints and motors, as JSON.
+/// All data of a [`Description`]; its constraints and motors come last, as JSON.
 pub type State = (
     String,
     Vec<LinkState>,
@@ -90,7 +90,7 @@ pub fn to_state(robot: &Description) -> State {
 }
 
 /// # Errors
-/// `ValueError` for matrices that are no configurations, and axes that are no screws.
+/// `ValueError` for invalid configurations and screw axes.
 pub fn from_state(
     (name, links, joints, frames, end_effector, gravity, free, rotors, (states, start), closing): State,
 ) -> PyResult<Description> {
@@ -144,7 +144,7 @@ pub fn from_state(
 }
 
 /// # Errors
-/// `ValueError` for a matrix that is no configuration.
+/// `ValueError` for an invalid configuration.
 pub fn pose(T: Pose) -> PyResult<SE3> {
     SE3::from_matrix(T).map_err(refused)
 }

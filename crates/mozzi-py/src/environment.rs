@@ -11,7 +11,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Converted.
+/// The converted arguments.
 pub struct ArrayEnvironment<'py> {
     gravity: Vec3,
     base_twist: Twist,
@@ -24,9 +24,9 @@ pub struct ArrayEnvironment<'py> {
     gravities: Option<Numbers<'py>>,
     /// Inertial parameters for each state.
     parameters: Option<Numbers<'py>>,
-    /// Were all wrenches and tables of float32?
+    /// True if all wrenches and tables were float32.
     pub is_single: bool,
-    /// Is it the model's own, with nothing touched?
+    /// True if it is the model's own environment, without applied wrenches.
     pub is_own: bool,
 }
 
@@ -82,10 +82,10 @@ impl<'py> ArrayEnvironment<'py> {
         Ok(environment)
     }
 
-    /// One state, to which nothing has leading axes.
+    /// The environment of one state; no argument has leading axes.
     ///
     /// # Errors
-    /// `ValueError` naming the table.
+    /// `ValueError` that names the table.
     pub fn one_state(model: &mozzi::Model, given: &Arguments<'_, 'py>) -> PyResult<Self> {
         let environment = ArrayEnvironment::new(model, given)?;
         if let Some(Numbers { name, shape, .. }) = environment.tables().next() {
@@ -110,7 +110,7 @@ impl<'py> ArrayEnvironment<'py> {
         Ok(())
     }
 
-    /// What has numbers for each state.
+    /// The arguments that have numbers for each state.
     pub fn tables(&self) -> impl Iterator<Item = &Numbers<'py>> {
         self.wrenches.iter().map(|(_, table)| table).chain(&self.gravities).chain(&self.parameters)
     }
@@ -119,7 +119,7 @@ impl<'py> ArrayEnvironment<'py> {
         self.wrenches.iter_mut().map(|(_, table)| table).chain(&mut self.gravities).chain(&mut self.parameters)
     }
 
-    /// What is the same in all states.
+    /// The part that is the same in all states.
     pub fn environment(&self) -> Environment<'_> {
         Environment {
             gravity: self.gravity,
@@ -129,12 +129,12 @@ impl<'py> ArrayEnvironment<'py> {
         }
     }
 
-    /// The wrenches of each state, spread before to all states.
+    /// The wrenches of each state, already broadcast to all states.
     pub fn wrenches<T: Element>(&self) -> PyResult<Vec<(FrameId, &[T])>> {
         self.wrenches.iter().map(|(frame, table)| Ok((*frame, table.slice()?))).collect()
     }
 
-    /// With these wrenches and the other tables, spread before to all states.
+    /// With these wrenches and the other tables, already broadcast to all states.
     pub fn of_batch<'a, T: Element>(&'a self, wrenches: &'a [(FrameId, &'a [T])]) -> PyResult<BatchEnvironment<'a, T>> {
         let slice = |table: &'a Option<Numbers<'py>>| table.as_ref().map(Numbers::slice).transpose();
         let (gravity, parameters) = (slice(&self.gravities)?, slice(&self.parameters)?);

@@ -1,4 +1,4 @@
-//! Errors of Rust as errors of Python: the same words.
+//! Converts errors of Rust to errors of Python with the same message.
 
 use pyo3::create_exception;
 use pyo3::exceptions::{PyArithmeticError, PyOSError, PyRuntimeError, PyUserWarning, PyValueError};
@@ -62,7 +62,7 @@ pub fn of_one_motion(error: mozzi_motion::Error, index: usize, leading: &[usize]
     }
 }
 
-/// An error of a batch; of a state with its place among the leading axes.
+/// An error of a batch; the error of a state includes its index along the leading axes.
 pub fn of_batch(error: mozzi_batch::Error, leading: &[usize]) -> PyErr {
     match error {
         mozzi_batch::Error::State { index, source } => of_state(source, index, leading),
@@ -80,7 +80,7 @@ pub fn of_state(error: mozzi::Error, index: usize, leading: &[usize]) -> PyErr {
     raised(&error, format!("state [{}]: {error}", place(index, leading)))
 }
 
-/// Where a state is among the leading axes: `2, 0`.
+/// The index of a state along the leading axes: `2, 0`.
 pub fn place(index: usize, leading: &[usize]) -> String {
     let mut rest = index;
     let mut place: Vec<String> = leading
@@ -104,7 +104,7 @@ pub fn of_loader(py: Python<'_>, error: mozzi_urdf::LoadError) -> PyErr {
             Some(number) => {
                 let words = source.to_string();
                 let words = words.split(" (os error").next().unwrap_or_default().to_string();
-                PyOSError::new_err((number, words, path.to_string_lossy().into_owned())) // of the class that goes with the number
+                PyOSError::new_err((number, words, path.to_string_lossy().into_owned())) // the subclass for the number
             }
             None => PyOSError::new_err(text),
         },

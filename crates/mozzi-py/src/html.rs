@@ -1,4 +1,4 @@
-//! A model in a notebook: a table of its joints.
+//! HTML representation of a model in a notebook: a table of its joints.
 
 use mozzi::Model;
 use mozzi_text::scalar;

@@ -1,4 +1,4 @@
-//! mozzi in Python: arguments are converted and checked, the library is called, errors are named. No mathematics.
+//! mozzi in Python: converts and checks arguments, calls the library, converts errors. No mathematics.
 
 mod arguments;
 mod array;

@@ -1,4 +1,4 @@
-//! Robots from files, texts, names and the book's lists.
+//! Loads robots from files, texts, names and the book's lists.
 
 use crate::array::{Numbers, wrong_shape};
 use crate::describe::{pose, refused};
@@ -21,13 +21,13 @@ fn policy(name: &str) -> PyResult<Policy> {
     }
 }
 
-/// A robot that mozzi brings along, by its name, or a file.
+/// An embedded robot by its name, or a file.
 pub fn loaded(py: Python<'_>, name_or_path: &str, how: &str) -> PyResult<Result<Loaded, LoadError>> {
     let policy = policy(how)?;
     Ok(py.detach(|| mozzi_urdf::open_with(name_or_path, policy)))
 }
 
-/// The model; its warnings, those that change the motion first, as Python's.
+/// The model; its warnings are raised as Python's, those that change the motion first.
 pub fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) -> PyResult<Model> {
     let loaded = loaded.map_err(|error| of_loader(py, error))?;
     for warning in &loaded.warnings {
@@ -42,7 +42,7 @@ pub fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) 
     if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }
 }
 
-/// What a xacro file is expanded with: values as text, as Python prints them, and folders.
+/// Arguments for expanding a xacro file: values as text, as Python prints them, and package folders.
 #[derive(Default)]
 pub struct Xacro<'py> {
     pub values: Option<Bound<'py, PyDict>>,
@@ -96,7 +96,7 @@ pub fn text(given: &Bound<'_, PyAny>, name: &str, how: &str, floating: bool, xac
     build(py, loaded, floating)
 }
 
-/// One of the robots that mozzi brings along.
+/// One of the embedded robots.
 pub fn embedded(py: Python<'_>, name: &str, floating: bool) -> PyResult<Model> {
     match mozzi_urdf::embedded::text(name) {
         Some(text) => build(py, mozzi_urdf::parse(&format!("{name}.urdf"), text), floating),

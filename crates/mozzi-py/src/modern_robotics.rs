@@ -1,5 +1,5 @@
-//! What `mozzi.modern_robotics` is computed by: the book's lists at every call, as the Modern Robotics package takes
-//! them.
+//! The functions behind `mozzi.modern_robotics`: they take the book's lists at every call, as the Modern Robotics
+//! package does.
 
 use crate::array::{Numbers, wrong_shape};
 use crate::describe::refused;
@@ -19,10 +19,10 @@ use pyo3::types::{PyList, PyTuple};
 type Given<'a, 'py> = &'a Bound<'py, PyAny>;
 type Found<'py> = PyResult<Bound<'py, PyAny>>;
 
-/// Matrices whose digits were cut are off by less: `TestIfSO3` of the package.
+/// Tolerance for matrices with truncated digits: `TestIfSO3` of the package.
 const ROUNDED: f64 = 1e-3;
 
-/// A rotation; of a matrix that is off by rounding the nearest.
+/// A rotation; a matrix with rounding errors is replaced by the nearest one.
 fn rotation(R: [[f64; 3]; 3]) -> PyResult<SO3> {
     let R = Mat3::from_rows(R);
     SO3::from_matrix(R).or_else(|error| match SO3::nearest(R) {
@@ -39,7 +39,7 @@ fn pose(T: [[f64; 4]; 4]) -> PyResult<SE3> {
     Ok(SE3::new(rotation([row(0), row(1), row(2)])?, Vec3([T[0][3], T[1][3], T[2][3]])))
 }
 
-/// log T; at half a turn, where two are right, the package's: the last component of ω that is not 0 is positive.
+/// log T. At half a turn, which has two solutions, the package's: the last component of ω that is not 0 is positive.
 fn logarithm(T: SE3) -> Twist {
     let R = T.R.matrix().rows();
     let is_half_turn = (R[0][0] + R[1][1] + R[2][2] - 1.0) / 2.0 <= -1.0;
@@ -92,7 +92,7 @@ fn bracket<'py>(py: Python<'py>, V: Given<'_, 'py>) -> Found<'py> {
     matrix(py, Twist::from_array(Numbers::fixed("V", V, "(6,)")?).ad().to_matrix())
 }
 
-/// One number for each joint: as many as there are.
+/// One number for each joint.
 fn per_joint(name: &'static str, given: Given) -> PyResult<Vec<f64>> {
     let mut numbers = Numbers::new(name, given)?;
     if numbers.shape.len() != 1 {
@@ -169,7 +169,8 @@ fn jacobian<'py>(py: Python<'py>, screws: Given<'_, 'py>, thetalist: Given<'_, '
     array(py, &[6, n], (0..6).flat_map(|row| columns.iter().map(move |column| column[row])))
 }
 
-/// The model of the lists, and the size of each axis: θ there is k θ here, τ here is k τ there.
+/// The model of the lists, and the magnitude k of each axis: the model's θ is k times the package's, and the package's
+/// τ is k times the model's.
 fn chain(n: usize, Mlist: Given, Glist: Given, Slist: Given) -> PyResult<(Model, Vec<f64>)> {
     let home = first::<4>("Mlist", Mlist, n + 1)?;
     let home = home.into_iter().map(pose).collect::<PyResult<Vec<_>>>()?;
@@ -182,7 +183,7 @@ fn chain(n: usize, Mlist: Given, Glist: Given, Slist: Given) -> PyResult<(Model,
     for (j, screw) in columns("Slist", Slist, n)?.into_iter().enumerate() {
         let (axis, size) = match ScrewAxis::normalize(screw) {
             Ok(found) => found,
-            // a joint that does not move anything: any axis will do
+            // a joint that does not move anything: any axis is valid
             Err(_) if screw == Twist::zero() => (ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).map_err(refused)?, 0.0),
             Err(error) => return Err(PyValueError::new_err(format!("Slist, column {j}: {error}"))),
         };
@@ -296,7 +297,7 @@ fn forward_dynamics<'py>(
         Ok(()) => None,
     };
     if let Some(why) = why {
-        // as the package's inverse of the mass matrix raises
+        // raises the same error as the package's inverse of the mass matrix
         let error = py.import("numpy.linalg")?.getattr("LinAlgError")?.call1((why,))?;
         return Err(PyErr::from_value(error));
     }

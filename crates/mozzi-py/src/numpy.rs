@@ -1,10 +1,10 @@
-//! NumPy's arrays, through NumPy's C interface: what is a table of numbers is seen as a slice, and results are arrays
-//! from the start. The buffer protocol is in Python's stable interface from 3.11 on only, and takes longer.
+//! NumPy's arrays, through NumPy's C interface: a table of numbers is borrowed as a slice, and results are arrays from
+//! the start. The buffer protocol is in Python's stable interface only from 3.11 on, and is slower.
 //!
-//! All of the binding's `unsafe` is here, but for that of methods. A slice is of an array's memory, which the reference
-//! to the array keeps. While Python's lock is held nothing else runs that could write there. Batches run without the
-//! lock: a thread that writes to an array which another thread computes on makes a race, as with every library that
-//! computes on NumPy's arrays.
+//! The binding's `unsafe` is here, except that of methods. A slice borrows an array's memory, which the reference to
+//! the array keeps alive. While the GIL is held, no other code can write there. Batches run without the GIL: a thread
+//! that writes to an array on which another thread computes causes a data race, as with every library that computes on
+//! NumPy's arrays.
 
 use pyo3::exceptions::PyImportError;
 use pyo3::ffi;
@@ -39,14 +39,14 @@ struct DtypeObject {
     number: c_int,
 }
 
-/// What NumPy has for the machine's own order of bytes.
+/// NumPy's symbol for native byte order.
 const OWN_ORDER: [u8; 2] = [b'=', if cfg!(target_endian = "little") { b'<' } else { b'>' }];
 
 const C_CONTIGUOUS: c_int = 0x1;
 const ALIGNED: c_int = 0x100;
 const WRITEABLE: c_int = 0x400;
 
-// NumPy's numbers of two types, and the places in its table of functions.
+// NumPy's type numbers of two dtypes, and the indices in its table of functions.
 const FLOAT32: c_int = 11;
 const FLOAT64: c_int = 12;
 const ARRAY_TYPE: usize = 2;
@@ -57,7 +57,7 @@ type Zeros = unsafe extern "C" fn(c_int, *const isize, *mut ffi::PyObject, c_int
 
 struct Api {
     array_type: *mut ffi::PyTypeObject,
-    /// The dtypes float32 and float64 in the machine's order of bytes.
+    /// The dtypes float32 and float64 in native byte order.
     dtypes: [*mut ffi::PyObject; 2],
     zeros: Zeros,
 }
@@ -69,13 +69,13 @@ unsafe impl Sync for Api {}
 
 static API: PyOnceLock<Api> = PyOnceLock::new();
 
-/// Numbers that arrays and mozzi have in common.
+/// Number types that NumPy's arrays and mozzi share.
 pub trait Element: mozzi_batch::Number + Default {
-    /// As NumPy calls it.
+    /// NumPy's name for it.
     const NAME: &'static str;
-    /// NumPy's number of its type.
+    /// NumPy's type number.
     const NUMBER: c_int;
-    /// Its place in `Api::dtypes`.
+    /// Its index in `Api::dtypes`.
     const PLACE: usize;
     fn to_f64(self) -> f64;
 }
@@ -96,17 +96,17 @@ impl Element for f64 {
     const PLACE: usize = 1;
 }
 
-/// Finds NumPy: to be called before anything else here, when the module is imported.
+/// Finds NumPy. Must be called when the module is imported, before any other function here.
 ///
 /// # Errors
-/// `ImportError`, where NumPy is not installed.
+/// `ImportError` if NumPy is not installed.
 pub fn prepare(py: Python<'_>) -> PyResult<()> {
     let import = |name| py.import(name);
     let module = import("numpy._core._multiarray_umath").or_else(|_| import("numpy.core._multiarray_umath"))?;
     let capsule = module.getattr("_ARRAY_API")?.cast_into::<PyCapsule>()?;
     let table = capsule.pointer_checked(None)?.cast::<*mut c_void>();
     API.get_or_try_init(py, || {
-        // SAFETY: NumPy's table of functions has these at these places, in all versions since 1.0; it is never freed.
+        // SAFETY: NumPy's table has these functions at these indices in all versions since 1.0; it is never freed.
         let api = unsafe {
             let at = |place: usize| *table.as_ptr().add(place);
             let dtype: unsafe extern "C" fn(c_int) -> *mut ffi::PyObject = std::mem::transmute(at(DTYPE_OF_NUMBER));
@@ -128,11 +128,11 @@ fn api(py: Python<'_>) -> &'static Api {
     API.get(py).expect("prepared when the module was imported")
 }
 
-/// The array, if it is one of NumPy's own type, of this type of numbers, in C's order without gaps.
+/// The array, if it is of NumPy's own type, has this number type, and is C-contiguous.
 #[inline(always)]
 fn behaved<'a, T: Element>(array: &'a Bound<'_, PyAny>) -> Option<&'a ArrayObject> {
     let api = api(array.py());
-    // SAFETY: the object is alive, and is an array where its type is NumPy's.
+    // SAFETY: the object is alive, and is an array if its type is NumPy's.
     unsafe {
         if ffi::Py_TYPE(array.as_ptr()) != api.array_type {
             return None;
@@ -143,17 +143,17 @@ fn behaved<'a, T: Element>(array: &'a Bound<'_, PyAny>) -> Option<&'a ArrayObjec
     }
 }
 
-/// Is this dtype the same but for being another object, as that of an array which was pickled?
+/// True if this dtype is equal but a different object, as after unpickling an array.
 ///
 /// # Safety
-/// It is the dtype of an array.
+/// The argument is the dtype of an array.
 unsafe fn is_equal<T: Element>(dtype: *mut ffi::PyObject) -> bool {
-    // SAFETY: an array keeps its dtype, of this layout.
+    // SAFETY: an array keeps its dtype, which has this layout.
     let dtype = unsafe { &*dtype.cast::<DtypeObject>() };
     dtype.number == T::NUMBER && OWN_ORDER.contains(&(dtype.byte_order as u8))
 }
 
-/// Its lengths.
+/// The array's shape.
 #[inline(always)]
 fn lengths(array: &ArrayObject) -> &[usize] {
     match array.rank {
@@ -178,7 +178,7 @@ pub fn vector<'a, T: Element>(array: &'a Bound<'_, PyAny>, length: usize) -> Opt
     (lengths(fields) == [length]).then(|| numbers(fields, length))
 }
 
-/// All numbers of an array that [behaves](behaved), which are this many.
+/// All numbers of an array that [behaves](behaved); there are this many.
 #[inline(always)]
 fn numbers<T: Element>(array: &ArrayObject, length: usize) -> &[T] {
     if length == 0 {
@@ -189,8 +189,8 @@ fn numbers<T: Element>(array: &ArrayObject, length: usize) -> &[T] {
 }
 
 /// Shape and numbers of an array to write into, which needs no conversion and shares no memory with the inputs. A
-/// method asks once for each array of `out`, whose other arrays are among the inputs.
-#[allow(clippy::mut_from_ref)] // of NumPy's memory, which the reference only keeps
+/// method calls this once for each array of `out`, with the other arrays of `out` among the inputs.
+#[allow(clippy::mut_from_ref)] // NumPy owns the memory, the reference only keeps it alive
 pub fn view_mut<'a, 'i, 'py: 'i, T: Element>(
     array: &'a Bound<'_, PyAny>,
     mut inputs: impl Iterator<Item = &'i Bound<'py, PyAny>>,
@@ -213,11 +213,11 @@ pub fn view_mut<'a, 'i, 'py: 'i, T: Element>(
     if length == 0 {
         return Some((shape, &mut []));
     }
-    // SAFETY: as in `view`; it may be written, and no input's slice lies in it.
+    // SAFETY: as in `view`; the array is writable, and no input's slice lies in it.
     Some((shape, unsafe { std::slice::from_raw_parts_mut(fields.data.cast::<T>(), length) }))
 }
 
-/// A new array of zeros, to be filled before Python sees it.
+/// A new array of zeros, to be filled before Python gets it.
 pub struct Fresh<'py, T> {
     array: Bound<'py, PyAny>,
     length: usize,
@@ -232,8 +232,8 @@ impl<'py, T: Element> Fresh<'py, T> {
     pub fn new(py: Python<'py>, shape: &[usize]) -> PyResult<Self> {
         let api = api(py);
         let dtype = api.dtypes[T::PLACE];
-        // SAFETY: the function takes a reference to the dtype, which is given to it, and reads the lengths. It answers
-        // with a new reference to an array, or with none and Python's error set.
+        // SAFETY: the function takes ownership of a reference to the dtype, and reads the lengths. It returns a new
+        // reference to an array, or null with Python's error set.
         let array = unsafe {
             ffi::Py_IncRef(dtype);
             let array = (api.zeros)(shape.len() as c_int, shape.as_ptr().cast(), dtype, 0);
@@ -244,20 +244,20 @@ impl<'py, T: Element> Fresh<'py, T> {
 
     #[inline(always)]
     pub fn numbers(&mut self) -> &mut [T] {
-        // SAFETY: an array that was made with this many numbers of this type; no one else knows it yet. An empty one
-        // has an address, too.
+        // SAFETY: the array was made with this many numbers of this type, and is not shared yet. An empty one has a
+        // valid address, too.
         unsafe {
             let data = (*self.array.as_ptr().cast::<ArrayObject>()).data;
             std::slice::from_raw_parts_mut(data.cast::<T>(), self.length)
         }
     }
 
-    /// How many numbers there are.
+    /// The number of entries.
     pub fn len(&self) -> usize {
         self.length
     }
 
-    /// Is it a number alone?
+    /// True if it is a single number, without axes.
     pub fn has_no_axes(&self) -> bool {
         self.has_no_axes
     }
@@ -267,8 +267,8 @@ impl<'py, T: Element> Fresh<'py, T> {
     }
 }
 
-/// The numbers of an array that exists: their product does not overflow, but a part of it may, where another length is
-/// 0.
+/// The number of entries of an existing array: the product of its lengths does not overflow, but a partial product may,
+/// if another length is 0.
 fn count(shape: &[usize]) -> usize {
     shape.iter().fold(1, |product: usize, &length| product.wrapping_mul(length))
 }

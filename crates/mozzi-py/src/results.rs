@@ -1,4 +1,4 @@
-//! Where results are written, and what Python gets: new arrays or the caller's, floats, named tuples.
+//! Results: where they are written, and the objects that Python gets: new arrays or the caller's, floats, named tuples.
 
 use crate::arguments::Given;
 use crate::array::{function, shown, wrong_shape};
@@ -25,7 +25,7 @@ fn several<'py>(py: Python<'py>, query: &Query, fields: Vec<Bound<'py, PyAny>>) 
 /// The arrays of `out`.
 ///
 /// # Errors
-/// `TypeError`, `ValueError` for what are not as many arrays as there are results.
+/// `TypeError`, `ValueError` if these are not arrays, or their number differs from the number of results.
 pub fn callers_arrays<'py>(query: &Query, out: Given<'_, 'py>) -> PyResult<Option<Vec<Bound<'py, PyAny>>>> {
     let Some(out) = out else { return Ok(None) };
     let outputs = query.declaration().outputs;
@@ -50,7 +50,7 @@ pub fn callers_arrays<'py>(query: &Query, out: Given<'_, 'py>) -> PyResult<Optio
 enum Place<'a, 'py, T> {
     New(Fresh<'py, T>),
     Callers(&'a Bound<'py, PyAny>, &'a mut [T]),
-    /// Converted by NumPy, when it is there.
+    /// Converted by NumPy after it is computed.
     Converted(&'a Bound<'py, PyAny>, Fresh<'py, T>),
 }
 
@@ -66,7 +66,7 @@ impl<'a, 'py, T: Element> Results<'a, 'py, T> {
     /// In the caller's arrays, directly if they can be written and share no memory with the inputs or each other.
     ///
     /// # Errors
-    /// `TypeError`, `ValueError` for what is no array, or of another shape.
+    /// `TypeError`, `ValueError` if an object is not an array, or has another shape.
     pub fn in_arrays(
         query: &Query,
         shapes: &[Vec<usize>],
@@ -84,7 +84,7 @@ impl<'a, 'py, T: Element> Results<'a, 'py, T> {
                 return Err(wrong_shape(&name, &found, shown(shape)));
             }
         }
-        // from here on nothing of Python's runs that could move the numbers
+        // from here on no Python code runs that could move the numbers
         let place = |(k, array): (usize, &'a Bound<'py, PyAny>)| {
             let others = arrays.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, array)| array);
             Ok(match numpy::view_mut::<T>(array, inputs.iter().copied().chain(others)) {
@@ -106,7 +106,7 @@ impl<'a, 'py, T: Element> Results<'a, 'py, T> {
             .collect()
     }
 
-    /// What Python gets: an array, a float of an array without axes that is new, or a named tuple.
+    /// The object that Python gets: an array, a float for a new array without axes, or a named tuple.
     pub fn finish(self, py: Python<'py>, query: &Query) -> PyResult<Bound<'py, PyAny>> {
         let finish = |place: Place<'a, 'py, T>| match place {
             Place::New(mut fresh) if fresh.has_no_axes() => {

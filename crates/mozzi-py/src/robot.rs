@@ -1,4 +1,4 @@
-//! A model with what computing takes: memory for one state, batches for many.
+//! A model prepared for computing: memory for one state, batches for many.
 
 use crate::failure::of_batch;
 use crate::numpy::Element;
@@ -11,16 +11,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 pub struct Robot {
     pub model: Model,
-    /// Its own gravity, its base at rest, touching nothing.
+    /// Its own gravity, its base at rest, no applied wrenches.
     own: Environment<'static>,
-    /// Used while Python's lock is held, so that nobody waits.
+    /// Used while the GIL is held, so that no thread waits for it.
     memory: Mutex<fast::Workspace>,
     double: Mutex<Engines<f64>>,
     single: Mutex<Engines<f32>>,
     pub compiled: Option<Machine>,
 }
 
-/// The quantities that are machine code.
+/// The quantities that are compiled to machine code.
 pub struct Machine {
     pub code: Compiled,
     /// The requested quantities.
@@ -45,9 +45,9 @@ impl Robot {
         }
     }
 
-    /// The quantity at one state, whose lengths, frame and rows were checked; by machine code if there is some and the
-    /// environment is the robot's own, which is `None`. `fast::compute` would check all again, which takes a tenth of
-    /// an arm's recursion.
+    /// Computes the quantity at one state; lengths, frame and rows are already checked. Uses machine code if there is
+    /// some and the environment is the robot's own, which is `None`. `fast::compute` would repeat all checks, which
+    /// takes a tenth of the time of an arm's recursion.
     #[inline]
     pub fn one(
         &self,
@@ -77,19 +77,19 @@ impl Robot {
         Ok(())
     }
 
-    /// The frame of this name; without one the end effector.
+    /// The frame of this name; without a name, the end effector.
     #[inline]
     pub fn frame(&self, name: Option<&str>) -> Result<FrameId, Error> {
         name.map_or_else(|| self.model.end_effector(), |name| self.model.frame(name))
     }
 
-    /// The batch on this many threads; without a number on those that the robot was compiled for, or all cores.
+    /// The batch on this many threads; without a number, on the threads for which the robot was compiled, or all cores.
     pub fn batch<T: HasEngines>(&self, threads: Option<Threads>) -> PyResult<Batch<T>> {
         let compiled_for = || self.compiled.as_ref().and_then(|machine| machine.threads).map(Threads);
         let threads = threads.or_else(compiled_for);
         let mut engines = unpoisoned(T::engines(self));
         if engines.process != std::process::id() {
-            // their threads do not exist here, and dropping would wait for them
+            // their threads do not exist in this process, and dropping would wait for them
             std::mem::forget(std::mem::take(&mut *engines));
         }
         if let Some((_, batch)) = engines.made.iter().find(|(known, _)| *known == threads) {
@@ -105,14 +105,14 @@ impl Robot {
     }
 }
 
-/// A panic leaves memory that has no meaning between calls, which may be used again.
+/// Ignores poisoning: memory left by a panic means nothing between calls and may be used again.
 fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The batches of a model that were needed, by their number of threads.
+/// The batches that were needed for a model, by their number of threads.
 pub struct Engines<T: Element> {
-    /// The process that they were made in: a fork has none of their threads.
+    /// The process in which they were made: a fork has none of their threads.
     process: u32,
     made: Vec<(Option<Threads>, Batch<T>)>,
 }
@@ -123,14 +123,14 @@ impl<T: Element> Default for Engines<T> {
     }
 }
 
-/// The numbers that a robot computes on.
+/// The number types that a robot computes with.
 pub trait HasEngines: Element {
     fn engines(robot: &Robot) -> &Mutex<Engines<Self>>;
 
-    /// On the threads that all batches share; of a compiled robot with its machine code.
+    /// A batch on the threads that all batches share; for a compiled robot with its machine code.
     fn batch(robot: &Robot) -> Batch<Self>;
 
-    /// [`Robot::one`], of the numbers that it is for.
+    /// [`Robot::one`], for the number type that it supports.
     fn one_state(
         _robot: &Robot,
         _query: &Query,
@@ -169,13 +169,14 @@ impl HasEngines for f32 {
     }
 }
 
-/// Was this process forked from the one that loaded the module? Then the threads that all batches share stayed behind.
+/// True if this process was forked from the one that loaded the module: then it lacks the threads that all batches
+/// share.
 fn is_fork() -> bool {
     static LOADED_BY: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
     *LOADED_BY.get_or_init(std::process::id) != std::process::id()
 }
 
-/// To be called when the module is loaded.
+/// Must be called when the module is loaded.
 pub fn remember_process() {
     is_fork();
 }

@@ -1,11 +1,11 @@
 //! The arguments of a quantity's method, made from its declaration: their order, defaults, types and documentation.
-//! Without Python, so that `tests/stubs.rs` writes the stubs from it.
+//! Independent of Python, so that `tests/stubs.rs` can write the stubs from it.
 
 use mozzi::quantities::{Declaration, Dim, Input, Of, Output, Uses};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
 
-/// The quantities' names as classes have them, in the order of the list: the named tuples of several results.
+/// Class names of the quantities, in the order of the list: the named tuples of several results.
 pub const CLASSES: &[&str] = {
     macro_rules! names {
         ($($Q:ident)*) => { &[$(stringify!($Q)),*] };
@@ -16,7 +16,7 @@ pub const CLASSES: &[&str] = {
 /// One argument of a method.
 #[derive(Clone, Copy, Debug)]
 pub struct Argument {
-    /// Which it is.
+    /// Identifies the argument.
     pub slot: Slot,
     /// Its name.
     pub name: &'static str,
@@ -31,7 +31,7 @@ pub struct Argument {
 /// The optional arguments: `Slot NAME: name, stub = default, type, meaning;`.
 macro_rules! optional {
     ($($slot:ident $constant:ident: $name:literal, $stub:literal = $default:literal, $kind:literal, $about:literal;)*) => {
-        /// Which argument it is, of those that any method has.
+        /// One of the arguments of all methods.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[allow(missing_docs)] // their names
         pub enum Slot { Input0, Input1, Input2, Input3, $($slot),* }
@@ -69,18 +69,18 @@ optional! {
         "Largest number of threads for many states. Default: all cores.";
 }
 
-/// Of several results.
+/// `out` of a method with several results.
 const SEVERAL_OUT: Argument = Argument {
     stub: "Sequence[Array] | None",
     about: ["sequence of numpy.ndarray, optional", "Arrays in which the results are written, in their order."],
     ..OUT
 };
 
-/// How many slots there are.
+/// The number of slots.
 pub const SLOTS: usize = Slot::Threads as usize + 1;
-/// Those of the state, in the order of the declaration.
+/// The slots of the state, in the order of the declaration.
 pub const INPUTS: [Slot; 4] = [Slot::Input0, Slot::Input1, Slot::Input2, Slot::Input3];
-/// Those of the environment.
+/// The slots of the environment.
 pub const ENVIRONMENT: RangeInclusive<usize> = Slot::TipWrench as usize..=Slot::Parameters as usize;
 
 /// The arguments of a method, in their order.
@@ -88,16 +88,16 @@ pub const ENVIRONMENT: RangeInclusive<usize> = Slot::TipWrench as usize..=Slot::
 pub struct Signature {
     /// The method's name.
     pub name: &'static str,
-    /// All of them.
+    /// All arguments.
     pub arguments: Vec<Argument>,
-    /// The first so many are required: the state.
+    /// The number of required arguments, which come first: the state.
     pub required: usize,
-    /// The first so many may be positional.
+    /// The number of arguments that may be positional, which come first.
     pub positional: usize,
 }
 
 impl Signature {
-    /// Of a quantity's method.
+    /// The signature of a quantity's method.
     pub fn new(declaration: &Declaration) -> Self {
         let Declaration { name, inputs, of, uses, .. } = *declaration;
         let has = |part, argument: Argument| uses.has(part).then_some(argument);
@@ -119,7 +119,7 @@ impl Signature {
         Signature { name, arguments, required, positional }
     }
 
-    /// As `inspect.signature` reads it, and with types as the stubs have it.
+    /// The text that `inspect.signature` reads; with types, the text of the stubs.
     pub fn text(&self, this: &str, has_types: bool) -> String {
         let mut text = String::from(this);
         for (place, argument) in self.arguments.iter().enumerate() {
@@ -142,8 +142,8 @@ fn state((input, slot): (&Input, Slot)) -> Argument {
     Argument { slot, name: input.name, default: None, stub: "ArrayLike", about: [""; 2] }
 }
 
-/// Forces, energies and momenta depend on the inertial parameters. Kinematics does not, the constraints' own included,
-/// nor do forces of wrenches alone, nor what multiplies the parameters.
+/// True for forces, energies and momenta, which depend on the inertial parameters. False for kinematics, including that
+/// of the constraints, for forces of wrenches alone, and for matrices that multiply the parameters.
 fn depends_on_parameters(declaration: &Declaration) -> bool {
     let free_of_them = |dim: &Dim| matches!(dim, Dim::Frames | Dim::Parameters);
     let of_constraints = |output: &Output| output.dims.iter().any(|dim| matches!(dim, Dim::Constraints));

@@ -3,10 +3,10 @@
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// More would only wait for each other.
+/// The most threads for each core; more would only wait for each other.
 const MOST: i64 = 1024;
 
-/// How many threads share the states.
+/// The number of threads among which the states are divided.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Threads(pub usize);
 

@@ -1,5 +1,5 @@
-//! The library that `cargo xtask test` hands to Python is built by `cargo test --workspace`, which builds what this
-//! test depends on.
+//! `cargo xtask test` passes a library to Python. `cargo test --workspace` builds that library because this test
+//! depends on it.
 
 use std::path::Path;
 

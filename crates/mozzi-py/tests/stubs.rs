@@ -1,6 +1,6 @@
-//! What the package's text says of the quantities, held to the list: their methods in `_mozzi.pyi`, and the named
-//! tuples of several results, `_quantities.py`. `cargo xtask docs`, or
-//! `MOZZI_BLESS=1 cargo test -p mozzi-py --test stubs`, writes both anew.
+//! Checks the package's text about the quantities against the list: their methods in `_mozzi.pyi`, and the named tuples
+//! of several results in `_quantities.py`. `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-py --test stubs`,
+//! regenerates both.
 
 #[allow(dead_code)] // used by the library
 #[path = "../src/signature.rs"]

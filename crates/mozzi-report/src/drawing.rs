@@ -16,15 +16,15 @@ const MOST_BYTES: u64 = 64 << 20;
 /// The formats that the page reads, by the files' endings.
 const FORMATS: [&str; 3] = ["stl", "obj", "dae"];
 
-/// Which meshes go into the page.
+/// The meshes that are embedded in the page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Meshes {
-    /// Those that are meant to be seen; of a link without any, those that collide.
+    /// Visual meshes; for a link without any, its collision meshes.
     #[default]
     Visual,
-    /// Those that collide, mostly smaller; of a link without any, its visual boxes, cylinders and balls.
+    /// Collision meshes, which are mostly smaller; for a link without any, its visual boxes, cylinders and balls.
     Collision,
-    /// None: boxes, cylinders and balls alone, and a skeleton.
+    /// No meshes: only boxes, cylinders and balls, and a skeleton.
     None,
 }
 
@@ -34,7 +34,7 @@ pub struct Drawing {
     shapes: Vec<Shape>,
     /// By the address in the robot's file.
     meshes: Vec<Mesh>,
-    /// What was left out and why, a sentence each.
+    /// Omitted shapes and the reasons, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -54,7 +54,7 @@ impl Drawing {
         Self::of_file_below(name_or_path, &XacroArguments::default(), meshes, None)
     }
 
-    /// The same with arguments of xacro; meshes may also lie in the folder `mesh_root`, such as one that contains the
+    /// The same with xacro arguments. Meshes may also lie in the folder `mesh_root`, such as one that contains the
     /// robot's folder and a folder of meshes next to it.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Drawing {
         Ok(Self::new(geometry_with(name_or_path, arguments)?, Path::new(name_or_path), meshes, mesh_root))
     }
 
-    /// The drawing of a text, such as that of a pipe: without meshes, since it has no folder.
+    /// The drawing of a text, such as one from a pipe: without meshes, since it has no folder.
     pub fn of_text(file_name: &str, text: &[u8], meshes: Meshes) -> Self {
         let Geometry { mut shapes, left_out } = parse(file_name, text);
         let all = shapes.len();
@@ -93,7 +93,7 @@ impl Drawing {
         drawing
     }
 
-    /// Reads the mesh of a form, if it has one; false and noted where that fails.
+    /// Reads the mesh of a form, if it has one; returns false, with a note, if that fails.
     fn has_mesh(&mut self, form: &Form, robot_file: &Path, root: Option<&Path>) -> bool {
         let Form::Mesh { file, .. } = form else { return true };
         if self.meshes.iter().any(|mesh| mesh.address == *file) {
@@ -119,7 +119,7 @@ impl Drawing {
         self.meshes.iter().map(mesh).collect()
     }
 
-    /// Shapes of links that the model has no frame for (what a floating base is freed from) are left out.
+    /// Shapes of links without a frame in the model (such as the parent of a floating base) are omitted.
     pub(crate) fn shapes_to_json(&self, frame_of: &dyn Fn(&str) -> Option<usize>) -> Value {
         let shape = |shape: &Shape| {
             let (kind, size, mesh) = self.form(&shape.form);

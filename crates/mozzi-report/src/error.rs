@@ -11,14 +11,14 @@ pub enum Error {
         what: &'static str,
         /// Numbers in it.
         found: usize,
-        /// Numbers that there should be.
+        /// The expected count of numbers.
         expected: usize,
         /// Times.
         rows: usize,
-        /// Numbers a row.
+        /// Numbers per row.
         width: usize,
     },
-    /// The times of the motion decrease, or one is no number.
+    /// The times of the motion decrease, or one is not a number.
     #[error("the motion's time is {t} s in row {row}, expected times that do not decrease")]
     Time {
         /// The row, from 1.

@@ -1,5 +1,5 @@
-//! A robot and its motion as one HTML file, which needs no network and no program but a browser; and as figures for
-//! papers, SVG ([`pictures`]).
+//! A robot and its motion as one HTML file, which needs only a browser and no network; and as figures for papers, SVG
+//! ([`pictures`]).
 //!
 //! ```
 //! use mozzi::simulation::{Options, Zero};
@@ -36,13 +36,13 @@ pub use motion::Motion;
 
 use mozzi::Model;
 
-/// Rows of a motion that a page shows without delay: a few megabytes of an arm's.
+/// Rows of a motion that a page shows without delay: a few megabytes for an arm.
 pub const ROWS: usize = 20_000;
 
-/// The file. Without a motion it has a slider for each joint.
+/// The HTML file. Without a motion it has a slider for each joint.
 ///
 /// # Errors
-/// [`Error::Motion`] where the motion's rows are not as long as this robot's.
+/// [`Error::Motion`] if the motion's rows are not as long as this robot's.
 pub fn html(model: &Model, drawing: &Drawing, motion: Option<&Motion>) -> Result<String, Error> {
     let title = match motion {
         Some(motion) => format!("{}, {}", model.description().name, motion.title),

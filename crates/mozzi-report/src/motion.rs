@@ -5,10 +5,10 @@ use crate::error::Error;
 use mozzi::{Environment, Model, Trajectory, Wrench};
 use serde_json::{Value, json};
 
-/// What is known of a motion: a row for each time, row-major lists. What is `None` is not shown.
+/// The known data of a motion: a row for each time, row-major lists. Fields that are `None` are not shown.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// What it is, in a few words.
+    /// A short description.
     pub title: String,
     /// Times in seconds, not decreasing; two rows with the same time are a jump.
     pub t: Vec<f64>,
@@ -20,18 +20,18 @@ pub struct Motion {
     pub ddtheta: Option<Vec<f64>>,
     /// τ.
     pub tau: Option<Vec<f64>>,
-    /// What the end effector applies to the environment, in its own frame.
+    /// The wrench that the end effector applies to the environment, in its own frame.
     pub tip_wrench: Option<Vec<Wrench>>,
     /// 𝒦, J.
     pub kinetic_energy: Option<Vec<f64>>,
     /// 𝒫, J.
     pub potential_energy: Option<Vec<f64>>,
-    /// Energy that the method made, J: [`Trajectory::drift`].
+    /// Energy error of the method, J: [`Trajectory::drift`].
     pub drift: Option<Vec<f64>>,
 }
 
 impl Motion {
-    /// A simulation's.
+    /// The motion of a simulation.
     pub fn simulated(title: impl Into<String>, motion: &Trajectory) -> Self {
         Motion {
             title: title.into(),
@@ -47,7 +47,7 @@ impl Motion {
         }
     }
 
-    /// Every s-th row, and the last: at most so many, at least two. See [`mozzi::simulation::stride`].
+    /// Every s-th row, and the last: at most `at_most` rows, but at least two. See [`mozzi::simulation::stride`].
     pub fn thinned(mut self, at_most: usize) -> Self {
         let rows = self.t.len();
         let stride = mozzi::simulation::stride(rows, at_most);
@@ -63,10 +63,10 @@ impl Motion {
         self
     }
 
-    /// The same with the energies that its positions and velocities have: 𝒫, and 𝒦 where velocities are known.
+    /// The same with the energies of its positions and velocities: 𝒫, and 𝒦 if velocities are known.
     ///
     /// # Errors
-    /// [`Error::Motion`] where the rows are not as long as this robot's.
+    /// [`Error::Motion`] if the rows are not as long as this robot's.
     pub fn with_energies(mut self, model: &Model) -> Result<Self, Error> {
         self.check(model)?;
         let positions = || self.theta.chunks(model.nq().max(1));
@@ -108,8 +108,8 @@ impl Motion {
         Ok(())
     }
 
-    /// For each row and constraint the wrench in {s} about its origin, (m, f), that anchor {b} applies to {a}. None
-    /// where rates or torques are not known, or nothing is constrained.
+    /// For each row and constraint the wrench in {s} about its origin, (m, f), that anchor {b} applies to {a}. None if
+    /// rates or torques are not known, or nothing is constrained.
     fn constraint_wrenches(&self, model: &Model) -> Result<Option<Vec<f64>>, Error> {
         let (Some(dtheta), Some(ddtheta), Some(tau)) = (&self.dtheta, &self.ddtheta, &self.tau) else {
             return Ok(None);
@@ -154,7 +154,7 @@ impl Motion {
     }
 }
 
-/// Some rows of a table, alone.
+/// Selected rows of a table.
 fn thin<T>(table: &mut Vec<T>, rows: usize, is_kept: impl Fn(usize) -> bool) {
     let (width, mut entry) = (table.len() / rows.max(1), 0);
     table.retain(|_| {

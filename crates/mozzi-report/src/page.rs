@@ -1,11 +1,11 @@
-//! The bundled page, and the places in it that wait for data.
+//! The bundled page, with placeholders for data.
 
 use serde_json::Value;
 
 /// Made by `cargo xtask page` from `page/`.
 const PAGE: &str = include_str!("../bundle/page.html");
 
-/// A text inside of HTML's elements, and a JSON inside of its `<script>`, hold no `<` that could end them.
+/// The text in HTML elements and the JSON in its `<script>` must not contain a `<` that could end them.
 pub fn fill(title: &str, data: &Value) -> String {
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let data = data.to_string().replace('<', "\\u003c");

@@ -1,4 +1,4 @@
-//! The robot as the page reads it: each body in the frame of its link in the file.
+//! The robot in the form that the page reads: each body in the frame of its link in the file.
 
 use crate::drawing::Drawing;
 use mozzi::model::description::{Anchor, ConstraintKind, JointKind, Source};
@@ -12,7 +12,7 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
     let poses = model.frame_poses(&model.neutral_configuration())?;
     let frames: Vec<&str> = model.frames().map(|(_, name)| name).collect();
     let frame_of = |name: &str| frames.iter().position(|known| *known == name);
-    // where each body's own link is when all joints are at 0
+    // the pose of each body's own link with all joints at 0
     let home =
         |k: usize| folded[k].links.first().and_then(|(link, _)| frame_of(link)).map_or(SE3::identity(), |f| poses[f]);
 
@@ -28,7 +28,7 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
         })
         .collect();
 
-    // the body that carries each anchor, and its place there; none for {s}
+    // the body of each anchor, and its point in that body; none for {s}
     let anchor = |anchor: &Anchor| match &anchor.frame {
         None => json!({ "body": null, "p": anchor.T.p.0 }),
         Some(name) => {
@@ -43,7 +43,7 @@ pub fn to_json(model: &Model, drawing: &Drawing) -> Result<Value, Error> {
     });
     let constraints: Value = constraints.collect();
 
-    // ten numbers for each body; those of the joints follow
+    // ten numbers for each body, followed by those of the joints
     let parameters = model.parameters();
     let is_floating = model.is_floating();
     let mut inertias = parameters.chunks(10);
@@ -174,7 +174,7 @@ mod tests {
             let mass: f64 = bodies.iter().map(|body| numbers(&body["inertia"])[0]).sum();
             let of_base = if model.is_floating() { numbers(&robot["baseInertia"])[0] } else { 0.0 };
             assert!((mass + of_base - model.mass()).abs() < 1e-12 * model.mass());
-            // M without its links is the armature
+            // M without its links is only the armature
             let massless: Vec<f64> = (model.parameters().iter().zip(model.parameter_names()))
                 .map(|(&x, name)| if name.ends_with(".armature") { x } else { 0.0 })
                 .collect();

@@ -9,7 +9,7 @@ pub fn balls() -> Description {
     mozzi_urdf::parse("balls.xml", text).expect("sound").description
 }
 
-/// Different numbers everywhere, quaternions unit.
+/// Different numbers for all entries, with unit quaternions.
 pub fn configuration(model: &Model) -> Vec<f64> {
     let mut theta: Vec<f64> = (0..model.nq()).map(|k| 0.3 + 0.17 * (k % 12) as f64).collect();
     let base = model.is_floating().then_some(0);

@@ -1,44 +1,44 @@
-//! Numbers and tables as text for a terminal: aligned at the decimal point, not wider than the page where that can be;
-//! and files that are written whole.
+//! Numbers and tables as text for a terminal: aligned at the decimal point, and not wider than the page if possible.
+//! Also atomic writing of whole files.
 
 pub mod whole_file;
 
 use mozzi::Twist;
 use nalgebra::DMatrix;
 
-/// Columns that a page may take: the terminal's, 112 where there is none.
+/// Columns of the page: the terminal's, or 112 without a terminal.
 pub fn page_width() -> usize {
     let terminal = terminal_size::terminal_size_of(std::io::stdout());
     terminal.map_or(112, |(terminal_size::Width(columns), _)| usize::from(columns).clamp(72, 120))
 }
 
-/// Columns that a text takes: the dots of θ̇ take none.
+/// Columns that a text occupies: combining dots, as in θ̇, take none.
 pub fn width(text: &str) -> usize {
     text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
 }
 
-/// Filled up with spaces at the right, or at the left.
+/// Pads with spaces on the right, or on the left.
 pub fn pad(text: &str, to: usize, align: char) -> String {
     let space = " ".repeat(to.saturating_sub(width(text)));
     if align == 'r' { space + text } else { text.to_string() + &space }
 }
 
-/// How the numbers of a table are written: one number of decimals for all, so that their points stand below each other.
-/// What is below 10⁻¹² of the largest is rounding and shown as 0.
+/// The format of the numbers of a table: the same number of decimals for all, so that their points are aligned. Numbers
+/// below 10⁻¹² of the largest are rounding errors and shown as 0.
 #[derive(Clone, Copy)]
 pub struct Decimals {
     places: usize,
     scientific: bool,
-    /// Constants keep their digits: what the decimals would cut is written with an exponent.
+    /// Constants keep their digits: a number that would lose digits is written with an exponent.
     is_constant: bool,
     rounding: f64,
 }
 
-/// A number shown with a larger relative error has lost its digits.
+/// A number shown with a larger relative error counts as truncated.
 const LOST: f64 = 0.01;
 
 impl Decimals {
-    /// About five digits for the largest number, fewer where all are short.
+    /// About five digits for the largest number, fewer if all are short.
     pub fn of<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
         Self::with_digits(values, 4)
     }
@@ -72,8 +72,8 @@ impl Decimals {
         Decimals { places, scientific: false, is_constant: false, rounding }
     }
 
-    /// For a computed matrix: with exponents where an entry of its diagonal would lose its digits, such as a small
-    /// joint's in M.
+    /// For a computed matrix: with exponents if an entry of its diagonal would lose its digits, such as a small joint's
+    /// in M.
     fn of_matrix(M: &DMatrix<f64>) -> Self {
         let decimals = Self::of(M.iter());
         let is_lost = M.is_square() && M.diagonal().iter().any(|&x| decimals.loses(x));
@@ -127,38 +127,38 @@ pub fn tuple(values: &[f64]) -> String {
     format!("({})", entries.join(", "))
 }
 
-/// Numbers below each other.
+/// Numbers in a column.
 pub fn column(values: &[f64]) -> Vec<String> {
     column_within(values, 0.0)
 }
 
-/// Numbers below each other, part of a table in which such large ones stand: rounding is measured by those.
+/// Numbers in a column of a table whose largest number is `largest`: rounding is relative to that.
 pub fn column_within(values: &[f64], largest: f64) -> Vec<String> {
     let mut decimals = Decimals::long(values.iter().filter(|x| x.abs() > 1e-12 * largest));
     decimals.rounding = decimals.rounding.max(1e-12 * largest);
     values.iter().map(|&x| decimals.show(x)).collect()
 }
 
-/// Numbers with a hole where there is none.
+/// Numbers in a column, with a dash for missing ones.
 pub fn column_of_some(values: &[Option<f64>]) -> Vec<String> {
     let decimals = Decimals::long(values.iter().flatten());
     values.iter().map(|x| x.map_or("–".to_string(), |x| decimals.show(x))).collect()
 }
 
-/// Twists that are constants, in rows of six cells.
+/// Constant twists, in rows of six cells.
 pub fn twists(list: &[Twist]) -> Vec<Vec<String>> {
     let rows: Vec<[f64; 6]> = list.iter().map(|V| V.to_array()).collect();
     let largest = largest(rows.as_flattened());
     rows_of((0..6).map(|c| column_within(&rows.iter().map(|row| row[c]).collect::<Vec<_>>(), largest)).collect())
 }
 
-/// Rows of six numbers that were computed, with about five digits.
+/// Rows of six computed numbers, with about five digits.
 pub fn sixes(rows: &[[f64; 6]]) -> Vec<Vec<String>> {
     let decimals = Decimals::of(rows.as_flattened());
     rows.iter().map(|row| row.iter().map(|&x| decimals.show(x)).collect()).collect()
 }
 
-/// The largest magnitude; 0 of none.
+/// The largest magnitude; 0 for an empty list.
 pub fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |m, x| m.max(x.abs()))
 }
@@ -175,8 +175,8 @@ pub fn flow(entries: &[String]) -> Vec<String> {
     lines
 }
 
-/// Cells in columns, two spaces between them. `align` has one 'l' or 'r' for each column; its last holds for all
-/// further.
+/// Cells in columns, two spaces between them. `align` has one 'l' or 'r' for each column; the last one applies to all
+/// further columns.
 pub fn table(rows: &[Vec<String>], align: &str) -> Vec<String> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let aligns: Vec<char> = align.chars().collect();
@@ -191,13 +191,13 @@ pub fn table(rows: &[Vec<String>], align: &str) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-/// Columns put together to rows.
+/// Converts columns to rows.
 pub fn rows_of(columns: Vec<Vec<String>>) -> Vec<Vec<String>> {
     let count = columns.iter().map(Vec::len).max().unwrap_or(0);
     (0..count).map(|r| columns.iter().map(|column| column.get(r).cloned().unwrap_or_default()).collect()).collect()
 }
 
-/// A matrix that was computed, in brackets; one that is too wide in groups of columns, which are then numbered.
+/// A computed matrix, in brackets; if it is too wide, in groups of numbered columns.
 pub fn matrix(M: &DMatrix<f64>) -> Vec<String> {
     matrix_with(M, Decimals::of_matrix(M))
 }
@@ -232,7 +232,7 @@ fn matrix_with(M: &DMatrix<f64>, decimals: Decimals) -> Vec<String> {
     lines
 }
 
-/// One block right of the other, each below its title; below each other where they do not fit.
+/// Blocks side by side, each below its title; below each other if they do not fit.
 pub fn beside(blocks: &[(String, Vec<String>)]) -> Vec<String> {
     let titled = |(title, lines): &(String, Vec<String>)| {
         let mut all = vec![title.clone()];
@@ -284,7 +284,7 @@ impl Page {
         self.blank().line(format!("── {title} {rule}"))
     }
 
-    /// Lines, two spaces in.
+    /// Lines, indented by two spaces.
     pub fn lines(&mut self, lines: &[String]) -> &mut Self {
         lines.iter().for_each(|line| {
             self.line(format!("  {line}"));

@@ -1,4 +1,4 @@
-//! A file that is written next to its place, and renamed when it is whole. A full disk, an error or a killed program
+//! A file that is written next to its place, and renamed when it is complete. A full disk, an error or a killed program
 //! leaves an older file as it is.
 
 use std::fs::{File, OpenOptions};
@@ -11,7 +11,7 @@ pub struct WholeFile {
     part: Option<Part>,
 }
 
-/// A file next to its place; removed unless it gets there.
+/// A temporary file next to its place; removed unless it is renamed.
 struct Part {
     path: PathBuf,
     place: PathBuf,
@@ -19,13 +19,12 @@ struct Part {
 
 impl Drop for Part {
     fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.path); // after a renaming there is none
+        let _ = std::fs::remove_file(&self.path); // after renaming there is no such file
     }
 }
 
 impl WholeFile {
-    /// Begins a file. Pipes, devices, links to nothing and files in a folder without write permission are written in
-    /// place.
+    /// Begins a file. Pipes, devices, broken links and files in a folder without write permission are written in place.
     ///
     /// # Errors
     /// The system's: no folder, no permission, a file that is read-only.
@@ -51,7 +50,7 @@ impl WholeFile {
         Ok(WholeFile { to, part })
     }
 
-    /// What to write to.
+    /// The file handle to write to.
     ///
     /// # Errors
     /// The system's.
@@ -59,18 +58,18 @@ impl WholeFile {
         self.to.try_clone()
     }
 
-    /// Where it is until it is whole; none if it is written in place.
+    /// The path of the temporary file; none if it is written in place.
     pub fn part(&self) -> Option<&Path> {
         self.part.as_ref().map(|part| part.path.as_path())
     }
 
-    /// Puts it in its place.
+    /// Renames the temporary file to its place.
     ///
     /// # Errors
-    /// The system's, such as a full disk; then the older file is as it was.
+    /// The system's, such as a full disk; the older file is then unchanged.
     pub fn finish(self) -> io::Result<()> {
         let Some(part) = &self.part else { return Ok(()) };
-        // some disks say only now that they are full
+        // some disks report only now that they are full
         self.to.sync_all().and_then(|()| std::fs::rename(&part.path, &part.place))
     }
 }
@@ -78,7 +77,7 @@ impl WholeFile {
 /// Writes a whole file.
 ///
 /// # Errors
-/// The system's; then an older file is as it was.
+/// The system's; an older file is then unchanged.
 pub fn save(file: &Path, content: &[u8]) -> io::Result<()> {
     let whole = WholeFile::create(file)?;
     whole.handle()?.write_all(content)?;
@@ -92,7 +91,7 @@ fn beside(place: &Path) -> io::Result<(File, PathBuf)> {
     loop {
         let path = place.with_file_name(format!(".mozzi-{id}-{k}.part"));
         match OpenOptions::new().write(true).read(true).create_new(true).open(&path) {
-            // of a program that was killed
+            // left by a killed program
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists && k < 1000 => k += 1,
             made => return Ok((made?, path)),
         }

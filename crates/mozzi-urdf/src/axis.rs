@@ -6,10 +6,10 @@ use crate::finding::Finding;
 use crate::vocabulary::AXIS;
 use mozzi::{ScrewAxis, Twist, Vec3};
 
-/// How far from 1 an axis' length may be before it is worth a word: digits that were cut stay below.
+/// Tolerance on an axis' length before a warning; truncated digits stay below it.
 const SLACK: f64 = 1e-3;
 
-/// The joint's screw in the child's frame; None, and reported, when there is no direction. URDF's default is x.
+/// The joint's screw in the child's frame; None, with a diagnostic, if there is no direction. URDF's default is x.
 pub(crate) fn read(kind: &str, axis: Option<&Element>, joint: &Element, cx: &mut Context) -> Option<ScrewAxis> {
     let x = Vec3([1.0, 0.0, 0.0]);
     let Some(axis) = axis else { return screw(kind, x).map(|(screw, _)| screw) };

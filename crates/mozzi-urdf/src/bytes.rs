@@ -5,7 +5,7 @@ use crate::finding::{Finding, Findings};
 /// Larger files are refused unread.
 pub(crate) const MOST_BYTES: usize = 64 << 20;
 
-/// The text without its byte order mark, or what is wrong with it and the part of it that can be shown.
+/// The text without its byte order mark, or the error and the part of the text that can be shown.
 pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
     if bytes.len() > MOST_BYTES {
         let message = format!("the file has {} bytes, expected at most {MOST_BYTES}", bytes.len());
@@ -21,7 +21,7 @@ pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
     std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         let good = std::str::from_utf8(&bytes[..at]).unwrap_or_default();
-        // counted as an editor for bytes does: a byte order mark is three of them
+        // counted as in a byte editor: a byte order mark is three bytes
         let offset = at + file.len() - bytes.len();
         let message = format!("byte {offset} of the file is {:#04x}, which is not UTF-8", bytes[at]);
         let help = "save the file as UTF-8; convert a file that declares another encoding";
@@ -29,7 +29,7 @@ pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
     })
 }
 
-/// The same into a report.
+/// The same; an error is added to the findings.
 pub(crate) fn read<'b>(bytes: &'b [u8], findings: &mut Findings) -> &'b str {
     match to_text(bytes) {
         Ok(text) => text,

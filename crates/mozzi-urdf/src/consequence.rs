@@ -1,20 +1,20 @@
-//! What diagnostics mean for the results, and their order by it.
+//! The consequences of diagnostics for the results, and the order of diagnostics by them.
 
 use crate::diagnostic::Diagnostic;
 use crate::finding::Topic;
 use std::collections::BTreeMap;
 
-/// What a diagnostic means for the results. Warnings are in this order.
+/// The consequence of a diagnostic for the results. Warnings are in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Consequence {
-    /// The results omit or replace something of the file, so that the robot may move differently: a force that is not
+    /// The results omit or replace part of the file, so that the robot may move differently: a force that is not
     /// computed, a property that is ignored, an unknown word.
     Motion,
-    /// The numbers of the file are used, and are suspicious.
+    /// The numbers of the file are used, but are suspicious.
     Numbers,
     /// The dynamics are those of the file: limits, names, slips of syntax.
     Remark,
-    /// Content that mozzi does not use, such as looks and contact: counted, not warned of.
+    /// Content that mozzi does not use, such as appearance and contact: counted, without a warning.
     Unused,
 }
 
@@ -42,7 +42,7 @@ const REMARKS: [&str; 12] = [
     "xacro_warning",
 ];
 
-/// What a warning of this code means for the results.
+/// The consequence of a warning of this code for the results.
 pub fn consequence(code: &str) -> Consequence {
     let short = code.rsplit("::").next().unwrap_or(code);
     match short {
@@ -52,8 +52,8 @@ pub fn consequence(code: &str) -> Consequence {
     }
 }
 
-/// How many attributes and elements are not used, and what they concern: "17 attributes of looks and contact are not
-/// used". None where all are used.
+/// The number of unused attributes and elements, and what they concern: "17 attributes of looks and contact are not
+/// used". None if all are used.
 pub fn unused(diagnostics: &[Diagnostic]) -> Option<String> {
     let mut counts: BTreeMap<Topic, [usize; 2]> = BTreeMap::new();
     for (topic, found) in diagnostics.iter().filter_map(|found| Some((found.topic()?, found))) {

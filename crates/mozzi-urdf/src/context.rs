@@ -1,4 +1,4 @@
-//! What the readers of elements share.
+//! State that the readers of elements share.
 
 use crate::dialect::Dialect;
 use crate::finding::{Finding, Findings};
@@ -7,7 +7,7 @@ use crate::version::Version;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// Findings so far, and the kinds of unknown things that were met.
+/// Findings so far, and the kinds of unknown names that were found.
 #[derive(Default)]
 pub(crate) struct Context {
     pub findings: Findings,
@@ -15,18 +15,18 @@ pub(crate) struct Context {
     pub dialect: Dialect,
     /// The version of URDF that the file declares.
     pub version: Version,
-    /// Places of values that were found to be no numbers: a default may be used often, and is reported once.
+    /// Places of invalid numbers: a default may be used often, but is reported once.
     pub unreadable: BTreeSet<usize>,
     /// The first places of attributes that do not affect the dynamics of the tree, by element and attribute.
     pub left_out: BTreeMap<(String, &'static str), Range<usize>>,
     kinds: BTreeMap<(String, String, &'static str), Option<String>>,
-    /// The first finding of each kind that may occur often, and how many there are.
+    /// The first finding of each kind that may occur often, and the number of its repetitions.
     repeated: BTreeMap<String, (Finding, usize)>,
 }
 
-/// Something that is not known.
+/// An unknown name.
 pub(crate) enum Unknown {
-    /// Near this known word.
+    /// Close to this known word.
     Misspelled(String),
     /// The first of its kind in such a parent.
     First,
@@ -35,12 +35,12 @@ pub(crate) enum Unknown {
 }
 
 impl Context {
-    /// Nothing met yet but what was found before.
+    /// A context with these findings, in which no unknown name was found yet.
     pub fn new(findings: Findings, dialect: Dialect) -> Self {
         Context { findings, dialect, ..Context::default() }
     }
 
-    /// Notes an attribute that is left out, to be listed at the end.
+    /// Notes an unused attribute, to be listed at the end.
     pub fn leave_out(&mut self, element: &str, attribute: &'static str, span: Range<usize>) {
         self.left_out.entry((element.to_string(), attribute)).or_insert(span);
     }
@@ -60,7 +60,7 @@ impl Context {
         }
     }
 
-    /// What to make of a name that is not known, `what` it names, in such a parent.
+    /// Classifies an unknown name in such a parent; `what` is the kind of name.
     pub fn unknown<'k>(
         &mut self,
         parent: &str,

@@ -38,7 +38,7 @@ impl Diagnostic {
         Diagnostic { source: self.source.hidden(), ..self }
     }
 
-    /// In a macro of xacro's, which these calls lead to: `, from ur.urdf.xacro:40 (prefix = "left_")`.
+    /// The macro calls of xacro that lead to the place: `, from ur.urdf.xacro:40 (prefix = "left_")`.
     pub(crate) fn called_from(self, calls: String) -> Self {
         Diagnostic { calls, ..self }
     }
@@ -53,7 +53,7 @@ impl Diagnostic {
         &self.code
     }
 
-    /// What it means for the results.
+    /// Its consequence for the results.
     pub fn consequence(&self) -> Consequence {
         match self.topic {
             Some(_) => Consequence::Unused,
@@ -85,8 +85,8 @@ impl Diagnostic {
         self.position.column
     }
 
-    /// The calls of xacro's macros that lead to the place, innermost first: `, from ur.urdf.xacro:40 (prefix =
-    /// "left_")` for each. Empty outside of macros.
+    /// The calls of xacro macros that lead to the place, innermost first: `, from ur.urdf.xacro:40 (prefix = "left_")`
+    /// for each. Empty outside of macros.
     pub fn calls(&self) -> &str {
         &self.calls
     }
@@ -101,12 +101,12 @@ impl Diagnostic {
         self.help.as_deref()
     }
 
-    /// The text that the span covers; empty in an included file that is no model.
+    /// The text that the span covers; empty in an included file that is not a model.
     pub fn excerpt(&self) -> &str {
         if self.source.is_shown { &self.source.text[self.span.clone()] } else { "" }
     }
 
-    /// The whole text, for excerpts, unless there shall be none.
+    /// The whole text, for excerpts; `None` if excerpts must not be shown.
     pub(crate) fn text(&self) -> Option<&str> {
         self.source.is_shown.then_some(&self.source.text)
     }

@@ -1,6 +1,6 @@
 //! The two languages that robots are read in.
 
-/// What a text is written in.
+/// The language of a text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Dialect {
     #[default]
@@ -9,7 +9,7 @@ pub(crate) enum Dialect {
 }
 
 impl Dialect {
-    /// By the first element of the text, whatever the file is called; URDF where there is none.
+    /// The language of the text's first element, whatever the file's name; URDF if there is none.
     pub fn of(text: &str) -> Self {
         let mut rest = text;
         while let Some((_, after)) = rest.split_once('<') {
@@ -39,7 +39,7 @@ impl Dialect {
         }
     }
 
-    /// What its codes begin with.
+    /// The prefix of its codes.
     pub fn prefix(self) -> &'static str {
         match self {
             Dialect::Urdf => "mozzi::urdf::",

@@ -1,4 +1,4 @@
-//! Drake's words in a URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw and
+//! Drake's extensions of URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw and
 //! universal; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator; `<drake:ball_constraint>`.
 
 use crate::axis;
@@ -66,7 +66,7 @@ pub(crate) fn rotors(root: &Element, description: &mut Description, places: &mut
             "joint" | "drake:joint" => {
                 let Some(name) = element.attribute("name") else { continue };
                 let joint = element.called(format!("joint `{}`", shown(name.text)));
-                // Drake's documentation has them in an actuator of the joint
+                // Drake's documentation puts them in an actuator of the joint
                 for holder in joint.elements().filter(|child| child.written_name() == "actuator").chain([joint.clone()])
                 {
                     if holder.name() == "actuator" {
@@ -158,14 +158,14 @@ pub(crate) fn ball_constraint(element: &Element, description: &mut Description, 
     }
 }
 
-/// Reports what else Drake's words in an actuator change.
+/// Reports the effects of Drake's other elements in an actuator.
 fn check_words(actuator: &Element, cx: &mut Context) {
     for word in actuator.elements().filter(|child| child.written_name().starts_with("drake:")) {
         extension::element(&word, actuator, cx);
     }
 }
 
-/// Whether a joint is one of those that a joint of several axes became.
+/// Whether a joint is in the series that replaced a joint of several axes.
 fn is_part(name: &str, whole: &str) -> bool {
     name.strip_prefix(whole).is_some_and(|rest| rest.starts_with('.'))
 }
@@ -200,7 +200,7 @@ fn add(holder: &Element, joint: &str, description: &mut Description, places: &mu
     }
 }
 
-/// The first child of a name, with its prefix.
+/// The first child with this name, prefix included.
 fn child<'a>(element: &Element<'a>, name: &str) -> Option<Element<'a>> {
     element.elements().find(|child| child.written_name() == name)
 }

@@ -1,5 +1,5 @@
-//! A URDF with other inertias, locked joints or a freed base: its text is edited in place, so that visuals, comments
-//! and unknown elements remain.
+//! Edits a URDF's text in place for changed inertias, locked joints or a floating base, so that visuals, comments and
+//! unknown elements remain.
 
 mod element;
 mod joint;
@@ -21,7 +21,7 @@ pub use transmission::drives_of_fixed_joints;
 pub enum EditError {
     /// The text cannot be read.
     Load(LoadError),
-    /// The edited robot differs from the text in other things than inertias, locked joints and a freed base.
+    /// The edited robot differs from the text in more than inertias, locked joints and a floating base.
     Unsupported(NotUrdf),
 }
 
@@ -43,7 +43,7 @@ impl std::error::Error for EditError {}
 /// # Errors
 /// [`EditError`]: the text cannot be read, or the robots differ in other things.
 pub fn edit(file_name: &str, text: &str, edited: &Description) -> Result<String, EditError> {
-    // if only repairs make the text a robot, the repaired one is compared, and all inertias are those of `edited`
+    // if the text is valid only after repairs, the repaired robot is compared, and all inertias are those of `edited`
     let (original, is_repaired) = match parse_with(file_name, text, Policy::Default) {
         Ok(loaded) => (loaded.description, false),
         Err(_) => (parse_with(file_name, text, Policy::Lenient).map_err(EditError::Load)?.description, true),

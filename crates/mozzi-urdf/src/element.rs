@@ -1,5 +1,4 @@
-//! An element of the text: its attributes as words and numbers, its children by name, each misuse reported at its
-//! place.
+//! An element of the text: its attributes as words and numbers, its children by name, each error reported at its place.
 
 use crate::context::{Context, Unknown};
 use crate::extension;
@@ -15,7 +14,7 @@ use std::ops::Range;
 /// Longer names are refused.
 const LONGEST_NAME: usize = 256;
 
-/// An element, and how messages call it: "joint `elbow`: origin".
+/// An element, and its name in messages: "joint `elbow`: origin".
 #[derive(Clone)]
 pub(crate) struct Element<'a> {
     node: Node<'a, 'a>,
@@ -24,14 +23,14 @@ pub(crate) struct Element<'a> {
     pub subject: String,
 }
 
-/// An attribute's value and where it stands.
+/// An attribute's value and its place.
 #[derive(Clone, Debug)]
 pub(crate) struct Value<'a> {
     pub text: &'a str,
     pub span: Range<usize>,
 }
 
-/// The children of an element that may stand once.
+/// The children of an element that may occur once.
 pub(crate) type Children<'a> = BTreeMap<&'static str, Element<'a>>;
 
 impl<'a> Element<'a> {
@@ -39,7 +38,7 @@ impl<'a> Element<'a> {
         Element { node, pages, page, subject }
     }
 
-    /// The same, called otherwise.
+    /// The same element with another name in messages.
     pub fn called(&self, subject: impl Into<String>) -> Self {
         Element { subject: subject.into(), ..self.clone() }
     }
@@ -53,7 +52,7 @@ impl<'a> Element<'a> {
         self.pages.text(span).unwrap_or_default()
     }
 
-    /// A place of this element's text among all.
+    /// Converts a place in this element's text to its place among all texts.
     fn place(&self, span: Range<usize>) -> Range<usize> {
         self.pages.source(self.page).place(span)
     }
@@ -76,7 +75,7 @@ impl<'a> Element<'a> {
         self.place(start..start + rest.find(ends).unwrap_or(rest.len()))
     }
 
-    /// A child, called after this element.
+    /// A child, named after this element in messages.
     fn child(&self, node: Node<'a, 'a>, page: usize) -> Element<'a> {
         let subject = format!("{}: {}", self.subject, shown(node.tag_name().name()));
         Element { node, pages: self.pages, page, subject }
@@ -98,7 +97,7 @@ impl<'a> Element<'a> {
         Some(Value { text: found.value(), span: self.place(found.range_value()) })
     }
 
-    /// An attribute that has to be there.
+    /// A required attribute.
     pub fn required(&self, name: &str, cx: &mut Context) -> Option<Value<'a>> {
         let value = self.attribute(name);
         if value.is_none() {
@@ -110,7 +109,7 @@ impl<'a> Element<'a> {
         value
     }
 
-    /// A name that has to be there, and is not endless: names are repeated in messages.
+    /// A required name of bounded length: names are repeated in messages.
     pub fn required_name(&self, attribute: &str, cx: &mut Context) -> Option<Value<'a>> {
         let value = self.required(attribute, cx)?;
         if value.text.len() <= LONGEST_NAME {
@@ -122,7 +121,7 @@ impl<'a> Element<'a> {
         None
     }
 
-    /// N numbers of an attribute; None, and reported, when they are not.
+    /// N numbers of an attribute; None, with a diagnostic, if they are invalid.
     pub fn vector<const N: usize>(&self, name: &str, value: &Value<'a>, cx: &mut Context) -> Option<[f64; N]> {
         match numbers::<N>(value.text) {
             Ok(vector) => Some(vector),
@@ -133,7 +132,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Says why a value is not the numbers that it should be.
+    /// Reports why a value is not the expected numbers.
     pub fn report_numbers(&self, name: &str, value: &Value<'a>, error: NotNumbers, cx: &mut Context) {
         let subject = &self.subject;
         cx.findings.add(match error {
@@ -145,7 +144,7 @@ impl<'a> Element<'a> {
                 Finding::error("wrong_count", value.span.clone(), message).maybe_help(help)
             }
             NotNumbers::Word { span, word, why } => {
-                // the word's own place, unless an entity shifts what follows it
+                // the word's own place, unless an entity shifts the text after it
                 let is_raw = self.pages.text(&value.span) == Some(value.text) && !span.is_empty();
                 let at = if is_raw {
                     value.span.start + span.start..value.span.start + span.end
@@ -161,13 +160,13 @@ impl<'a> Element<'a> {
         });
     }
 
-    /// The number of an attribute, if it is there and is one.
+    /// The number of an attribute, if it is given and valid.
     pub fn number(&self, name: &str, cx: &mut Context) -> Option<f64> {
         let value = self.attribute(name)?;
         self.vector::<1>(name, &value, cx).map(|[x]| x)
     }
 
-    /// Reports attributes that are not known: a near miss is an error, others a warning once per kind.
+    /// Reports unknown attributes: a near miss is an error, others a warning once per kind.
     pub fn check_attributes(&self, words: &Vocabulary, cx: &mut Context) {
         for attribute in self.node.attributes() {
             let name = attribute.name();
@@ -193,7 +192,7 @@ impl<'a> Element<'a> {
                     let help = format!("the inertia is symmetric: remove `{}`, or correct one of them", shown(name));
                     cx.findings.add(Finding::error("contradictory_attribute", span, message).help(help));
                 }
-                // of a word that is given as well nothing is lost: `k_velocity` next to `velocity`
+                // nothing is lost if the right word is given as well: `k_velocity` next to `velocity`
                 Unknown::Misspelled(near) if self.attribute(&near).is_some() => {
                     let message = format!("{message}, next to `{near}`");
                     let help = format!("it is ignored, and `{near}` is used");
@@ -213,14 +212,14 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Is it the transposed entry, such as `iyx` of `ixy`, and not the same number?
+    /// Is it the transposed entry, such as `iyx` of `ixy`, with a different number?
     fn contradicts(&self, name: &str, near: &str) -> bool {
         let transposed: String = ["i", near.get(2..3).unwrap_or_default(), near.get(1..2).unwrap_or_default()].concat();
         let value = |name: &str| self.attribute(name).map(|value| numbers::<1>(value.text).ok());
         near.len() == 3 && name == transposed && value(name) != value(near)
     }
 
-    /// The children that may stand once, by name. Duplicates are errors; so are near misses of words; other unknown
+    /// The children that may occur once, by name. Duplicates and probable misspellings are errors; other unknown
     /// elements and stray text are warnings once per kind.
     pub fn check_children(&self, words: &Vocabulary, cx: &mut Context) -> Children<'a> {
         let mut children = Children::new();
@@ -246,7 +245,7 @@ impl<'a> Element<'a> {
         children
     }
 
-    /// Reports a name that is not known in the parent.
+    /// Reports an unknown name in the parent.
     fn check_name(&self, parent: &Element<'a>, words: &Vocabulary, cx: &mut Context) {
         if self.has_prefix() {
             return extension::element(self, parent, cx);
@@ -270,7 +269,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Reports a text in the parent that is more than white space.
+    /// Reports text in the parent other than white space.
     fn check_text(&self, parent: &Element<'a>, cx: &mut Context) {
         let text = self.text();
         if !text.trim().is_empty() && matches!(cx.unknown(parent.name(), "", "text", []), Unknown::First) {

@@ -17,7 +17,7 @@ pub fn names() -> impl ExactSizeIterator<Item = &'static str> {
     ROBOTS.iter().map(|&(name, _)| name)
 }
 
-/// The URDF text of a robot, unless there is a file of this name, which comes first.
+/// The URDF text of a robot, unless there is a file of this name, which takes precedence.
 pub fn unless_file(name: &str) -> Option<&'static str> {
     text(name).filter(|_| !Path::new(name).is_file())
 }

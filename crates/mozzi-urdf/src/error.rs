@@ -16,9 +16,9 @@ pub(crate) const PRINTED: usize = 20;
 pub enum LoadError {
     /// The file cannot be read.
     File {
-        /// Which.
+        /// The path of the file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
     /// Neither an embedded robot nor a file.
@@ -30,8 +30,8 @@ pub enum LoadError {
     Refused {
         /// Its name.
         file: String,
-        /// Errors in the order of the file, then warnings by consequence, then what is not used;
-        /// at most a thousand errors and a thousand others.
+        /// Errors in the order of the file, then warnings by consequence, then unused content; at most a thousand
+        /// errors and a thousand others.
         diagnostics: Vec<Diagnostic>,
         /// Whether reading stopped after a thousand errors.
         is_cut: bool,
@@ -41,8 +41,7 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// Errors in the order of the file, then warnings by consequence, then what is not used; empty if no file
-    /// was read.
+    /// Errors in the order of the file, then warnings by consequence, then unused content; empty if no file was read.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match self {
             LoadError::Refused { diagnostics, .. } => diagnostics,

@@ -1,4 +1,5 @@
-//! Files of xacro are expanded before they are read. What is found in the expansion stands in the xacro file.
+//! Xacro files are expanded before they are read. Findings in the expansion are reported at their places in the xacro
+//! file.
 
 use crate::bytes::to_text;
 use crate::diagnostic::Diagnostic;
@@ -50,7 +51,7 @@ pub(crate) fn prepare(source: Source, arguments: &Arguments) -> Result<Prepared,
     }
 }
 
-/// The expansion of a text of xacro; None of a text that is not.
+/// The expansion of a xacro text; None for any other text.
 ///
 /// # Errors
 /// [`LoadError::Refused`] with the place of the error.
@@ -71,13 +72,13 @@ fn refused(error: &Error, source: &Source, dialect: Dialect) -> Diagnostic {
     };
     let mut finding = Finding::error("xacro", 0..0, error.message());
     if error.is_syntax() && origin.file == 0 {
-        // the words of the reader of XML
+        // the XML reader's message
         if let Err(syntax) = syntax::parse(source, dialect) {
             let origin = Origin { span: syntax.span.clone(), ..origin.clone() };
             return at(error.files(), &origin, syntax, dialect);
         }
     } else if error.is_syntax() {
-        // it may be any file of this machine: its lines are not for whoever reads the diagnostics
+        // it may be any file of this machine, so diagnostics must not show its lines
         finding = finding.help("an included file is XML, of xacro or of URDF");
         let diagnostic = at(error.files(), origin, finding, dialect);
         return diagnostic.hidden();
@@ -85,7 +86,7 @@ fn refused(error: &Error, source: &Source, dialect: Dialect) -> Diagnostic {
     at(error.files(), origin, finding, dialect)
 }
 
-/// A finding of the expansion at its place in a file of xacro.
+/// A finding of the expansion at its place in a xacro file.
 pub(crate) fn placed(expansion: &Expansion, finding: Finding, span: Range<usize>, dialect: Dialect) -> Diagnostic {
     let start = || Origin { file: 0, span: 0..0, calls: Vec::new() };
     let origin = expansion.origin(span).unwrap_or_else(start);

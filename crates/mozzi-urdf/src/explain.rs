@@ -277,7 +277,8 @@ const CODES: [Entry; 71] = [
          rotation"),
 ];
 
-/// A code of one language, or of either: URDF's if it is in both. MJCF shares those of URDF that mean the same in it.
+/// A code of one language, or of either (URDF's if it is in both). MJCF shares the URDF codes that have the same
+/// meaning.
 fn entry(code: &str) -> Option<&'static Entry> {
     let look = |codes: &'static [Entry], short: &str| codes.iter().find(|(known, ..)| *known == short);
     match (code.strip_prefix("mozzi::mjcf::"), code.strip_prefix("mozzi::urdf::")) {

@@ -1,4 +1,4 @@
-//! The same robot with the elements that URDF has.
+//! The same robot, with only the elements that URDF has.
 
 use crate::write::free;
 use mozzi::model::description::{Joint, JointKind};

@@ -1,12 +1,12 @@
-//! Elements and attributes that URDF does not define and others do: Drake, Gazebo, MuJoCo, or a namespace that is not
-//! known. Whatever of them could change the motion is reported.
+//! Elements and attributes that URDF does not define: those of Drake, Gazebo, MuJoCo, or an unknown namespace. Those
+//! that could change the motion are reported.
 
 use crate::context::{Context, Unknown};
 use crate::element::Element;
 use crate::finding::Finding;
 use crate::vocabulary::shown;
 
-/// Elements of Drake that are read, or that concern contacts and looks only.
+/// Elements of Drake that are read, or that concern only contacts and appearance.
 const DRAKE: [&str; 6] = [
     "drake:joint",
     "drake:ball_constraint",
@@ -16,7 +16,7 @@ const DRAKE: [&str; 6] = [
     "drake:collision_filter_group",
 ];
 
-/// Elements of Drake that act on the robot, and how.
+/// Elements of Drake that act on the robot, and their effect.
 const FORCES: [(&str, &str); 4] = [
     ("drake:linear_bushing_rpy", "is a bushing: springs and dampers between two frames"),
     ("drake:linear_spring_damper", "is a spring and a damper between two points"),
@@ -24,7 +24,7 @@ const FORCES: [(&str, &str); 4] = [
     ("drake:controller_gains", "is a controller of the joint"),
 ];
 
-/// Prefixes of attributes and elements that say nothing about motion: XML's own, and those of sensors and controllers
+/// Prefixes of attributes and elements that do not affect the motion: XML's own, and those of sensors and controllers
 /// in URDFs of Gazebo's first versions.
 const HARMLESS: [&str; 5] = ["xml", "xsi", "sensor", "controller", "interface"];
 
@@ -48,7 +48,7 @@ pub(crate) fn element(child: &Element, parent: &Element, cx: &mut Context) {
     }
 }
 
-/// The same of an attribute, by its name and place.
+/// The same for an attribute, by its name and place.
 pub(crate) fn attribute(on: &Element, written: &str, span: std::ops::Range<usize>, cx: &mut Context) {
     if written == "drake:acceleration" || is_harmless(written) {
         return;
@@ -66,7 +66,7 @@ fn is_harmless(written: &str) -> bool {
     written.split_once(':').is_some_and(|(prefix, _)| HARMLESS.contains(&prefix))
 }
 
-/// What a `<gazebo>` changes of the motion, by the name of an element in it; None where it changes nothing.
+/// The effect of a `<gazebo>` on the motion, by the name of an element in it; None if it has no effect.
 fn of_gazebo(element: &Element) -> Option<&'static str> {
     let text = element.text().trim();
     let is_set = ["1", "true", "True"].contains(&text);
@@ -84,13 +84,13 @@ fn of_gazebo(element: &Element) -> Option<&'static str> {
     }
 }
 
-/// What MuJoCo's settings in a URDF change: attributes of elements in `<mujoco>`.
+/// MuJoCo's settings in a URDF that change the robot: attributes of elements in `<mujoco>`.
 const OF_MUJOCO: [(&str, &[&str]); 2] = [
     ("compiler", &["balanceinertia", "boundinertia", "boundmass", "inertiafromgeom", "settotalmass", "coordinate"]),
     ("option", &["gravity", "density", "viscosity", "wind"]),
 ];
 
-/// Reports what `<gazebo>` and `<mujoco>` change of the motion, once per kind; nothing of other elements.
+/// Reports the effects of `<gazebo>` and `<mujoco>` on the motion, once per kind; nothing for other elements.
 pub(crate) fn settings(element: &Element, cx: &mut Context) {
     match element.name() {
         "gazebo" => gazebo(element, cx),

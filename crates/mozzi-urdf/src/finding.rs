@@ -1,4 +1,4 @@
-//! What a reader noticed, before its place is looked up.
+//! Findings of a reader, before their line and column are computed.
 
 use crate::diagnostic::Diagnostic;
 use crate::dialect::Dialect;
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// More are counted, not kept.
 pub(crate) const MOST_FINDINGS: usize = 1000;
 
-/// What an attribute or element concerns that mozzi does not use. It is counted, not warned of.
+/// The topic of an attribute or element that mozzi does not use. It is counted, without a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Topic {
     Looks,
@@ -19,7 +19,7 @@ pub(crate) enum Topic {
     Idle,
 }
 
-/// Something noticed at a span of the text.
+/// A finding at a span of the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
     pub severity: Severity,
@@ -27,7 +27,7 @@ pub(crate) struct Finding {
     pub span: Range<usize>,
     pub message: String,
     pub help: Option<String>,
-    /// Of what is not used: what it concerns.
+    /// For unused content: what it concerns.
     pub topic: Option<Topic>,
 }
 
@@ -50,8 +50,8 @@ impl Finding {
         self
     }
 
-    /// Without words of the text, for a file whose content is not to be shown. What is said of an `<include>` and of an
-    /// encoding has none.
+    /// Without words of the text, for a file whose content must not be shown. Findings about an `<include>` or an
+    /// encoding have none.
     fn without_content(self) -> Self {
         let says_nothing = ["include", "repeated_include", "too_large", "not_utf8", "empty"];
         if says_nothing.contains(&self.code) {
@@ -68,7 +68,7 @@ impl Finding {
     }
 }
 
-/// Everything noticed, the first thousand of either severity.
+/// All findings, the first thousand of either severity.
 #[derive(Default)]
 pub(crate) struct Findings {
     kept: Vec<Finding>,
@@ -100,12 +100,12 @@ impl Findings {
         self.add(Finding::error(code, span, message));
     }
 
-    /// How many errors so far.
+    /// The number of errors so far.
     pub fn errors(&self) -> usize {
         self.errors
     }
 
-    /// Enough to read no further.
+    /// Are there enough errors to stop reading?
     pub fn is_full(&self) -> bool {
         self.errors > MOST_FINDINGS
     }
@@ -114,13 +114,13 @@ impl Findings {
         self.errors > 0
     }
 
-    /// All of them, further on by some bytes.
+    /// All of them, shifted by some bytes.
     pub fn moved(self, by: usize) -> impl Iterator<Item = Finding> {
         let moved = move |span: Range<usize>| span.start + by..span.end + by;
         self.kept.into_iter().map(move |finding| Finding { span: moved(finding.span), ..finding })
     }
 
-    /// Looks up every place in one pass over the texts, which stand one after the other.
+    /// Looks up every place in one pass over the texts, which follow one another.
     pub fn place(mut self, sources: &[Source], dialect: Dialect) -> Placed {
         let is_cut = self.is_full();
         self.kept.sort_by_key(|finding| finding.span.start);

@@ -1,15 +1,15 @@
-//! A floating joint at the root is a floating base: the link that carries it is {s}, and no link of the robot. Any
-//! other is a free joint.
+//! A floating joint at the root is a floating base: its parent link is {s}, not a link of the robot. Any other floating
+//! joint is a free joint.
 
 use crate::places::Places;
 use mozzi::model::description::FreeJoint;
 use mozzi::{Base, Description, SE3, SpatialInertia};
 
-/// Frees the base where one of these joints, the floating ones, says so: it stands alone between an empty root link and
-/// the base, whose frame is on it at 0. The others are free joints in the tree.
+/// Makes the base floating if one of these floating joints is alone between an empty root link and the base, with their
+/// frames coincident at 0. The other floating joints are free joints in the tree.
 pub(crate) fn free_base(floating: &[usize], description: &mut Description, places: &mut Places) {
     if places.tree_is_partial() {
-        return; // what carries what is not known, as was said
+        return; // the tree is incomplete, as already reported
     }
     let Some(&i) = floating.iter().find(|&&i| frees_the_base(i, description)) else { return };
     let Some(world) = description.links.iter().position(|link| link.name == description.joints[i].parent) else {

@@ -14,7 +14,7 @@ use crate::vocabulary::{DYNAMICS, JOINT, JOINT_TYPES, LIMIT, MIMIC, PARENT, list
 use mozzi::model::description::{Joint, JointKind, Limits, Mimic};
 use mozzi::{SE3, Vec3};
 
-/// A joint, and how it moves where that is more than one freedom.
+/// A joint, and its motion if it has several degrees of freedom.
 pub(crate) struct Read {
     pub joint: Joint,
     pub place: Place,
@@ -23,9 +23,9 @@ pub(crate) struct Read {
 
 /// How a joint moves.
 pub(crate) enum Freedoms {
-    /// As its kind says.
+    /// As given by its kind.
     OneOrNone,
-    /// By several joints of one axis.
+    /// By a series of joints of one axis.
     Series(Vec<Part>),
     /// About a point.
     Ball,
@@ -33,7 +33,7 @@ pub(crate) enum Freedoms {
     Six,
 }
 
-/// A joint. What cannot be read is reported, and left as if it were not there.
+/// Reads a joint. Invalid parts are reported, and treated as missing.
 pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     let mut place = Place::new(element.span());
     let mut element = element.called("joint");
@@ -60,7 +60,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         (Some("planar"), true) => read_dynamics(&children, &["friction"], &mut place, cx),
         _ => read_dynamics(&children, &DYNAMICS_READ.map(|(name, _)| name), &mut place, cx),
     };
-    // what a joint that does not move has of these means nothing
+    // of a fixed joint, these have no meaning
     let (mut freedoms, mut screw, mut limits) = (Freedoms::OneOrNone, None, Limits::default());
     let series = |parts: Option<Vec<Part>>| parts.map_or(Freedoms::OneOrNone, Freedoms::Series);
     match kind {
@@ -89,7 +89,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
         }
     }
     let is_several = matches!(kind, Some("planar" | "floating" | "ball" | "universal"));
-    // one damping of all axes is that of Drake's balls and universal joints
+    // Drake's ball and universal joints have one damping for all axes
     let is_damped = matches!(kind, Some("ball" | "universal"));
     if let Some(kind) = kind.filter(|_| is_several) {
         let is_rough = [if is_damped { 0.0 } else { damping }, friction, stiffness, armature].iter().any(|x| *x != 0.0);
@@ -122,14 +122,14 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> Read {
     Read { joint, place, freedoms }
 }
 
-/// URDF has one number for the limits and the friction of a joint: of several freedoms it says nothing. What the joint
-/// follows would be lost as well, and changes the robot.
+/// URDF has one number for the limits and the friction of a joint, which is undefined for several degrees of freedom. A
+/// mimic relation would be lost as well, and changes the robot.
 fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &Element, cx: &mut Context) {
     let subject = &element.subject;
     let limit = children.get("limit").filter(|limit| {
         limit.check_attributes(&LIMIT, cx);
         limit.check_children(&LIMIT, cx);
-        // every number is read, for each can be wrong
+        // every number is read, since each can be invalid
         let numbers: Vec<f64> = LIMIT.attributes.iter().filter_map(|name| limit.number(name, cx)).collect();
         numbers.iter().any(|x| *x != 0.0)
     });
@@ -151,7 +151,7 @@ fn several_freedoms(kind: &str, children: &Children, is_rough: bool, element: &E
     }
 }
 
-/// One of the types that mozzi computes, of URDF or of Drake; None, and reported, for others.
+/// One of the types of URDF or Drake that mozzi computes; None, with a diagnostic, for others.
 fn read_type(element: &Element, is_drake: bool, cx: &mut Context) -> Option<&'static str> {
     let value = element.required("type", cx)?;
     let types: &[&'static str] = if is_drake { &drake::JOINT_TYPES } else { &JOINT_TYPES };
@@ -194,7 +194,7 @@ fn read_end(name: &'static str, element: &Element, children: &Children, place: &
     place.note(name, value)
 }
 
-/// The attributes of `<dynamics>`, and how checks call them.
+/// The attributes of `<dynamics>`, and their names in the checks.
 const DYNAMICS_READ: [(&str, &str); 5] = [
     ("damping", "damping"),
     ("friction", "friction"),
@@ -203,7 +203,7 @@ const DYNAMICS_READ: [(&str, &str); 5] = [
     ("armature", "armature"),
 ];
 
-/// Damping, friction, and two extensions: a spring by SDF's names, the armature by MJCF's. Only the attributes in
+/// Damping, friction, and two extensions: a spring with SDF's names, the armature with MJCF's. Only the attributes in
 /// `read` are read as single numbers.
 fn read_dynamics(children: &Children, read: &[&str], place: &mut Place, cx: &mut Context) -> [f64; 5] {
     let Some(dynamics) = children.get("dynamics") else { return [0.0; 5] };

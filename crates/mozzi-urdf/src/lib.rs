@@ -15,23 +15,23 @@
 //!   × x.
 //! - Versions 1.0, 1.1 and 1.2 of URDF are read as by urdfdom 6: `quat_xyzw` of an origin from 1.1 on, and with a
 //!   warning that it is ignored before.
-//! - Drake's words: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint (`screw`), or,
-//!   if `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator
-//!   are the armature ratio² × inertia; `<drake:ball_constraint>` is a constraint. Its forces are warnings that name
-//!   them.
+//! - Drake's extensions: `<drake:joint>` is a ball joint, a planar joint with three dampings, a helical joint
+//!   (`screw`), or, if `universal`, the revolute joints `j.rx` and `j.ry`; `drake:rotor_inertia` and `drake:gear_ratio`
+//!   of an actuator are the armature ratio² × inertia; `<drake:ball_constraint>` is a constraint. Drake's forces give
+//!   warnings that name them.
 //! - Constraints, which close loops, may also come from a file of their own: see [`constraints`]. urdfdom's proposal
 //!   `<constraint>` is refused by name.
 //! - Probable misspellings of URDF elements and attributes are errors, unless the right word is there as well. Known
-//!   extensions (gazebo, transmission, ros2_control) are skipped, except for what changes the motion, such as a link
-//!   without gravity. Other unknown words, of any namespace, give one warning per kind.
+//!   extensions (gazebo, transmission, ros2_control) are skipped, except for elements that change the motion, such as a
+//!   link without gravity. Other unknown words, of any namespace, give one warning per kind.
 //! - A file of xacro is expanded ([`mozzi_xacro`]), by its name or if its root declares xacro's namespace; places are
 //!   those of the xacro files, with the calls of macros. Meshes do not affect the dynamics; only [`geometry`] locates
 //!   them.
 //! - Only the direction of an axis is used, with a warning if its length differs from 1 by more than 10⁻³; positions
 //!   stay radians or metres.
 //! - A missing limit is a warning and means unlimited, and so are reversed limits; limits do not enter the dynamics.
-//! - Warnings are in the order of their [`Consequence`]: what changes the motion comes first. Looks and contact are not
-//!   warned of but counted ([`Loaded::unused`]).
+//! - Warnings are in the order of their [`Consequence`]: those that change the motion come first. Elements and
+//!   attributes of appearance and contact are counted ([`Loaded::unused`]), without a warning.
 //! - An inertia that breaks the triangle inequality is used as given, with a warning. A negative principal moment is an
 //!   error if the rigid body of all links fixed to each other has one, a warning otherwise.
 //! - [`Policy::Strict`] turns warnings into errors; [`Policy::Lenient`] repairs inertias and reports each repair.
@@ -127,9 +127,9 @@ use std::path::Path;
 pub struct Loaded {
     /// The content of the file.
     pub description: Description,
-    /// By consequence, what changes the motion first; then in the order of the file.
+    /// By consequence, with those that change the motion first; then in the order of the file.
     pub warnings: Vec<Diagnostic>,
-    /// Valid content that mozzi does not use, such as looks and contact: once per kind. See [`unused`].
+    /// Valid content that mozzi does not use, such as appearance and contact: once per kind. See [`unused`].
     pub unused: Vec<Diagnostic>,
 }
 
@@ -163,7 +163,7 @@ pub fn load_with(path: impl AsRef<Path>, settings: impl Into<Settings>) -> Resul
 fn file_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
     let mut bytes = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| {
-        // one byte more than is accepted, so that a file which is too large is known as such and never read whole
+        // one byte more than the limit, so that a file which is too large is detected without reading all of it
         file.take(bytes::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)
     });
     match read {
@@ -188,7 +188,7 @@ pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, settings: impl Into<S
     parse_in(None, file_name, text.as_ref(), &settings.into())
 }
 
-/// Reads a text; what it includes is searched in a folder.
+/// Reads a text; included files are searched in a folder.
 fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Settings) -> Result<Loaded, LoadError> {
     let policy = settings.policy;
     let mut findings = Findings::default();
@@ -209,7 +209,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     let Placed { mut diagnostics, errors, is_cut } = findings.place(&sources, dialect);
     diagnostics.extend(notes);
     let is_unused = |found: &Diagnostic| found.consequence() == Consequence::Unused;
-    // a site with another name is the file's robot
+    // a site's new name does not change the robot, so it is no error
     let is_refused =
         |found: &Diagnostic| policy == Policy::Strict && !is_unused(found) && !found.code().ends_with("::renamed_site");
     // errors stay in the order of the file
@@ -228,7 +228,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     }
 }
 
-/// The model of a file; what is odd about the file is dropped.
+/// The model of a file; the warnings are dropped.
 ///
 /// # Errors
 /// As [`load`].
@@ -236,7 +236,7 @@ pub fn model(path: impl AsRef<Path>) -> Result<Model, LoadError> {
     load(path)?.build()
 }
 
-/// A robot by its file's path, or else by the name of one that mozzi brings along (see [`embedded`]).
+/// A robot by its file's path, or else by the name of an embedded robot (see [`embedded`]).
 ///
 /// # Errors
 /// As [`load`]; [`LoadError::NoSuchRobot`] when there is neither.
@@ -256,7 +256,7 @@ pub fn open_with(name_or_path: &str, settings: impl Into<Settings>) -> Result<Lo
     }
 }
 
-/// From a text of URDF to a description, all findings noted.
+/// From a text of URDF to a description; all findings are collected.
 fn read_urdf(source: &Source, cx: &mut Context) -> Option<(Description, Places)> {
     match syntax::parse(source, Dialect::Urdf) {
         Ok(document) => robot::read(&Pages::single(source, document).root("robot")?, cx),
@@ -267,7 +267,7 @@ fn read_urdf(source: &Source, cx: &mut Context) -> Option<(Description, Places)>
     }
 }
 
-/// The repairs of the policy, and what the library's own checks say.
+/// The repairs of the policy, and the findings of the library's own checks.
 fn finish(mut description: Description, places: &Places, policy: Policy, findings: &mut Findings) -> Description {
     if policy == Policy::Lenient {
         repair::inertias(&mut description, places, findings);

@@ -1,13 +1,13 @@
-//! `<limit>`: how far, how fast, how strong.
+//! `<limit>`: bounds on position, velocity and effort.
 //!
-//! URDF demands a limit of revolute and prismatic joints, and takes 0 for a bound that is not given. Published robots
-//! (eight joints in two of the robots of `example-robot-data`: wheels and knees) give effort and velocity and no bound,
-//! and mean a joint that turns freely, not one that cannot move. So: with no bound at all the joint is unlimited, with
-//! one bound the other is URDF's 0; either way the user is told. From version 1.2 on URDF has no such default: a joint
-//! with one bound is unlimited, with a warning, and effort and velocity may be missing.
+//! URDF requires a limit for revolute and prismatic joints, and a missing bound is 0. Published robots (eight joints in
+//! two of the robots of `example-robot-data`: wheels and knees) give effort and velocity but no bounds, and mean a
+//! joint that turns freely, not one that cannot move. Therefore a joint without any bound is unlimited, and if one
+//! bound is given, the other is URDF's 0; both cases are reported. From version 1.2 on URDF has no such default: a
+//! joint with one bound is unlimited, with a warning, and effort and velocity may be missing.
 //!
-//! Limits do not enter the dynamics. Reversed ones, which other readers accept, are left out with a warning: what uses
-//! limits expects the lower one first.
+//! Limits do not enter the dynamics. Reversed limits, which other readers accept, are dropped with a warning: code that
+//! uses limits expects the lower one first.
 
 use crate::context::Context;
 use crate::element::Element;
@@ -17,8 +17,8 @@ use crate::version::Version;
 use crate::vocabulary::LIMIT;
 use mozzi::model::description::Limits;
 
-/// How a limit that does not exist is written: urdfdom refuses a moving joint's <limit> without `effort` and
-/// `velocity`, reads a missing bound as 0, and reads no infinity.
+/// How an infinite limit is written: urdfdom refuses a moving joint's <limit> without `effort` and `velocity`, reads a
+/// missing bound as 0, and does not read infinity.
 pub(crate) const UNLIMITED: f64 = f64::MAX;
 
 /// The limits of a joint that moves.
@@ -120,7 +120,7 @@ fn in_order([low, high]: [f64; 2], limit: &Element, cx: &mut Context) -> bool {
     low <= high
 }
 
-/// The limits of URDF 1.2, which nothing here uses, are numbers of at least 0.
+/// Checks that the limits of URDF 1.2, which mozzi does not use, are numbers of at least 0.
 fn check_rates(limit: &Element, cx: &mut Context) {
     if cx.version < Version::WITH_ACCELERATION {
         return;
@@ -136,8 +136,7 @@ fn check_rates(limit: &Element, cx: &mut Context) {
     }
 }
 
-/// A continuous joint has no bounds; those that say nothing, because a full turn or more lies between them, or nothing
-/// at all, pass in silence.
+/// A continuous joint has no bounds. Bounds without effect, a full turn or more apart or both 0, are accepted silently.
 fn continuous(limit: &Element, joint: &Element, bounds: [Option<f64>; 2], cx: &mut Context) {
     let [low, high] = bounds.map(|bound| bound.unwrap_or(0.0));
     let says_nothing = low == 0.0 && high == 0.0 || high - low >= core::f64::consts::TAU;

@@ -10,7 +10,7 @@ use mozzi::linalg::Sym3;
 use mozzi::model::description::Link;
 use mozzi::{SE3, SpatialInertia, Vec3};
 
-/// A link; a massless one where it has no `<inertial>`.
+/// A link; massless if it has no `<inertial>`.
 pub(crate) fn read(element: &Element, cx: &mut Context) -> (Link, Place) {
     let mut place = Place::new(element.span());
     let mut element = element.called("link");
@@ -27,7 +27,7 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> (Link, Place) {
     (Link { name, inertia: inertia.unwrap_or_else(SpatialInertia::zero) }, place)
 }
 
-/// The inertia in the link's frame; None, and reported, when it cannot be read.
+/// The inertia in the link's frame; None, with a diagnostic, if it cannot be read.
 fn read_inertial(inertial: &Element, place: &mut Place, cx: &mut Context) -> Option<SpatialInertia> {
     inertial.check_attributes(&INERTIAL, cx);
     let children = inertial.check_children(&INERTIAL, cx);
@@ -47,7 +47,7 @@ fn read_inertial(inertial: &Element, place: &mut Place, cx: &mut Context) -> Opt
     let inertia = inertia.and_then(|inertia| read_inertia(inertia, place, cx));
     match (T, mass, inertia) {
         (Some(T), Some(mass), Some(I)) => Some(SpatialInertia::new(mass, T.p, I.congruence(T.R.matrix()))),
-        // a negative mass is wrong whatever else cannot be read: the checks tell it of a point mass
+        // a negative mass is an error whatever else is invalid: the checks report it for a point mass
         (_, Some(mass), _) if mass < 0.0 => {
             place.report("inertia");
             Some(SpatialInertia::point_mass(mass, Vec3::zero()))

@@ -1,5 +1,5 @@
-//! Slips of XML that other readers of robots accept, and that lose nothing: a declaration that is not at the beginning
-//! of the file, a prefix that is not declared. What is mended is reported.
+//! Corrects slips of XML that other readers of robots accept and that lose nothing: a declaration that is not at the
+//! beginning of the file, an undeclared prefix. Each correction is reported.
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
@@ -37,7 +37,7 @@ pub(crate) fn declaration(source: Source) -> (Source, Option<Finding>) {
     (source.replaced(text), finding)
 }
 
-/// Prefixes that are not declared are declared on the root element; each with a finding.
+/// Declares undeclared prefixes on the root element, each with a finding.
 pub(crate) fn prefixes(mut source: Source, dialect: Dialect) -> (Source, Vec<Finding>) {
     let mut found: Vec<(String, Range<usize>)> = Vec::new();
     while may_have_prefix(&source.text) && found.len() + source.text.matches("xmlns:").count() < MOST_NAMESPACES {
@@ -57,7 +57,7 @@ pub(crate) fn prefixes(mut source: Source, dialect: Dialect) -> (Source, Vec<Fin
     (source, findings)
 }
 
-/// Whether a name before a colon may be a prefix: a cheap look, which most files pass without a second parse.
+/// Whether a name before a colon may be a prefix: a quick check that spares most files a second parse.
 fn may_have_prefix(text: &str) -> bool {
     text.match_indices(':').any(|(at, _)| {
         let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
@@ -67,7 +67,7 @@ fn may_have_prefix(text: &str) -> bool {
     })
 }
 
-/// Where the name of the root element ends.
+/// The end of the root element's name.
 fn root_name_end(text: &str) -> Option<usize> {
     let mut at = 0;
     loop {

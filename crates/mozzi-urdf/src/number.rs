@@ -8,7 +8,7 @@ use std::ops::Range;
 pub(crate) enum NotNumbers {
     /// One of its words.
     Word { span: Range<usize>, word: String, why: NotANumber },
-    /// How many words there are.
+    /// The number of words.
     Count { found: usize, expected: usize },
 }
 
@@ -18,7 +18,7 @@ pub(crate) enum NotANumber {
     NotFinite,
     TooLarge,
     Comma,
-    /// MJCF's alone: a URDF with xacro's expressions is refused before its numbers are read.
+    /// MJCF only: a URDF with xacro expressions is refused before its numbers are read.
     Macro,
     Unit,
     Nonsense,
@@ -90,7 +90,7 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], NotNumbers
     }
 }
 
-/// The first N of the numbers of a text, zeros after them where they are fewer, and how many they are.
+/// The first N numbers of a text, padded with zeros, and the number of numbers in the text.
 pub(crate) fn up_to<const N: usize>(text: &str) -> Result<([f64; N], usize), NotNumbers> {
     let (mut values, mut found) = ([0.0; N], 0);
     for value in each(text) {

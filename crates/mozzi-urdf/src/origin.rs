@@ -1,4 +1,4 @@
-//! `<origin>`: one frame seen from another.
+//! `<origin>`: the configuration of one frame relative to another.
 
 use crate::context::Context;
 use crate::element::Element;
@@ -7,10 +7,10 @@ use crate::version::Version;
 use crate::vocabulary::{ORIGIN, shown};
 use mozzi::{SE3, SO3, Vec3};
 
-/// How far from 1 the length of a quaternion may be without a warning.
+/// Tolerance on the length of a quaternion before a warning.
 const SLACK: f64 = 1e-3;
 
-/// Zeros where nothing is said; None, and reported, when it cannot be read.
+/// Zeros by default; None, with a diagnostic, if it cannot be read.
 pub(crate) fn read(origin: &Element, cx: &mut Context) -> Option<SE3> {
     origin.check_attributes(&ORIGIN, cx);
     origin.check_children(&ORIGIN, cx);
@@ -21,7 +21,7 @@ pub(crate) fn read(origin: &Element, cx: &mut Context) -> Option<SE3> {
     let (xyz, rpy) = (vector("xyz"), vector("rpy"));
     let quaternion = quaternion(origin, cx);
     let [roll, pitch, yaw] = rpy?;
-    // whole numbers beyond two turns; the widest angle of published robots is 3π/2
+    // degrees are suspected for whole numbers beyond two turns; the widest angle of published robots is 3π/2
     let is_degrees = |x: &f64| x.abs() > 4.0 * core::f64::consts::PI && x.abs() <= 720.0 && x % 1.0 == 0.0;
     if let (Some(angle), Some(value)) = ([roll, pitch, yaw].into_iter().find(is_degrees), origin.attribute("rpy")) {
         let message = format!("{}: rpy: has an angle of {angle} radians: in degrees?", origin.subject);
@@ -31,8 +31,8 @@ pub(crate) fn read(origin: &Element, cx: &mut Context) -> Option<SE3> {
     Some(SE3 { R, p: Vec3(xyz?) })
 }
 
-/// The rotation of `quat_xyzw`, if the element has one and the version of the file defines it; None, and reported,
-/// when it cannot be read.
+/// The rotation of `quat_xyzw`, if the element has one and the version of the file defines it; None, with a diagnostic,
+/// if it cannot be read.
 fn quaternion(origin: &Element, cx: &mut Context) -> Option<Option<SO3>> {
     let Some(value) = origin.attribute("quat_xyzw") else { return Some(None) };
     let subject = &origin.subject;

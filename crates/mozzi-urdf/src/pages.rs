@@ -1,5 +1,5 @@
-//! The texts of a robot, parsed: one, or several where the first includes others. A place is a byte in all of them
-//! together, each text beginning at its base.
+//! The texts of a robot, parsed: one, or several if the first includes others. A place is a byte offset in all of them
+//! together; each text begins at its base.
 
 use crate::element::Element;
 use crate::source::Source;
@@ -7,10 +7,10 @@ use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Parsed texts; what is included stands where the `<include>` stood.
+/// Parsed texts; included content replaces its `<include>`.
 pub(crate) struct Pages<'a> {
     pages: Vec<(&'a Source, Document<'a>)>,
-    /// The page that stands for the element at each place.
+    /// The page that replaces the element at each place.
     includes: BTreeMap<usize, usize>,
 }
 
@@ -35,14 +35,14 @@ impl<'a> Pages<'a> {
         self.pages[page].0
     }
 
-    /// What stands at a place.
+    /// The text at a place.
     pub fn text(&self, span: &Range<usize>) -> Option<&'a str> {
         let after = self.pages.partition_point(|(source, _)| source.base <= span.start);
         let (source, _) = self.pages.get(after.checked_sub(1)?)?;
         source.text.get(span.start - source.base..span.end.checked_sub(source.base)?)
     }
 
-    /// The children of a node, and their pages: what is included stands where the `<include>` stood.
+    /// The children of a node, and their pages; included content replaces its `<include>`.
     pub fn children(&'a self, node: Node<'a, 'a>, page: usize) -> Children<'a> {
         Children { pages: self, open: vec![(node.children(), page)] }
     }

@@ -1,15 +1,15 @@
-//! Where in the text each element of a description stands, so that what is found wrong with it later can be pointed at.
+//! The place in the text of each element of a description, so that later diagnostics can point at it.
 
 use crate::element::Value;
 use mozzi::model::Element;
 use std::ops::Range;
 
-/// The place of one link or joint, and of its attributes as the checks call them.
+/// The place of one link or joint, and of its attributes, by the names that the checks use.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Place {
     element: Range<usize>,
     attributes: Vec<(&'static str, Range<usize>)>,
-    /// Attributes that were already reported: what the checks say of them is an echo.
+    /// Attributes that were already reported: findings of the checks about them would be duplicates.
     reported: Vec<&'static str>,
 }
 
@@ -26,7 +26,7 @@ impl Place {
         self.reported.push(attribute);
     }
 
-    /// Keeps the value's place, or notes that its absence was reported; gives its text.
+    /// Keeps the value's place, or notes that its absence was reported; returns its text.
     pub fn note(&mut self, attribute: &'static str, value: Option<Value>) -> String {
         match value {
             Some(value) => {
@@ -40,7 +40,7 @@ impl Place {
         }
     }
 
-    /// The span of an attribute's value; of the element itself where there is none.
+    /// The span of an attribute's value, or of the element itself if there is none.
     pub fn span(&self, attribute: &str) -> Range<usize> {
         let found = self.attributes.iter().find(|(known, _)| *known == attribute);
         found.map_or(&self.element, |(_, span)| span).clone()
@@ -79,7 +79,7 @@ impl Places {
         place.unwrap_or(&self.robot)
     }
 
-    /// The span of an attribute's value; of the element itself where there is none.
+    /// The span of an attribute's value, or of the element itself if there is none.
     pub fn span(&self, element: Element, attribute: &str) -> Range<usize> {
         self.of(element).span(attribute)
     }
@@ -88,7 +88,7 @@ impl Places {
         self.of(element).has_reported(attribute)
     }
 
-    /// Is some name or element missing, so that the tree cannot be judged?
+    /// Is a name or element missing, so that the tree cannot be checked?
     pub fn tree_is_partial(&self) -> bool {
         let missing = |place: &Place| ["name", "parent", "child"].iter().any(|name| place.has_reported(name));
         self.is_partial || self.links.iter().chain(&self.joints).any(missing)

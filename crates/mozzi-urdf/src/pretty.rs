@@ -1,4 +1,4 @@
-//! The report for people: the line of the file, a mark under the value, and how to mend it.
+//! The report for people: the line of the file, a mark under the value, and the remedy.
 
 use crate::consequence::Consequence;
 use crate::diagnostic::Diagnostic;
@@ -10,7 +10,7 @@ use mozzi::model::Severity;
 use std::fmt::{self, Write};
 use std::ops::Range;
 
-/// Of longer lines only a part is shown.
+/// Longer lines are shown only in part.
 const LONG: usize = 400;
 
 /// Style of a rendered report.
@@ -66,11 +66,11 @@ impl LoadError {
     }
 }
 
-/// A diagnostic as the report sees it.
+/// A diagnostic in the form that the report needs.
 struct View<'d> {
     diagnostic: &'d Diagnostic,
-    /// The part of the text that is shown, where it begins in the file, its first line from 0, and what is marked in
-    /// it: places as if the file before it were as it is, and the part as it is shown.
+    /// The shown part of the text, its start in the file, its first line from 0, and the marked range. Places count the
+    /// text before this part as in the file, and this part as shown.
     shown: String,
     start: usize,
     first_line: usize,
@@ -78,7 +78,7 @@ struct View<'d> {
 }
 
 impl<'d> View<'d> {
-    /// The lines around the place; of a long line, the part around it.
+    /// The lines around the place; only part of a long line.
     fn new(diagnostic: &'d Diagnostic, text: &str) -> Self {
         let (span, line) = (diagnostic.span(), diagnostic.line() - 1);
         let start_of_line = |at: usize| text[..at].rfind('\n').map_or(0, |k| k + 1);
@@ -150,7 +150,7 @@ impl SourceCode for View<'_> {
         before: usize,
         _: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        // the report asks with no lines before it for the place itself, then for what to show
+        // the report first requests the place itself, with no lines before it, then the text to show
         let (shown, line, column) = match before {
             0 => (self.marked.clone(), self.diagnostic.line() - 1, self.diagnostic.column() - 1),
             _ => (self.start..self.start + self.shown.len(), self.first_line, 0),

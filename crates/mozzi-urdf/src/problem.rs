@@ -1,4 +1,4 @@
-//! What the library's own checks say of a description, at its place in the text.
+//! Findings of the library's own checks of a description, at their places in the text.
 
 use crate::finding::Finding;
 use crate::places::Places;
@@ -6,11 +6,11 @@ use crate::spelling::{did_you_mean, longer_name};
 use mozzi::Description;
 use mozzi::model::{Element, Problem};
 
-/// Suggestions are searched for this many names, in robots of this many links and joints.
+/// Suggestions are searched for at most this many names, in robots with at most this many links and joints.
 const MOST_SUGGESTIONS: usize = 20;
 const MOST_NAMES: usize = 2000;
 
-/// The findings of [`Description::check`], without echoes of what was reported before.
+/// The findings of [`Description::check`], without repetitions of earlier reports.
 pub(crate) fn findings(description: &Description, places: &Places) -> Vec<Finding> {
     let is_cut = places.tree_is_partial();
     let mut suggestions = MOST_SUGGESTIONS;
@@ -31,7 +31,7 @@ pub(crate) fn findings(description: &Description, places: &Places) -> Vec<Findin
         .collect()
 }
 
-/// The nearest name of a link or joint that there is.
+/// The nearest existing name of a link or joint.
 fn suggestion(problem: &Problem, description: &Description, suggestions: &mut usize) -> Option<String> {
     let (Element::Joint(i), "unknown_link" | "unknown_joint") = (problem.element, problem.code) else { return None };
     let joint = description.joints.get(i)?;

@@ -1,4 +1,4 @@
-//! The repairs of the lenient policy, each of them told.
+//! The repairs of the lenient policy, each of them reported.
 
 use crate::finding::{Finding, Findings};
 use crate::places::Places;

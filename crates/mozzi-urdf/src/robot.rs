@@ -12,8 +12,8 @@ use joint::Freedoms;
 use mozzi::model::description::ConstraintKind;
 use mozzi::{Base, Description};
 
-/// Links and joints in the order of the file, and their places. None when the file is no URDF at all, or
-/// wrong throughout.
+/// Links and joints in the order of the file, and their places. None if the file is not URDF at all, or is wrong
+/// throughout.
 pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Places)> {
     if root.name() != "robot" {
         cx.findings.add(wrong_root(root));
@@ -71,7 +71,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
     places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
     cx.report_repeated();
     floating::free_base(&floating_joints, &mut description, &mut places);
-    // the link from which the base is freed is {s}
+    // the parent link of a floating base is {s}
     if description.base == Base::Floating {
         for one in &mut description.constraints {
             if let ConstraintKind::Frames { a, b, .. } = &mut one.kind {

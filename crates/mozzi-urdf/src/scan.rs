@@ -1,6 +1,5 @@
-//! A cheap look at the whole text before the parser: nesting, attributes, namespaces and document types are bounded
-//! here, so that the parser's memory and time are too. It judges nothing else; what is malformed it leaves to the
-//! parser.
+//! A quick scan of the whole text before the parser. It bounds nesting, attributes, namespaces and document types, and
+//! so the parser's memory and time. It checks nothing else: malformed text is left to the parser.
 
 use crate::finding::Finding;
 use std::ops::Range;
@@ -9,7 +8,7 @@ use std::ops::Range;
 pub(crate) const MOST_DEPTH: usize = 256;
 /// More attributes on one element are refused.
 pub(crate) const MOST_ATTRIBUTES: usize = 256;
-/// More namespaces that hold at one place are refused.
+/// More namespaces in scope at one place are refused.
 pub(crate) const MOST_NAMESPACES: usize = 64;
 
 /// More declarations of namespaces are refused.
@@ -21,16 +20,16 @@ struct Open {
     namespaces: usize,
 }
 
-/// What is open where the text ends.
+/// The construct that is still open at the end of the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Unfinished {
-    /// Something that is no element, and which: "a comment".
+    /// A construct that is not an element, and its name: "a comment".
     Piece(Range<usize>, &'static str),
-    /// The innermost element, by its name's place.
+    /// The innermost element, by the place of its name.
     Element(Range<usize>),
 }
 
-/// What is never closed, if anything is.
+/// The construct that is never closed, if there is one.
 pub(crate) fn scan(text: &str) -> Result<Option<Unfinished>, Finding> {
     let mut open: Vec<Open> = Vec::new();
     let (mut at, mut declarations) = (0, 0);
@@ -73,13 +72,13 @@ fn after(text: &str, from: usize, pattern: &str) -> Option<usize> {
     text.get(from..)?.find(pattern).map(|k| from + k + pattern.len())
 }
 
-/// What is counted of a start tag.
+/// The counts of a start tag.
 struct Tag {
     name: Range<usize>,
     attributes: usize,
     namespaces: usize,
     closed: bool,
-    /// None when the text ends in it.
+    /// None if the text ends in it.
     end: Option<usize>,
 }
 

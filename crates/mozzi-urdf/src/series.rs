@@ -1,18 +1,18 @@
-//! A joint of several axes as joints of one freedom, one after the other, with massless links between.
+//! Replaces a joint of several axes by a series of joints of one degree of freedom, with massless links between them.
 //!
-//! A planar joint: the child slides in the plane normal to the axis, by x, then y, and turns about the normal, by
-//! theta: in the axes of the joint at 0 its frame is at x x̂ + y ŷ, turned by theta about n. Along x̂ is the joint
-//! frame's x-axis, projected onto the plane; where the normal is nearly along that (|n_x| > 0.9), its y-axis. ŷ = n ×
-//! x̂. With the axis `0 0 1` these are the frame's own x and y.
+//! Planar joint: the child slides in the plane normal to the axis, by x, then y, and turns about the normal n, by
+//! theta. In the axes of the joint at 0, its frame is at x x̂ + y ŷ, turned by theta about n. x̂ is the joint frame's
+//! x-axis projected onto the plane, or its y-axis if the normal is nearly parallel to x (|n_x| > 0.9); ŷ = n × x̂. With
+//! the axis `0 0 1` these are the frame's own x and y.
 //!
-//! A universal joint turns about x, by rx, then about the y-axis that has turned along, by ry.
+//! Universal joint: it turns about x, by rx, then about the rotated y-axis, by ry.
 
 use crate::axis;
 use crate::places::{Place, Places};
 use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 
-/// One of the joints: how it ends the name, how it moves, its damping.
+/// One of the joints: the suffix of its name, its motion, its damping.
 pub(crate) struct Part {
     pub ending: &'static str,
     pub screw: ScrewAxis,
@@ -40,7 +40,7 @@ fn series(parts: &[(&'static str, &str, Vec3)], damping: &[f64]) -> Option<Vec<P
     parts.iter().zip(damping).map(part).collect()
 }
 
-/// Adds the joints `j.x`, `j.y` … of a joint `j`, and the links of the same names that all but the last of them move.
+/// Adds the joints `j.x`, `j.y` … of a joint `j`, and a link of the same name for each of them but the last.
 pub(crate) fn add(joint: Joint, parts: &[Part], place: &Place, description: &mut Description, places: &mut Places) {
     let Joint { name, mut parent, child, mut origin, .. } = joint;
     for (i, Part { ending, screw, damping }) in parts.iter().enumerate() {

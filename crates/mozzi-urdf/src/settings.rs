@@ -12,7 +12,7 @@ pub enum Policy {
     Lenient,
 }
 
-/// How a file is read: a [`Policy`], and what xacro expands it with.
+/// How a file is read: a [`Policy`], and the inputs of xacro.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// How strictly.

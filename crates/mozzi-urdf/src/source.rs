@@ -1,4 +1,4 @@
-//! The text of a file, and where in it a byte stands.
+//! The text of a file, and the line and column of its bytes.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,21 +7,21 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(crate) struct Source {
     pub name: Arc<str>,
-    /// As it is parsed.
+    /// The text that is parsed.
     pub text: Arc<str>,
     /// The place of its first byte among all texts of a robot.
     pub base: usize,
-    /// The text of the file, if it is parsed otherwise.
+    /// The text of the file, if the parsed text differs.
     original: Option<Arc<str>>,
-    /// Where something was inserted into the text of the file, and its length.
+    /// The place and length of an insertion into the text of the file.
     inserted: (usize, usize),
     /// Whether diagnostics may show lines of it.
     pub is_shown: bool,
-    /// What wrote the text, if it is not a file's: its places are those of other files.
+    /// The expansion that produced the text, if it is not a file's: its places are in other files.
     pub expansion: Option<Arc<mozzi_xacro::Expansion>>,
 }
 
-/// A place in a text, both counted from 1, columns in characters.
+/// A place in a text: line and column, both counted from 1; columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Position {
     pub line: usize,
@@ -34,7 +34,7 @@ impl Source {
         Source { name, text, base: 0, original, inserted, is_shown: true, expansion: None }
     }
 
-    /// The same file, parsed as a text whose places are the same.
+    /// The same file, parsed as another text in which all places are the same.
     pub fn replaced(self, text: String) -> Self {
         let original = self.original.or(Some(self.text));
         Source { text: text.into(), original, ..self }
@@ -53,36 +53,36 @@ impl Source {
         Source { text, original: None, inserted: (0, 0), ..self.clone() }
     }
 
-    /// The place in the parsed text of a place in the file.
+    /// Converts a place in the file to its place in the parsed text.
     pub fn in_text(&self, span: Range<usize>) -> Range<usize> {
         let (at, length) = self.inserted;
         let place = |k: usize| if k >= at { k + length } else { k };
         place(span.start)..place(span.end)
     }
 
-    /// The place in the file of a place in the parsed text.
+    /// Converts a place in the parsed text to its place in the file.
     pub fn in_file(&self, span: Range<usize>) -> Range<usize> {
         let (at, length) = self.inserted;
         let place = |k: usize| if k > at { k.saturating_sub(length).max(at) } else { k };
         place(span.start)..place(span.end)
     }
 
-    /// The same, after other texts.
+    /// The same source, placed after other texts.
     pub fn at(self, base: usize) -> Self {
         Source { base, ..self }
     }
 
-    /// A model names it, but it may be any file of this machine: its lines are not for whoever reads the diagnostics.
+    /// For a file that a model names: it may be any file of this machine, so diagnostics must not show its lines.
     pub fn hidden(self) -> Self {
         Source { is_shown: false, ..self }
     }
 
-    /// A place of this text among all.
+    /// Converts a place in this text to its place among all texts.
     pub fn place(&self, span: Range<usize>) -> Range<usize> {
         span.start + self.base..span.end + self.base
     }
 
-    /// The byte of a line and column, as the XML parser counts them; the end of the text when it is shorter.
+    /// The byte of a line and column, as the XML parser counts them; the end of the text if it is shorter.
     pub fn offset(&self, line: usize, column: usize) -> usize {
         let start = match line.checked_sub(2) {
             None => 0,
@@ -111,7 +111,7 @@ impl<'t> Walker<'t> {
         Walker { text, at: 0, position: Position { line: 1, column: 1 } }
     }
 
-    /// The position of a byte on a character's boundary, not before that of the call before.
+    /// The position of a byte at a character boundary. Calls must be in ascending order.
     pub fn advance(&mut self, offset: usize) -> Position {
         let passed = self.text.get(self.at..offset).unwrap_or_default();
         match passed.rfind('\n') {

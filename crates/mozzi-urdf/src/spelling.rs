@@ -1,6 +1,6 @@
 //! Did you mean …?
 
-/// The known word nearest to one that is not known, if it is near enough to have been meant.
+/// The known word nearest to an unknown one, if it is near enough for a misspelling.
 pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > 64 {
         return None;
@@ -16,12 +16,12 @@ pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) 
         letters.sort_unstable();
         letters
     };
-    // of words as near, those of the same letters: `iyx` is `ixy`, not `ixx`
+    // among equally near words, prefer those with the same letters: `iyx` is `ixy`, not `ixx`
     let rank = |&(d, known): &(usize, &str)| (d, letters(known) != letters(&lower));
     known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(rank).map(|(_, known)| known)
 }
 
-/// A name that was given without what others put before it.
+/// A known name that ends in the given one, which lacks its prefix.
 pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     let is_longer = |known: &&str| {
         name.len() > 2 && known.strip_suffix(name).is_some_and(|start| start.ends_with(['_', '/', '-', '.']))
@@ -34,7 +34,7 @@ pub(crate) fn meant(word: &str) -> String {
     format!("did you mean `{word}`?")
 }
 
-/// The same of the known word nearest to an unknown one, if it is near enough to have been meant.
+/// The same for the known word nearest to an unknown one, if it is near enough for a misspelling.
 pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(word, known).map(meant)
 }

@@ -1,5 +1,4 @@
-//! From text to XML: the parser's complaints, at their places and in our words. What xacro has yet to expand is
-//! refused.
+//! From text to XML. The parser's errors are reported at their places, in mozzi's wording. Unexpanded xacro is refused.
 
 use crate::dialect::Dialect;
 use crate::finding::{Finding, Findings};
@@ -11,10 +10,10 @@ use crate::xacro;
 use roxmltree::{Document, Error, ParsingOptions};
 use std::ops::Range;
 
-/// More nodes (elements, texts, comments) are refused: a parsed node is some ten times its text.
+/// More nodes (elements, texts, comments) are refused: a parsed node takes about ten times the memory of its text.
 const MOST_NODES: u32 = 2_000_000;
 
-/// The text as it is parsed: slips that lose nothing are mended, and reported.
+/// The text to parse: harmless slips are corrected and reported.
 pub(crate) fn mended(source: Source, dialect: Dialect, findings: &mut Findings) -> Source {
     let (source, late) = mend::declaration(source);
     let (source, undeclared) = mend::prefixes(source, dialect);
@@ -22,7 +21,7 @@ pub(crate) fn mended(source: Source, dialect: Dialect, findings: &mut Findings) 
     source
 }
 
-/// The first prefix that is not declared, and its place in the text.
+/// The first undeclared prefix, and its place in the text.
 pub(crate) fn undeclared(source: &Source) -> Option<(String, Range<usize>)> {
     scan(&source.text).ok()?;
     let Err(Error::UnknownNamespace(prefix, pos)) = document(&source.text) else { return None };
@@ -44,7 +43,7 @@ pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, F
     parse_text(source, dialect).map_err(|finding| Finding { span: source.place(finding.span.clone()), ..finding })
 }
 
-/// The same, places counted from the text's beginning.
+/// The same, with places counted from the text's beginning.
 fn parse_text(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
     let unfinished = scan(&source.text)?;
     let document = document(&source.text).map_err(|error| explain(source, dialect, error, unfinished))?;
@@ -130,7 +129,7 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
         }
         Error::DtdDetected => Finding::error("document_type", 0..0, "the file has a document type"),
         other => {
-            // the parser's own words, without the position that they end in
+            // the parser's own message, without the position at its end
             let (pos, text) = (other.pos(), other.to_string());
             let place = format!(" at {pos}");
             syntax(at(pos), text.replace(&place, ""))

@@ -19,7 +19,7 @@ impl Version {
     pub const WITH_QUATERNIONS: Version = Version { minor: 1 };
     /// The first version with limits of acceleration.
     pub const WITH_ACCELERATION: Version = Version { minor: 2 };
-    /// The latest version that is known.
+    /// The latest known version.
     const LATEST: Version = Version { minor: 2 };
 
     /// The version of a text such as `1.1`.
@@ -30,7 +30,7 @@ impl Version {
         (number(major)? == 1 && version <= Version::LATEST).then_some(version)
     }
 
-    /// The version of a robot: 1.0 if it has none, or, which is reported, an unknown one.
+    /// The version of a robot: 1.0 if it has none or, with a diagnostic, an unknown one.
     pub fn read(root: &Element, cx: &mut Context) -> Self {
         let Some(value) = root.attribute("version") else { return Version::default() };
         Version::parse(value.text).unwrap_or_else(|| {

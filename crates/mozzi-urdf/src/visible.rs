@@ -1,6 +1,6 @@
-//! Text that a terminal shows and does not obey.
+//! Text that a terminal shows without interpreting it.
 
-/// Control characters (C0 but for line feed and tab, DEL, C1) and marks that turn the direction of writing, as
+/// Escapes control characters (C0 except line feed and tab, DEL, C1) and marks that change the direction of writing, as
 /// `\u001b`. JSON and Python read this form, too.
 ///
 /// ```

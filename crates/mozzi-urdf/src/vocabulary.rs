@@ -1,15 +1,15 @@
 //! The words of URDF.
 
-/// What may stand on and in an element.
+/// The attributes and children that an element may have.
 pub(crate) struct Vocabulary {
     pub attributes: &'static [&'static str],
-    /// Children that may stand once.
+    /// Children that may occur once.
     pub once: &'static [&'static str],
-    /// Children that may stand often.
+    /// Children that may occur repeatedly.
     pub many: &'static [&'static str],
-    /// Known extensions, attributes or children, which say nothing about dynamics here.
+    /// Known extensions, attributes or children, which do not affect the dynamics here.
     pub silent: &'static [&'static str],
-    /// Attributes that are left out, and counted: see [`Context::leave_out`](crate::context::Context::leave_out).
+    /// Attributes that are not used, and counted: see [`Context::leave_out`](crate::context::Context::leave_out).
     pub listed: &'static [&'static str],
 }
 

@@ -1,4 +1,4 @@
-//! Back to URDF text.
+//! Writes URDF text.
 
 use crate::floating::frees_the_base;
 use crate::limit::UNLIMITED;
@@ -97,7 +97,7 @@ fn not_urdf(d: &Description) -> Vec<String> {
 fn robot(text: &mut String, d: &Description) -> fmt::Result {
     let drake = if d.constraints.is_empty() { "" } else { " xmlns:drake=\"https://drake.mit.edu\"" };
     writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\"{drake}>", escaped(&d.name))?;
-    // the base is freed from an empty link
+    // the parent of a floating base is an empty link
     let taken = |name: &str| d.links.iter().any(|link| link.name == name);
     let space = free(&d.free_joint.parent, taken);
     if d.base == Base::Floating {
@@ -146,7 +146,7 @@ fn ball_constraint<'d>(d: &Description, i: usize, constraint: &'d Constraint) ->
     (constraint.name == format!("ball_constraint{i}")).then_some(ends)
 }
 
-/// The name, or one like it that is not taken.
+/// The name, or a similar one that is not taken.
 pub(crate) fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut name = name.to_string();
     while taken(&name) {
@@ -197,7 +197,7 @@ fn joint(text: &mut String, joint: &Joint) -> fmt::Result {
     text.write_str("  </joint>\n")
 }
 
-/// A spring by the names that SDF has for it, the armature by MJCF's: other readers of URDF ignore both.
+/// A spring with SDF's names, the armature with MJCF's: other readers of URDF ignore both.
 fn dynamics(text: &mut String, joint: &Joint) -> fmt::Result {
     let is_springy = joint.stiffness != 0.0 || joint.spring_reference != 0.0;
     if joint.damping == 0.0 && joint.friction == 0.0 && joint.armature == 0.0 && !is_springy {
@@ -214,7 +214,7 @@ fn dynamics(text: &mut String, joint: &Joint) -> fmt::Result {
     text.write_str("/>\n")
 }
 
-/// Complete wherever urdfdom requires a limit, or there is one; then urdfdom requires effort and velocity.
+/// Written if urdfdom requires a limit or the joint has one; urdfdom then requires effort and velocity.
 fn limit(text: &mut String, joint: &Joint) -> fmt::Result {
     let Limits { position, velocity, effort } = joint.limits;
     let has_bounds = position.is_some() || matches!(joint.kind, JointKind::Screw(A) if A.is_prismatic());

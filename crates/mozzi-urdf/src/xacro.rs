@@ -1,5 +1,5 @@
-//! xacro: files that are programs, and write a URDF when they are run. Which files are; what is left of it in a text
-//! that was not expanded is refused, with the command that expands it.
+//! xacro files are programs that produce a URDF. Detects such files. Unexpanded xacro in a text is refused, with the
+//! command that expands it.
 
 use crate::dialect::Dialect;
 use crate::finding::Finding;
@@ -7,14 +7,14 @@ use crate::vocabulary::shown;
 use roxmltree::{Document, Node};
 use std::ops::Range;
 
-/// Elements whose attributes URDF's reader looks at. What stands in others, such as `$(find …)` in a mesh's name, is
-/// nothing to it.
+/// Elements whose attributes the URDF reader uses. Expressions in other elements, such as `$(find …)` in a mesh's name,
+/// do not affect it.
 const READ: [&str; 13] = [
     "robot", "link", "inertial", "mass", "inertia", "origin", "joint", "parent", "child", "axis", "limit", "dynamics",
     "mimic",
 ];
 
-/// What an expression begins with. A `$(` alone is none: it may stand in a name.
+/// The beginnings of an expression. A `$(` alone is not an expression: it may occur in a name.
 const EXPRESSIONS: [&str; 9] =
     ["${", "$(arg ", "$(find ", "$(env ", "$(optenv ", "$(eval ", "$(anon ", "$(dirname)", "$(cwd)"];
 
@@ -24,13 +24,13 @@ const EXPECTED: &str = "expected a file that xacro has expanded";
 /// The most arguments listed in a suggested command.
 const MOST_ARGUMENTS: usize = 8;
 
-/// Does the text hold something that xacro evaluates?
+/// Does the text contain an expression that xacro evaluates?
 pub(crate) fn has_expression(text: &str) -> bool {
     EXPRESSIONS.iter().any(|start| text.contains(start))
 }
 
-/// The first thing in a text that xacro has to expand, with the command that does it. A declaration of its namespace
-/// is none: xacro leaves it in what it writes.
+/// The first part of a text that xacro has to expand, with the command that does it. A declaration of its namespace
+/// does not count: xacro leaves it in its output.
 pub(crate) fn refuse(document: &Document, file: &str, dialect: Dialect) -> Option<Finding> {
     let (span, message) = document.root().descendants().filter(Node::is_element).find_map(|node| {
         let span = name(node);
@@ -38,7 +38,7 @@ pub(crate) fn refuse(document: &Document, file: &str, dialect: Dialect) -> Optio
             let written = shown(&document.input_text()[span.clone()]);
             return Some((span, format!("<{written}> is a xacro element, {EXPECTED}")));
         }
-        // in MJCF any word may be a value: there, numbers alone are looked at, where they are read
+        // in MJCF any word may be a value, so only numbers are checked, when they are read
         let expression = node.attributes().find(|attribute| has_expression(attribute.value()));
         let attribute = expression.filter(|_| dialect == Dialect::Urdf && is_read(node))?;
         let (element, value) = (node.tag_name().name(), shown(attribute.value()));
@@ -56,7 +56,7 @@ fn name(node: Node) -> Range<usize> {
     start..start + rest.find(ends).unwrap_or(rest.len())
 }
 
-/// By the prefix, as xacro itself judges, or by the namespace.
+/// Checks the prefix, as xacro itself does, or the namespace.
 fn is_xacro(node: Node) -> bool {
     node.document().input_text()[name(node)].starts_with("xacro:")
         || node.tag_name().namespace().is_some_and(|space| space.ends_with("/xacro"))
@@ -76,8 +76,8 @@ fn command(document: &Document, file: &str, dialect: Dialect) -> String {
     )
 }
 
-/// Is the file to be expanded before it is read: by its name, or because its root declares xacro's namespace and
-/// something is left to expand?
+/// Must the file be expanded before it is read? Yes if its name says so, or if its root declares xacro's namespace and
+/// something is left to expand.
 pub(crate) fn is_program(text: &str, file: &str, parse: impl FnOnce() -> Option<bool>) -> bool {
     let is_named = file.ends_with(".xacro") && text.contains('<');
     is_named || text.contains("xacro") && parse() == Some(true)
@@ -104,7 +104,7 @@ fn arguments<'d>(document: &'d Document) -> impl Iterator<Item = &'d str> {
         .take(MOST_ARGUMENTS)
 }
 
-/// The file that is written: never the one that is read.
+/// The output file: never the input file.
 fn expanded(file: &str, dialect: Dialect) -> String {
     let ending = match dialect {
         Dialect::Urdf => ".urdf",
@@ -117,7 +117,7 @@ fn expanded(file: &str, dialect: Dialect) -> String {
     }
 }
 
-/// A file's name as a shell takes it.
+/// A file's name, quoted for a shell.
 fn quoted(file: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "._-+/:@%,=~".contains(c);
     let file = if file.starts_with(['-', '~']) { format!("./{file}") } else { file.to_string() };
@@ -131,7 +131,7 @@ fn quoted(file: &str) -> String {
 mod tests {
     use super::*;
 
-    /// What is said of a text, and how to mend it.
+    /// The message about a text, and its remedy.
     fn refused(file: &str, text: &str) -> Option<(String, String)> {
         let document = Document::parse(text).expect("well-formed");
         let finding = refuse(&document, file, Dialect::of(text))?;

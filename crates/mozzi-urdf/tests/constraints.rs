@@ -149,7 +149,7 @@ fn a_ball_constraint_of_drake_is_read_and_written() {
     // bushings and tendons remain warnings by name
     let loaded = parse("r.urdf", drake("<drake:linear_bushing_rpy/><drake:tendon_constraint/>")).unwrap();
     assert_eq!(loaded.warnings.len(), 2);
-    // the link that frees the base is {s}
+    // the parent link of a floating base is {s}
     let free = drake("<link name='w'/><joint name='f' type='floating'><parent link='w'/><child link='a'/></joint>")
         .replace("body_B name='a'", "body_B name='w'");
     let robot = parse("r.urdf", free).unwrap().description;
@@ -181,7 +181,7 @@ fn a_file_of_constraints_adds_them() {
     assert_eq!((a.T.p, a.T.R), (Vec3([0.3, 0.1, 0.0]), mozzi::SO3::from_rpy(0.0, 0.0, 1.5)));
     assert_eq!(robot.constraints[3], Constraint::joint("gear", "k", "j", [0.0, -2.0, 0.0, 0.0, 0.0]));
     robot.clone().build().unwrap();
-    // what is written is read back to the bit; a second file adds to the first
+    // a round trip is exact to the bit; a second file adds to the first
     let text = constraints::write(&robot);
     let again = constraints::parse("w.json", &text, plain()).unwrap();
     assert_eq!(again, robot);
@@ -225,7 +225,7 @@ fn what_is_wrong_in_a_file_has_its_place() {
     }
 }
 
-/// The mechanisms of ../shared, where it is.
+/// The mechanisms of ../shared, if it exists.
 #[test]
 fn parallel_robots_close() {
     let folder = repository().join("../shared/data/parallel-robots");

@@ -1,8 +1,8 @@
-//! Damaged and enormous files: an answer, never a panic, in bounded time.
+//! Damaged and enormous files: a result or an error, never a panic, in bounded time.
 
 use mozzi_urdf::{Style, embedded, parse};
 
-/// A robot that mozzi brings along, or one of the two models of MuJoCo that are written for the tests.
+/// An embedded robot, or one of the two MuJoCo models that are written for the tests.
 fn text(k: usize) -> &'static str {
     const MODELS: [&str; 2] =
         [include_str!("../../../oracles/test_bodies.xml"), include_str!("../../../oracles/test_compiler.xml")];
@@ -25,7 +25,7 @@ impl Random {
     }
 }
 
-/// Reads it; what is accepted becomes a model, what is refused a report.
+/// Reads a text; an accepted robot becomes a model, a refused one a report.
 fn answer(text: &[u8]) -> bool {
     match parse("damaged.urdf", text) {
         Ok(robot) => {

@@ -1,4 +1,4 @@
-//! Drake's words in a URDF, against the numbers of Drake 1.5x.
+//! Drake's extensions of URDF, against the numbers of Drake 1.5x.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::linalg::Mat3;

@@ -1,6 +1,6 @@
 //! mozzi with a floating base against Pinocchio's free flyer and MuJoCo's free joint, by way of `mozzi::conventions`:
-//! the committed numbers of `oracles/floating/`, and, where the folder that the environment variable MOZZI_ORACLES
-//! names has a folder `floating` made by `oracles/make_floating.py`, a hundred states of every robot in that.
+//! the committed numbers of `oracles/floating/`, and, if the folder named by the environment variable MOZZI_ORACLES has
+//! a folder `floating` made by `oracles/make_floating.py`, a hundred states of every robot in it.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// The robot of a file of oracles, its base floating: without rotors, and with those of the file. No friction.
+/// The robot of a file of oracles, with a floating base: without rotors, and with those of the file. No friction.
 fn models(oracle: &Value) -> Result<[Model; 2], String> {
     let path = match oracle.get("urdf_path").and_then(Value::as_str) {
         Some(path) => PathBuf::from(path),
@@ -48,13 +48,13 @@ fn potential_size(model: &Model, reach: f64) -> f64 {
     9.81 * model.mass() * (1.0 + reach)
 }
 
-/// M_ij over √(M_ii M_jj), which no entry exceeds: so that a finger's inertia counts beside the robot's mass.
+/// M_ij over √(M_ii M_jj), which no entry exceeds, so that a finger's inertia counts next to the robot's mass.
 fn balanced(M: &DMatrix<f64>, reference: &DMatrix<f64>) -> DMatrix<f64> {
     let size = |i: usize, j: usize| (reference[(i, i)] * reference[(j, j)]).sqrt();
     DMatrix::from_fn(M.nrows(), M.ncols(), |i, j| if size(i, j) > 0.0 { M[(i, j)] / size(i, j) } else { M[(i, j)] })
 }
 
-/// In Pinocchio's convention.
+/// Compares in Pinocchio's convention.
 fn compare_pinocchio(model: &Model, theirs: &Pinocchio, oracle: &Value, state: &Value, worst: &mut Worst) {
     let list = |key: &str| vector(&state[key]);
     let theta = theirs.from_configuration(&list("q")).unwrap();
@@ -112,7 +112,7 @@ fn compare_pinocchio(model: &Model, theirs: &Pinocchio, oracle: &Value, state: &
     derivatives::compare(model, &velocities, [theta, dtheta, ddtheta, tau], oracle, state, worst);
 }
 
-/// Pinocchio's are linear first, in world axes.
+/// Pinocchio's centroidal quantities are linear first, in world axes.
 fn compare_centroidal(model: &Model, theirs: &Pinocchio, state: [&[f64]; 3], record: &Value, worst: &mut Worst) {
     let ([theta, dtheta, ddtheta], A) = (state, matrix(&record["Ag"]));
     let fast = largest_square(dtheta);
@@ -135,7 +135,7 @@ fn compare_centroidal(model: &Model, theirs: &Pinocchio, state: [&[f64]; 3], rec
     worst.add_list("Ȧ_Gθ̇", &found, &record["dAg_v"], A.amax() * fast);
 }
 
-/// In MuJoCo's.
+/// Compares in MuJoCo's convention.
 fn compare_mujoco(model: &Model, theirs: &MuJoCo, state: &Value, worst: &mut Worst) {
     let list = |key: &str| vector(&state[key]);
     let [qpos, qvel, qacc, qfrc] = ["qpos", "qvel", "qacc", "qfrc_applied"].map(list);
@@ -199,7 +199,7 @@ fn compare(oracle: &Value, models: &[Model; 2]) -> Worst {
     } else {
         let nqs: Vec<usize> = vector(&oracle["nqs"]).iter().map(|&nq| nq as usize).collect();
         let theirs = Pinocchio::with_joints(&models[0], &names, &nqs).unwrap();
-        // what Pinocchio's reader does is known without it
+        // Pinocchio's reading of the file is predicted without it
         let guessed = Pinocchio::new(&models[0]);
         assert_eq!(guessed.joints(), theirs.joints(), "{}", oracle["robot"]);
         // four wheels of Centauro are `revolute` with limits that hold no bound: continuous here, one position there

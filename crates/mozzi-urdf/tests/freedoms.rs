@@ -1,4 +1,4 @@
-//! Joints of several freedoms: floating bases and planar joints, and what becomes of them.
+//! Joints of several degrees of freedom: floating bases and planar joints, and the joints that replace them.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::description::JointKind;
@@ -7,7 +7,7 @@ use mozzi_urdf::{Policy, parse_with};
 
 const BODY: &str = "<inertial><origin xyz='0.1 0 0'/><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
 
-/// A robot `r` of links `a`, `b` and `c`, where c hangs on b by a hinge; no word about it.
+/// A robot `r` of links `a`, `b` and `c`, where c hangs on b by a hinge; it loads without diagnostics.
 fn robot(joint: &str) -> mozzi::Description {
     let hinge = "<joint name='hinge' type='continuous'><parent link='b'/><child link='c'/><axis xyz='0 1 0'/></joint>";
     let text = format!(
@@ -35,7 +35,7 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
             "<joint name='j' type='planar'><parent link='a'/><child link='b'/><origin xyz='0 0 1' rpy='0 0 0.5'/>";
         robot(&format!("{joint}{axis}</joint>")).build().unwrap()
     };
-    // URDF's axis is x where there is none: the plane's x is then the frame's y
+    // URDF's default axis is x: the plane's x is then the frame's y
     for (axis, x, y, turn) in [
         ("<axis xyz='0 0 1'/>", [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
         ("<axis xyz='0 1 0'/>", [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]),
@@ -52,7 +52,7 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
         let (found, expected) = (found.to_matrix(), expected.to_matrix());
         let apart = found.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
         assert!(apart.fold(0.0, f64::max) < 1e-15, "{axis}");
-        // regular, though two links weigh nothing
+        // regular, though two links are massless
         let tau = model.inverse_dynamics(&at, &[0.1; 4], &[0.5; 4], &model.environment()).unwrap();
         let again = model.forward_dynamics(&at, &[0.1; 4], tau.as_slice(), &model.environment()).unwrap();
         assert!(again.iter().all(|x| (x - 0.5).abs() < 1e-13), "{again}");

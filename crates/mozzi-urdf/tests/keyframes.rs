@@ -1,4 +1,4 @@
-//! MuJoCo's keyframes and its start: names, numbers, and what is not kept.
+//! MuJoCo's keyframes and its start: names, numbers, and omitted values.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::SE3;
@@ -6,7 +6,7 @@ use mozzi::model::State;
 use mozzi_urdf::{Policy, parse_with};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// A free stone, an arm of a ball, a hinge with `ref`, and a joint that follows the hinge.
+/// A free stone, an arm of a ball, a hinge with `ref`, and a mimic joint of the hinge.
 fn model(compiler: &str, keys: &str) -> (mozzi::Model, Vec<String>) {
     let text = format!(
         "<mujoco><compiler {compiler}/><worldbody><body name='arm'><joint name='ball' type='ball'/><geom size='0.1'/>\
@@ -33,7 +33,7 @@ fn the_start_is_the_files_own_configuration() {
     assert!(close(&theta[..5], &[1.0, 0.0, 0.0, 0.0, FRAC_PI_2]), "{theta:?}");
     assert!(close(&theta[5..], &[FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2, 1.0, 0.0, 2.0]), "{theta:?}");
     assert_eq!((time, dtheta), (0.0, vec![0.0; 10]));
-    // a key without numbers is that too
+    // a key without numbers is the start, too
     assert_eq!(model.state("home").unwrap(), model.start());
     let at = model.forward_kinematics(&theta, model.frame("hand").unwrap()).unwrap();
     assert!((at.inverse() * SE3::identity()).log().norm() < 1e-15);
@@ -51,7 +51,7 @@ fn keys_are_states_in_mozzis_order_and_axes() {
     assert_eq!(model.state_names().collect::<Vec<_>>(), ["qpos0", "key0'", "key0", "key2"]);
     let State { time, theta, dtheta } = model.state("key0'").unwrap();
     assert_eq!(time, 1.5);
-    assert_eq!(theta, [0.0, 1.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 3.0]); // of keys in radians
+    assert_eq!(theta, [0.0, 1.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 1.0, 2.0, 3.0]); // keys are in radians
     // half a turn about y: v of the world's axes is (−x, y, −z) in the body's
     assert!(close(&dtheta, &[1.0, 2.0, 3.0, 4.0, 8.0, 9.0, 10.0, -5.0, 6.0, -7.0]), "{dtheta:?}");
 }

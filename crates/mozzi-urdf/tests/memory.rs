@@ -5,7 +5,7 @@ use mozzi_urdf::parse;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-/// Bytes held by this thread, and the most that it held.
+/// Bytes held by this thread, and their maximum.
 struct Counting;
 thread_local!(static HELD: Cell<[usize; 2]> = const { Cell::new([0, 0]) });
 
@@ -15,7 +15,7 @@ fn count(more: usize, less: usize) {
     HELD.set([held, most.max(held)]);
 }
 
-// SAFETY: hands every call on to the system's allocator.
+// SAFETY: forwards every call to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size(), 0);
@@ -41,7 +41,7 @@ static ALLOCATOR: Counting = Counting;
 #[path = "large/mod.rs"]
 mod large;
 
-/// The most bytes that are held from text to model, text not counted.
+/// The peak memory in bytes from text to model, without the text.
 fn bytes(text: &str) -> usize {
     let [held, _] = HELD.get();
     HELD.set([held, held]);
@@ -59,7 +59,7 @@ fn memory_is_linear_in_the_number_of_links() {
     for (name, robot) in large::ROBOTS {
         let [few, many] = [1_000, 10_000].map(|n| bytes(&robot(n)));
         println!("{name}: {} bytes a link of 1000, {} of 10000", few / 1_000, many / 10_000);
-        // lists grow by doubling, so that of twice the length the half may be empty
+        // lists grow by doubling, so after doubling half of the capacity may be empty
         assert!(many < 16 * few, "{name}: {few} bytes for 1000 links, {many} for 10000");
     }
 }

@@ -1,4 +1,4 @@
-//! Models of MuJoCo: what becomes of joints, names, couplings and included files.
+//! MuJoCo models: joints, names, couplings and included files.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::description::JointKind;
@@ -29,7 +29,7 @@ fn joints_of_one_body_act_one_after_the_other() {
     assert_eq!(x.limits.position, Some([-1.0, 1.0]));
     assert_eq!(turn.limits.position, Some([0.0, std::f64::consts::PI]));
     assert_eq!((turn.armature, turn.damping, turn.friction), (0.1, 0.2, 0.3));
-    // at the position `ref` the body stands as the file says
+    // at the position `ref` the body's pose is the one in the file
     let robot = d.build().unwrap();
     let T = robot.forward_kinematics(&[0.0, std::f64::consts::FRAC_PI_2], robot.frame("tip").unwrap()).unwrap();
     assert!((T.p - mozzi::Vec3([0.0, 0.0, 1.0])).norm() < 1e-15, "{T:?}");
@@ -113,7 +113,7 @@ fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// Loads the main file of a folder; what is wrong is told without the folder.
+/// Loads the main file of a folder; diagnostics are shown without the folder.
 fn main_of(folder: &Path) -> Result<Loaded, String> {
     let tell = |error: LoadError| error.to_string().replace(&*folder.to_string_lossy(), ".");
     load(folder.join("main.xml")).map_err(tell)
@@ -208,7 +208,7 @@ fn an_include_shows_no_lines_of_other_files() {
     for secret in secrets {
         let folder = folder("secret", &[("main.xml", main)]);
         std::fs::write(folder.join("secret"), secret).unwrap();
-        // an unknown element is a warning, all else an error
+        // an unknown element is a warning, everything else an error
         let diagnostics = match load(folder.join("main.xml")) {
             Ok(loaded) => loaded.warnings,
             Err(error) => error.diagnostics().to_vec(),
@@ -220,7 +220,7 @@ fn an_include_shows_no_lines_of_other_files() {
             assert!(!diagnostic.excerpt().contains("hunter2"));
         }
     }
-    // of a model they are shown
+    // lines of an included model are shown
     let part = "<mujocoinclude>\n<worldbody><bodi/></worldbody></mujocoinclude>";
     let folder = folder("own", &[("main.xml", main), ("secret", part)]);
     assert!(load(folder.join("main.xml")).unwrap_err().pretty(Style::Unicode).contains("<worldbody><bodi/>"));

@@ -1,5 +1,5 @@
-//! Robots that exist: those that mozzi brings along, and, where `MOZZI_ROBOTS` names the folder of the package
-//! `example-robot-data`, all of that package.
+//! Real robots: the embedded ones, and, if `MOZZI_ROBOTS` names the folder of the package `example-robot-data`, all of
+//! that package.
 
 #[path = "common/files.rs"]
 mod files;
@@ -36,7 +36,7 @@ fn what_is_not_there_is_said_so() {
     assert!(matches!(load("."), Err(LoadError::File { .. })), "a folder");
 }
 
-/// Each published robot loads and becomes a model, but for three, which are refused for what is wrong with them.
+/// Each published robot loads and becomes a model, except three, which are refused for their errors.
 #[test]
 fn published_robots() {
     let Ok(folder) = std::env::var("MOZZI_ROBOTS") else {

@@ -1,10 +1,10 @@
-//! What is written is read again as it was.
+//! Round trips: a written robot is read back unchanged.
 
 use mozzi::model::Element;
 use mozzi::{Description, ScrewAxis, Vec3};
 use mozzi_urdf::{embedded, open, parse, write};
 
-/// The largest difference of numbers, against their size; panics where something else differs.
+/// The largest relative difference of numbers; panics if anything else differs.
 fn difference(a: &Description, b: &Description) -> f64 {
     let mut largest = 0.0_f64;
     let mut compare = |a: &[f64], b: &[f64]| {
@@ -20,7 +20,7 @@ fn difference(a: &Description, b: &Description) -> f64 {
     for (a, b) in a.joints.iter().zip(&b.joints) {
         compare(a.origin.to_matrix().as_flattened(), b.origin.to_matrix().as_flattened());
         compare(&axis(a), &axis(b));
-        // all else is equal to the last digit
+        // everything else is equal to the last digit
         let same = mozzi::model::description::Joint { origin: a.origin, kind: a.kind, ..b.clone() };
         assert_eq!(*a, same);
     }
@@ -136,7 +136,7 @@ fn limits_are_complete_and_armature_is_an_extension() {
     assert!(difference(&description, &again.description) < 1e-14);
 }
 
-/// Frames become links, and a joint beside its link's frame turns a link on its axis.
+/// Frames become links, and a joint whose axis misses its link's frame turns a link on its axis.
 #[test]
 fn other_robots_are_made_expressible() {
     let text = include_str!("convert/offset.xml");

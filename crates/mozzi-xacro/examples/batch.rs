@@ -1,6 +1,5 @@
-//! Expands many files in one process, for comparisons with other tools: reads a path on each line of standard input,
-//! `path<TAB>name:=value<TAB>package=folder…`, and answers with `ok LENGTH` and the text, or `error LENGTH` and the
-//! message.
+//! Expands many files in one process, for comparisons with other tools. Reads a path on each line of standard input,
+//! `path<TAB>name:=value<TAB>package=folder…`, and writes `ok LENGTH` and the text, or `error LENGTH` and the message.
 
 use mozzi_xacro::{Arguments, expand};
 use std::io::{BufRead, Write};

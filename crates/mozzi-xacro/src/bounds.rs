@@ -3,13 +3,13 @@
 use crate::fault::{Fault, Result};
 use std::cell::Cell;
 
-/// Larger files are refused, and larger expansions.
+/// The largest size of a file and of an expansion.
 pub(crate) const MOST_BYTES: usize = 64 << 20;
-/// Steps of evaluation, elements and sixteenths of text, all together: about half a second.
+/// The largest total of evaluation steps, elements and sixteenths of text: about half a second.
 pub(crate) const MOST_WORK: u64 = 2_000_000;
 /// Bytes of one string.
 pub(crate) const MOST_TEXT: usize = 1 << 20;
-/// Items of one list, dictionary or range that is gone through.
+/// Items of one list, dictionary or range that is iterated.
 pub(crate) const MOST_ITEMS: usize = 1 << 18;
 /// Bits of an int.
 pub(crate) const MOST_BITS: u64 = 16_384;
@@ -17,7 +17,7 @@ pub(crate) const MOST_BITS: u64 = 16_384;
 pub(crate) const MOST_DIGITS: usize = 4300;
 /// Levels of one expression, and operators in a row.
 pub(crate) const MOST_EXPRESSION_DEPTH: usize = 200;
-/// Macros, elements, properties and parts of expressions that wait for each other.
+/// Nesting depth of macros, elements, properties and parts of expressions.
 pub(crate) const MOST_DEPTH: usize = 2000;
 /// Macros in macros.
 pub(crate) const MOST_CALLS: usize = 250;
@@ -27,10 +27,10 @@ pub(crate) const MOST_FILES: usize = 4096;
 pub(crate) const MOST_INCLUDE_DEPTH: usize = 100;
 /// Levels of elements in a file.
 pub(crate) const MOST_ELEMENT_DEPTH: usize = 256;
-/// The stack that these depths need.
+/// The stack needed for these depths.
 pub(crate) const STACK: usize = 256 << 20;
 
-/// What was used so far.
+/// The amounts used so far.
 #[derive(Default)]
 pub(crate) struct Budget {
     work: Cell<u64>,
@@ -48,7 +48,7 @@ impl Budget {
         Ok(())
     }
 
-    /// A string of this many bytes is made.
+    /// Counts a new string of this many bytes.
     pub fn text(&self, bytes: usize) -> Result<()> {
         if bytes > MOST_TEXT {
             return Err(Fault::new(format!("a string of {bytes} bytes, expected at most {MOST_TEXT}")));
@@ -56,7 +56,7 @@ impl Budget {
         self.spend(1 + bytes as u64 / 16)
     }
 
-    /// A collection of this many items is made.
+    /// Counts a new collection of this many items.
     pub fn items(&self, count: usize) -> Result<()> {
         if count > MOST_ITEMS {
             return Err(Fault::new(format!("{count} items, expected at most {MOST_ITEMS}")));
@@ -68,7 +68,7 @@ impl Budget {
         self.work.get()
     }
 
-    /// Does something one level deeper.
+    /// Calls a function one level deeper.
     #[inline]
     pub fn deeper<T>(&self, what: impl FnOnce() -> Result<T>) -> Result<T> {
         let depth = self.depth.get();

@@ -1,9 +1,9 @@
-//! Words that are numbers or truths.
+//! Converts words to numbers or truth values.
 
 use crate::expression::{Value, parse_float, parse_int};
 use crate::fault::{Fault, Result};
 
-/// A literal of a property becomes a value: a number, a truth, or the text in single quotes.
+/// Converts the literal of a property to a value: a number, a truth value, or the text in single quotes.
 pub(crate) fn literal(value: Value) -> Value {
     let Value::Str(text) = &value else { return value };
     if text.len() >= 2 && text.starts_with('\'') && text.ends_with('\'') {
@@ -25,7 +25,7 @@ pub(crate) fn literal(value: Value) -> Value {
     }
 }
 
-/// The truth of a condition: of a text only `true`, `false` and whole numbers.
+/// The truth value of a condition; a text must be `true`, `false` or a whole number.
 pub(crate) fn truth(value: &Value) -> Result<bool> {
     let Value::Str(text) = value else { return Ok(value.truth()) };
     match &**text {

@@ -1,4 +1,4 @@
-//! The tree of a file while it is expanded: all nodes in one arena, moved by links.
+//! The tree of a file during expansion: all nodes are in one arena and are moved by changing links.
 
 use crate::bounds::Budget;
 use crate::fault::Result;
@@ -21,7 +21,7 @@ pub(crate) enum Content {
 pub(crate) struct Attribute {
     pub name: Rc<str>,
     pub value: Rc<str>,
-    /// Where the name begins in the file.
+    /// The position of the name in the file.
     pub name_start: u32,
     /// The value's place.
     pub place: Place,
@@ -29,7 +29,7 @@ pub(crate) struct Attribute {
 
 pub(crate) struct Node {
     pub content: Content,
-    /// Of an element, its name's.
+    /// For an element, the place of its name.
     pub place: Place,
     pub parent: Option<Id>,
     pub first: Option<Id>,
@@ -104,7 +104,7 @@ impl Document {
         self.insert(parent, child, None);
     }
 
-    /// Puts a node before a sibling, or at the end; it leaves where it was.
+    /// Moves a node before a sibling, or to the end.
     pub fn insert(&mut self, parent: Id, child: Id, before: Option<Id>) {
         self.remove(child);
         let previous = before.map_or(self.nodes[parent].last, |next| self.nodes[next].previous);
@@ -134,7 +134,7 @@ impl Document {
         }
     }
 
-    /// A node is replaced by the children of others.
+    /// Replaces a node by the children of other nodes.
     pub fn replace_by_content(&mut self, id: Id, others: &[Id]) {
         let Some(parent) = self.nodes[id].parent else { return };
         for &other in others {
@@ -145,7 +145,7 @@ impl Document {
         self.remove(id);
     }
 
-    /// A copy of a node and all below it; in a macro's call, its places become that call's.
+    /// A copy of a node and its descendants; in a macro's call, their places become that call's.
     pub fn copy(&mut self, id: Id, call: Option<&Arc<Call>>, budget: &Budget) -> Result<Id> {
         budget.spend(2)?;
         let place = |place: &Place| call.map_or_else(|| place.clone(), |call| place.called(call));

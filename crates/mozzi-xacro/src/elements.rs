@@ -1,4 +1,4 @@
-//! Goes through the elements of a file: evaluates attributes and texts, and does what xacro's elements say.
+//! Processes the elements of a file: evaluates attributes and texts, and executes xacro's elements.
 
 use crate::condition::truth;
 use crate::document::{Attribute, Content, Id};
@@ -54,7 +54,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// At the name of an element, unless the error has a place.
+    /// Sets an error's place to the name of an element, unless it has a place.
     pub fn located(&self, mut fault: Box<Fault>, id: Id) -> Box<Fault> {
         if fault.place.is_none() {
             fault.place = Some(self.document.borrow().node(id).place.clone());
@@ -124,7 +124,7 @@ impl Expander<'_> {
         }
     }
 
-    /// The name of an element or attribute, which the file's reader takes as one.
+    /// The name of an element or attribute, accepted by the file's reader.
     fn check_name(&self, name: &str) -> Result<()> {
         let begins = |c: char| c.is_alphabetic() || c == '_' || c == ':';
         let goes_on = |c: char| c.is_alphanumeric() || "_:-.".contains(c);
@@ -134,7 +134,7 @@ impl Expander<'_> {
         }
     }
 
-    /// An attribute that must be there.
+    /// A required attribute.
     pub fn required(&self, id: Id, name: &str) -> Result<Attribute> {
         let document = self.document.borrow();
         let found = document.attribute(id, name).cloned();
@@ -143,7 +143,7 @@ impl Expander<'_> {
         })
     }
 
-    /// The first of the required attributes; unknown ones are warned of.
+    /// The first of the required attributes; warns about unknown ones.
     pub fn checked(&self, id: Id, required: &[&str], optional: &[&str]) -> Result<Attribute> {
         for name in required.iter().skip(1) {
             self.required(id, name)?;
@@ -199,7 +199,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// Sets an attribute of the element around.
+    /// Sets an attribute of the enclosing element.
     fn add_attribute(&self, id: Id, scope: &Rc<Scope>) -> Result<()> {
         let text = |attribute: &Attribute| match self.evaluate(&attribute.value, scope, &attribute.place)? {
             Value::Str(text) => Ok(text),
@@ -228,7 +228,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// Comments directly before an element of xacro's go with it.
+    /// Removes the comments directly before a xacro element, which is removed, too.
     pub fn remove_comments_before(&self, id: Id) {
         let mut document = self.document.borrow_mut();
         let next = document.node(id).next;
@@ -254,7 +254,7 @@ impl Expander<'_> {
         }
     }
 
-    /// Declarations of namespaces go to the element around.
+    /// Moves declarations of namespaces to the enclosing element.
     pub fn import_namespaces(&self, parent: Id, from: &[Attribute]) {
         for attribute in from.iter().filter(|attribute| attribute.name.starts_with("xmlns:")) {
             let known = self.document.borrow().attribute(parent, &attribute.name).map(|known| known.value.clone());

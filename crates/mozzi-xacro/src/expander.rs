@@ -1,4 +1,4 @@
-//! The state of an expansion, and what its expressions can see.
+//! The state of an expansion, and the names visible to its expressions.
 
 use crate::bounds::Budget;
 use crate::condition::literal;
@@ -39,7 +39,7 @@ pub(crate) struct Expander<'a> {
     /// The place that is being processed.
     pub place: RefCell<Place>,
     pub calls: Cell<usize>,
-    /// The one text of two line ends that keeps comments before it, wherever it was put last.
+    /// The single text node of two line ends that keeps comments before it; it is moved to the latest place.
     pub spacer: Id,
 }
 
@@ -55,13 +55,13 @@ impl Expander<'_> {
         self.warnings.borrow_mut().push(Warning { message, place: crate::Origin::of(&place) });
     }
 
-    /// The value of an argument that a file declares or reads; None if there is none of the name.
+    /// The value of an argument that a file declares or reads; None if no argument has this name.
     pub fn argument(&self, name: &str) -> Option<Rc<str>> {
         self.known_arguments.borrow_mut().insert(name.into());
         self.arguments.borrow().get(name).cloned()
     }
 
-    /// Warns of arguments that were given and that no file has.
+    /// Warns about given arguments that no file declares or reads.
     pub fn warn_of_unused_arguments(&self) {
         let known = self.known_arguments.borrow();
         let mut names: Vec<&str> = known.iter().map(|name| &**name).collect();
@@ -73,7 +73,7 @@ impl Expander<'_> {
         }
     }
 
-    /// The value of a property; None if there is none of the name.
+    /// The value of a property; None if no property has this name.
     pub fn property(&self, name: &str, scope: &Rc<Scope>) -> Result<Option<Value>> {
         match scope.find(name) {
             None => Ok(None),
@@ -98,7 +98,7 @@ impl Expander<'_> {
     }
 }
 
-/// What expressions of a scope see.
+/// The names visible to expressions of a scope.
 pub(crate) struct Names<'n> {
     pub expander: &'n Expander<'n>,
     pub scope: &'n Rc<Scope>,
@@ -134,7 +134,7 @@ impl Host for Names<'_> {
     }
 }
 
-/// What `$(eval …)` sees.
+/// The names visible to `$(eval …)`.
 impl Host for Expander<'_> {
     fn budget(&self) -> &Budget {
         &self.budget

@@ -1,8 +1,8 @@
-//! What goes wrong while a file is expanded, before its place is looked up.
+//! Errors during expansion, before their place is looked up.
 
 use crate::place::Place;
 
-/// A message, and as much of its place as is known so far.
+/// A message, and the part of its place that is known so far.
 #[derive(Debug)]
 pub(crate) struct Fault {
     pub message: String,
@@ -10,7 +10,7 @@ pub(crate) struct Fault {
     pub at: Option<usize>,
     /// The place in a file.
     pub place: Option<Place>,
-    /// A file that could not be opened: an optional include forgives it.
+    /// A file could not be opened: an optional include ignores this.
     pub is_missing_file: bool,
 }
 
@@ -29,13 +29,13 @@ impl Fault {
         Box::new(Fault { is_missing_file: true, ..*Fault::new(message) })
     }
 
-    /// The same in a text that begins earlier by some bytes.
+    /// The same error in a text that begins this many bytes earlier.
     pub fn further(mut self: Box<Fault>, by: usize) -> Box<Fault> {
         self.at = self.at.map(|at| at + by);
         self
     }
 
-    /// At a byte of the text, unless a place is known already.
+    /// Sets the place to a byte of the text, unless it is already known.
     pub fn or_at(mut self: Box<Fault>, at: usize) -> Box<Fault> {
         if self.place.is_none() {
             self.at = self.at.or(Some(at));

@@ -1,16 +1,16 @@
-//! `$(find package)`: where a package of ROS lies.
+//! `$(find package)`: locates the folder of a ROS package.
 
 use crate::expander::Expander;
 use crate::fault::{Fault, Result};
 use std::path::{Path, PathBuf};
 
-/// Of a package.xml so many bytes are read for its name.
+/// The number of bytes of a package.xml that are read for its name.
 const MOST_MANIFEST: usize = 64 << 10;
-/// Of a folder so many entries are looked at.
+/// The number of entries of a folder that are checked.
 const MOST_ENTRIES: usize = 4096;
 
 impl Expander<'_> {
-    /// The folder of a package: as it was given, of a ROS installation, or near the file that names it.
+    /// The folder of a package: as given, from a ROS installation, or near the file that names it.
     pub fn find_package(&self, name: &str) -> Result<String> {
         self.budget.spend(64)?;
         if let Some((_, folder)) = self.given.packages.iter().find(|(known, _)| known == name) {
@@ -27,7 +27,7 @@ impl Expander<'_> {
         }
     }
 
-    /// A folder around the file, or beside one of these.
+    /// A folder around the file, or a sibling of such a folder.
     fn nearby(&self, name: &str) -> Option<PathBuf> {
         let open = self.open.borrow();
         open.iter().rev().find_map(|file| {
@@ -44,7 +44,7 @@ impl Expander<'_> {
     }
 }
 
-/// In what ROS lists.
+/// Searches the paths that ROS lists.
 fn installed(name: &str) -> Option<PathBuf> {
     let listed = |variable: &str| {
         let list = std::env::var_os(variable).unwrap_or_default();
@@ -63,7 +63,7 @@ fn installed(name: &str) -> Option<PathBuf> {
 
 /// A folder of this name, or a folder with a package.xml of this name, one or two levels down.
 fn in_folder(folder: &Path, name: &str) -> Option<PathBuf> {
-    // the root of all files holds no packages
+    // the root of the file system holds no packages
     folder.parent()?;
     let direct = folder.join(name);
     if direct.is_dir() {
@@ -77,11 +77,11 @@ fn in_folder(folder: &Path, name: &str) -> Option<PathBuf> {
     };
     let beside = folders(folder);
     let renamed = beside.iter().find(|folder| has_name(folder, name)).cloned();
-    // a repository of several packages beside this one
+    // a repository of several packages next to this one
     renamed.or_else(|| beside.iter().map(|folder| folder.join(name)).find(|inner| inner.join("package.xml").is_file()))
 }
 
-/// Does the folder's package.xml give this name?
+/// True if the folder's package.xml has this name.
 fn has_name(folder: &Path, name: &str) -> bool {
     let Ok(text) = std::fs::read_to_string(folder.join("package.xml")) else { return false };
     let text = &text[..text.floor_char_boundary(MOST_MANIFEST)];

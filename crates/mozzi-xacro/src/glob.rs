@@ -3,7 +3,7 @@
 use crate::fault::{Fault, Result};
 use std::path::PathBuf;
 
-/// More files and folders are not looked at.
+/// The most files and folders that are checked.
 const MOST_ENTRIES: usize = 20_000;
 
 pub(crate) fn is_pattern(text: &str) -> bool {
@@ -49,10 +49,10 @@ pub(crate) fn files(pattern: &str) -> Result<Vec<PathBuf>> {
     Ok(found.into_iter().map(PathBuf::from).collect())
 }
 
-/// Does a name match a pattern? Cost: their lengths' product.
+/// True if a name matches a pattern. Cost: the product of their lengths.
 fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
-    // which lengths of the name the pattern so far may end at
+    // the lengths of the name at which the pattern so far may end
     let mut ends = vec![false; name.len() + 1];
     ends[0] = true;
     let mut at = 0;
@@ -74,14 +74,14 @@ fn matches(pattern: &str, name: &str) -> bool {
     ends[name.len()]
 }
 
-/// The part of a pattern that stands for one letter: its length, and which letters it accepts.
+/// The part of a pattern that matches one character: its length, and the characters it accepts.
 fn one(pattern: &[char]) -> (usize, Box<dyn Fn(char) -> bool + '_>) {
     match pattern[0] {
         '?' => (1, Box::new(|_| true)),
         '[' => {
             let negated = pattern.get(1) == Some(&'!');
             let start = 1 + usize::from(negated);
-            // a bracket that comes first is a letter
+            // a bracket that comes first is an ordinary character
             let close = pattern.iter().skip(start + 1).position(|c| *c == ']').map(|k| start + 1 + k);
             let Some(close) = close else { return (1, Box::new(|c| c == '[')) };
             let set = &pattern[start..close];

@@ -83,14 +83,14 @@ impl Expander<'_> {
         }
         let file = self.read(&path)?;
         let root = self.parse(file)?;
-        // after an error in an optional file it stays the one beside which files are searched, as in xacro
+        // after an error in an optional file, files are still searched next to that file, as in xacro
         self.open.borrow_mut().push(path);
         self.budget.deeper(|| self.evaluate_node(root, macros, scope))?;
         self.open.borrow_mut().pop();
         Ok(root)
     }
 
-    /// Reads a file, and gives its number.
+    /// Reads a file, and returns its index.
     pub fn read(&self, path: &Path) -> Result<u32> {
         let text = read_text(path)?;
         self.budget.spend(1 + text.len() as u64 / 64)?;

@@ -1,8 +1,8 @@
-//! Expands [xacro](https://github.com/ros/xacro): files in which ROS users write robots, with properties, macros,
-//! includes and expressions. The language is that of xacro 2.1; expressions are a bounded part of Python, and nothing
-//! of the host is evaluated.
+//! Expands [xacro](https://github.com/ros/xacro), the format in which ROS users describe robots with properties,
+//! macros, includes and expressions. The language is that of xacro 2.1. Expressions are a bounded subset of Python; no
+//! host code is evaluated.
 //!
-//! The expansion keeps the place of each element and attribute: the file, and the calls of the macros that lead to it.
+//! The expansion keeps the origin of each element and attribute: the file, and the chain of macro calls to it.
 //!
 //! ```
 //! use mozzi_xacro::{Arguments, expand_text};
@@ -57,12 +57,12 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use write::Writer;
 
-/// What a file is expanded with.
+/// The arguments of an expansion.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Arguments {
     /// Values of `$(arg name)`.
     pub values: Vec<(String, String)>,
-    /// Folders of packages, for `$(find name)`; others are searched in the folders of `AMENT_PREFIX_PATH`,
+    /// Folders of packages, for `$(find name)`; other packages are searched in the folders of `AMENT_PREFIX_PATH`,
     /// `CMAKE_PREFIX_PATH` and `ROS_PACKAGE_PATH`, and in those around the file.
     pub packages: Vec<(String, PathBuf)>,
 }
@@ -70,7 +70,7 @@ pub struct Arguments {
 /// Expands a file.
 ///
 /// # Errors
-/// [`Error`] with its place, and the calls of macros that lead there.
+/// [`Error`] with its place, and the chain of macro calls to it.
 pub fn expand(path: impl AsRef<Path>, arguments: &Arguments) -> std::result::Result<Expansion, Error> {
     let path = path.as_ref();
     let name = path.to_string_lossy();
@@ -80,13 +80,13 @@ pub fn expand(path: impl AsRef<Path>, arguments: &Arguments) -> std::result::Res
     }
 }
 
-/// Expands a text; files that it includes are searched beside `name`.
+/// Expands a text; included files are searched next to `name`.
 ///
 /// # Errors
-/// As [`expand`].
+/// See [`expand`].
 pub fn expand_text(name: &str, text: &str, arguments: &Arguments) -> std::result::Result<Expansion, Error> {
     let run = || expand_here(name, text, arguments);
-    // the levels of macros and expressions, which are bounded, take more stack than a thread is sure to have
+    // macros and expressions nest to a bounded depth, but need more stack than every thread is sure to have
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("xacro".to_string()).stack_size(bounds::STACK);
         let Ok(handle) = thread.spawn_scoped(scope, run) else {
@@ -147,7 +147,7 @@ impl Expander<'_> {
             writer.node(id, 0)?;
         }
         let (text, pieces) = (writer.text, writer.pieces);
-        // what an expression made may be no character of XML
+        // the result of an expression may contain characters that XML does not allow
         if let Some(at) = text.find(|c: char| {
             (c as u32) < 0x20 && !matches!(c, '\n' | '\t' | '\r') || matches!(c, '\u{fffe}' | '\u{ffff}')
         }) {

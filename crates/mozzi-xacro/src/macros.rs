@@ -12,7 +12,7 @@ use crate::scope::{Definition, Macro, Macros, Parameter, Property, Scope};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Of the arguments of a call so many characters are shown.
+/// The number of characters shown of a call's arguments.
 const SHOWN: usize = 120;
 
 impl Expander<'_> {

@@ -1,4 +1,4 @@
-//! What the expansion gives: a text with its places, or an error at one.
+//! The result of an expansion: a text with its places, or an error at a place.
 
 use crate::expander::File;
 use crate::fault::Fault;
@@ -9,10 +9,10 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A place in one of the files, and the calls of macros that lead there, innermost first.
+/// A place in one of the files, and the chain of macro calls to it, innermost first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
-    /// The file, by its number in the list of files.
+    /// The index of the file in the list of files.
     pub file: usize,
     /// The bytes in the file's text.
     pub span: Range<usize>,
@@ -35,12 +35,12 @@ impl Origin {
     }
 }
 
-/// Something to know about a file that was expanded all the same.
+/// A warning or message from a successful expansion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// What.
+    /// The message.
     pub message: String,
-    /// Where.
+    /// Its place.
     pub place: Origin,
 }
 
@@ -49,11 +49,11 @@ pub struct Warning {
 pub struct Expansion {
     /// The expansion, as xacro prints it, without its banner.
     pub text: String,
-    /// The files that were read, the given one first; of YAML files the text is left out.
+    /// The files that were read, the given one first; YAML files have no text here.
     pub files: Vec<File>,
-    /// Messages of the file, and doubtful words.
+    /// Messages of the file, and warnings.
     pub warnings: Vec<Warning>,
-    /// Steps of evaluation, of at most two million.
+    /// Evaluation steps; the limit is two million.
     pub work: u64,
     pieces: Vec<Piece>,
 }
@@ -63,8 +63,8 @@ impl Expansion {
         Expansion { text, files, pieces, warnings, work }
     }
 
-    /// Where a part of the text comes from: the place of the element, attribute or text in which it begins. None
-    /// before the first element.
+    /// The origin of a part of the text: the place of the element, attribute or text in which it begins. None before
+    /// the first element.
     pub fn origin(&self, span: Range<usize>) -> Option<Origin> {
         // at a `<`, the element's name
         let start = span.start + usize::from(self.text[..].get(span.start..).is_some_and(|text| text.starts_with('<')));
@@ -82,7 +82,7 @@ impl Expansion {
             Some((value, _)) => (self.text.get(value..piece.span.end), value),
             None => (self.text.get(piece.span.clone()), piece.span.start),
         };
-        // what was written as it stands in the file keeps its exact place
+        // text copied verbatim from the file keeps its exact place
         if raw == written && start <= piece.span.end {
             let begin = origin.span.start + (start - from);
             let end = begin + span.end.min(piece.span.end).saturating_sub(start);
@@ -140,12 +140,12 @@ impl Error {
         Error { message, place: None, files: Arc::new([]), warnings: Arc::new([]) }
     }
 
-    /// What was found, and what was expected.
+    /// The message: found, and expected.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// Where; none if the first file cannot be read.
+    /// The place; none if the first file cannot be read.
     pub fn place(&self) -> Option<&Origin> {
         self.place.as_ref()
     }
@@ -160,7 +160,7 @@ impl Error {
         &self.warnings
     }
 
-    /// Whether the file at the place is not XML.
+    /// True if the file at the place is not XML.
     pub fn is_syntax(&self) -> bool {
         self.message.starts_with(NOT_XML)
     }

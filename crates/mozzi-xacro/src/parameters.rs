@@ -25,7 +25,7 @@ pub(crate) fn parse(text: &str) -> Vec<Parameter> {
     parameters
 }
 
-/// A name, `:=` or `=`, and a default; `^` forwards the caller's property. What follows it.
+/// A name, `:=` or `=`, and a default; `^` forwards the caller's property. Also returns the remaining text.
 fn with_default(text: &str) -> Option<(Parameter, &str)> {
     let text = text.trim_start_matches(is_space);
     let end = text.find(|c: char| is_space(c) || matches!(c, ':' | '='))?;
@@ -46,7 +46,7 @@ fn with_default(text: &str) -> Option<(Parameter, &str)> {
     None
 }
 
-/// The length of the default that a text begins with: `${…}` or `$(…)` up to a space, or words and quoted texts, or
+/// The length of the default at the beginning of a text: `${…}` or `$(…)` up to a space, or words and quoted texts, or
 /// nothing.
 fn default(text: &str) -> Option<usize> {
     let ends = |at: usize| text[at..].chars().next().is_none_or(is_space);
@@ -62,9 +62,9 @@ fn default(text: &str) -> Option<usize> {
     words(text, 0, &ends, &mut dead).or_else(|| ends(0).then_some(0))
 }
 
-/// The end of a row of words and quoted texts: as many as possible. `dead` marks places from which there is none.
+/// The end of the longest row of words and quoted texts. `dead` marks places from which there is no end.
 fn words(text: &str, from: usize, ends: &dyn Fn(usize) -> bool, dead: &mut [bool]) -> Option<usize> {
-    // places to continue from, those of the later words on top
+    // places to continue from; those of the later words are on top
     let mut open: Vec<(usize, Vec<usize>)> = vec![(from, parts(text, from))];
     while let Some((at, next)) = open.last_mut() {
         match next.pop() {

@@ -1,5 +1,5 @@
-//! From a text to a tree. roxmltree judges the text; here it is cut into elements with their places, since roxmltree
-//! keeps no prefixes and joins CDATA with text.
+//! Parses a text into a tree. roxmltree validates the text; the code here splits it into elements with their places,
+//! because roxmltree keeps no prefixes and joins CDATA with text.
 
 use crate::bounds::{Budget, MOST_BYTES, MOST_ELEMENT_DEPTH};
 use crate::document::{Attribute, Content, Document, Id};
@@ -8,20 +8,20 @@ use crate::place::Place;
 use roxmltree::ParsingOptions;
 use std::ops::Range;
 
-/// More attributes of one element are refused.
+/// The most attributes of one element.
 const MOST_ATTRIBUTES: usize = 256;
-/// More declarations of namespaces are refused.
+/// The most declarations of namespaces.
 const MOST_NAMESPACES: usize = 1024;
-/// More elements and texts of one file are refused.
+/// The most elements and texts of one file.
 const MOST_NODES: u32 = 1_000_000;
 
-/// The nodes before, of and after the root element, and which of them it is.
+/// The top-level nodes, and the index of the root element among them.
 pub(crate) struct Parsed {
     pub top: Vec<Id>,
     pub root: Id,
 }
 
-/// What is wrong with a text that is not XML.
+/// The error in a text that is not XML.
 pub(crate) const NOT_XML: &str = "not XML";
 
 pub(crate) fn parse(text: &str, file: u32, document: &mut Document, budget: &Budget) -> Result<Parsed> {
@@ -68,7 +68,7 @@ struct Reader<'r> {
 }
 
 impl Reader<'_> {
-    /// Malformed text gives some tree: it is refused afterwards.
+    /// Malformed text gives some tree: the text is refused afterwards.
     fn read(&mut self) -> Result<()> {
         let mut at = 0;
         while at < self.text.len() {
@@ -86,7 +86,7 @@ impl Reader<'_> {
             } else if rest.starts_with("<?") {
                 let close = end("?>", 2);
                 let inner = &rest[2..close];
-                // the declaration is written anew
+                // the XML declaration is written again
                 if !inner.starts_with("xml ") {
                     self.add(Content::Instruction(newlines(inner).into()), at..at + close)?;
                 }
@@ -119,7 +119,7 @@ impl Reader<'_> {
         Ok(id)
     }
 
-    /// The element whose tag begins here; gives the tag's end.
+    /// Parses the element whose tag begins here; returns the tag's end.
     fn element(&mut self, start: usize) -> Result<usize> {
         let bytes = self.text.as_bytes();
         let ends_name = |b: &u8| b.is_ascii_whitespace() || matches!(b, b'/' | b'>' | b'=' | b'<' | b'"' | b'\'');
@@ -185,12 +185,12 @@ fn count_space(bytes: &[u8]) -> usize {
     bytes.iter().take_while(|b| b.is_ascii_whitespace()).count()
 }
 
-/// Line ends as XML has them.
+/// Normalizes line ends as XML requires.
 fn newlines(text: &str) -> String {
     if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n") } else { text.to_string() }
 }
 
-/// Text with its entities; in attributes, white space becomes spaces.
+/// Text with its entities replaced; in attributes, white space becomes spaces.
 fn decoded(raw: &str, is_attribute: bool) -> String {
     let is_plain = |b: u8| b != b'&' && b != b'\r' && !(is_attribute && matches!(b, b'\n' | b'\t'));
     if raw.bytes().all(is_plain) {

@@ -12,7 +12,7 @@ pub(crate) struct Place {
     pub call: Option<Arc<Call>>,
 }
 
-/// A call of a macro: where it stands, which itself may be inside a macro, and with which arguments.
+/// A call of a macro: its place, which may itself be inside a macro, and its arguments.
 #[derive(Debug)]
 pub(crate) struct Call {
     pub place: Place,

@@ -79,7 +79,7 @@ impl Expander<'_> {
             self.warn(format!("the property `{name}` hides xacro's own `{name}`"));
         }
         if is_lazy {
-            // a literal is a value at once, other text when it is used
+            // a literal becomes a value at once, other text when it is used
             table.set(
                 &name,
                 match literal(Value::Str(value.value.clone())) {
@@ -94,7 +94,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// The scope of the caller: of a macro, past the namespaces between.
+    /// The caller's scope: that of a macro, skipping the namespaces between.
     fn parent(&self, scope: &Rc<Scope>, name: &str) -> Result<Rc<Scope>> {
         let none = || {
             Fault::new(format!("the property `{name}` has the scope parent, expected a macro or namespace around it"))
@@ -109,7 +109,7 @@ impl Expander<'_> {
     }
 }
 
-/// Is it a name of Python's, other than a keyword?
+/// True if Python accepts it as a name, and it is not a keyword.
 fn is_name(name: &str) -> bool {
     name.starts_with(begins_name) && name.chars().all(continues_name) && !KEYWORDS.contains(&name)
 }

@@ -12,7 +12,7 @@ use std::rc::Rc;
 pub(crate) struct Scope {
     names: RefCell<HashMap<Rc<str>, Property>>,
     pub parent: Option<Rc<Scope>>,
-    /// Of an included namespace, not of a macro.
+    /// True for an included namespace, false for a macro.
     pub is_namespace: bool,
     /// Properties of this scope that are being evaluated.
     pub evaluating: RefCell<Vec<Rc<str>>>,
@@ -44,17 +44,17 @@ impl Scope {
         self.names.borrow_mut().insert(name.into(), property);
     }
 
-    /// The innermost scope that has the name, and what it is there.
+    /// The innermost scope that has the name, and the name's value there.
     pub fn find(self: &Rc<Self>, name: &str) -> Option<(Rc<Scope>, Property)> {
         self.ancestors().find_map(|scope| scope.own(name).map(|property| (scope, property)))
     }
 
-    /// This scope and those around it.
+    /// This scope and its outer scopes.
     pub fn ancestors(self: &Rc<Self>) -> impl Iterator<Item = Rc<Scope>> {
         std::iter::successors(Some(self.clone()), |scope| scope.parent.clone())
     }
 
-    /// Removes a name from this scope and all around it.
+    /// Removes a name from this scope and all outer scopes.
     pub fn remove(self: &Rc<Self>, name: &str) {
         self.ancestors().for_each(|scope| drop(scope.names.borrow_mut().remove(name)));
     }
@@ -101,7 +101,7 @@ impl Macros {
         own.or_else(|| self.parent.as_ref()?.find(name))
     }
 
-    /// The names of all macros in reach, for suggestions.
+    /// The names of all visible macros, for suggestions.
     pub fn known(&self) -> Vec<Rc<str>> {
         let mut names: Vec<Rc<str>> = self.names.borrow().keys().cloned().collect();
         names.extend(self.parent.iter().flat_map(|parent| parent.known()));

@@ -10,7 +10,7 @@ use std::rc::Rc;
 const COMMANDS: [&str; 5] = ["find", "env", "optenv", "dirname", "arg"];
 
 impl Expander<'_> {
-    /// What is inside `$(…)`; always text.
+    /// Evaluates the content of `$(…)`; always text.
     pub fn substitution(&self, written: &str, scope: &Rc<Scope>) -> Result<Value> {
         let content = match written.contains('$') {
             true => {
@@ -28,7 +28,7 @@ impl Expander<'_> {
             return self.eval(expression, written == content);
         }
         let resolved = self.resolve(&whole, &COMMANDS)?;
-        // a path that an argument gives may name a package
+        // a path given as an argument may name a package
         Ok(Value::text(if resolved.contains('$') { self.resolve(&resolved, &["find"])? } else { resolved }))
     }
 
@@ -87,7 +87,8 @@ impl Expander<'_> {
         Fault::new(format!("the argument `{name}` is not given and has no default; `{name}:=VALUE` gives it"))
     }
 
-    /// `$(eval …)`: names are arguments, constants, and functions, which cannot be called: the first `)` ends it.
+    /// `$(eval …)`: names are arguments, constants, and functions. The functions cannot be called, because the first
+    /// `)` ends the command.
     fn eval(&self, expression: &str, is_as_written: bool) -> Result<Value> {
         if expression.contains("__") {
             return Err(Fault::new("`$(eval …)` must not contain two underscores in a row"));
@@ -127,7 +128,7 @@ impl Expander<'_> {
         Some(number.or(truth).unwrap_or(Value::Str(text)))
     }
 
-    /// The truth of an attribute, evaluated.
+    /// The truth value of an attribute, evaluated.
     pub fn truth_of(&self, text: &Rc<str>, scope: &Rc<Scope>, place: &crate::place::Place) -> Result<bool> {
         let value = self.evaluate(text, scope, place)?;
         condition::truth(&value).map_err(|fault| self.placed(fault, text, place))

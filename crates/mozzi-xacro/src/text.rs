@@ -7,7 +7,7 @@ use crate::place::Place;
 use crate::scope::Scope;
 use std::rc::Rc;
 
-/// White space as Python has it.
+/// White space as in Python.
 pub(crate) fn is_space(c: char) -> bool {
     c.is_whitespace() || ('\x1c'..='\x1f').contains(&c)
 }
@@ -15,13 +15,13 @@ pub(crate) fn is_space(c: char) -> bool {
 /// A piece of a text.
 enum Piece<'t> {
     Text(&'t str),
-    /// Without `${` and `}`.
+    /// The content of `${…}`.
     Expression(&'t str),
-    /// Without `$(` and `)`.
+    /// The content of `$(…)`.
     Substitution(&'t str),
 }
 
-/// The piece that a text begins with, and its length. `$$${` stands for `$${`.
+/// The first piece of a text, and its length. `$$${` is an escape for `$${`.
 fn piece(text: &str) -> Result<(Piece<'_>, usize)> {
     let dollars = text.bytes().take_while(|b| *b == b'$').count();
     let after = text.as_bytes().get(dollars);
@@ -51,7 +51,7 @@ fn piece(text: &str) -> Result<(Piece<'_>, usize)> {
 }
 
 impl Expander<'_> {
-    /// The value of a text: that of its only piece, or all of them joined. An error has its place in the text.
+    /// The value of a text: that of its only piece, or all pieces joined. An error has its place in the text.
     pub fn evaluate(&self, text: &Rc<str>, scope: &Rc<Scope>, place: &Place) -> Result<Value> {
         if !text.contains('$') {
             return Ok(Value::Str(text.clone()));
@@ -67,7 +67,7 @@ impl Expander<'_> {
         }
     }
 
-    /// The error with its place in the file, if the text stands there as it is.
+    /// Adds the place in the file to the error, if the file contains the text as it is.
     pub fn placed(&self, mut fault: Box<Fault>, text: &str, place: &Place) -> Box<Fault> {
         if fault.place.is_none() {
             let mut place = place.clone();
@@ -116,7 +116,7 @@ impl Expander<'_> {
         Ok(first.unwrap_or_else(|| Value::text(joined)))
     }
 
-    /// What is inside `${…}`; places are those of the text around it.
+    /// Evaluates the content of `${…}`; places refer to the surrounding text.
     fn expression(&self, written: &str, scope: &Rc<Scope>) -> Result<Value> {
         let inner = match written.contains('$') {
             true => match self.pieces(written, scope).map_err(|fault| fault.further(2))? {
@@ -142,7 +142,7 @@ impl Expander<'_> {
             }
         };
         let names = Names { expander: self, scope };
-        // a file that is missing inside of another expression is an error of that expression
+        // a missing file inside another expression is an error of that expression
         Evaluator { host: &names }.evaluate(&tree).map_err(|fault| {
             let is_missing_file = fault.is_missing_file && fault.place.is_none();
             place(Box::new(Fault { is_missing_file, ..*fault }))

@@ -1,5 +1,5 @@
-//! From the expanded tree to text, with the place of each piece: an element or text on its own line, attributes by
-//! name.
+//! Writes the expanded tree as text, with the place of each piece: an element or text on its own line, attributes in
+//! order of name.
 
 use crate::bounds::MOST_BYTES;
 use crate::document::{Content, Document, Id};
@@ -8,12 +8,12 @@ use crate::place::Place;
 use crate::text::is_space;
 use std::ops::Range;
 
-/// A part of the text that was written, and where it comes from.
+/// A part of the written text, and its origin.
 #[derive(Debug)]
 pub(crate) struct Piece {
     /// The name of an element, an attribute, or a text.
     pub span: Range<usize>,
-    /// Of an attribute, where its value begins, and where its name begins in the file.
+    /// For an attribute: where its value begins, and where its name begins in the file.
     pub value: Option<(usize, u32)>,
     pub place: Place,
 }
@@ -112,7 +112,7 @@ impl Writer<'_> {
     }
 
     fn indent(&mut self, levels: usize) {
-        // deep trees are not shifted without end
+        // indentation is limited in deep trees
         self.text.extend(std::iter::repeat_n("  ", levels.min(200)));
     }
 

@@ -1,5 +1,5 @@
-//! `xacro.load_yaml`: a file of YAML 1.1 as values. The syntax is saphyr-parser's; what words mean is here, because
-//! crates follow YAML 1.2, where `010` and `yes` mean something else than to xacro.
+//! `xacro.load_yaml`: a file of YAML 1.1 as values. The syntax is parsed by saphyr-parser; scalars are interpreted
+//! here, because crates follow YAML 1.2, in which `010` and `yes` have other meanings than in xacro.
 
 use crate::expander::Expander;
 use crate::expander::Names;
@@ -12,7 +12,7 @@ use saphyr_parser::{Event, Parser, ScalarStyle, Tag};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Deeper nesting is refused.
+/// The deepest nesting.
 const MOST_DEPTH: usize = 100;
 
 /// A collection that is being read.
@@ -22,7 +22,7 @@ enum Open {
 }
 
 impl Expander<'_> {
-    /// The content of a file beside the one that is being processed; its dictionaries allow dotted access.
+    /// The content of a file next to the one that is being processed; its dictionaries allow dotted access.
     pub fn load_yaml(&self, file: &str) -> Result<Value> {
         let path = self.beside(file);
         let text = read_text(&path)?;
@@ -158,7 +158,7 @@ fn refuse_tag(tag: Option<&Tag>, known: &[&str]) -> Result<()> {
     }
 }
 
-/// `<<`: the entries of other dictionaries come first, and the own ones replace them.
+/// `<<`: the entries of other dictionaries come first; own entries replace them.
 fn merge(own: Dictionary, merged: Vec<Value>) -> Result<Dictionary> {
     if merged.is_empty() {
         return Ok(own);

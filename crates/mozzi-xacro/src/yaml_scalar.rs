@@ -1,4 +1,4 @@
-//! What a plain word of YAML 1.1 means.
+//! The value of a plain scalar of YAML 1.1.
 
 use crate::expression::{Value, parse_float, parse_int};
 use crate::fault::{Fault, Result};
@@ -26,7 +26,7 @@ pub(crate) fn plain(text: &str) -> Result<Value> {
     if let Some(size) = whole(unsigned)? {
         return Ok(Value::Int(if is_negative { -size } else { size }));
     }
-    // a number that begins with its point has no sign
+    // a number that begins with the decimal point has no sign
     let may_be_real = unsigned.len() == text.len() || !unsigned.starts_with('.');
     if let Some(size) = Some(unsigned).filter(|_| may_be_real).and_then(real) {
         return Ok(Value::Float(if is_negative { -size } else { size }));

@@ -1,5 +1,6 @@
-//! Every case of `cases/` gives what PyPI's xacro 2.1.1 gives (`cases/expected.txt`, which compare.py writes), refused
-//! ones included; what differs on purpose is refused by name; bombs end at a bound; the PR2 is its published expansion.
+//! Every case of `cases/` gives the result of PyPI's xacro 2.1.1 (`cases/expected.txt`, written by compare.py),
+//! including errors; deliberate differences are rejected by name; expansion bombs end at a bound; the PR2 equals its
+//! published expansion.
 
 use mozzi_xacro::{Arguments, Expansion, expand};
 use std::path::{Path, PathBuf};
@@ -70,7 +71,7 @@ fn all_cases() -> Vec<Case> {
     all
 }
 
-/// Words that are equal, or numbers that differ by a tolerance at most, relative to numbers beyond 1.
+/// True if words are equal, or numbers differ by a tolerance at most, relative to numbers beyond 1.
 fn are_equal(a: &str, b: &str, tolerance: f64) -> bool {
     let split = |text: &str| -> Vec<String> {
         text.split(|c: char| c.is_whitespace() || "\"<>(),[]{}=:/".contains(c)).map(str::to_string).collect()
@@ -165,10 +166,10 @@ fn bombs_end_at_a_bound() {
         assert!(error.starts_with("bomb.xacro:"), "{error}");
         slowest = slowest.max((start.elapsed(), error));
     }
-    println!("the slowest: {:?}, {}", slowest.0, slowest.1); // below a second with the release profile
+    println!("the slowest: {:?}, {}", slowest.0, slowest.1); // less than a second in the release profile
 }
 
-/// The same comparison with the tool itself, where a Python has it, and random expressions for some seconds.
+/// The same comparison with the tool itself, if a Python has it, and random expressions for some seconds.
 #[test]
 fn pypis_xacro_agrees() {
     let has = |python: &String| {
@@ -179,7 +180,7 @@ fn pypis_xacro_agrees() {
         println!("skipped: MOZZI_PYTHON names no Python with xacro (cargo xtask test makes one)");
         return;
     };
-    // cargo builds examples beside the tests
+    // cargo builds examples next to the tests
     let program = std::env::current_exe().expect("this program").with_file_name("../examples/batch");
     let mut compare = Command::new(python);
     let output = compare.arg("tests/compare.py").arg(program).args(["--fuzz", "5"]).output().expect("runs");

@@ -1,7 +1,7 @@
 //! Normalised errors between two computations of a quantity.
 
-/// The largest |x − reference| over ε times the size of the terms that x is the sum of: `terms`, or the largest of the
-/// reference where that is larger. About 1 is rounding; NaN in either is NaN.
+/// The largest |x − reference| over ε times the size of the terms that x is the sum of: `terms`, or the largest
+/// |reference| if that is larger. About 1 is rounding error; NaN in either gives NaN.
 ///
 /// # Panics
 /// When the lengths differ.

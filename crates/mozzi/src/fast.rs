@@ -1,6 +1,6 @@
-//! Every quantity on `f64`, with the instruction set of the machine that runs it: fused multiply-add where the
-//! processor has it, found once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation
-//! after the first call.
+//! Every quantity on `f64`, with the instruction set of the machine that runs it: fused multiply-add if the processor
+//! has it, detected once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation after the
+//! first call.
 //!
 //! Results agree with the plain kernels to rounding, not bit for bit. AVX2 and AVX-512 are deliberately left out: for
 //! one state they make code slower.
@@ -30,7 +30,7 @@ pub struct Workspace(Inner);
 #[allow(clippy::large_enum_variant)] // one per thread, not in lists
 enum Inner {
     Plain(Memory),
-    /// Made only where the processor has FMA: the proof that the fused entries may be called.
+    /// Made only if the processor has FMA: this proves that the fused entries may be called.
     Fused(Memory<Fused>, Vec<(FrameId, Wrench<Fused>)>),
 }
 
@@ -94,7 +94,7 @@ pub fn evaluate(
     }
 }
 
-/// [`evaluate`] with checked arguments and judged pivots.
+/// [`evaluate`] with checked arguments and pivots.
 ///
 /// # Errors
 /// As [`Model::compute`].
@@ -118,7 +118,7 @@ pub fn compute(
     Ok(())
 }
 
-/// Compiled for FMA: to be called where the processor has it.
+/// Compiled for FMA: to be called only if the processor has it.
 type Entry = unsafe fn(&Subject, &Model, &Inputs<Fused>, Around, &mut Memory<Fused>, &mut Outputs<Fused>);
 
 /// The environment, and memory for its wrenches in fused numbers.
@@ -141,7 +141,7 @@ fn fused<Q: Quantity>(
     memory: &mut Memory<Fused>,
     outputs: &mut Outputs<Fused>,
 ) {
-    // here, where it is known what of it is used
+    // here, where the parts that the quantity uses are known
     let environment = const { Q::DECLARATION.uses }.of(environment).map(Fused, applied);
     run::<Q, Fused, f64>(of, model, inputs, &environment, memory, outputs);
 }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-/// Evenly spread numbers from a seed (Steele, Lea and Flood's SplitMix64).
+/// Uniform random numbers from a seed (Steele, Lea and Flood's SplitMix64).
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 

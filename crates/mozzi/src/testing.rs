@@ -40,8 +40,8 @@ pub fn distance(a: SE3, b: SE3) -> f64 {
 }
 
 /// A random tree of moving links: revolute, prismatic and helical joints, axes and masses off every frame, masses over
-/// four decades, fixed links folded in between, friction, armature and springs; `mimic joints` of the last joints
-/// follow others, and two joints turn a rotor.
+/// four decades, fixed links folded in between, friction, armature and springs; `mimics` of the last joints are mimic
+/// joints, and two joints turn a rotor.
 pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut random = Random(seed + 3000);
     let mut robot = Description::new("tree").link("link0", inertia(seed));
@@ -117,7 +117,7 @@ pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// A tree of which each link hangs from the one before, so that it is deep.
+/// A tree in which each link is the child of the one before, so that it is deep.
 pub fn chain(of: &Model) -> Model {
     let mut robot = of.description().clone();
     for joint in &mut robot.joints {

@@ -1,5 +1,5 @@
-//! Simulations allocate what they record, and long chains cost no more than their length. That quantities allocate
-//! nothing is in the conformance test of `mozzi-batch`.
+//! Simulations allocate only what they record, and the cost of long chains grows only with their length. The
+//! conformance test of `mozzi-batch` checks that quantities do not allocate.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::{HomeFrames, Screws};
@@ -10,7 +10,7 @@ use std::cell::Cell;
 struct Counting;
 thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
 
-// SAFETY: hands every call on to the system's allocator.
+// SAFETY: forwards every call to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
@@ -44,7 +44,7 @@ fn ten_thousand_links() {
     let environment = model.environment();
     mozzi::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut tau);
     mozzi::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut w, &mut found);
-    // so long a chain is badly conditioned: compare the torques that the accelerations found need
+    // such a long chain is ill-conditioned: compare the torques that the found accelerations need
     let mut again = vec![0.0_f64; n];
     mozzi::inverse_dynamics(&model, &theta, &dtheta, &found, &environment, &mut w, &mut again);
     let scale = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

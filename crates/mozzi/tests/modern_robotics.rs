@@ -18,7 +18,7 @@ fn rows<const R: usize, const C: usize>(value: &Value) -> [[f64; C]; R] {
 fn six(value: &Value) -> [f64; 6] {
     list(value).try_into().unwrap()
 }
-/// A configuration whose digits may have been cut.
+/// A configuration whose digits may be truncated.
 fn pose(value: &Value) -> SE3 {
     let [x, y, z, _]: [[f64; 4]; 4] = rows(value);
     let R = Mat3::from_rows([[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]]);
@@ -79,7 +79,7 @@ fn maps_of_chapter_3_to_5() {
             "FKinBody" | "FKinSpace" => {
                 let space = input.get("Slist").is_some();
                 let axes = screws(if space { "Slist" } else { "Blist" });
-                // where the link frames are does not matter to the tip: all at the base
+                // the link frames do not affect the tip: all at the base
                 let mut home = vec![SE3::identity(); axes.len()];
                 home.push(pose(&input["M"]));
                 let screws = if space { Screws::Space(&axes) } else { Screws::Body(&axes) };
@@ -108,7 +108,7 @@ fn chain(frames: HomeFrames, screws: Screws, n: usize) -> Model {
     Description::from_screws("chain", frames, &massless, screws).unwrap().build().unwrap()
 }
 
-/// The three-link example of chapter 8. A screw of size k is rescaled knowingly: its joint's θ by k, its τ by 1/k.
+/// The three-link example of chapter 8. A screw of size k is deliberately rescaled: its joint's θ by k, its τ by 1/k.
 #[test]
 fn dynamics_of_chapter_8() {
     for (name, refused) in [("three_link_published", true), ("three_link_unit_screws", false)] {

@@ -1,9 +1,9 @@
-//! `Scalar::sin_cos` at ten million points, in units of the last place, beside sums of two `f64` (Dekker 1971), good to
-//! 30 digits.
+//! `Scalar::sin_cos` at ten million points, in units of the last place, compared with sums of two `f64` (Dekker 1971),
+//! good to 30 digits.
 
 use mozzi::Scalar;
 
-/// The sum of a number and of what is lost in it.
+/// The sum of a number and of its rounding error.
 #[derive(Clone, Copy)]
 struct Two(f64, f64);
 
@@ -79,7 +79,7 @@ impl Reference {
 /// |found − reference| in units of the last of `digits` binary places of the reference.
 fn ulps(found: f64, reference: Two, digits: i32) -> f64 {
     if found == reference.0 && reference.1 == 0.0 {
-        return 0.0; // 0 among them
+        return 0.0; // including 0
     }
     let unit = 2.0_f64.powi(reference.0.abs().log2().floor() as i32 - digits);
     ((found - reference.0) - reference.1).abs() / unit
@@ -88,7 +88,7 @@ fn ulps(found: f64, reference: Two, digits: i32) -> f64 {
 /// The largest error of f64 and of f32 over `count` points.
 fn worst(seed: u64, count: usize) -> [f64; 2] {
     let reference = Reference { sin: coefficients(1), cos: coefficients(0) };
-    // numbers in [−1, 1) that fill it evenly: multiples of the golden ratio
+    // numbers that fill [−1, 1) evenly: multiples of the golden ratio
     let mut t = seed as f64 * 0.1;
     let mut next = || {
         t = (t + 0.618_033_988_749_894_9).fract();
@@ -96,7 +96,7 @@ fn worst(seed: u64, count: usize) -> [f64; 2] {
     };
     let mut worst = [0.0_f64; 2];
     for k in 0..count {
-        // as many points in every decade, up to the bound; and near the zeros
+        // equally many points in every decade, up to the bound; and near the zeros
         let x = next();
         let x = match k % 4 {
             0 => x * 3.2,

@@ -7,29 +7,29 @@ pub mod panda {
     include!(concat!(env!("OUT_DIR"), "/panda.rs"));
 }
 
-/// One number a joint.
+/// One number for each joint.
 pub type Joints = [f64; 7];
 
-/// Where the arm should be, how fast, and how its speed should change: rad, rad/s, rad/s².
+/// Desired position, velocity and acceleration: rad, rad/s, rad/s².
 pub struct Reference {
     pub theta: Joints,
     pub dtheta: Joints,
     pub ddtheta: Joints,
 }
 
-/// τ = ID(θ, θ̇, θ̈_d + K_d ė + K_p e), e = θ_d − θ: where the equations are the arm's, ë + K_d ė + K_p e = 0.
+/// τ = ID(θ, θ̇, θ̈_d + K_d ė + K_p e), e = θ_d − θ: if the equations match the arm, ë + K_d ė + K_p e = 0.
 pub struct ComputedTorque {
     /// s⁻².
     pub k_p: f64,
-    /// s⁻¹; 2 √k_p damps critically.
+    /// s⁻¹; 2 √k_p is critical damping.
     pub k_d: f64,
-    /// What the motors give, in N m.
+    /// The motors' effort limits, in N m.
     pub limits: Joints,
 }
 
 impl ComputedTorque {
-    /// The motors' torques, within their limits; none where a measurement is no number, or an angle beyond 10⁶ rad:
-    /// stop the arm then.
+    /// The motors' torques, within their limits; none if a measurement is NaN or infinite, or an angle is beyond 10⁶
+    /// rad: stop the arm then.
     pub fn torque(&self, reference: &Reference, theta: &Joints, dtheta: &Joints) -> Option<Joints> {
         let mut ddtheta = reference.ddtheta;
         for j in 0..7 {

@@ -1,4 +1,4 @@
-//! The benchmarks, a package of their own: mozzi beside its peers, or each kernel alone by criterion.
+//! The benchmarks, a separate package: mozzi compared with its peers, or each kernel alone by criterion.
 
 mod options;
 mod peers;
@@ -16,7 +16,7 @@ use crate::workspace::Workspace;
 use peers::PEERS;
 use workshop::Workshop;
 
-/// Where the tables go when all is measured; a part goes to `target/bench`.
+/// The folder of the tables of a full run; a partial run writes to `target/bench`.
 const RESULTS: &str = "benches";
 
 pub fn run(workspace: &Workspace, options: &Options) -> Outcome {

@@ -4,12 +4,12 @@ use super::peers::PEERS;
 
 #[derive(Debug, Default, PartialEq)]
 pub struct Options {
-    /// Short names, as the program `compare` knows them.
+    /// Short names, as in the program `compare`.
     pub robots: Option<String>,
     peers: Option<Vec<String>>,
     /// For each robot.
     pub seconds: Option<String>,
-    /// Let apt install what is missing of it.
+    /// Let apt install missing packages.
     pub install: bool,
 }
 
@@ -36,13 +36,13 @@ impl Options {
         self.peers.as_ref().is_none_or(|peers| peers.iter().any(|name| name.eq_ignore_ascii_case(peer)))
     }
 
-    /// Whether all that there is is measured.
+    /// True if all robots and all peers are measured.
     pub fn is_whole(&self) -> bool {
         self.robots.is_none() && self.peers.is_none()
     }
 }
 
-/// The peers of a list with commas; none of an empty one.
+/// The peers of a comma-separated list; none if it is empty.
 fn known(list: &str) -> Result<Vec<String>, String> {
     let names = list.split(',').filter(|name| !name.is_empty()).map(str::to_string).collect::<Vec<_>>();
     for name in &names {

@@ -8,7 +8,7 @@ use std::process::Command;
 
 pub struct Peer {
     pub name: &'static str,
-    /// The library, or why there is none.
+    /// The library, or the reason why there is none.
     pub build: fn(&Workshop) -> Result<PathBuf, String>,
 }
 
@@ -22,14 +22,14 @@ pub const PEERS: [Peer; 6] = [
 ];
 
 const HEADER: &str = "benches/peers/peer.hpp";
-/// What makes a difference to the speed, and is quoted.
+/// The options that affect the speed; they are quoted.
 const FAST: &str = "-std=c++17 -O3 -march=native -DNDEBUG";
 
-/// From the headers of PyPI's `pin`: the library of the wheel is slower, and so is gcc's code.
+/// Built from the headers of PyPI's `pin`: the wheel's library and gcc's code are slower.
 fn pinocchio(workshop: &Workshop) -> Result<PathBuf, String> {
     const SOURCE: &str = "benches/peers/pinocchio.cpp";
-    const REQUIREMENTS: &str = "benches/requirements.txt"; // Eigen's headers, which Pinocchio's wheel has not
-    /// The headers name more joints than Boost's lists take.
+    const REQUIREMENTS: &str = "benches/requirements.txt"; // Eigen's headers, which Pinocchio's wheel lacks
+    /// The headers list more joint types than Boost's default limit.
     const BOOST: &str = "-DBOOST_MPL_LIMIT_LIST_SIZE=30 -DBOOST_MPL_LIMIT_VECTOR_SIZE=30 \
         -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS -DBOOST_FUSION_INVOKE_MAX_ARITY=12";
     let words = format!("{FAST} {BOOST}");
@@ -60,7 +60,7 @@ fn mujoco(workshop: &Workshop) -> Result<PathBuf, String> {
     })
 }
 
-/// Debian's. Without `-march=native`: Eigen would align its memory otherwise than in Debian's library, which frees it.
+/// Debian's. Without `-march=native`: Eigen would align memory differently from Debian's library, which frees it.
 fn kdl(workshop: &Workshop) -> Result<PathBuf, String> {
     const SOURCE: &str = "benches/peers/kdl.cpp";
     const WORDS: &str = "-std=c++17 -O3 -DNDEBUG";
@@ -74,7 +74,7 @@ fn kdl(workshop: &Workshop) -> Result<PathBuf, String> {
     })
 }
 
-/// From the crate registry, a package outside of the workspace, compiled for this machine.
+/// From the crate registry; a package outside the workspace, compiled for this machine.
 fn dynibo(workshop: &Workshop) -> Result<PathBuf, String> {
     const FOLDER: &str = "benches/peers/dynibo";
     const WORDS: &str = "-C target-cpu=native";
@@ -108,7 +108,7 @@ fn casadi(workshop: &Workshop) -> Result<PathBuf, String> {
             compile.args(WORDS.split(' ')).args(["-fPIC", "-c"]);
             command::run(compile.arg(&source).arg("-o").arg(source.with_extension("o")))?;
         }
-        // not linked with -ffast-math, which would let the whole process round small numbers to zero
+        // not linked with -ffast-math, which would flush subnormal numbers to zero in the whole process
         let mut link = Command::new(workshop.compiler);
         link.current_dir(&workshop.workspace.root).args(["-std=c++17", "-O3", "-fPIC", "-shared"]);
         link.arg(format!("-DPEER_FLAGS={WORDS}")).arg("-I").arg(&folder).arg(SOURCE).args(files(&folder, "o"));
@@ -120,7 +120,7 @@ fn drake(_: &Workshop) -> Result<PathBuf, String> {
     Err("the wheel of `drake` brings a library without headers, and a call through Python takes longer than the dynamics".into())
 }
 
-/// The first file of a folder that starts so.
+/// The first file of a folder with this prefix.
 fn file(folder: &Path, start: &str) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok);
     entries
@@ -128,7 +128,7 @@ fn file(folder: &Path, start: &str) -> Option<PathBuf> {
         .find(|path| path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(start)))
 }
 
-/// The files of a folder with such an ending, in order.
+/// The files of a folder with this suffix, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path());
     let mut files: Vec<_> = entries.filter(|path| path.extension().is_some_and(|e| e == ending)).collect();

@@ -1,4 +1,4 @@
-//! Python's calls beside those of Pinocchio and the Modern Robotics package.
+//! Python calls compared with those of Pinocchio and the Modern Robotics package.
 
 use crate::command;
 use crate::package;
@@ -6,7 +6,7 @@ use crate::report::Outcome;
 use crate::venv;
 use crate::workspace::Workspace;
 
-/// Builds the package for speed and makes the table.
+/// Builds the package in release mode and writes the table.
 pub fn run(workspace: &Workspace) -> Outcome {
     match try_run(workspace) {
         Ok(()) => Outcome::Passed("target/bench/PYTHON.md".into()),

@@ -1,4 +1,4 @@
-//! What the peers are built with.
+//! The tools to build the peers.
 
 use crate::command;
 use crate::stamp::Stamp;
@@ -18,7 +18,7 @@ A C++ compiler is needed, and clang makes the fastest peers:
 
 const PURELIB: &str = "import sysconfig; print(sysconfig.get_path('purelib'))";
 
-/// What apt has for the peers.
+/// The apt packages for the peers.
 const PACKAGES: [&str; 2] = ["clang-19", "liborocos-kdl-dev"];
 
 pub struct Workshop<'a> {
@@ -29,7 +29,7 @@ pub struct Workshop<'a> {
     pub packages: PathBuf,
 }
 
-/// Let apt install what it has of the peers.
+/// Let apt install its packages for the peers.
 pub fn install() -> Result<(), String> {
     let mut apt = Command::new("apt-get");
     apt.args(["install", "-y", "--no-install-recommends"]).args(PACKAGES);
@@ -48,7 +48,7 @@ impl<'a> Workshop<'a> {
         Ok(Workshop { workspace, compiler, packages: PathBuf::from(folder.trim()) })
     }
 
-    /// The C compiler of the same make.
+    /// The C compiler of the same toolchain.
     pub fn c_compiler(&self) -> String {
         self.compiler.replace("clang++", "clang").replace("g++", "gcc")
     }
@@ -69,14 +69,14 @@ impl<'a> Workshop<'a> {
         if folder.is_dir() { Ok(folder) } else { Err(format!("its wheel brought no {name}")) }
     }
 
-    /// Install the packages that a file of `benches/` lists, without what they ask for.
+    /// Install the packages that a file of `benches/` lists, without their dependencies.
     pub fn pip(&self, requirements: &str) -> Result<(), String> {
         let mut pip = Command::new(venv::python(self.workspace));
         pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "--no-deps", "-r"]);
         command::run(pip.arg(self.workspace.path(requirements)))
     }
 
-    /// The library `NAME.so`, made by `make` unless it was made already from the same files with the same words.
+    /// The library `NAME.so`; `make` builds it unless it was already built from the same files with the same command.
     pub fn library(
         &self,
         name: &str,
@@ -99,7 +99,7 @@ impl<'a> Workshop<'a> {
         Ok(library)
     }
 
-    /// The C++ compiler, its words before all others; `words` are quoted in the tables.
+    /// The C++ compiler with its leading options; `words` are quoted in the tables.
     pub fn compile(&self, words: &str) -> Command {
         let mut command = Command::new(self.compiler);
         command.current_dir(&self.workspace.root).args(words.split(' '));

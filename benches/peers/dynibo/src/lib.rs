@@ -1,6 +1,6 @@
-//! dynibo behind the C interface of `benches/peers/peer.hpp`. It reads URDFs alone. Of a floating base it has
-//! velocities, accelerations and forces in the world's axes, at the root's origin; they are turned here, outside of
-//! what is timed.
+//! dynibo behind the C interface of `benches/peers/peer.hpp`. It reads only URDF. For a floating base it uses
+//! velocities, accelerations and forces in the world's axes, at the root's origin; they are converted here, outside of
+//! the timed section.
 #![allow(non_snake_case)] // R, X, M
 
 mod robot;
@@ -38,7 +38,7 @@ pub extern "C" fn peer_algorithm(_robot: *const Robot, k: c_int) -> *const c_cha
 }
 
 /// # Safety
-/// `urdf` is text that ends; the numbers are not looked at.
+/// `urdf` is a null-terminated string; the numbers are not used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_robot(
     name: *const c_char,
@@ -91,7 +91,7 @@ pub unsafe extern "C" fn peer_run(robot: *mut Robot, algorithm: c_int) {
 }
 
 /// # Safety
-/// The robot is one of `peer_robot`'s; `out` takes the quantity.
+/// The robot is one of `peer_robot`'s; `out` has room for the quantity.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_result(robot: *mut Robot, algorithm: c_int, state: c_int, out: *mut f64) {
     // SAFETY: by the caller.

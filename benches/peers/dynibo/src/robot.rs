@@ -1,10 +1,10 @@
-//! A robot of dynibo's, fixed or free, with its states.
+//! A robot in dynibo, with a fixed or floating base, and its states.
 
 use dynibo::{BaseState, FloatingRobot, Frame, RobotModel, Twist};
 use nalgebra::{DMatrix, Quaternion, Translation3, UnitQuaternion, Vector3};
 use std::ffi::CStr;
 
-/// mozzi's name and dynibo's.
+/// Names in mozzi and in dynibo.
 pub const QUANTITIES: [(&CStr, &CStr); 4] = [
     (c"inverse_dynamics", c"inverse_dynamics"),
     (c"forward_dynamics", c"forward_dynamics"),
@@ -17,7 +17,7 @@ enum Kind {
     Free(FloatingRobot),
 }
 
-/// A state as dynibo takes it.
+/// A state in dynibo's form.
 struct State {
     /// With the acceleration of θ̈, and with that of θ̈ = 0.
     base: [BaseState; 2],
@@ -33,9 +33,9 @@ struct State {
 pub struct Robot {
     kind: Kind,
     joints: usize,
-    /// 6 where it is free.
+    /// 6 for a floating base, else 0.
     base: usize,
-    /// The number here of each of dynibo's joints, which it takes level by level.
+    /// mozzi's index of each of dynibo's joints, which dynibo orders level by level.
     order: Vec<usize>,
     states: Vec<State>,
     vector: Vec<f64>,
@@ -124,7 +124,7 @@ impl Robot {
         .expect("a sound robot and a finite state");
     }
 
-    /// Where one of dynibo's velocities stands here.
+    /// mozzi's index of one of dynibo's velocities.
     fn place(&self, k: usize) -> usize {
         if k < self.base { k } else { self.base + self.order[k - self.base] }
     }

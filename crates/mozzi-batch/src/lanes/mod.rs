@@ -13,31 +13,32 @@ use mozzi::scalar::{Bits, Float, sin_cos};
 
 /// A register.
 pub trait Lane: Scalar + Bits + From<Self::Number> + Send + Sync + 'static {
-    /// How many numbers it holds, a power of two, at most 16.
+    /// The count of numbers that it holds: a power of two, at most 16.
     const WIDTH: usize;
 
-    /// The first numbers of the slice.
+    /// Loads the first numbers of the slice.
     fn load(from: &[Self::Number]) -> Self;
-    /// Into the first numbers of the slice.
+    /// Stores into the first numbers of the slice.
     fn store(self, to: &mut [Self::Number]);
     /// The numbers of registers, one after the other.
     fn numbers(registers: &[Self]) -> &[Self::Number];
-    /// Likewise, to be written.
+    /// The same, mutable.
     fn numbers_mut(registers: &mut [Self]) -> &mut [Self::Number];
-    /// (a₀ b₀ a₁ b₁ …), the first register of it and the second.
+    /// Interleaves two registers: the first and the second register of (a₀ b₀ a₁ b₁ …).
     fn zip(self, other: Self) -> (Self, Self);
-    /// The smaller ones; of a NaN, either.
+    /// The smaller number of each lane; if one is NaN, either of the two.
     fn min(self, other: Self) -> Self;
-    /// The larger ones; of a NaN, either.
+    /// The larger number of each lane; if one is NaN, either of the two.
     fn max(self, other: Self) -> Self;
-    /// Is every |x| at most this? No for NaN.
+    /// True if every |x| is at most this; false for NaN.
     fn within(self, bound: Self::Number) -> bool;
 }
 
-/// The widest register's numbers.
+/// The count of numbers in the widest register.
 pub const MOST: usize = 16;
 
-/// One of the sine and cosine of every number: the polynomial, or beyond its range each number's own exact reduction.
+/// Sine and cosine of every number: by the polynomial, or, if any number is beyond its range, by the exact reduction of
+/// each number.
 #[inline(always)]
 fn sin_cos_or_exact<L: Lane>(x: L) -> (L, L) {
     if x.within(L::Number::LARGEST) { sin_cos(x) } else { one_by_one(x) }
@@ -54,7 +55,7 @@ fn one_by_one<L: Lane>(x: L) -> (L, L) {
     (L::load(&s), L::load(&c))
 }
 
-/// A function without a vector's instruction, number by number.
+/// Applies a function that has no vector instruction, number by number.
 fn each<L: Lane>(x: L, f: impl Fn(L::Number) -> L::Number) -> L {
     let mut numbers = [L::Number::zero(); MOST];
     x.store(&mut numbers);
@@ -64,7 +65,7 @@ fn each<L: Lane>(x: L, f: impl Fn(L::Number) -> L::Number) -> L {
     L::load(&numbers)
 }
 
-/// What lanes have in common: operators by their functions, and the scalar's methods.
+/// The part that all lanes share: operators by their functions, and the scalar's methods.
 macro_rules! lane {
     ([$($generics:tt)*] $L:ty) => {
         impl<$($generics)*> core::ops::Add for $L {

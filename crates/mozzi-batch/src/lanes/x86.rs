@@ -1,8 +1,8 @@
 //! x86-64's registers: AVX2 with fused multiply-add, 4 `f64` or 8 `f32`; AVX-512, 8 `f64` or 16 `f32`.
 //!
-//! Values of these types are made and used only inside the entries of `instruction_set.rs`, which run only where the
-//! processor has the instructions: that is what every block here rests on. Each method is inlined into an entry, and is
-//! one instruction or two there. Negation is −0 − x, which the compiler takes into a fused multiply-add.
+//! Values of these types are made and used only inside the entries of `instruction_set.rs`, which run only if the
+//! processor has the instructions: every unsafe block here relies on that. Each method is inlined into an entry, where
+//! it becomes one or two instructions. Negation is −0 − x, which the compiler merges into a fused multiply-add.
 
 use super::Lane;
 use core::arch::x86_64::*;
@@ -22,7 +22,7 @@ macro_rules! register {
         #[repr(transparent)]
         pub struct $L($register);
 
-        // SAFETY (all blocks of this macro): see the module's page.
+        // SAFETY (all blocks of this macro): see the module's documentation.
         #[allow(clippy::undocumented_unsafe_blocks)]
         impl $L {
             #[inline(always)]
@@ -79,17 +79,18 @@ macro_rules! register {
             const WIDTH: usize = $width;
             #[inline(always)]
             fn load(from: &[$number]) -> Self {
-                let from = &from[..$width]; // as many as are read
+                let from = &from[..$width]; // exactly the numbers that are read
                 $L(unsafe { $load(from.as_ptr()) })
             }
             #[inline(always)]
             fn store(self, to: &mut [$number]) {
-                let to = &mut to[..$width]; // as many as are written
+                let to = &mut to[..$width]; // exactly the numbers that are written
                 unsafe { $store(to.as_mut_ptr(), self.0) }
             }
             #[inline(always)]
             fn numbers(registers: &[Self]) -> &[$number] {
-                // a register is its numbers in their order, at least as aligned, and any bits are numbers
+                // a register holds its numbers in order, is at least as aligned as they are, and every bit pattern is a
+                // valid number
                 unsafe { core::slice::from_raw_parts(registers.as_ptr().cast(), registers.len() * $width) }
             }
             #[inline(always)]

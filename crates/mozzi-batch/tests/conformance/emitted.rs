@@ -12,7 +12,7 @@ pub fn every_quantity_as_c(case: &Case) {
         return;
     }
     let all = (0..LIST.len()).map(|index| case.query(Query::at(index)));
-    // without constraints there is nothing to write
+    // without constraints there is nothing to emit
     let queries: Vec<Query> = all.filter(|query| query.output_lengths(case.model).all(|length| length > 0)).collect();
     let slug: String = case.name.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("conformance_{slug}"));
@@ -48,8 +48,8 @@ fn call(library: &libloading::Library, name: &str, inputs: &[&[f64]], outputs: &
             match arrays.len() {
                 $($count => {
                     type Function = unsafe extern "C" fn($(call!(@pointer $k)),*);
-                    // SAFETY: the emitted function of this name takes as many arrays, each as long as the program's;
-                    // inputs are const.
+                    // SAFETY: the emitted function of this name takes this many arrays, each with the length of the
+                    // program's; inputs are const.
                     unsafe {
                         let function: libloading::Symbol<Function> = library.get(name.as_bytes()).expect(name);
                         function($(arrays[$k]),*)

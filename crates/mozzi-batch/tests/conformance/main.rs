@@ -1,7 +1,7 @@
-//! Every quantity of the list, in every way that it can be computed, against a second, independent way: on plain and
-//! fused `f64`, `f32`, dual numbers, memory full of NaN, every register of the machine in rows, recorded programs
-//! interpreted, as machine code at one state and at many, as C; on fixed and floating bases, with and without mimic
-//! joints, friction, base motion, wrenches on two frames.
+//! Every quantity of the list, computed in every possible way, compared with a second, independent computation: on
+//! plain and fused `f64`, `f32`, dual numbers, memory full of NaN, every register of the machine in rows, recorded
+//! programs interpreted, as machine code at one state and at many, as C; on fixed and floating bases, with and without
+//! mimic joints, friction, base motion, wrenches on two frames.
 #![allow(missing_docs)]
 
 mod allocations;
@@ -36,7 +36,8 @@ fn robots() -> Vec<(&'static str, Model)> {
     ]
 }
 
-/// With independent constraints that hold at one state, and not at the others: the equations are the same.
+/// Robots with independent constraints that are satisfied at one state but not at the others: the equations are the
+/// same.
 fn closed_at_a_state(model: &Model, closures: &[Closure]) -> Model {
     let theta = &state(model, 1)[0];
     let found = (0..100).map(|seed| closed(model, theta, closures, seed));
@@ -59,7 +60,7 @@ fn with_a_cam(model: &Model) -> Model {
     (1..one_axis.len()).map(cam).find(are_independent).expect("another joint")
 }
 
-/// A robot at a few states, in an environment with everything in it.
+/// A robot at a few states, in an environment that uses every feature.
 struct Case<'a> {
     name: &'a str,
     model: &'a Model,
@@ -99,7 +100,7 @@ impl Case<'_> {
     }
 }
 
-/// |found − expected| within a bound, over the largest entry of each output.
+/// Asserts |found − expected| within a bound, relative to the largest entry of each output.
 #[track_caller]
 fn close(what: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{what}: outputs");
@@ -112,7 +113,7 @@ fn close(what: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) 
     }
 }
 
-/// The outputs on any numbers, in memory full of NaN.
+/// The outputs on any number type, in memory full of NaN.
 fn on<S: Scalar + From<C> + Into<f64> + 'static, C: Scalar + 'static>(
     query: Query,
     model: &Model,
@@ -267,7 +268,7 @@ fn one_by_machine_code(
     close(what, &outputs, expected, tolerance);
 }
 
-/// Wrenches, gravity and, if asked for, parameters of each state.
+/// Wrenches, gravity and, if requested, parameters of each state.
 fn arrays<T: Number>(
     case: &Case,
     query: Query,
@@ -312,7 +313,7 @@ fn place<Q: Quantity>() -> usize {
     Query::from_quantity::<Q>().index()
 }
 
-/// A single row of the frame's twist that some joint moves.
+/// A single row of the frame's twist that at least one joint moves.
 fn a_row(model: &Model, frame: FrameId, theta: &[f64]) -> Vec<usize> {
     let J = model.body_jacobian(theta, frame).expect("lengths").matrix();
     let sizes: Vec<f64> = (0..6).map(|row| J.row(row).norm()).collect();
@@ -340,7 +341,7 @@ fn every_quantity_in_every_way() {
                 }
                 mozzi::quantities!(check_all);
                 if model.n() > 0 {
-                    emitted::every_quantity_as_c(&case); // C has no arrays without entries
+                    emitted::every_quantity_as_c(&case); // C has no empty arrays
                 }
             });
         }

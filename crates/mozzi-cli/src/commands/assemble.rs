@@ -59,7 +59,7 @@ pub fn run(arguments: &AssembleArguments) -> Result<String> {
     Ok(page.end())
 }
 
-/// Is there something to compute?
+/// Checks that the model has constraints.
 pub fn needs_constraints(model: &Model) -> Result<()> {
     match model.constraint_rows() {
         0 => {
@@ -76,7 +76,7 @@ pub fn violation(model: &Model, theta: &[f64]) -> Result<f64> {
     Ok(phi.iter().fold(0.0, |most, x| if x.abs() <= most { most } else { x.abs() }))
 }
 
-/// (θ, θ̇) as they are where they satisfy the constraints, else the nearest that do, with a note.
+/// (θ, θ̇) unchanged if they satisfy the constraints, else the nearest that do, with a note.
 pub fn assembled(model: &Model, theta: Vec<f64>, dtheta: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>)> {
     if model.constraint_rows() == 0 {
         return Ok((theta, dtheta));

@@ -61,7 +61,7 @@ pub fn run(arguments: &CheckArguments) -> Result<String> {
     sound(input::name(name), count, &arguments.policy.constrained(name, loaded.description)?.build()?)
 }
 
-/// A robot of JSON: the same checks, each problem by its element, as there is no text to point at.
+/// A robot from JSON: the same checks, each problem by its element, as there is no source text.
 fn json_robot(arguments: &CheckArguments) -> Result<String> {
     let name = input::name(&arguments.model);
     let (format, is_object) = (arguments.format(), arguments.format() != Format::Text);
@@ -88,7 +88,7 @@ fn json_robot(arguments: &CheckArguments) -> Result<String> {
     }
 }
 
-/// The robot can be computed.
+/// Reports that the robot is valid.
 fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
     let count = match warnings {
         0 => "no warnings".to_string(),
@@ -99,7 +99,7 @@ fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
     Ok(String::new())
 }
 
-/// Each with its severity (error, warning, note) and its place.
+/// Diagnostics as JSON, each with its severity (error, warning, note) and its place.
 fn objects<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Value> {
     let object = |found: &Diagnostic| {
         let severity = match found.severity() {
@@ -116,7 +116,7 @@ fn objects<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Val
             "column": found.column(),
             "help": found.help(),
         });
-        // in a macro of xacro's: the calls that lead there
+        // inside a xacro macro: the calls that lead there
         if !found.calls().is_empty() {
             object["calls"] = found.calls().trim_start_matches(", ").into();
         }
@@ -125,7 +125,7 @@ fn objects<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Val
     diagnostics.into_iter().map(object).collect()
 }
 
-/// There is no text to point at.
+/// There is no source text.
 fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> Value {
     json!({
         "severity": severity,
@@ -138,7 +138,7 @@ fn placeless(name: &str, severity: &str, code: Option<&str>, message: &str) -> V
     })
 }
 
-/// The text of JSON itself is wrong.
+/// The JSON text itself is invalid.
 fn misplaced(name: &str, error: &Misplaced) -> Value {
     let (row, column) = error.position.unzip();
     json!({

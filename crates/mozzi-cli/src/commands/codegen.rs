@@ -1,4 +1,4 @@
-//! `mozzi codegen`: a robot's quantities as source text, and how much work was left of them.
+//! `mozzi codegen`: a robot's quantities as source text, and their operation counts after folding.
 
 use super::info;
 use crate::failure::{Failure, Result};
@@ -73,7 +73,7 @@ enum Argument {
     BaseTwist,
     BaseAcceleration,
     About,
-    /// Of this frame, or of the end effector.
+    /// Applied by this frame, or by the end effector.
     Wrench(Option<String>),
 }
 
@@ -149,7 +149,7 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
     Ok(page.end())
 }
 
-/// Recording a long program takes minutes and gigabytes, and so does compiling its text.
+/// Recording a long program, and compiling its text, takes minutes and gigabytes.
 fn check_length(model: &Model, query: Query) -> Result<()> {
     query.check_subject(model)?;
     let operations = estimate(model, query);
@@ -165,7 +165,7 @@ fn check_length(model: &Model, query: Query) -> Result<()> {
     )))
 }
 
-/// Their paths and lengths.
+/// Writes the files; returns their paths and lengths.
 fn write(folder: &Path, files: &[SourceFile]) -> Result<Vec<(String, usize)>> {
     let write = |file: &SourceFile| {
         let path = file.write(folder).map_err(|error| Failure::wrong(error.to_string()))?;
@@ -174,12 +174,12 @@ fn write(folder: &Path, files: &[SourceFile]) -> Result<Vec<(String, usize)>> {
     files.iter().map(write).collect()
 }
 
-/// What a quantity takes on this robot.
+/// The work to compute a quantity on this robot.
 struct Work {
     name: String,
     before: Option<Count>,
     after: Count,
-    /// At one state, and at as many as registers hold.
+    /// For one state, and for as many states as fit into a register.
     code: [(Shape, Result<Kernel, Refusal>); 2],
 }
 

@@ -67,7 +67,7 @@ impl CompareArguments {
         Ok(Duration::from_secs_f64(seconds))
     }
 
-    /// The file as it stands; with its base freed, the robot written as URDF.
+    /// The file as it is; with --floating, the robot written as URDF.
     fn source(&self, robot: &Description) -> Result<Source> {
         if self.policy.frees() {
             return Ok(Source::written(input::name(&self.model), robot)?);
@@ -76,11 +76,11 @@ impl CompareArguments {
     }
 }
 
-/// What the libraries read: the file, or the text that a pipe held.
+/// The input of the libraries: the file, or the text from a pipe.
 fn source(arguments: &CompareArguments, robot: &Description) -> Result<Source> {
     let name = arguments.model.as_str();
     if name != "-" {
-        // other libraries read no xacro
+        // other libraries cannot read xacro
         let text = Path::new(name).is_file().then(|| std::fs::read(name)).and_then(|text| text.ok());
         let text = text.filter(|_| !robot_json::is_json(name));
         return match text.map(|text| expanded(name, text, arguments.policy.settings())).transpose()?.flatten() {

@@ -42,7 +42,7 @@ fn codes() -> impl Iterator<Item = &'static str> {
     mozzi_urdf::codes().chain(mjcf::codes())
 }
 
-/// In lines that fit the page; lines that stand alone stay so.
+/// Wraps lines to the page; existing line breaks stay.
 fn wrapped(text: &str) -> String {
     let mut page = String::new();
     for paragraph in text.lines() {

@@ -1,4 +1,4 @@
-//! `mozzi ik`: joint positions at which the end effector is where it is to be.
+//! `mozzi ik`: joint positions that place the end effector at a desired pose.
 
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};

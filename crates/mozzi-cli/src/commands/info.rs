@@ -52,7 +52,7 @@ pub fn headline(model: &Model) -> String {
     )
 }
 
-/// Gravity, and where a wrench acts.
+/// Gravity, and the frame of a wrench.
 pub fn surroundings(model: &Model) -> String {
     let tip = match model.end_effector() {
         Ok(frame) => model.frame_name(frame).to_string(),
@@ -101,7 +101,7 @@ fn page(model: &Model, poses: &[SE3]) -> String {
     page.end()
 }
 
-/// What a floating base adds to the state.
+/// The entries that a floating base adds to the state.
 fn base(model: &Model) -> Vec<String> {
     let list = |names: Vec<&str>| names.join(" ");
     let (positions, velocities) = (model.base().positions(), model.base().velocities());
@@ -116,7 +116,7 @@ fn base(model: &Model) -> Vec<String> {
     ]
 }
 
-/// What balls and free joints add to the state.
+/// The entries that balls and free joints add to the state.
 fn several(model: &Model) -> Vec<String> {
     let of_joint = |(joint, place): (&Joint, &Place)| {
         let list = |names: Vec<&str>| names.join(" ");
@@ -186,7 +186,7 @@ fn rotors(robot: &Description) -> Vec<String> {
     table(&robot.rotors.iter().map(row).collect::<Vec<_>>(), "lrl")
 }
 
-/// Each constraint, and the rank of all where the start is assembled.
+/// Each constraint, and the rank of all of them at the assembled start.
 fn constraints(model: &Model) -> Vec<String> {
     let anchor = |anchor: &Anchor| anchor.frame.clone().unwrap_or_else(|| "{s}".to_string());
     let row = |constraint: &Constraint| {
@@ -216,12 +216,12 @@ fn constraints(model: &Model) -> Vec<String> {
     lines
 }
 
-/// Where the start is assembled.
+/// The rank at the assembled start.
 fn rank(model: &Model) -> std::result::Result<ConstraintRank, Error> {
     model.constraint_rank(&model.assemble(&model.start().theta, &[])?)
 }
 
-/// Positions of a state that a line has room for.
+/// Positions of a state that fit into a line.
 const SHOWN: usize = 10;
 
 /// The states that the robot's file names, and which of them is the start.
@@ -242,7 +242,7 @@ fn states(model: &Model) -> Vec<String> {
     table(&model.state_names().filter_map(row).collect::<Vec<_>>(), "l")
 }
 
-/// Each body that is made of several links: its own, then those fixed to it, each with its mass.
+/// Each body made of several links: its own link, then those fixed to it, each with its mass.
 fn folded(model: &Model) -> Vec<String> {
     let mut rows = Vec::new();
     for body in model.folded_links().iter().filter(|body| body.links.len() > 1) {

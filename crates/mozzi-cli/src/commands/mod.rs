@@ -1,4 +1,4 @@
-//! One file for each subcommand: convert, check, call, name the error.
+//! One file for each subcommand: convert the arguments, check them, call the library, report errors.
 
 pub mod assemble;
 pub mod bench;

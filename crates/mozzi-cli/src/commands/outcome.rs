@@ -8,18 +8,18 @@ use mozzi_motion::controllers::{Overload, TrackingError};
 pub struct Outcome {
     /// Its rows, or some of them: those for the table, JSON and the page.
     pub motion: Trajectory,
-    /// What all of its rows say of the energy.
+    /// The energy account over all of its rows.
     pub account: Account,
     pub method: Method,
-    /// Seconds; of an adaptive method between two rows.
+    /// Step size in seconds; for an adaptive method, the time between two rows.
     pub step: f64,
     pub duration: f64,
     pub motors: String,
     pub overloads: Vec<Overload>,
     pub stops: Vec<Stopped>,
-    /// Of a robot with constraints, how far the steps left them.
+    /// For a robot with constraints: how far the steps violated them.
     pub closing: Option<Closing>,
-    /// What `--until` and `--report-event` found, in the order of time.
+    /// The events of `--until` and `--report-event`, in the order of time.
     pub events: Vec<Occurrence>,
     /// The conditions that did not become true.
     pub missed: Vec<String>,
@@ -27,12 +27,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Did a condition end it?
+    /// Did a condition end the motion?
     pub fn is_ended(&self) -> bool {
         self.events.last().is_some_and(|event| event.stop)
     }
 
-    /// The step in seconds, of an adaptive method its tolerance.
+    /// The step in seconds, or the tolerance of an adaptive method.
     pub fn step(&self) -> f64 {
         match self.method {
             Method::DormandPrince { tolerance } => tolerance,

@@ -177,7 +177,7 @@ fn ellipsoids(arguments: &EllipsoidArguments) -> Result<String> {
     Ok(told(&save(figure, &arguments.out)?, &arguments.robot, ""))
 }
 
-/// A method's errors, by its given steps or tolerances.
+/// A method's errors, for the given steps or tolerances.
 fn method(each: &convergence::Convergence) -> Value {
     let points = |list: &[Measured]| -> Value {
         let point = |of: &Measured| json!({ "step": of.step, "evaluations": of.evaluations, "error": of.error });
@@ -189,7 +189,7 @@ fn method(each: &convergence::Convergence) -> Value {
     })
 }
 
-/// What was written, in words or as JSON.
+/// The written figure, in words or as JSON.
 fn told(object: &Value, robot: &RobotArguments, more: &str) -> String {
     match robot.json {
         true => print(object),

@@ -48,17 +48,17 @@ pub fn literals(model: &Model, lists: &ScrewLists, tip: SE3) -> String {
     lines.join("\n")
 }
 
-/// A name as a string of Python.
+/// A name as a Python string.
 fn literal(name: &str) -> String {
     format!("\"{}\"", escaped(name).replace('"', "\\\""))
 }
 
-/// Backslashes, and characters that cannot be seen, as Python escapes them: a line break would end a comment.
+/// Escapes backslashes and invisible characters as Python does: a line break would end a comment.
 fn escaped(name: &str) -> String {
     let one = |c: char| match c {
         '\\' => "\\\\".to_string(),
         '\'' | '"' => c.to_string(),
-        // Rust writes \u{…} for what is not printable
+        // Rust writes unprintable characters as \u{…}
         _ if c.escape_debug().len() == 1 => c.to_string(),
         _ if u32::from(c) < 0x1_0000 => format!("\\u{:04x}", u32::from(c)),
         _ => format!("\\U{:08x}", u32::from(c)),

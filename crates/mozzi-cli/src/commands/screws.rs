@@ -65,7 +65,7 @@ pub fn axes(lists: &ScrewLists, axes: &[ScrewAxis]) -> Vec<String> {
     table(&cells, "rlr")
 }
 
-/// Mass, where the home frame is, and the rotational inertia's diagonal in a table.
+/// Mass, the origin of the home frame, and the rotational inertia's diagonal in a table.
 pub fn masses(lists: &ScrewLists) -> Vec<String> {
     let of = |name: &str, pick: &dyn Fn(usize) -> f64| {
         [vec![name.to_string()], column(&(0..lists.links.len()).map(pick).collect::<Vec<_>>())].concat()

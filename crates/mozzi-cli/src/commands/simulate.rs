@@ -93,14 +93,14 @@ enum Way {
 const KEPT: usize = 20_000;
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
-    arguments.out.as_deref().map(log::format).transpose()?; // before the motion, which may take long
+    arguments.out.as_deref().map(log::format).transpose()?; // checked before the motion, which may take long
     let model = arguments.robot.load()?;
     let outcome = arguments.simulate(&model)?;
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
         Some("-") => {
             told(&outcome).iter().for_each(|line| failure::note(line));
-            String::new() // the rows are there already
+            String::new() // the rows are written already
         }
         _ if arguments.robot.json => json::print(&object(&model, &outcome)),
         file => {
@@ -148,7 +148,7 @@ impl SimulateArguments {
             self.integrate(model, [&theta, &dtheta], input, options, events, &mut tracking)?;
         Ok(Outcome {
             method: options.method,
-            // of a motion of no duration there is no shorter step
+            // a motion of zero duration has no shorter step
             step: if end == 0.0 { number("--step", &self.step)? } else { options.step() },
             duration: end,
             account,
@@ -163,7 +163,7 @@ impl SimulateArguments {
         })
     }
 
-    /// Machine code, with --compiled; reports what it does not compute.
+    /// Machine code, with --compiled; reports quantities that it does not compute.
     fn machine_code(&self, model: &Model) -> Result<Option<Compiled>> {
         if !self.compiled {
             return Ok(None);
@@ -209,9 +209,9 @@ impl SimulateArguments {
         Ok(Options { method, friction, record_every, joint_limits, ..options })
     }
 
-    /// Its rows go to a file as they come; those for JSON and the page stay in memory.
+    /// The estimated work. Rows go to a file as they come; those for JSON and the page stay in memory.
     fn workload(&self, model: &Model, end: f64) -> Result<Workload> {
-        // a step or a duration that makes no sense is refused later
+        // an invalid step or duration is refused later
         let step = number("--step", &self.step)?;
         let steps = if step > 0.0 { (end / step).ceil().max(0.0) } else { 0.0 };
         let rows = 1.0 + (steps / self.record_every.max(1) as f64).ceil();
@@ -229,7 +229,7 @@ impl SimulateArguments {
         Ok(Workload { cause, steps, rows, bytes, place: place.to_string(), flag: Some("--allow-large") })
     }
 
-    /// The motion, its rows written as they come, and those that are kept.
+    /// The motion, with its rows written as they come, and the rows that are kept.
     fn integrate(
         &self,
         model: &Model,

@@ -1,4 +1,4 @@
-//! What `mozzi simulate` answers: a table for a file, JSON, or a page.
+//! The output of `mozzi simulate`: a table for a file, JSON, or a page.
 
 use super::outcome::Outcome;
 use crate::conditions::happened;
@@ -59,7 +59,7 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
     )
 }
 
-/// Positions that a row has room for: eight, or a floating base's seven.
+/// Positions that fit into a row: eight, or a floating base's seven.
 fn shown_positions(model: &Model) -> usize {
     match model.is_floating() {
         true => 7,
@@ -146,8 +146,8 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
     page.end()
 }
 
-/// A sentence for each event that happened or did not, each joint that came to its limit, and each motor that was asked
-/// for more than it has.
+/// A sentence for each event that happened or did not, each joint that reached its limit, and each motor with a
+/// demanded effort above its limit.
 pub fn told(outcome: &Outcome) -> Vec<String> {
     let missed = |condition: &String| {
         format!("event: `{condition}` did not happen up to t = {} s", scalar(outcome.motion.last().t))

@@ -1,4 +1,4 @@
-//! `mozzi` alone: a tour of the library on the UR5, whose every number is computed here and now.
+//! `mozzi` alone: a tour of the library on the UR5; every number is computed when it runs.
 
 use super::terms::text::{blocks, state, sum, task, wrench};
 use super::terms::values::Terms;
@@ -22,7 +22,7 @@ const THETA: [f64; 6] = [0.0, -1.2, 1.5, 0.3, 1.1, 0.0];
 const DTHETA: [f64; 6] = [0.5, -0.3, 0.4, 0.2, -0.6, 1.0];
 const DDTHETA: [f64; 6] = [1.0, 0.5, -1.0, 2.0, 0.0, -0.5];
 const F_TIP: [f64; 6] = [0.0, 0.0, 0.5, 0.0, 0.0, 20.0];
-/// Of the fall.
+/// Duration and steps of the fall.
 const SECONDS: f64 = 2.0;
 const STEPS: usize = 2000;
 
@@ -129,7 +129,7 @@ fn fall(model: &Model, page: &mut Page) -> Result<()> {
     Ok(())
 }
 
-/// Method by method: order, largest drift.
+/// One row for each method: order, largest drift.
 fn drifts(motions: &[(Method, Trajectory)]) -> Vec<String> {
     let mut cells = vec![
         ["method", "order", "largest energy drift", "of the largest K", "|θ − θ of the last| at 2 s"]

@@ -1,4 +1,4 @@
-//! `mozzi trajectory`: a motion to be followed.
+//! `mozzi trajectory`: plans a motion.
 
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
@@ -94,7 +94,7 @@ enum Shaped {
 
 /// Rows of the table on the screen.
 const SHOWN: usize = 10;
-/// Rows of a motion, which are all in memory.
+/// Largest number of rows of a motion, all of which are in memory.
 const MOST_ROWS: f64 = 1e7;
 /// Number of points at which limits are checked.
 const PLACES: usize = 500;
@@ -247,7 +247,7 @@ fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Lim
     let mut say = |what: &str, name: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
         let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
         let worst = (0..rows.len()).max_by(|&a, &b| excess(a).total_cmp(&excess(b))).unwrap_or(0);
-        // what keeps a limit may pass it by rounding
+        // a motion within a limit may exceed it by rounding
         let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
         if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
             let (x, limit, t) = (scalar(x), scalar(limit), scalar(rows[worst].0));
@@ -304,7 +304,7 @@ fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limit
     }
     cells.dedup();
     page.blank().lines(&table(&cells, "r")).blank();
-    // the largest of each joint, and of its limit
+    // the largest value of each joint, and of its limit
     let largest = |pick: &dyn Fn(usize) -> Vec<f64>| {
         let all = (0..rows.len()).map(pick);
         all.fold(vec![0.0_f64; model.n()], |m, row| m.iter().zip(&row).map(|(m, x)| m.max(x.abs())).collect())

@@ -1,4 +1,4 @@
-//! `mozzi view`: the robot to look at, still or moving, in a file or served to this machine's browser.
+//! `mozzi view`: shows the robot, still or moving, in a file or served to this machine's browser.
 
 use crate::failure::{self, Failure, Result};
 use crate::json::print;

@@ -1,9 +1,9 @@
-//! Where an entry is in a text of JSON. The text was parsed before: it is valid.
+//! The place of an entry in a JSON text. The text was parsed before, so it is valid.
 
 use super::Step;
 
 /// Line and column, from 1, of the entry at a path: of its key, or of its value in a list. If an entry does not exist,
-/// those of the value that lacks it.
+/// those of the value in which it is missing.
 pub fn find(text: &str, path: &[Step]) -> (usize, usize) {
     let mut scan = Scan { bytes: text.as_bytes(), at: 0 };
     scan.skip(|byte| byte.is_ascii_whitespace() || !byte.is_ascii()); // a byte order mark
@@ -22,7 +22,7 @@ pub fn find(text: &str, path: &[Step]) -> (usize, usize) {
 
 struct Scan<'t> {
     bytes: &'t [u8],
-    /// At the first byte of a value, outside [`Self::value`].
+    /// Called at the first byte of a value, outside [`Self::value`].
     at: usize,
 }
 
@@ -41,7 +41,7 @@ impl Scan<'_> {
         self.skip(|byte| byte.is_ascii_whitespace());
     }
 
-    /// From a value to an entry of it; returns where the entry begins. Stays if there is none.
+    /// Moves from a value to an entry of it; returns the start of the entry. Does not move if there is none.
     fn enter(&mut self, step: Step) -> Option<usize> {
         let start = self.at;
         let (open, close) = match step {
@@ -71,7 +71,7 @@ impl Scan<'_> {
         None
     }
 
-    /// Past a key and its colon.
+    /// Skips a key and its colon.
     fn key(&mut self) -> String {
         let start = self.at;
         self.string();
@@ -80,7 +80,7 @@ impl Scan<'_> {
         key
     }
 
-    /// Past a string.
+    /// Skips a string.
     fn string(&mut self) {
         self.at += 1;
         while self.at < self.bytes.len() && self.byte() != b'"' {
@@ -89,7 +89,7 @@ impl Scan<'_> {
         self.at = (self.at + 1).min(self.bytes.len());
     }
 
-    /// Past a value.
+    /// Skips a value.
     fn value(&mut self) {
         let mut depth = 0_usize;
         loop {

@@ -14,7 +14,7 @@ use std::io::{BufWriter, Error, Result};
 /// Rows of a batch.
 const BATCH: usize = 8192;
 
-/// What takes batches.
+/// A writer of batches.
 pub trait Sink {
     fn write(&mut self, batch: &RecordBatch) -> std::result::Result<(), ArrowError>;
     fn close(self) -> std::result::Result<(), ArrowError>;
@@ -36,7 +36,7 @@ pub struct Batches<S> {
     sink: S,
 }
 
-/// The names of the columns, and no rows: what a sink has to know.
+/// The names of the columns, and an empty batch with the columns' types.
 fn empty(model: &Model) -> std::result::Result<(Vec<String>, RecordBatch), ArrowError> {
     let names = names(model);
     let none = batch::<f64>(names.iter().map(|name| (name.clone(), Vec::new())).collect())?;
@@ -78,7 +78,7 @@ mod parquet {
     use super::{ArrowError, Batches, Error, File, Model, RecordBatch, Result, Sink, empty};
     use parquet::arrow::ArrowWriter;
 
-    /// Bytes that wait for the end of their row group.
+    /// Bytes that are buffered until the end of their row group.
     const WAITING: usize = 32_000_000;
 
     impl Sink for ArrowWriter<File> {

@@ -2,7 +2,7 @@
 
 pub struct Cdr(Vec<u8>);
 
-/// What tells the encoding, before the first number; alignment counts from its end.
+/// The encoding, before the first number; alignment counts from its end.
 const HEAD: [u8; 4] = [0, 1, 0, 0];
 
 impl Cdr {

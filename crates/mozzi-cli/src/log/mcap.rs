@@ -12,7 +12,7 @@ use std::io::{self, BufWriter};
 
 pub struct Mcap<'m> {
     model: &'m Model,
-    /// JointState speaks of joints of one axis; the others are in the transforms.
+    /// JointState contains joints of one axis; the others are in the transforms.
     of_one_axis: Vec<(&'m str, &'m Place)>,
     space: &'m str,
     log: Log,

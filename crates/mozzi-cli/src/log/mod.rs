@@ -27,16 +27,16 @@ use std::ops::ControlFlow;
 /// Takes the rows of a motion.
 pub trait Rows {
     fn row(&mut self, row: &Sample) -> io::Result<()>;
-    /// What the format has at its end.
+    /// Writes the end of the format.
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-/// What kind of file a motion goes to.
+/// The format of the file for a motion.
 pub fn format(file: &str) -> Result<Format> {
     Format::of(file, &MOTION)
 }
 
-/// A file to which rows go. An older one stays until this is [finished](Self::finish).
+/// A file to which rows are written. An older file stays until this one is [finished](Self::finish).
 pub struct Log<'m> {
     file: String,
     format: Format,
@@ -48,7 +48,7 @@ pub struct Log<'m> {
 }
 
 impl<'m> Log<'m> {
-    /// As many rows are expected; "-" is standard output.
+    /// `expected` is the number of expected rows; "-" is standard output.
     pub fn new(file: &str, model: &'m Model, expected: usize) -> Result<Self> {
         let format = format(file)?;
         let output = if file == "-" { None } else { Some(Output::create(file)?) };
@@ -76,12 +76,12 @@ impl<'m> Log<'m> {
         })
     }
 
-    /// The whole file is written.
+    /// Completes the file.
     pub fn finish(mut self) -> Result<()> {
         let rows = self.rows.take();
         let error = self.error.take().or_else(|| rows?.finish().err());
         match (error, self.output.take()) {
-            // who reads has seen enough
+            // the reader of the pipe has closed it
             (Some(error), None) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
             (Some(error), _) => {
                 let name = if self.file == "-" { "standard output" } else { &self.file };

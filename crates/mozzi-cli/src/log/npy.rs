@@ -1,4 +1,4 @@
-//! NumPy's .npy, row by row: a structured array, its columns named as of CSV.
+//! NumPy's .npy, row by row: a structured array with the column names of CSV.
 
 use super::Rows;
 use super::row::{names, values};
@@ -16,7 +16,7 @@ pub struct Npy {
 }
 
 impl Npy {
-    /// The header says as many rows as are expected; it is written anew if there are others.
+    /// The header contains the expected number of rows; it is rewritten if the actual number differs.
     pub fn new(to: File, model: &Model, expected: usize) -> Result<Self> {
         let names = names(model);
         let mut to = BufWriter::new(to);

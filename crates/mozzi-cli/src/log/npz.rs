@@ -1,5 +1,5 @@
-//! NumPy's .npz, row by row: arrays by name, (N,) and (N, n). Each array waits in a file of its own, next to the
-//! archive, for the others to end.
+//! NumPy's .npz, row by row: arrays by name, (N,) and (N, n). Each array is written to a temporary file next to the
+//! archive until all rows are known.
 
 use super::Rows;
 use super::row::{groups, values};
@@ -34,12 +34,12 @@ impl Drop for Part {
 }
 
 impl Npz {
-    /// Into this file, which has this name.
+    /// Writes to this file, which has this name.
     pub fn new(to: File, name: &str, model: &Model) -> Result<Self> {
         let part = |group: super::row::Group| {
             let path = Path::new(name).with_extension(format!("npz.{}.{}", std::process::id(), group.name));
             let file = File::options().read(true).write(true).create_new(true).open(&path)?;
-            // where the system allows it, the file has no name any more, and is gone however the program ends
+            // if the system allows it, the file is unlinked now, and disappears however the program ends
             let _ = std::fs::remove_file(&path);
             let (columns, is_vector) = (group.columns.len(), group.is_vector);
             Ok(Part { name: group.name, columns, is_vector, path, numbers: BufWriter::new(file) })

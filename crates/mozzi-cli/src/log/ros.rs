@@ -3,7 +3,7 @@
 use super::cdr::Cdr;
 use mozzi::{Model, SE3};
 
-/// A type of message: its name and what it is made of, down to numbers.
+/// A message type: its name, and its definition down to numbers.
 pub struct Message {
     pub name: &'static str,
     pub definition: &'static str,
@@ -48,7 +48,7 @@ fn header(cdr: &mut Cdr, time: u64, frame: &str) {
     cdr.string(frame);
 }
 
-/// Of the independent joints: position, velocity, effort.
+/// A message of the independent joints: position, velocity, effort.
 pub fn joint_state(time: u64, names: &[&str], values: [&[f64]; 3]) -> Vec<u8> {
     let mut cdr = Cdr::new();
     header(&mut cdr, time, "");
@@ -66,7 +66,7 @@ pub fn space_frame(model: &Model) -> &str {
     }
 }
 
-/// Where each frame is, seen from {s}.
+/// The pose of each frame in {s}.
 pub fn transforms(time: u64, space: &str, poses: &[(&str, SE3)]) -> Vec<u8> {
     let mut cdr = Cdr::new();
     cdr.length(poses.len());

@@ -5,7 +5,7 @@ use crate::places::ENERGIES;
 use mozzi::Model;
 use mozzi::simulation::Sample;
 
-/// A part of a row: its name, its columns' names, and whether it is a vector, which it is with one joint, too.
+/// A part of a row: its name, its columns' names, and whether it is a vector (even with one joint).
 pub struct Group {
     pub name: &'static str,
     pub columns: Vec<String>,

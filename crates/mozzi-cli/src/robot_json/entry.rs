@@ -110,7 +110,7 @@ impl<'v> At<'v> {
     }
 }
 
-/// What a reader of constraints needs.
+/// The interface that a reader of constraints needs.
 impl Entry for At<'_> {
     type Error = Misplaced;
 

@@ -3,7 +3,7 @@
 use super::entry::At;
 use crate::json_file::Misplaced;
 
-/// The keys that an object needs, those that it may have, and the objects, or lists of objects, in it.
+/// The required and the optional keys of an object, and the objects, or lists of objects, in it.
 pub struct Object {
     required: &'static [&'static str],
     optional: &'static [&'static str],
@@ -14,7 +14,7 @@ const fn object(required: &'static [&'static str]) -> Object {
     Object { required, optional: &[], children: &[] }
 }
 
-/// Optional are quantities that most robots lack.
+/// Quantities that most robots lack are optional.
 pub const ROBOT: Object = Object {
     required: &["robot", "gravity", "links", "joints"],
     optional: &[

@@ -1,4 +1,4 @@
-//! A request over HTTP: its head, and what is answered.
+//! An HTTP request: its head, and the answer.
 
 use std::io::{ErrorKind, Result};
 
@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Result};
 pub const LONGEST_HEAD: usize = 16 << 10;
 
 pub enum Head {
-    /// All before the empty line.
+    /// The text before the empty line.
     Whole(Vec<u8>),
     Late,
     Long,
@@ -43,7 +43,7 @@ pub struct Reply<'p> {
     pub is_head: bool,
 }
 
-/// The page, or why not.
+/// The page, or an error status.
 pub fn reply<'p>(head: &[u8], port: u16, page: &'p str) -> Reply<'p> {
     let head = String::from_utf8_lossy(head);
     let mut lines = head.lines();
@@ -53,7 +53,7 @@ pub fn reply<'p>(head: &[u8], port: u16, page: &'p str) -> Reply<'p> {
         .filter(|(name, _)| name.eq_ignore_ascii_case("host"))
         .map(|(_, value)| value.trim())
         .collect();
-    // a page from elsewhere whose name was made to mean 127.0.0.1 says that name here
+    // DNS rebinding: a page from elsewhere whose host name resolves to 127.0.0.1 sends that name here
     let is_us = matches!(hosts[..], [host] if is_here(host, port));
     let (method, target) = (words.next(), words.next());
     let is_http = words.next().is_some_and(|version| version.starts_with("HTTP/"));

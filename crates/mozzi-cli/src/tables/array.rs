@@ -13,7 +13,7 @@ impl<T> Array<T> {
         Array { name: name.to_string(), shape, values }
     }
 
-    /// Numbers of one entry of the first axis.
+    /// The number of values in one entry of the first axis.
     pub fn width(&self) -> usize {
         self.shape[1..].iter().product()
     }

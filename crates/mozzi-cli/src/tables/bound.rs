@@ -1,29 +1,29 @@
-//! Bounds for what a damaged or hostile file may cost: memory, and the panics of other crates' readers.
+//! Bounds on the cost of a damaged or hostile file: memory, and panics in other crates' readers.
 
 use crate::failure::{Failure, Result};
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
-/// Bytes to which a compressed table of any size may unpack.
+/// A compressed table of any size may unpack to this many bytes.
 const UNPACKED: u64 = 1 << 30;
 /// A larger table may unpack to this multiple of its size.
 const RATIO: u64 = 16;
 
-/// Bytes that are left of those to which a compressed table may unpack.
+/// The number of bytes to which a compressed table may still unpack.
 pub struct Unpacked {
     most: u64,
     left: u64,
 }
 
 impl Unpacked {
-    /// Of a file of this length.
+    /// For a file of this length.
     pub fn of(length: u64) -> Self {
         let most = UNPACKED.max(length.saturating_mul(RATIO));
         Unpacked { most, left: most }
     }
 
-    /// Takes these bytes, or says why not.
+    /// Takes these bytes; an error if too few are left.
     pub fn take(&mut self, bytes: u64) -> std::result::Result<(), String> {
         self.left = self.left.checked_sub(bytes).ok_or_else(|| {
             let most = self.most >> 20;
@@ -38,7 +38,7 @@ thread_local! {
 }
 static HOOK: Once = Once::new();
 
-/// Runs another crate's reader: if it panics on damaged bytes, that is an error of the file.
+/// Calls another crate's reader: a panic on damaged bytes becomes an error of the file.
 pub fn caught<T>(file: &str, read: impl FnOnce() -> Result<T>) -> Result<T> {
     HOOK.call_once(|| {
         let before = std::panic::take_hook();

@@ -1,4 +1,4 @@
-//! What kind of file a table or a motion is, by its ending.
+//! The format of the file of a table or a motion, by its ending.
 
 use crate::failure::{Failure, Result};
 use crate::quantity::hyphenated;
@@ -8,7 +8,7 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Csv,
-    /// One array; of a motion, and where columns have names, a structured one.
+    /// One array; for a motion, and if columns have names, a structured one.
     Npy,
     /// Arrays by name, (N,) and (N, n).
     Npz,
@@ -21,11 +21,11 @@ pub enum Format {
 
 use Format::{Arrow, Csv, Mcap, Npy, Npz, Parquet};
 
-/// What motions are written to.
+/// Output formats for motions.
 pub const MOTION: [Format; 6] = [Csv, Npy, Npz, Arrow, Parquet, Mcap];
-/// What tables are read from.
+/// Input formats for tables.
 pub const TABLE: [Format; 5] = [Csv, Npy, Npz, Arrow, Parquet];
-/// What results are written to.
+/// Output formats for results.
 const RESULT: [Format; 4] = [Csv, Npy, Npz, Arrow];
 
 impl Format {
@@ -40,7 +40,7 @@ impl Format {
         }
     }
 
-    /// By the file's ending, one of these; "-" is a pipe, of CSV.
+    /// The format of the file's ending, one of these; "-" is CSV in a pipe.
     pub fn of(file: &str, expected: &[Format]) -> Result<Self> {
         match Self::known(file, expected)? {
             Some(format) => Ok(format),
@@ -55,12 +55,12 @@ impl Format {
         }
     }
 
-    /// Of a table that is read: a file of any other ending, such as a pipe, is CSV.
+    /// The format of an input table: a file with any other ending, such as a pipe, is CSV.
     pub fn of_input(file: &str) -> Result<Self> {
         Ok(Self::known(file, &TABLE)?.unwrap_or(Csv))
     }
 
-    /// Of a file that will hold CSV: the name of another format would mislead whoever reads it.
+    /// Checks the name of a CSV output: the ending of another format would mislead its readers.
     pub fn check_csv(file: &str) -> Result<()> {
         match Self::known(file, &MOTION) {
             Ok(None | Some(Csv)) => Ok(()),
@@ -87,7 +87,7 @@ impl Format {
         Ok(found)
     }
 
-    /// Of a file that is to hold this.
+    /// The format of a file for the results of this quantity.
     pub fn of_results(file: &str, query: Query) -> Result<Self> {
         let format = Self::of(file, &RESULT)?;
         let names: Vec<&str> = query.declaration().outputs.iter().map(|output| output.name).collect();

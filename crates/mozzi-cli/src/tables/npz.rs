@@ -1,4 +1,4 @@
-//! NumPy's .npz: a zip of .npy, each called after its array.
+//! NumPy's .npz: a zip of .npy, each named after its array.
 
 use super::array::Array;
 use super::bound::{Unpacked, caught};
@@ -12,7 +12,7 @@ use std::io::{BufReader, BufWriter, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-/// All arrays. Each is first shown with its name and shape, and its numbers are read if that is accepted.
+/// All arrays. The name and shape of each array are checked before its numbers are read.
 pub fn read(file: &str, mut accept: impl FnMut(&str, &Header) -> Result<()>) -> Result<Vec<Array>> {
     caught(file, || {
         let cannot = |error: &dyn std::fmt::Display| cannot(file, error);
@@ -31,7 +31,7 @@ pub fn read(file: &str, mut accept: impl FnMut(&str, &Header) -> Result<()>) -> 
             accept(&name, &header)?;
             let bytes = header.shape.iter().fold(header.size() as u64, |all, &count| all.saturating_mul(count as u64));
             match entry.compression() {
-                // entries of a sound archive do not share bytes
+                // entries of a valid archive do not share bytes
                 CompressionMethod::Stored => {
                     stored = stored.checked_sub(bytes).ok_or_else(|| cannot(&"its arrays are larger than it"))?;
                 }
@@ -44,7 +44,7 @@ pub fn read(file: &str, mut accept: impl FnMut(&str, &Header) -> Result<()>) -> 
     })
 }
 
-/// How many positions a state has, by the shape of `theta`; 0 without it.
+/// The number of positions of a state, by the shape of `theta`; 0 without it.
 pub fn positions(file: &str) -> Result<usize> {
     caught(file, || {
         let opened = File::open(file).map_err(|error| cannot(file, &error))?;

@@ -1,10 +1,10 @@
-//! The numbers that files hold.
+//! The number types of files.
 
 use arrow_array::{ArrayRef, Float32Array, Float64Array};
 use mozzi_batch::Number;
 use std::sync::Arc;
 
-/// A number that files hold and batches are of.
+/// A number type of files and batches.
 pub trait Precision: Number {
     /// "f64" or "f32".
     const NAME: &'static str;

@@ -1,4 +1,4 @@
-//! A table of any format, by its file's ending.
+//! Reads a table of any format, chosen by the file's ending.
 
 use super::array::{Array, tuple};
 use super::format::Format;
@@ -14,10 +14,10 @@ use mozzi::Model;
 use mozzi::quantities::{Dim, INPUTS};
 use std::cell::Cell;
 
-/// How a robot is chosen by the names of columns.
+/// Chooses a robot by the names of columns.
 pub type Choose<'c, 'm> = &'c dyn Fn(&[String]) -> &'m Model;
 
-/// More positions are of no robot.
+/// A robot cannot have more positions.
 const MOST_POSITIONS: usize = 1_000_000;
 
 /// Reads a file, or CSV from standard input for `-`.
@@ -54,13 +54,13 @@ fn read_by<'m>(file: &str, choose: Choose<'_, 'm>) -> Result<Samples> {
     }
 }
 
-/// The header of a .npy file, and what follows.
+/// The header of a .npy file, and the rest of the file.
 pub fn open_npy(file: &str) -> Result<(Header, Input)> {
     let mut input = Input::open(file)?;
     Ok((npy::header(&file, &mut input)?, input))
 }
 
-/// The numbers behind the header.
+/// The numbers after the header.
 pub fn rest(file: &str, header: &Header, mut from: Input) -> Result<Vec<f64>> {
     npy::numbers(&file, header, from.left(), &mut from)
 }
@@ -91,7 +91,7 @@ fn shape(model: &Model, table: &str) -> Vec<usize> {
     }
 }
 
-/// Arrays by name; as many states in each.
+/// Arrays by name, each with the same number of states.
 fn arrays<'m>(file: &str, choose: Choose<'_, 'm>) -> Result<Samples> {
     let mut samples = Samples { file: file.to_string(), ..Samples::default() };
     let mut first: Option<String> = None;

@@ -1,4 +1,4 @@
-//! What a quantity gives at all states, and the files it goes to.
+//! The results of a quantity at all states, and their output files.
 
 use super::array::Array;
 use super::format::Format;
@@ -21,7 +21,7 @@ pub fn arrays<T: Precision>(query: Query, model: &Model, states: usize) -> Vec<A
     query.declaration().outputs.iter().zip(query.shapes(model)).map(zeros).collect()
 }
 
-/// States in which a result is NaN.
+/// The number of states in which a result is NaN.
 pub fn nan<T: Precision>(results: &[Array<T>], states: usize) -> usize {
     let is_nan = |array: &Array<T>, state: usize| {
         let width = array.width();
@@ -30,7 +30,7 @@ pub fn nan<T: Precision>(results: &[Array<T>], states: usize) -> usize {
     (0..states).filter(|&state| results.iter().any(|array| is_nan(array, state))).count()
 }
 
-/// To the file; CSV for "-" is the text that is returned.
+/// Writes to the file; for "-", returns the text of the CSV.
 pub fn write<T: Precision>(
     file: &str,
     query: Query,
@@ -57,7 +57,7 @@ pub fn write<T: Precision>(
     Ok(String::new())
 }
 
-/// Vectors over the joints stand behind the columns that they follow from, so that other subcommands read the table.
+/// Vectors over the joints come after the columns that they follow from, so that other subcommands can read the table.
 fn csv<T: Precision>(query: Query, model: &Model, states: &States<T>, results: &[Array<T>]) -> String {
     let declaration = query.declaration();
     let mut table = Columns::default();
@@ -91,7 +91,7 @@ fn columns<T: Precision>(query: Query, model: &Model, results: &[Array<T>]) -> V
     outputs.flat_map(|((output, shape), array)| by_columns(labels(model, output, &shape), &array.values)).collect()
 }
 
-/// `tau_1` …, `M_1_1`, `M_1_2` …; where the base floats, velocities by the names of their entries; frames by theirs.
+/// `tau_1` …, `M_1_1`, `M_1_2` …; with a floating base, velocities by the names of their entries; frames by theirs.
 fn labels(model: &Model, output: &Output, shape: &[usize]) -> Vec<String> {
     output.dims.iter().zip(shape).fold(vec![output.name.to_string()], |labels, (dim, &size)| {
         let entries = match dim {

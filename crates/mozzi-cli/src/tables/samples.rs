@@ -1,4 +1,4 @@
-//! What a table has: states by rows, or poses, or what is followed.
+//! The contents of a table: states by rows, poses, or a reference to follow.
 
 use crate::columns::names;
 use crate::failure::{Failure, Result};
@@ -6,7 +6,7 @@ use crate::numbers::WRENCH;
 use mozzi::Model;
 use std::collections::BTreeMap;
 
-/// Numbers by name: those of the inputs, `wrench` of the tip; of .npz also `gravity`, `parameters` and `wrench_FRAME`.
+/// Numbers by name: those of the inputs, `wrench` of the tip; for .npz also `gravity`, `parameters` and `wrench_FRAME`.
 #[derive(Debug, Default)]
 pub struct Samples {
     /// Its name in messages.
@@ -30,12 +30,12 @@ impl Samples {
         }
     }
 
-    /// Times that a command cannot do without.
+    /// The times, which the command requires.
     pub fn times(&self) -> Result<&[f64]> {
         self.t.as_deref().ok_or_else(|| self.missing("column t", "is needed here"))
     }
 
-    /// A table that a command cannot do without.
+    /// A table that the command requires.
     pub fn need(&self, name: &str, model: &Model) -> Result<&[f64]> {
         let table = self.tables.get(name).map(Vec::as_slice);
         table.ok_or_else(|| self.missing(&format!("column {}", columns_of(model, name)), "is needed here"))
@@ -47,7 +47,7 @@ impl Samples {
     }
 }
 
-/// How a message names the columns of a table.
+/// The name of a table's columns in messages.
 pub fn columns_of(model: &Model, name: &str) -> String {
     if name == "wrench" {
         return WRENCH.join(" ");

@@ -14,9 +14,9 @@ use crate::state::check_frames;
 use mozzi::quantities::{Query, Uses};
 use mozzi::{FrameId, Model, Wrench};
 
-/// The tables that a quantity takes from a file.
+/// The tables that a quantity needs from a file.
 pub struct States<T> {
-    /// Names and places.
+    /// Names and places of the tables.
     pub samples: Samples,
     /// In the order of the quantity's inputs.
     pub inputs: Vec<Vec<T>>,
@@ -26,10 +26,10 @@ pub struct States<T> {
 }
 
 impl<T: Precision> States<T> {
-    /// `applied` is the same in all states; no frame's wrench may be in the file, too.
+    /// `applied` is the same in all states; then the file must not contain a frame's wrench.
     pub fn read(file: &str, query: Query, model: &Model, applied: &[(FrameId, Wrench)]) -> Result<Self> {
         let format = Format::of(file, &TABLE)?;
-        // what is of wrenches alone is 0 without them
+        // a quantity that depends on wrenches alone is 0 without them
         let needs_wrench = query.declaration().uses == Uses::WRENCHES && applied.is_empty();
         let mut samples = match format {
             Format::Npy => match read::open_npy(file)? {

@@ -9,7 +9,7 @@ pub fn mozzi(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mozzi")).args(arguments).output().expect("the program runs")
 }
 
-/// What it prints when all is well.
+/// The output of a successful run.
 pub fn text(arguments: &[&str]) -> String {
     let output = mozzi(arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
@@ -20,7 +20,7 @@ pub fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&text(&[arguments, &["--json"]].concat())).expect("JSON")
 }
 
-/// What it says when something is wrong, with its exit code; standard output is then empty.
+/// The exit code and the message of a failed run; standard output is then empty.
 pub fn complaint(arguments: &[&str]) -> (i32, String) {
     let output = mozzi(arguments);
     assert!(output.stdout.is_empty(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stdout));

@@ -1,4 +1,4 @@
-//! NumPy and PyArrow write what the program reads, and read what it writes.
+//! Round trips with NumPy and PyArrow: they write the program's input and read its output.
 
 use crate::common::folder;
 

@@ -1,4 +1,4 @@
-//! Tables in files, written and read by other means than the program's.
+//! Tables in files, written and read by other code than the program's.
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_ipc::{reader::FileReader, writer::FileWriter};
@@ -35,7 +35,7 @@ pub fn npz(folder: &Path, name: &str, arrays: &[(&str, &[usize], &[f64])]) -> St
     path.to_str().expect("text").to_string()
 }
 
-/// Shape and numbers of what was written.
+/// Shape and numbers of an output file.
 pub fn parse(bytes: &[u8]) -> (String, Vec<f64>) {
     let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     let (header, data) = bytes[10..].split_at(length);

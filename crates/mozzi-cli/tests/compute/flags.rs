@@ -1,4 +1,4 @@
-//! Flags that have no effect are refused, and names that are none.
+//! Flags without effect are refused, and so are unknown names.
 
 use crate::common::{complaint, folder};
 use crate::files::npz;

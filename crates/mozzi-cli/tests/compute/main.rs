@@ -1,5 +1,5 @@
-//! `mozzi compute` with tables, and `mozzi bench`: every quantity beside the library at one state, every kind of file,
-//! what is wrong with one.
+//! `mozzi compute` with tables, and `mozzi bench`: every quantity against the library at one state, every kind of file,
+//! and errors in files.
 #![allow(non_snake_case)]
 
 mod by_python;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// Arrays by name.
 type Arrays = Vec<(&'static str, Vec<f64>)>;
 
-/// Quantities of the robot or its tip by the library at one state: name, then each array.
+/// Quantities of the robot or its tip, computed by the library at one state: name, then each array.
 fn at_one(model: &Model, [theta, dtheta, x, F]: [&[f64]; 4]) -> Vec<(String, Arrays)> {
     let tip = model.end_effector().expect("a tip");
     let applied = [(tip, Wrench::from_array(std::array::from_fn(|k| F[k])))];

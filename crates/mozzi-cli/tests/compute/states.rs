@@ -31,7 +31,7 @@ impl States {
         &self.tables[k][state * self.widths[k]..][..self.widths[k]]
     }
 
-    /// The first tables beside each other, as one array.
+    /// The first tables side by side, as one array.
     pub fn beside(&self, tables: &[usize]) -> Vec<f64> {
         (0..self.count).flat_map(|state| tables.iter().flat_map(move |&k| self.at(k, state).to_vec())).collect()
     }

@@ -1,6 +1,6 @@
 //! The fuzz targets on the corpus of `fuzz/corpus`, each file once; and, ignored, on damaged files of it for
-//! `MOZZI_FUZZ_SECONDS` each (5 where it is not set), from a seed that `MOZZI_FUZZ_SEED` sets. `cargo xtask test` runs
-//! both. cargo-fuzz is guided by coverage.
+//! `MOZZI_FUZZ_SECONDS` each (5 if not set), from the seed `MOZZI_FUZZ_SEED`. `cargo xtask test` runs both. cargo-fuzz
+//! is guided by coverage.
 mod targets;
 
 use std::path::Path;
@@ -13,7 +13,7 @@ const LONGEST: Duration = Duration::from_secs(30);
 /// Targets share the name of a temporary file.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// A run of the target, which takes no longer.
+/// A run of the target within the time limit.
 fn bounded(target: fn(&[u8]), bytes: &[u8]) {
     let begin = Instant::now();
     target(bytes);
@@ -48,7 +48,7 @@ impl Random {
     }
 }
 
-/// One change: of a bit, a byte, a length, of a piece that is removed, repeated, or taken from another file.
+/// One change: of a bit, a byte or a length; or a piece is removed, repeated, or taken from another file.
 fn mutate(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     let at = random.below(bytes.len() + 1);
     let end = (at + 1 + random.below(12)).min(bytes.len());
@@ -74,7 +74,7 @@ fn mutate(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     }
 }
 
-/// The target on damaged files until the time is up; one that fails is kept.
+/// The target on damaged files until the time is up; a failing file is kept.
 fn damaged(name: &str, target: fn(&[u8])) {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let setting = |name: &str, default| std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default);

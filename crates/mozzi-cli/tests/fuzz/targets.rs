@@ -1,5 +1,5 @@
-//! What must hold of any bytes in a robot's JSON, in a table and in a request. `fuzz/` runs these under cargo-fuzz,
-//! `tests/fuzz` replays its corpus.
+//! Properties that hold for any bytes in a robot's JSON, in a table and in a request. `fuzz/` runs these under
+//! cargo-fuzz, `tests/fuzz` replays its corpus.
 
 use mozzi::Model;
 use mozzi::quantities::Query;
@@ -26,7 +26,7 @@ impl Drop for Temporary {
     }
 }
 
-/// A file of these bytes. In memory where there is such a folder, for speed.
+/// A file of these bytes, in memory if there is such a folder, for speed.
 fn file(ending: &str, bytes: &[u8]) -> Temporary {
     let memory = PathBuf::from("/dev/shm");
     let folder = if memory.is_dir() { memory } else { std::env::temp_dir() };
@@ -35,12 +35,12 @@ fn file(ending: &str, bytes: &[u8]) -> Temporary {
     Temporary(path)
 }
 
-/// A message says something, on lines that end.
+/// Is the text a message: not empty, and not endless?
 fn is_message(text: &str) -> bool {
     !text.is_empty() && text.len() < 1 << 20
 }
 
-/// A robot whose model is finite and whose written form is read again as the same robot, or errors.
+/// A robot whose model is finite and whose round trip gives the same robot, or errors.
 pub fn json(bytes: &[u8]) {
     let path = file("json", bytes);
     let name = path.name();
@@ -113,8 +113,8 @@ pub fn arrow(bytes: &[u8]) {
     table("arrow", bytes);
 }
 
-/// A connection that sends these bytes in pieces, as many bytes as the first byte says, gets the page only if it names
-/// this machine; and the same answer as if all came at once.
+/// A connection that sends these bytes in pieces, whose size is the first byte, gets the page only if it names this
+/// machine. The answer is the same as if all bytes came at once.
 pub fn request(bytes: &[u8]) {
     const PORT: u16 = 8000;
     const PAGE: &str = "<p>page</p>";

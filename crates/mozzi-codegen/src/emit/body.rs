@@ -5,7 +5,7 @@ use crate::function::Function;
 use crate::program::{Step, Value};
 use std::collections::BTreeMap;
 
-/// A line a step; an entry of an output as soon as it is known.
+/// Emits one line for each step, and each output entry as soon as it is known.
 pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
     let steps = &function.program.steps;
     let operand = |value: Value| match steps[value as usize] {
@@ -25,7 +25,7 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
             step.operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
         }
     }
-    // of each angle the places of its sine and cosine
+    // the steps of the sine and the cosine of each angle
     let mut angles: BTreeMap<Value, [Option<Value>; 2]> = BTreeMap::new();
     for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
         if let Step::Apply(function @ (Function::Sin | Function::Cos), [angle, ..]) = step {

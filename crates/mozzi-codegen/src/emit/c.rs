@@ -1,10 +1,10 @@
-//! C99: a header, which C++ reads, too, and a source.
+//! C99: a header, which C++ reads, too, and a source file.
 
 use super::dialect::{Argument, Dialect, Emitted, Sines, Source, abreast, digits};
 use super::{Precision, SourceFile, body, sin_cos};
 use crate::function::Function;
 
-/// What C and CUDA C say alike.
+/// The part that C and CUDA C share.
 pub(super) struct C(pub Precision);
 
 impl C {
@@ -22,7 +22,7 @@ impl C {
         ]
     }
 
-    /// A loop, which compilers make into registers of several.
+    /// A loop, which compilers vectorize.
     fn bind_sines_abreast(&self, sines: &[Sines]) -> Vec<String> {
         let Some((first, count, angles)) = abreast(sines, &self.literal(0.0)) else { return Vec::new() };
         let number = self.number();
@@ -83,13 +83,13 @@ impl Dialect for C {
     }
 }
 
-/// The header and the source.
+/// Emits the header and the source file.
 pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     let (c, name) = (C(source.precision), &source.name);
     let prototype = |function: &Emitted, restrict: &str| {
         let array = |before: &str, inside: &str, argument: &Argument| {
             let Argument { name, length, .. } = argument;
-            // an array of none is a pointer
+            // an empty array is a pointer
             match length {
                 0 => format!("{before}{} *{name}", c.number()),
                 _ => format!("{before}{} {name}[{inside}{length}]", c.number()),
@@ -125,7 +125,7 @@ pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     vec![file("h", header), file("c", text)]
 }
 
-/// A comment over lines; none without.
+/// A comment of several lines; nothing if there are no lines.
 fn comment(lines: &[String]) -> Vec<String> {
     let spaced =
         |(k, line): (usize, &String)| format!("{} {line}", if k == 0 { "/*" } else { " *" }).trim_end().to_string();
@@ -136,7 +136,7 @@ fn comment(lines: &[String]) -> Vec<String> {
     text
 }
 
-/// a b + c as one instruction where the processor has it; and no compiler that takes sums apart.
+/// Emits a b + c as one instruction if the processor has it, and refuses compilers that reorder sums.
 fn helpers(source: &Source, c: &C) -> Vec<String> {
     let (number, is_f64) = (c.number(), source.precision.is_f64());
     let mut lines = Vec::new();

@@ -1,7 +1,7 @@
-//! CUDA C: one state's function, and kernels of one thread a state on two layouts.
+//! CUDA C: a function for one state, and kernels with one thread for each state in two layouts.
 //!
-//! The function reads and writes entries that are `stride` apart; each kernel calls it with its own, so that a program
-//! is written once.
+//! The function reads and writes entries that are `stride` apart; each kernel calls it with its own stride, so that a
+//! program is emitted only once.
 
 use super::c::C;
 use super::dialect::{Argument, Dialect, Emitted, Sines, Source};
@@ -12,7 +12,7 @@ use std::cell::RefCell;
 struct Cuda<'s> {
     c: C,
     prefix: &'s str,
-    /// The file's constants, by their bits.
+    /// The file's constants, keyed by their bits.
     constants: RefCell<Vec<f64>>,
 }
 
@@ -48,7 +48,7 @@ impl Dialect for Cuda<'_> {
     fn bind_sines(&self, sines: &[Sines]) -> Vec<String> {
         sines.iter().flat_map(|one| self.c.bind_sines_by(&self.helper("sin_cos"), one)).collect()
     }
-    /// Threads are abreast already, and numbers that are known early take registers.
+    /// Threads already run in parallel, and numbers computed early would occupy registers.
     fn has_sines_abreast(&self) -> bool {
         false
     }
@@ -78,7 +78,7 @@ impl Dialect for Cuda<'_> {
 pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     let name = &source.name;
     let cuda = Cuda { c: C(source.precision), prefix: name, constants: RefCell::default() };
-    // the constants are known when all that uses them is written, and stand before it
+    // the constants are known once the code that uses them is written, and are emitted before it
     let helpers = helpers(source, &cuda);
     let functions: Vec<String> = source.functions.iter().flat_map(|function| written(function, &cuda)).collect();
     let mut lines: Vec<String> = source.about.iter().map(|line| format!("// {line}").trim_end().to_string()).collect();

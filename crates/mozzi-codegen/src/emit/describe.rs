@@ -8,7 +8,7 @@ use mozzi::Freedom;
 use mozzi::quantities::Query;
 use mozzi::{FrameId, Model};
 
-/// The head of a text.
+/// The header comment of a text.
 pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -> Vec<String> {
     let mut lines = vec![
         format!("The dynamics of the robot `{}` as straight-line code.", in_comment(&model.description().name)),
@@ -131,7 +131,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
     }
 }
 
-/// Symbols and what they are in plain letters, longer ones first.
+/// Symbols and their names in plain letters, longer ones first.
 const LETTERS: [(&str, &str); 48] = [
     ("θ̈", "ddtheta"),
     ("θ̇", "dtheta"),

@@ -1,4 +1,4 @@
-//! What a text is made of, and what languages say differently.
+//! The parts of a source text, and the differences between languages.
 
 use super::Precision;
 use crate::function::Function;
@@ -12,7 +12,7 @@ pub(super) struct Argument {
     pub about: String,
 }
 
-/// A program with the names that its function has.
+/// A program with the names used in its function.
 pub(super) struct Emitted<'p> {
     pub name: String,
     pub program: &'p Program,
@@ -22,7 +22,7 @@ pub(super) struct Emitted<'p> {
 }
 
 impl Emitted<'_> {
-    /// The arguments in words, and the work.
+    /// A description of the arguments, and of the cost.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = self.about.clone();
         for argument in self.inputs.iter().chain(&self.outputs).filter(|argument| !argument.about.is_empty()) {
@@ -45,7 +45,7 @@ impl Emitted<'_> {
     }
 }
 
-/// A whole text.
+/// A whole source text.
 pub(super) struct Source<'p> {
     pub name: String,
     pub about: Vec<String>,
@@ -71,13 +71,13 @@ impl Source<'_> {
 /// A sine and a cosine to be computed.
 pub(super) struct Sines {
     pub angle: String,
-    /// The names of their numbers; where one is not needed, none.
+    /// The names of the results; none if a result is not needed.
     pub sin: Option<String>,
     pub cos: Option<String>,
 }
 
-/// Sines that a loop computes: a name for its arrays, their length, which makes the loop worth a compiler's registers
-/// (a multiple of four, or two), and the angles, filled up with zeros.
+/// Sines that a loop computes: a name for its arrays, the arrays' length, and the angles, padded with zeros. The length
+/// is a multiple of four, or two, so that compilers vectorize the loop.
 pub(super) fn abreast<'s>(sines: &'s [Sines], zero: &str) -> Option<(&'s str, usize, String)> {
     let name = sines.iter().find_map(|sines| sines.sin.as_ref().or(sines.cos.as_ref()))?;
     let count = if sines.len() <= 2 { sines.len() } else { sines.len().next_multiple_of(4) };
@@ -85,36 +85,36 @@ pub(super) fn abreast<'s>(sines: &'s [Sines], zero: &str) -> Option<(&'s str, us
     Some((name, count, angles.collect::<Vec<_>>().join(", ")))
 }
 
-/// How a language says a step.
+/// How a language writes a step.
 pub(super) trait Dialect {
     /// A constant that is not negative.
     fn literal(&self, x: f64) -> String;
     /// An entry of an argument.
     fn entry(&self, array: &str, index: usize) -> String;
-    /// What the file calls one of its helpers, or of the language's functions: `mul_add`, `sgn`, `sqrt`, `tanh`,
-    /// `sin_cos`.
+    /// The name in the file of a helper or of a function of the language: `mul_add`, `sgn`, `sqrt`, `tanh`, `sin_cos`.
     fn helper(&self, name: &str) -> String;
-    /// A new number.
+    /// Defines a new number.
     fn bind(&self, name: &str, expression: &str) -> String;
-    /// New numbers: sines and cosines.
+    /// Defines new numbers: sines and cosines.
     fn bind_sines(&self, sines: &[Sines]) -> Vec<String>;
-    /// Are they computed as soon as their angles are known, side by side? Else each where it is needed.
+    /// True if sines are computed together, as soon as their angles are known; false if each is computed when it is
+    /// needed.
     fn has_sines_abreast(&self) -> bool {
         true
     }
-    /// New bits, as many as a number has.
+    /// Defines new bits, as wide as a number.
     fn bind_bits(&self, name: &str, expression: &str) -> String;
     /// A constant's bits.
     fn bits(&self, bits: u64) -> String;
     /// The bits of a number.
     fn to_bits(&self, x: &str) -> String;
-    /// The number of bits.
+    /// The number with these bits.
     fn number_of_bits(&self, x: &str) -> String;
-    /// A difference of bits that wraps around.
+    /// A wrapping difference of bits.
     fn difference_of_bits(&self, a: &str, b: &str) -> String;
 }
 
-/// A constant with every digit that its precision has, as all languages read it.
+/// A constant with all digits of its precision, in a form that all languages read.
 pub(super) fn digits(x: f64, precision: Precision) -> String {
     let text = if precision.is_f64() { format!("{x:?}") } else { format!("{:?}", x as f32) };
     if text.starts_with('-') { format!("({text})") } else { text }

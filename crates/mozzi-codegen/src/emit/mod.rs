@@ -26,13 +26,14 @@ use std::path::{Path, PathBuf};
 /// Language of emitted source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Language {
-    /// One file without attributes of a crate, for `mod` or `include!`: no `std`, no allocation, no panic, no
-    /// dependency. Arguments are references to arrays.
+    /// One file without crate attributes, for `mod` or `include!`: no `std`, no allocation, no panic, no dependency.
+    /// Arguments are references to arrays.
     Rust,
-    /// C99, a header and a source, dependent on <stdint.h> and <math.h> alone; from C++, too.
+    /// C99: a header and a source file that need only <stdint.h> and <math.h>; C++ can include the header.
     C,
-    /// CUDA C, one file without includes: a function for one state, and for many, a thread each, kernels on two
-    /// layouts: `_rows` (entry k of state i at `i · length + k`) and `_columns` (at `k · count + i`).
+    /// CUDA C: one file without includes. It has a function for one state and kernels for many states, one thread for
+    /// each state, in two layouts: `_rows` (entry k of state i at `i · length + k`) and `_columns` (at `k · count +
+    /// i`).
     Cuda,
 }
 
@@ -66,15 +67,15 @@ pub struct SourceFile {
 }
 
 impl SourceFile {
-    /// Writes it into a folder, which is made; not where it stands there already: tools that look at times see a change
-    /// only where there is one.
+    /// Writes it into a folder, which is created if needed. A file with the same content is not rewritten, so that
+    /// build tools that compare modification times see real changes only.
     ///
     /// # Errors
     /// [`EmitError::Write`].
     pub fn write(&self, folder: &Path) -> Result<PathBuf, EmitError> {
         let path = folder.join(&self.name);
         if std::fs::read(&path).ok().as_deref() != Some(self.text.as_bytes()) {
-            // next to its place and renamed, so that a full disk leaves an older file whole
+            // written next to its destination and renamed: a full disk leaves an older file intact
             let part = folder.join(format!(".mozzi-{}.part", std::process::id()));
             let written = std::fs::create_dir_all(folder)
                 .and_then(|()| std::fs::write(&part, &self.text))
@@ -91,13 +92,13 @@ impl SourceFile {
 pub enum EmitError {
     /// No quantity was given.
     Nothing,
-    /// A frame of another model.
+    /// A frame belongs to another model.
     Frame(mozzi::Error),
-    /// A function that the language has not without its standard library: tanh in Rust.
+    /// The language has no such function without its standard library: tanh in Rust.
     Function(Function, Language),
-    /// A constant that is no number of this precision.
+    /// A constant is not finite in this precision.
     Constant(f64, Precision),
-    /// A folder or file that cannot be written.
+    /// A folder or file cannot be written.
     Write(PathBuf, std::io::Error),
 }
 
@@ -116,10 +117,11 @@ impl fmt::Display for EmitError {
 }
 impl std::error::Error for EmitError {}
 
-/// The text of a robot's quantities; what is not one of the `arguments` is constant: its own gravity, its base at rest,
-/// nothing touched. Each becomes a function named for the quantity, of a frame for both; in C and CUDA the robot's name
-/// stands before. Names are made valid, and each once. The text's first lines tell the robot, its joints and units,
-/// frames and gravity; each function's, its arguments and its work.
+/// The source text of a robot's quantities. A quantity that is not in `arguments` is constant: the robot's own gravity,
+/// its base at rest, no applied wrenches. Each quantity becomes a function with its name, followed by the frame's name
+/// if it has a frame; in C and CUDA the robot's name is the prefix. Names are made valid and unique. The first lines of
+/// the text describe the robot, its joints and units, frames and gravity; the comment of each function describes its
+/// arguments and its cost.
 ///
 /// ```
 /// use mozzi::quantities::GravityForces;
@@ -133,8 +135,8 @@ impl std::error::Error for EmitError {}
 /// # Ok(()) }
 /// ```
 ///
-/// Sines are the library's own, within an ulp up to |x| = 10⁶ (`f32`: 8192, 1.5 ulp); a larger angle, or NaN, gives NaN
-/// in all that depends on it. Compilers must not be allowed to reorder sums (`-ffast-math`): C refuses it.
+/// Sines are the library's own, within an ulp up to |x| = 10⁶ (`f32`: 8192, 1.5 ulp); results that depend on a larger
+/// angle or NaN are NaN. Compilers must not be allowed to reorder sums: the C text refuses `-ffast-math`.
 ///
 /// # Errors
 /// [`EmitError`].
@@ -162,8 +164,9 @@ pub fn emit(
     files(&model.description().name, about, functions, language, precision)
 }
 
-/// [`emit`] into a folder. In a project's `build.rs` that is `OUT_DIR`, from which `include!` takes the text, so that
-/// it is written anew from the robot's file at every build; `examples/panda_controller` is such a project.
+/// Writes the text of [`emit`] into a folder. In a project's `build.rs` the folder is `OUT_DIR`, from which `include!`
+/// takes the text, so that every build regenerates it from the robot's file; `examples/panda_controller` is such a
+/// project.
 ///
 /// # Errors
 /// [`EmitError`].
@@ -178,7 +181,7 @@ pub fn emit_into(
     emit(model, quantities, arguments, language, precision)?.iter().map(|file| file.write(folder)).collect()
 }
 
-/// The text of programs, each a function of its own name; `name` is the file's. See [`emit`] for robots.
+/// The source text of programs, one function with its own name for each; `name` is the file's. See [`emit`] for robots.
 ///
 /// # Errors
 /// [`EmitError`].
@@ -193,7 +196,7 @@ pub fn emit_programs(
     files(name, Vec::new(), functions, language, precision)
 }
 
-/// A program's function, its names valid.
+/// The function of a program, with valid names.
 fn written<'p>(name: &str, program: &'p Program, taken: &mut BTreeSet<String>) -> Emitted<'p> {
     let mut arrays = BTreeSet::new();
     let mut argument = |name: &str, length: usize| Argument {

@@ -1,9 +1,9 @@
-//! Names that every language takes.
+//! Names that are valid in every language.
 
 use std::collections::BTreeSet;
 
-/// Words that one of the languages keeps for itself or its library, that a system has no file of, or that the emitted
-/// text uses.
+/// Words that are reserved by one of the languages or its library, that are not allowed as file names on some system,
+/// or that the emitted text uses.
 const KEPT: &str = " abstract alignas alignof and asm assert auto aux become bool box break case catch char class con concept const \
     constexpr continue count crate decltype default delete do double dyn else enum entry explicit export extern extern_c f32 f64 false final \
     float fn for friend goto if impl in inline int let long loop macro match mod move mul_add mut mutable namespace new noexcept not nul \
@@ -11,7 +11,7 @@ const KEPT: &str = " abstract alignas alignof and asm assert auto aux become boo
     square_root state static std struct super switch template this throw trait true try type typedef typeid typename typeof u32 u64 \
     union unsafe unsigned unsized use using virtual void volatile where while xor yield ";
 
-/// A name of ASCII letters, digits and single underscores, that begins with a letter; `nothing` where none is left.
+/// A name of ASCII letters, digits and single underscores that begins with a letter; `nothing` if no character is left.
 pub(super) fn identifier(name: &str, nothing: &str) -> String {
     let words: Vec<&str> = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
     let joined = words.join("_");
@@ -24,10 +24,10 @@ pub(super) fn identifier(name: &str, nothing: &str) -> String {
     }
 }
 
-/// How names begin that local numbers and arrays have, digits behind: `v12`, `r3`, `sin_v12`.
+/// Prefixes of local numbers and arrays, followed by digits: `v12`, `r3`, `sin_v12`.
 const LOCAL: [&str; 5] = ["v", "r", "x_v", "sin_v", "cos_v"];
 
-/// The name, with a number where it is taken or local.
+/// The name, made unique by a suffix if it is taken or looks like a local name.
 pub(super) fn unique(name: &str, taken: &mut BTreeSet<String>) -> String {
     let is_number = |rest: &str| rest.bytes().all(|c| c.is_ascii_digit());
     let is_local = LOCAL.iter().any(|start| name.strip_prefix(start).is_some_and(is_number));
@@ -41,7 +41,7 @@ pub(super) fn unique(name: &str, taken: &mut BTreeSet<String>) -> String {
     unique
 }
 
-/// A name in a comment: nothing in it ends the comment or its line, or turns its direction.
+/// A name made safe for a comment: no character ends the comment or its line, or reverses the text direction.
 pub(super) fn in_comment(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "_-.,:+() []".contains(c) { c } else { '_' }).collect()
 }

@@ -1,4 +1,4 @@
-//! Rust that needs no `std`.
+//! Rust without `std`.
 
 use super::dialect::{Argument, Dialect, Emitted, Sines, Source, abreast, digits};
 use super::{Precision, SourceFile, body, sin_cos};
@@ -30,7 +30,7 @@ impl Dialect for Rust {
         if let [Sines { angle, sin, cos }] = sines {
             return vec![format!("let ({}, {}) = sin_cos({angle});", name(sin), name(cos))];
         }
-        // a loop, which the compiler makes into registers of several
+        // a loop, which the compiler vectorizes
         let Some((first, count, angles)) = abreast(sines, &self.literal(0.0)) else { return Vec::new() };
         let number = self.number();
         let names = |pick: fn(&Sines) -> &Option<String>| {
@@ -90,7 +90,7 @@ fn written(function: &Emitted, rust: &Rust) -> Vec<String> {
     };
     let inputs = function.inputs.iter().map(|input| array("", input));
     let arguments: Vec<String> = inputs.chain(function.outputs.iter().map(|output| array("mut ", output))).collect();
-    // a paragraph each: documentation runs lines together
+    // one paragraph for each line: rustdoc would join the lines
     let mut lines: Vec<String> =
         function.lines().iter().flat_map(|line| [format!("/// {line}"), "///".into()]).collect();
     lines.pop();
@@ -140,7 +140,7 @@ fn helpers(source: &Source, rust: &Rust) -> Vec<String> {
         lines.extend([format!("    ({sin}, {cos})"), "}".to_string()]);
     }
     if source.has(|function| function == Function::Sqrt) {
-        // halving the exponent is 6 % off at most, and each of Heron's steps squares what is left
+        // halving the exponent is 6 % off at most, and each Heron step squares the relative error
         let (half_exponents, steps, up, down) = match is_f64 {
             true => ("1023 << 51", 4, "18014398509481984.0", "7.450580596923828e-9"),
             false => ("127 << 22", 3, "16777216.0", "0.000244140625"),

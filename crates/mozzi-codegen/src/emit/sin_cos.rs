@@ -1,4 +1,4 @@
-//! Sine and cosine as text: the library's own, from the same recording as in machine code.
+//! Sine and cosine as source text: the library's own, from the same recording as the machine code.
 
 use super::Precision;
 use super::dialect::Dialect;
@@ -25,7 +25,7 @@ pub(super) fn lines(precision: Precision, dialect: &dyn Dialect) -> (Vec<String>
         Node::Apply(..) if is_bits(node) => format!("r{node}"),
         _ => dialect.to_bits(&number(node)),
     };
-    // a product that sums took in stands there still
+    // products that were fused into sums are still in the list
     let mut is_needed: Vec<bool> = (0..).zip(&nodes).map(|(place, _)| place == sin || place == cos).collect();
     for (place, node) in nodes.iter().enumerate().rev() {
         if is_needed[place] {

@@ -1,5 +1,5 @@
-//! Registers for a straight line: what is needed last gives way first (Belady 1966), which for equal costs is the best
-//! that can be done.
+//! Register allocation for straight-line code: the value whose next use is furthest away is evicted first (Belady
+//! 1966). With equal costs this is optimal.
 
 use super::Refusal;
 use super::assembler::{Assembler, Memory, Operand, Register};
@@ -9,7 +9,7 @@ use super::shape::{Encoding, Shape};
 
 const NEVER: u32 = u32::MAX;
 
-/// Machine code with the numbers that it reads, before it stands in memory.
+/// Machine code with its constants, before it is placed in executable memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Code {
     pub bytes: Vec<u8>,
@@ -19,8 +19,8 @@ pub(crate) struct Code {
     pub frame: usize,
 }
 
-/// The code of a lowered program; arrays are inputs, outputs, constants, in this order. Refused where it needs more
-/// arrays, or more memory of its own, than there are.
+/// The code of a lowered program; its arrays are inputs, outputs, constants, in this order. Fails if it needs more
+/// arrays, or more memory of its own, than the limits.
 pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Result<Code, Refusal> {
     let mut pool = Vec::new();
     let before = lowered.before.as_deref().map(|before| (before, put_constants(SHAPE_TOGETHER, before, &mut pool)));
@@ -35,7 +35,7 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Res
     let mut assembler = Assembler::new(shape, &sizes);
     let mut used = 0;
     if let Some((before, constants)) = before {
-        // what it finds stands at the frame's beginning
+        // its results are at the beginning of the frame
         used = before.outputs[0].len() * SHAPE_TOGETHER.width();
         let places = Places { constants, pool: memory, first_output: assembler.frame(), stride: shape.number(), used };
         assembler.set_shape(SHAPE_TOGETHER);
@@ -51,7 +51,7 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Res
     Ok(Code { bytes: assembler.finish(), pool, instructions, frame })
 }
 
-/// Of each node that is a constant the byte where it stands now.
+/// For each constant node, its byte offset in the pool.
 fn put_constants(shape: Shape, lowered: &Lowered, pool: &mut Vec<u8>) -> Vec<usize> {
     let repeat = if shape.encoding() == Encoding::Vex { shape.lanes() } else { 1 };
     let put = |node: &Node| {
@@ -64,17 +64,17 @@ fn put_constants(shape: Shape, lowered: &Lowered, pool: &mut Vec<u8>) -> Vec<usi
     lowered.nodes.iter().map(put).collect()
 }
 
-/// Where a line finds what is in memory.
+/// Where straight-line code finds its operands in memory.
 struct Places {
-    /// Of each constant the byte in the pool.
+    /// For each constant, its byte offset in the pool.
     constants: Vec<usize>,
     /// The array of constants.
     pool: Memory,
     /// The first array of outputs.
     first_output: Memory,
-    /// From one entry of an input to the next, in bytes.
+    /// The stride between entries of an input, in bytes.
     stride: usize,
-    /// Bytes of the frame that are not the line's own.
+    /// Bytes of the frame that are already in use.
     used: usize,
 }
 
@@ -83,11 +83,11 @@ struct Line<'p> {
     nodes: &'p [Node],
     places: Places,
     assembler: Assembler,
-    /// Of each value the places that need it, in `needs[first[v]..first[v + 1]]`; those before `next[v]` are past.
+    /// For each value v, the places that need it: `needs[first[v]..first[v + 1]]`; those before `next[v]` are past.
     needs: Vec<u32>,
     first: Vec<u32>,
     next: Vec<u32>,
-    /// Of each value the entries of outputs that it is.
+    /// For each value, the output entries equal to it.
     outputs: Vec<Vec<(usize, usize)>>,
     register: Vec<Option<Register>>,
     held: Vec<Option<Value>>,
@@ -107,7 +107,7 @@ impl<'p> Line<'p> {
                 is_needed[value as usize] = true;
             }
         }
-        // what nothing needs is never computed
+        // values that nothing needs are never computed
         for place in (0..nodes.len()).rev() {
             if is_needed[place] {
                 nodes[place].operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
@@ -145,19 +145,19 @@ impl<'p> Line<'p> {
         }
     }
 
-    /// The assembler with all of it.
+    /// The assembler with the whole code.
     fn code(mut self) -> Assembler {
         (0..self.nodes.len()).for_each(|place| self.step(place));
         self.assembler
     }
 
-    /// The place that needs a value next.
+    /// The next place that needs a value.
     fn next_need(&self, value: Value) -> u32 {
         let (next, end) = (self.next[value as usize], self.first[value as usize + 1]);
         if next < end { self.needs[next as usize] } else { NEVER }
     }
 
-    /// Where a value that is in no register stands in memory.
+    /// The memory of a value that is in no register.
     fn in_memory(&self, value: Value) -> Operand {
         let width = self.shape.width();
         match (self.nodes[value as usize], self.slot[value as usize]) {
@@ -178,8 +178,8 @@ impl<'p> Line<'p> {
         self.register[value as usize].map_or_else(|| self.in_memory(value), Operand::Register)
     }
 
-    /// A register for something new: a free one, or that of the value that is needed last, values that need not be
-    /// stored first.
+    /// A register for a new value: a free one, or the one whose value is needed last; values that need not be stored
+    /// are preferred.
     fn take(&mut self, here: usize, pinned: &mut Vec<Register>) -> Register {
         let is_pinned = |register: &usize| pinned.contains(&(*register as Register));
         let mut best = (0, None);
@@ -213,7 +213,7 @@ impl<'p> Line<'p> {
         register as Register
     }
 
-    /// The value in a register; loaded, it stays there where it is needed again.
+    /// Puts the value in a register; a loaded value stays there if it is needed again.
     fn in_register(&mut self, here: usize, value: Value, pinned: &mut Vec<Register>) -> Register {
         if let Some(register) = self.register[value as usize] {
             return register;
@@ -231,7 +231,7 @@ impl<'p> Line<'p> {
         self.register[value as usize] = Some(register);
     }
 
-    /// The register of a value that is not needed any more.
+    /// The register of a value that is no longer needed.
     fn dying(&self, value: Value) -> Option<Register> {
         self.register[value as usize].filter(|_| self.next_need(value) == NEVER)
     }
@@ -275,7 +275,7 @@ impl<'p> Line<'p> {
         }
     }
 
-    /// An input or a constant that is an output.
+    /// Writes an output that is an input or a constant.
     fn pass_on(&mut self, here: usize, value: Value) {
         for k in 0..self.outputs[here].len() {
             let register = self.take(here, &mut Vec::new());
@@ -314,7 +314,7 @@ impl<'p> Line<'p> {
         target
     }
 
-    /// ± a b ± c overwrites one of its operands: one that is needed no more, or a copy.
+    /// ± a b ± c overwrites one of its operands: one that is no longer needed, or a copy.
     fn fused(
         &mut self,
         here: usize,
@@ -331,7 +331,7 @@ impl<'p> Line<'p> {
             self.assembler.fused_231(operation, target, first, self.operand(b));
             return target;
         }
-        // a factor that dies, or that has to be loaded anyway
+        // a factor that is no longer needed, or that must be loaded anyway
         let (a, b) = if self.dying(a).is_some() || self.dying(b).is_none() && !is_in_register(self, a) {
             (a, b)
         } else {

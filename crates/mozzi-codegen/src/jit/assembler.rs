@@ -1,8 +1,8 @@
-//! Instructions as bytes: the forms that programs need, of x86-64 with VEX (AVX2, FMA) and with EVEX (AVX-512)
+//! Encodes instructions as bytes: the forms that programs need, of x86-64 with VEX (AVX2, FMA) and with EVEX (AVX-512)
 //! prefixes.
 //!
-//! The assembler is where machine code becomes safe to run: it knows the bytes of every array, and no instruction that
-//! it emits reads or writes beyond them, for any input.
+//! The assembler makes machine code memory-safe: it knows the length in bytes of every array, and emits no instruction
+//! that reads or writes beyond it, for any input.
 
 use super::instruction::Operation;
 use super::shape::{Encoding, Shape};
@@ -17,22 +17,22 @@ pub(crate) type Memory = usize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operand {
     Register(Register),
-    /// A register's lanes, from this byte on.
+    /// A register's lanes, at this byte offset.
     Lanes(Memory, usize),
-    /// One number for all lanes, from this byte on: with EVEX anywhere, else in loads of several lanes.
+    /// One number broadcast to all lanes, at this byte offset: with EVEX anywhere, else only in loads of several lanes.
     Repeated(Memory, usize),
 }
 
-/// General registers that hold the arrays' addresses; rdi, which brings them, last of those that need not be saved. Of
-/// `rsp` and `r12` as bases the encoding is another.
+/// General registers for the arrays' addresses; rdi, which passes them, is the last of those that need not be saved.
+/// `rsp` and `r12` are left out: as base registers they need another encoding.
 const BASES: [u8; 13] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
-/// The first of them that belongs to the caller.
+/// The index of the first register that must be saved for the caller.
 const SAVED: usize = 9;
 
-/// The most arrays, those of constants and of spilled registers included.
+/// The largest number of arrays, including constants and spilled registers.
 pub(crate) const MOST_ARRAYS: usize = BASES.len();
 
-/// The largest frame in bytes, far below what any thread's stack has.
+/// The largest frame in bytes, far less than any thread's stack.
 pub(crate) const LARGEST_FRAME: usize = 1 << 16;
 
 /// Opcode map, mandatory prefix (0 none, 1 66, 2 F3, 3 F2), the bit W, opcode.
@@ -52,29 +52,29 @@ impl Form {
 
 pub(crate) struct Assembler {
     shape: Shape,
-    /// The bytes of each array.
+    /// The length of each array in bytes.
     sizes: Vec<usize>,
-    /// Which array is the frame: it grows.
+    /// The index of the array that is the frame; the frame grows.
     frame: Memory,
     body: Vec<u8>,
     instructions: usize,
 }
 
 impl Assembler {
-    /// Code that finds at rdi the addresses of all arrays of these sizes in bytes, and after them has a frame of its
-    /// own, as the last array.
+    /// Code that reads the addresses of all arrays of these sizes in bytes from the list at rdi; after them it has a
+    /// frame of its own, as the last array.
     pub fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();
         Assembler { shape, frame: sizes.len() - 1, sizes, body: Vec::new(), instructions: 0 }
     }
 
-    /// What follows works on these registers.
+    /// Sets the registers of the following instructions.
     pub fn set_shape(&mut self, shape: Shape) {
         self.shape = shape;
     }
 
-    /// The array of what registers could not hold.
+    /// The array of spilled registers.
     pub fn frame(&self) -> Memory {
         self.frame
     }
@@ -110,17 +110,17 @@ impl Assembler {
         self.shape.encoding() == Encoding::Evex
     }
 
-    /// Can the last operand of this operation be in memory, as lanes or as one number for all?
+    /// True if the last operand of this operation can be in memory, as lanes or as one number for all.
     pub fn takes_memory(&self, operation: Operation) -> bool {
         match operation {
             Operation::Sqrt | Operation::ShiftLeft(_) => false,
-            // the scalar forms of bits read sixteen bytes
+            // the scalar forms of bit operations read sixteen bytes
             _ if operation.is_of_bits() => !self.shape.is_scalar(),
             _ => true,
         }
     }
 
-    /// target ← operation(a, b), of one operand: operation(b).
+    /// target ← operation(a, b); with one operand: operation(b).
     pub fn apply(&mut self, operation: Operation, target: Register, a: Register, b: Operand) {
         let form = match operation {
             Operation::Add => self.arithmetic(0x58),
@@ -134,7 +134,7 @@ impl Assembler {
             Operation::Xor => self.bits(0xef, 0xef),
             Operation::SubBits => self.bits(0xfb, 0xfa),
             Operation::ShiftLeft(by) => {
-                // the target stands where others have their first operand, and 6 where others have their target
+                // here the target takes the field of the first operand, and 6 the field of the target
                 let form = self.bits(0x73, 0x72);
                 self.instruction(form, 6, target, b);
                 self.body.push(by);
@@ -144,7 +144,7 @@ impl Assembler {
                 unreachable!("three operands")
             }
         };
-        // packed roots have one operand, and the other field must be 0
+        // packed square roots have one operand, and the other field must be 0
         let a = if operation == Operation::Sqrt && !self.shape.is_scalar() { 0 } else { a };
         self.instruction(form, target, a, b);
     }
@@ -167,7 +167,7 @@ impl Assembler {
         self.instruction(form, target, a, c);
     }
 
-    /// target ← what stands there.
+    /// target ← the operand.
     pub fn load(&mut self, target: Register, from: Operand) {
         let form = match from {
             Operand::Register(_) => Form { prefix: u8::from(self.shape.is_f64()), ..self.arithmetic(0x28) },
@@ -195,7 +195,7 @@ impl Assembler {
                 (register, false)
             }
             Operand::Lanes(memory, _) => (BASES[memory], false),
-            // a broadcast is an instruction of its own, without the bit for it
+            // a broadcast is a separate instruction, without the broadcast bit
             Operand::Repeated(memory, _) => (BASES[memory], !form.is_broadcast()),
         };
         assert!(self.is_evex() || form.is_broadcast() || !repeated, "AVX2 repeats no operands");
@@ -227,7 +227,7 @@ impl Assembler {
 
     fn evex(&mut self, form: Form, target: Register, a: Register, base: u8, is_register: bool, repeated: bool) {
         let Form { map, prefix, wide, .. } = form;
-        // the fifth bit of a register operand stands where an address has its index
+        // the fifth bit of a register operand is in the place of an address's index bit
         let x = if is_register { inverted(base, 4) } else { 1 };
         let registers = inverted(target, 3) << 7 | x << 6 | inverted(base, 3) << 5 | inverted(target, 4) << 4;
         let second = u8::from(wide) << 7 | (!a & 15) << 3 | 4 | prefix;
@@ -235,7 +235,8 @@ impl Assembler {
         self.body.extend([0x62, registers | map, second, third]);
     }
 
-    /// An address with its displacement, of `access` bytes; EVEX counts short displacements in them.
+    /// An address with its displacement, for an access of `access` bytes; EVEX counts short displacements in units of
+    /// it.
     fn address(&mut self, field: u8, memory: Memory, byte: usize, access: usize) {
         let end = byte + access;
         if memory == self.frame {
@@ -261,7 +262,7 @@ impl Assembler {
             push_or_pop(&mut code, 0x50, register);
         }
         let rest = (frame + 64).next_multiple_of(64);
-        // page by page, so that the guard page below the stack is met and not jumped over
+        // page by page, so that the guard page below the stack is touched and not skipped
         for _ in 0..rest / 4096 {
             code.extend([0x48, 0x81, 0xec, 0x00, 0x10, 0x00, 0x00]); // sub rsp, 4096
             code.extend([0x48, 0x85, 0x24, 0x24]); // test [rsp], rsp

@@ -1,11 +1,11 @@
-//! Memory that holds machine code, and its calls: the one place of this crate where safety is argued.
+//! Executable memory with machine code, and calls into it: the only place in this crate with `unsafe`, and the argument
+//! for its safety.
 //!
-//! What is run is made by [`allocate`](super::allocate()) alone. Its assembler knows how many bytes each array has and
-//! refuses an instruction that would read or write beyond one of them, so that a fault in its input (a wrong program,
-//! a wrong register) gives wrong numbers, and never a wrong address. What remains to be trusted are the
-//! assembler's few forms, each of which the tests compare with a disassembler, and its frame, which is on the stack,
-//! touched page by page. The code calls nothing, does not branch, and restores the registers that System V says are the
-//! caller's.
+//! The code comes from [`allocate`](super::allocate()) alone. Its assembler knows how many bytes each array has and
+//! refuses an instruction that would read or write beyond one of them, so that a fault in its input (a wrong program, a
+//! wrong register) gives wrong numbers, but never a wrong address. The parts to be trusted are the assembler's few
+//! forms, each of which the tests compare with a disassembler, and its frame, which is on the stack and touched page by
+//! page. The code calls nothing, does not branch, and restores the callee-saved registers of the System V ABI.
 //!
 //! Memory is writable while it is filled and executable afterwards, never both; constants are in pages of their own
 //! that become read-only.
@@ -20,7 +20,7 @@ use std::any::TypeId;
 #[derive(Debug)]
 pub(crate) struct Executable {
     pages: Pages,
-    /// Where the constants are, after the code.
+    /// The offset of the constants, after the code.
     pool: usize,
     /// Inputs, then outputs.
     lengths: Vec<usize>,
@@ -29,7 +29,7 @@ pub(crate) struct Executable {
 }
 
 impl Executable {
-    /// None where the processor has not the instructions, or the system grants no executable memory.
+    /// None if the processor lacks the instructions, or the system grants no executable memory.
     pub fn new(shape: Shape, code: &Code, inputs: &[usize], outputs: &[usize]) -> Option<Self> {
         if !shape.is_supported() {
             return None;
@@ -38,10 +38,10 @@ impl Executable {
         Some(Executable { pages, pool, lengths: [inputs, outputs].concat(), inputs: inputs.len(), shape })
     }
 
-    /// Computes all lanes: entry k of an array has its lanes at `k · lanes`. The last output stands apart.
+    /// Computes all lanes: the lanes of entry k of an array are at `k · lanes`. The last output is a separate argument.
     ///
     /// # Panics
-    /// When numbers are of another type, or an array is missing or too short.
+    /// If the numbers are of another type, or an array is missing or too short.
     #[inline(always)]
     pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
         let lanes = self.shape.lanes();
@@ -69,8 +69,8 @@ impl Executable {
     fn run(&self, addresses: &mut [*mut u8; MOST_ARRAYS]) {
         addresses[self.lengths.len()] = self.pages.start.wrapping_add(self.pool);
         // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has
-        // its instructions (`new`). It reads and writes the arrays whose addresses it finds, each as long as the
-        // assembler was told (`call`; of the outputs, the borrows are exclusive), its constants, and its stack.
+        // its instructions (`new`). It accesses only the arrays at the given addresses, each as long as the assembler
+        // assumed (checked in `call`; the outputs are borrowed exclusively), its constants, and its stack.
         unsafe {
             let function: extern "sysv64" fn(*const *mut u8) = std::mem::transmute(self.pages.start);
             function(addresses.as_ptr());
@@ -90,14 +90,14 @@ struct Pages {
     length: usize,
 }
 
-// SAFETY: once made, nobody writes to the pages, and they belong to no thread.
+// SAFETY: the pages are immutable once made, and are not bound to a thread.
 unsafe impl Send for Pages {}
 // SAFETY: likewise.
 unsafe impl Sync for Pages {}
 
 #[cfg(all(unix, target_arch = "x86_64"))]
 impl Pages {
-    /// The pages, and where the constants begin.
+    /// Makes the pages; returns them and the offset of the constants.
     fn new(code: &[u8], constants: &[u8]) -> Option<(Self, usize)> {
         const PAGE: usize = 4096; // of x86-64
         let pool = code.len().next_multiple_of(PAGE);
@@ -111,8 +111,8 @@ impl Pages {
             return None;
         }
         let pages = Pages { start: start.cast(), length };
-        // SAFETY: the mapping is `length` bytes long, writable, and nobody else's yet; code and constants fit in their
-        // parts. Afterwards neither part is written again: the first is made executable, the second read-only.
+        // SAFETY: the mapping is `length` bytes long, writable, and not shared yet; code and constants fit in their
+        // parts. Neither part is written again: the first becomes executable, the second read-only.
         let is_granted = unsafe {
             std::ptr::copy_nonoverlapping(code.as_ptr(), pages.start, code.len());
             std::ptr::copy_nonoverlapping(constants.as_ptr(), pages.start.add(pool), constants.len());
@@ -133,7 +133,7 @@ impl Pages {
 impl Drop for Pages {
     fn drop(&mut self) {
         #[cfg(all(unix, target_arch = "x86_64"))]
-        // SAFETY: the mapping is this one's own, and no call is running: a call borrows it.
+        // SAFETY: this value owns the mapping, and no call is running: a call borrows it.
         unsafe {
             libc::munmap(self.start.cast(), self.length);
         }

@@ -1,16 +1,16 @@
-//! Programs as the processor computes them: sines, signs and the like are arithmetic and bits.
+//! Programs as processor instructions: sines, signs and the like are expressed by arithmetic and bit operations.
 
-/// A number of the lowered program: the place of its node.
+/// A number of the lowered program: the index of its node.
 pub(crate) type Value = u32;
 
-/// What one instruction does to a register's lanes.
+/// An instruction on a register's lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Operation {
     Add,
     Sub,
     Mul,
     Div,
-    /// The second where either is NaN; likewise `Max`.
+    /// The second operand if either is NaN; likewise `Max`.
     Min,
     Max,
     Sqrt,
@@ -22,7 +22,7 @@ pub(crate) enum Operation {
     NegMulAdd,
     /// −a b − c.
     NegMulSub,
-    /// Of bits; likewise the rest.
+    /// Bitwise; likewise the rest.
     And,
     Xor,
     SubBits,
@@ -44,13 +44,13 @@ impl Operation {
         matches!(self, Add | Mul | And | Xor)
     }
 
-    /// On bits, and not on numbers.
+    /// True if it works on bits, not on numbers.
     pub fn is_of_bits(self) -> bool {
         matches!(self, And | Xor | SubBits | ShiftLeft(_))
     }
 }
 
-/// The array that sines and cosines stand in where they are computed before.
+/// The array of the sines and cosines that are computed in advance.
 pub(crate) const SINES: u32 = u32::MAX;
 
 /// A node of the lowered program.

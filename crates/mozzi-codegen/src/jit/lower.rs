@@ -1,4 +1,4 @@
-//! From a program to what the processor can do.
+//! Lowers a program to operations that the processor has.
 
 use super::instruction::{Node, Operation, SINES, Value};
 use super::shape::Shape;
@@ -7,24 +7,24 @@ use crate::function::Function;
 use crate::program::{Program, Step};
 use std::collections::HashMap;
 
-/// A lowered program. Its outputs are the program's, and one more: the sum of the squares of all angles.
+/// A lowered program. It has one output more than the program: the sum of the squares of all angles.
 pub(crate) struct Lowered {
     pub nodes: Vec<Node>,
     pub outputs: Vec<Vec<Value>>,
-    /// What is computed before, in registers of several numbers: the sines and cosines of neighbouring angles of one
-    /// state. Its inputs are [`TOGETHER`] numbers of an array from an entry on; its one output is what [`SINES`] are
-    /// read from.
+    /// The code that runs first, on registers of several numbers: the sines and cosines of neighbouring angles of one
+    /// state. Its inputs are [`TOGETHER`] numbers of an array from an entry on; its only output is the array that
+    /// [`SINES`] refers to.
     pub before: Option<Box<Lowered>>,
 }
 
-/// How many angles of one state have their sines computed in one register.
+/// The number of angles of one state whose sines are computed in one register.
 pub(crate) const TOGETHER: usize = 4;
 
-/// The shape that does it.
+/// The shape of that register.
 pub(crate) const SHAPE_TOGETHER: Shape = Shape::FourF64;
 
 impl Lowered {
-    /// Operations in floating point, a product with a sum being two.
+    /// Floating-point operations; a fused multiply-add counts as two.
     pub fn flops(&self) -> usize {
         let work = |node: &Node| match node {
             Node::Apply(operation, _) if !operation.is_of_bits() => operation.arity().saturating_sub(1).max(1),
@@ -35,7 +35,7 @@ impl Lowered {
     }
 }
 
-/// Nodes in the making, of `f64` or of `f32`.
+/// A builder of nodes, for `f64` or for `f32`.
 pub(crate) struct Builder {
     pub is_f64: bool,
     nodes: Vec<Node>,
@@ -69,13 +69,13 @@ impl Builder {
         self.push(Node::Apply(operation, three))
     }
 
-    /// The bit of a number's sign.
+    /// The sign bit.
     pub fn sign_bit(&mut self) -> Value {
         self.bits(if self.is_f64 { 1 << 63 } else { 1 << 31 })
     }
 
-    /// −1, 0 or 1: a number that is not 0 is far beyond ±1 after two products by a power of two. NaN stays NaN, where
-    /// it is second.
+    /// −1, 0 or 1: multiplied twice by a power of two, every number except 0 is far beyond ±1. NaN stays NaN, as the
+    /// second operand.
     fn sgn(&mut self, x: Value) -> Value {
         let huge = self.constant(2.0_f64.powi(if self.is_f64 { 600 } else { 100 }));
         let (one, minus_one) = (self.constant(1.0), self.constant(-1.0));
@@ -86,8 +86,8 @@ impl Builder {
     }
 }
 
-/// None where the program has a function that there is no machine code for: tanh. In the place of each output from
-/// `condensed` on stand its least entry and the sum of its entries, which is not finite where an entry is not.
+/// None if the program has a function without machine code: tanh. Each output from `condensed` on is replaced by its
+/// smallest entry and the sum of its entries, which is not finite if an entry is not.
 pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option<Lowered> {
     let is_f64 = shape.is_f64();
     let windows = if shape == Shape::OneF64 { windows(program) } else { Vec::new() };
@@ -158,10 +158,10 @@ pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option
     Some(Lowered { nodes: builder.nodes, outputs, before })
 }
 
-/// Where a register's angles begin: array, entry.
+/// The beginning of a register's angles: array, entry.
 type Window = (u32, u32);
 
-/// Registers of neighbouring inputs that hold all angles, as far as an array is as long as one.
+/// Windows of neighbouring inputs that cover all angles, except in arrays shorter than a register.
 fn windows(program: &Program) -> Vec<Window> {
     let mut angles: Vec<Window> = program
         .steps
@@ -185,7 +185,7 @@ fn windows(program: &Program) -> Vec<Window> {
     windows
 }
 
-/// Where the sine of an angle stands, its cosine `TOGETHER` numbers on.
+/// The index of an angle's sine; its cosine is `TOGETHER` numbers further on.
 fn together(windows: &[Window], array: u32, index: u32) -> Option<u32> {
     let of = |&(its, first): &Window| its == array && (first..first + TOGETHER as u32).contains(&index);
     let k = windows.iter().position(of)?;

@@ -16,15 +16,15 @@ use crate::program::{Array, Program};
 use executable::Executable;
 use mozzi::scalar::Float;
 
-/// Reasons why there is no machine code.
+/// The reason why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// It was not requested.
     NotAsked,
-    /// The processor has not the instructions, or is no x86-64.
+    /// The processor lacks the instructions, or is not x86-64.
     Processor,
-    /// The program has a function that there is no machine code for (tanh), or more arrays than there are registers for
-    /// their addresses.
+    /// The program has a function without machine code (tanh), or more arrays than there are registers for their
+    /// addresses.
     Program,
     /// The code would be longer than [`LONGEST_CODE`]; the kernels are faster then.
     Long,
@@ -45,7 +45,8 @@ impl std::fmt::Display for Refusal {
 }
 impl std::error::Error for Refusal {}
 
-/// Largest code size in bytes: longer code is fetched from the second-level cache at every call, and loops are faster.
+/// Largest code size in bytes: longer code is fetched from the second-level cache at every call, and the kernels' loops
+/// are faster.
 pub const LONGEST_CODE: usize = 64 << 10;
 
 /// A program as machine code for one or several states at once. It can be shared between threads; calls do not
@@ -65,13 +66,13 @@ impl Kernel {
     /// The machine code of a program.
     ///
     /// # Errors
-    /// [`Refusal`] with the reason why there is none.
+    /// [`Refusal`] with the reason why there is no machine code.
     pub fn new(program: &Program, shape: Shape) -> Result<Self, Refusal> {
         Self::condensing(program, shape, usize::MAX)
     }
 
-    /// Likewise, but each output from number `condensed` on is replaced by its least entry and the sum of its entries,
-    /// which is enough to judge pivots.
+    /// Likewise, but each output from index `condensed` on is replaced by its smallest entry and the sum of its
+    /// entries, which is enough to check pivots.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -118,12 +119,12 @@ impl Kernel {
         self.frame_bytes
     }
 
-    /// Fills the outputs of as many states as the shape has lanes. Entry k of an array has its lanes one after the
-    /// other, from `k · lanes` on. `squares` takes, of each lane, the sum of the squares of all angles, whose sine is
-    /// computed; see [`is_exact`](Self::is_exact).
+    /// Fills the outputs of one state for each lane of the shape. The lanes of entry k of an array are contiguous, from
+    /// `k · lanes` on. `squares` receives, for each lane, the sum of the squares of all angles whose sine is computed;
+    /// see [`is_exact`](Self::is_exact).
     ///
     /// # Panics
-    /// When numbers are not of the shape's type, an array is missing, or one is too short.
+    /// If the numbers do not have the shape's type, or an array is missing or too short.
     #[inline(always)]
     pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
         self.executable.call(inputs, outputs, squares);

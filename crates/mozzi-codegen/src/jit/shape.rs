@@ -1,6 +1,6 @@
-//! Which registers and which numbers machine code works on.
+//! The registers and number types of machine code.
 
-/// How instructions are encoded, and so what the processor must have.
+/// The encoding of instructions, which determines what the processor must support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
     /// AVX2 and FMA: 16 registers of 256 bits.
@@ -9,7 +9,7 @@ pub(crate) enum Encoding {
     Evex,
 }
 
-/// The kinds of machine code that are made.
+/// The kinds of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// One state in `f64`; AVX2 and FMA, as the next three.
@@ -31,7 +31,7 @@ impl Shape {
     pub const ALL: [Shape; 6] =
         [Shape::OneF64, Shape::FourF64, Shape::OneF32, Shape::EightF32, Shape::EightF64, Shape::SixteenF32];
 
-    /// The states that one call computes.
+    /// The number of states that one call computes.
     pub fn lanes(self) -> usize {
         match self {
             Shape::OneF64 | Shape::OneF32 => 1,
@@ -41,17 +41,17 @@ impl Shape {
         }
     }
 
-    /// The bytes of a number.
+    /// Bytes in a number.
     pub fn number(self) -> usize {
         if self.is_f64() { 8 } else { 4 }
     }
 
-    /// Numbers are `f64`, not `f32`.
+    /// True if numbers are `f64`, not `f32`.
     pub fn is_f64(self) -> bool {
         matches!(self, Shape::OneF64 | Shape::FourF64 | Shape::EightF64)
     }
 
-    /// What the processor must have, in words.
+    /// The required instructions, as text.
     pub fn instruction_set(self) -> &'static str {
         match self.encoding() {
             Encoding::Vex => "avx2 + fma",
@@ -59,7 +59,7 @@ impl Shape {
         }
     }
 
-    /// This processor can run it.
+    /// True if this processor can run it.
     pub fn is_supported(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         {
@@ -84,7 +84,7 @@ impl Shape {
         self.lanes() == 1
     }
 
-    /// The bytes of a register's numbers.
+    /// Bytes in a register of numbers.
     pub(crate) fn width(self) -> usize {
         self.number() * self.lanes()
     }

@@ -1,4 +1,4 @@
-//! Sine and cosine: [`mozzi`]'s own text, recorded as instructions.
+//! Sine and cosine: [`mozzi`]'s own code, recorded as instructions.
 
 use super::instruction::{Node, Operation, Value};
 use super::lower::Builder;
@@ -17,7 +17,7 @@ pub(crate) struct SinCos {
 thread_local!(static NODES: RefCell<Vec<Node>> = const { RefCell::new(Vec::new()) });
 
 impl SinCos {
-    /// Of `f64` or `f32`.
+    /// For `f64` or `f32`.
     pub fn of<T: Number>() -> Self {
         NODES.replace(vec![Node::Input(0, 0)]);
         let (sin, cos) = sin_cos(Wire::<T>(0, PhantomData));
@@ -26,7 +26,7 @@ impl SinCos {
         this
     }
 
-    /// Sums take in the products that nothing but sums need: where a product was exact without it, it still is.
+    /// Fuses products that only sums use into those sums: a product that was exact without fusing still is.
     fn fuse(&mut self) {
         let product = |nodes: &[Node], x: Value| match nodes[x as usize] {
             Node::Apply(Operation::Mul, [p, q, _]) => Some([p, q]),
@@ -54,7 +54,7 @@ impl SinCos {
         }
     }
 
-    /// Of this angle.
+    /// Computes them for this angle.
     pub fn at(&self, builder: &mut Builder, angle: Value) -> (Value, Value) {
         let mut place = vec![angle];
         for node in &self.nodes[1..] {
@@ -88,7 +88,7 @@ impl Number for f32 {
     }
 }
 
-/// A number of the recording, by its node.
+/// A number of the recording: its node.
 #[derive(Clone, Copy, Debug)]
 struct Wire<T>(Value, PhantomData<T>);
 
@@ -148,7 +148,7 @@ impl<T: Number> Scalar for Wire<T> {
         Self::apply(Operation::Sqrt, [self])
     }
     fn mul_add(self, a: Self, b: Self) -> Self {
-        // with the negative of a number as a difference
+        // a negated operand becomes a subtraction
         let (sign, node) = (Self::sign_bit().0, NODES.with_borrow(|nodes| nodes[b.0 as usize]));
         match node {
             Node::Apply(Operation::Xor, [x, y, _]) if y == sign => {

@@ -46,7 +46,7 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Description {
     robot
 }
 
-/// Arms, quadrupeds and a humanoid of `example-robot-data`, where `MOZZI_ROBOTS` names its folder.
+/// Arms, quadrupeds and a humanoid of `example-robot-data`, if `MOZZI_ROBOTS` names its folder.
 pub fn published() -> Vec<(String, Model)> {
     const FILES: [&str; 6] = [
         "kinova_description/robots/kinova.urdf",
@@ -86,8 +86,8 @@ pub fn robots() -> Vec<(String, Model)> {
     robots
 }
 
-/// Every quantity of a robot; those of a frame of its last one, those of a task of the last one that can move so in
-/// every state of the tests.
+/// Every quantity of a robot: quantities of a frame for the last frame, quantities of a task for the last task that is
+/// not singular in any state of the tests.
 pub fn quantities(model: &Model) -> Vec<Query<'static>> {
     let frames: Vec<_> = model.frames().map(|(frame, _)| frame).collect();
     let task = |query: Query<'static>| {
@@ -121,12 +121,12 @@ pub fn inputs<'s>(query: Query, state: &'s [Vec<f64>; 3]) -> Vec<&'s [f64]> {
     query.declaration().inputs.iter().map(|input| &array(input.name)[..]).collect()
 }
 
-/// By the kernels, in the robot's own environment.
+/// Computed by the kernels, in the robot's own environment.
 pub fn compute(model: &Model, query: Query, seed: u64) -> Result<Vec<Vec<f64>>, mozzi::Error> {
     model.compute(query, &inputs(query, &state(model, seed)), &model.environment())
 }
 
-/// Pivots and solves lose what the matrix's condition takes.
+/// Pivots and solves lose accuracy in proportion to the matrix's condition number.
 pub fn tolerance(query: Query) -> f64 {
     match query.declaration() {
         declaration if !declaration.divides => 2e-14,
@@ -135,7 +135,7 @@ pub fn tolerance(query: Query) -> f64 {
     }
 }
 
-/// The largest |found − reference| beside the largest |reference|.
+/// The largest |found − reference| relative to the largest |reference|.
 pub fn error(found: &[f64], reference: &[f64]) -> f64 {
     assert_eq!(found.len(), reference.len());
     let size = reference.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -1,10 +1,10 @@
-//! A main program that runs CUDA's text on the host: a thread after the other.
+//! A main program that runs the CUDA text on the host, one thread after the other.
 
 use super::{Module, c_number, compile};
 use mozzi_codegen::Precision;
 use std::path::Path;
 
-/// What of CUDA the text uses.
+/// The parts of CUDA that the text uses.
 const HOST: &str = r#"
 #include <cmath>
 #include <cstdio>
@@ -23,7 +23,7 @@ static Index blockIdx, blockDim = {4}, threadIdx;
 [[maybe_unused]] static float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
 "#;
 
-/// Arrays of all states on both layouts. A block more than there are states, so that some threads have none.
+/// Arrays of all states in both layouts. There is one block more than needed, so that some threads have no state.
 const ARRAYS: &str = r#"
 struct Array {
     std::vector<number> rows, columns;

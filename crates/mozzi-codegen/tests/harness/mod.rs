@@ -1,4 +1,4 @@
-//! Emitted text in a program of its own: it reads states on standard input and writes what the functions make of them.
+//! Emitted text in a test program: it reads states from standard input and writes the functions' results.
 
 mod c;
 mod cuda;
@@ -9,13 +9,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// A text, and what of it is called.
+/// A source text, and the functions of it that are called.
 pub struct Module {
     pub files: Vec<SourceFile>,
     pub calls: Vec<Call>,
 }
 
-/// A function, and the states that it is called at, each the function's inputs.
+/// A function, and the states at which it is called, each with the function's inputs.
 pub struct Call {
     pub function: String,
     pub program: Program,
@@ -23,7 +23,7 @@ pub struct Call {
 }
 
 impl Module {
-    /// What its functions' names begin with.
+    /// The prefix of its functions' names.
     pub fn name(&self) -> &str {
         self.files[0].name.split('.').next().expect("a name")
     }
@@ -36,17 +36,17 @@ impl Call {
     }
 }
 
-/// The number's name in C.
+/// The number type's name in C.
 fn c_number(precision: Precision) -> &'static str {
     if precision == Precision::F64 { "double" } else { "float" }
 }
 
-/// As the precision has it.
+/// Rounds to the precision.
 pub fn rounded(x: f64, precision: Precision) -> f64 {
     if precision == Precision::F64 { x } else { (x as f32).into() }
 }
 
-/// Is there such a program?
+/// True if this program is installed.
 pub fn exists(compiler: &str) -> bool {
     let found = Command::new(compiler).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
     if !found {
@@ -55,7 +55,7 @@ pub fn exists(compiler: &str) -> bool {
     found
 }
 
-/// Writes text and main program into an empty folder, and the compiler's command line of it.
+/// Writes the text and a main program into an empty folder; returns the compiler's command line.
 pub fn build(
     language: Language,
     precision: Precision,
@@ -78,7 +78,7 @@ pub fn build(
     folder
 }
 
-/// A command that has to end well.
+/// Runs a command that must succeed.
 pub fn compile(folder: &Path, compiler: &str, arguments: &[&str]) {
     let output = Command::new(compiler).args(arguments).current_dir(folder).output().expect("a compiler");
     assert!(output.status.success(), "{compiler} {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));

@@ -18,7 +18,7 @@ pub fn build(folder: &Path, precision: Precision, modules: &[Module], compiler: 
     );
     for module in modules {
         let name = module.name();
-        // a file is named as its robot is
+        // a file has its robot's name
         library += &format!("#[allow(non_snake_case)]\npub mod {name} {{ include!(\"{name}.rs\"); }}\n");
         for call in &module.calls {
             let (inputs, outputs) = call.lengths();
@@ -40,7 +40,7 @@ pub fn build(folder: &Path, precision: Precision, modules: &[Module], compiler: 
     main += "}\n";
     std::fs::write(folder.join("emitted.rs"), library).expect("a file");
     std::fs::write(folder.join("main.rs"), main).expect("a file");
-    // a library whose panics abort can be in no program where they do not
+    // a library that aborts on panic cannot be linked into a program that unwinds
     let library = ["--edition=2021", "--crate-type=rlib", "--emit=link,asm", "emitted.rs"];
     compile(folder, compiler, &[&library, flags].concat());
     compile(folder, compiler, &["--edition=2021", "-Cpanic=abort", "main.rs", "--extern=emitted=libemitted.rlib"]);

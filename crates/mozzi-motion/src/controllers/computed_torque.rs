@@ -8,14 +8,14 @@ use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::simulation::Input;
 use mozzi::{Model, fast};
 
-/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. Of a robot
-/// that is as modelled, ë + K_d ė + K_p e = 0.
+/// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. If the model
+/// is exact, ë + K_d ė + K_p e = 0.
 ///
-/// Of a robot with constraints θ̈ is the nearest that they allow, and τ that of the motors that exist: see
+/// For a robot with constraints, θ̈ is the nearest that they allow, and only its motors contribute to τ: see
 /// [`Model::constrained_inverse_dynamics`]. The reference should satisfy the constraints.
 pub struct ComputedTorque<'m, R> {
     model: &'m Model,
-    /// What is followed.
+    /// The reference to follow.
     pub reference: R,
     gains: Gains,
     workspace: fast::Workspace,
@@ -23,7 +23,7 @@ pub struct ComputedTorque<'m, R> {
 }
 
 impl<'m, R: Reference> ComputedTorque<'m, R> {
-    /// For a robot that this model describes, rightly or not.
+    /// With this model of the robot, which need not be exact.
     ///
     /// # Errors
     /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or a

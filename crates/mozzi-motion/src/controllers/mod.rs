@@ -1,13 +1,13 @@
 //! Controllers: motors that follow a [`Reference`](crate::trajectories::Reference) (Modern Robotics, chapter 11). Each
-//! is an [`Input`](mozzi::simulation::Input) of a simulation, and has a model of its own, which may be wrong about the
-//! robot that is simulated.
+//! is an [`Input`](mozzi::simulation::Input) of a simulation, and has a model of its own, which may differ from the
+//! simulated robot.
 //!
-//! | | τ | the error of a robot that is as modelled |
+//! | | τ | the error if the model is exact |
 //! |---|---|---|
-//! | [`PdGravity`] | g(θ) + K_p e + K_d ė | goes to 0 where the reference rests |
+//! | [`PdGravity`] | g(θ) + K_p e + K_d ė | goes to 0 if the reference rests |
 //! | [`ComputedTorque`] | M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) | ë + K_d ė + K_p e = 0 |
 //! | [`TaskSpace`], accelerations | Jᵀ(Λ(a + K_d 𝒱_e + K_p X_e) + η) | 𝒱̇_e + K_d 𝒱_e + K_p X_e = 0 |
-//! | [`TaskSpace`], impedance | Jᵀ(Λa + η + B𝒱_e + KX_e) | Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, what the frame applies to the environment |
+//! | [`TaskSpace`], impedance | Jᵀ(Λa + η + B𝒱_e + KX_e) | Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, applied to the environment |
 //!
 //! with e = θ_d ⊖ θ, X_e = log(T⁻¹T_d), 𝒱_e = `[Ad_T⁻¹T_d]`𝒱_d − 𝒱. [`Saturated`] wraps any of them.
 
@@ -43,7 +43,8 @@ impl Gains {
         Gains { p: vec![p; n], d: vec![d; n] }
     }
 
-    /// K_p = ω², K_d = 2ω: of an acceleration, an error that falls as fast as it can without overshoot.
+    /// K_p = ω², K_d = 2ω: critical damping for gains on accelerations. The error falls as fast as it can without
+    /// overshoot.
     pub fn critical(n: usize, omega: f64) -> Self {
         Self::uniform(n, omega * omega, 2.0 * omega)
     }

@@ -6,19 +6,19 @@ use crate::trajectories::Reference;
 use mozzi::simulation::{GravityCompensation, Input};
 use mozzi::{Freedom, Model};
 
-/// τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė: gravity and the robot's own springs are held, with K_p in N m/rad or N/m.
-/// Along a moving reference it lags: it knows of no accelerations. A floating base and a free joint have no
-/// motors; of a robot with constraints, only the [motors](Model::motors) that exist act.
+/// τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė: compensates gravity and the robot's own springs; K_p in N m/rad or N/m. It
+/// lags behind a moving reference, because it does not use accelerations. A floating base and a free joint have no
+/// motors; in a robot with constraints, only the [motors](Model::motors) that exist act.
 pub struct PdGravity<'m, R> {
     model: &'m Model,
-    /// What is followed.
+    /// The reference to follow.
     pub reference: R,
     gains: Gains,
     gravity: GravityCompensation<'m>,
 }
 
 impl<'m, R: Reference> PdGravity<'m, R> {
-    /// For a robot that this model describes, rightly or not.
+    /// With this model of the robot, which need not be exact.
     ///
     /// # Errors
     /// [`mozzi::Error::WrongLength`], [`mozzi::Error::BadArgument`] for gains that are negative or not finite.

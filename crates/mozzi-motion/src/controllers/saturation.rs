@@ -1,4 +1,4 @@
-//! Motors that are as strong as they are.
+//! Motor saturation at the effort limits.
 
 use crate::Policy;
 use mozzi::simulation::Input;
@@ -19,8 +19,8 @@ pub struct Overload {
     pub last: f64,
 }
 
-/// An input whose torques are held to the joints' effort limits, or only compared with them. A joint without a limit
-/// has none.
+/// An input whose torques are clamped to the joints' effort limits, or only compared with them. Joints without a limit
+/// are not affected.
 pub struct Saturated<I> {
     /// What drives the robot, before its limits.
     pub input: I,

@@ -1,5 +1,4 @@
-//! Control of a frame, by the dynamics that it shows (Modern Robotics, sections 11.4.3 and 11.7; Khatib 1987, Hogan
-//! 1985).
+//! Control of a frame by its task-space dynamics (Modern Robotics, sections 11.4.3 and 11.7; Khatib 1987, Hogan 1985).
 
 use super::Gains;
 use crate::Error;
@@ -9,7 +8,7 @@ use mozzi::nalgebra::{DVector, Vector6};
 use mozzi::simulation::Input;
 use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Twist, forward_kinematics};
 
-/// What the frame's error meets, diagonal in the frame's own coordinates, angular first.
+/// The control law for the frame's error; gains are diagonal in the frame's own coordinates, angular first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// Accelerations K_p X_e + K_d 𝒱_e: the frame follows, whatever its inertia. 1/s², 1/s.
@@ -19,7 +18,7 @@ pub enum Law {
         /// K_d.
         d: [f64; 6],
     },
-    /// A wrench K X_e + B 𝒱_e: the frame yields as a spring and a damper do, with the robot's own inertia Λ. N m/rad,
+    /// A wrench K X_e + B 𝒱_e: the frame behaves like a spring and a damper, with the robot's own inertia Λ. N m/rad,
     /// N/m; N m s/rad, N s/m.
     Impedance {
         /// K.
@@ -29,21 +28,22 @@ pub enum Law {
     },
 }
 
-/// 𝓕 = Λ(θ)a + η(θ, 𝒱) + the [`Law`]'s, τ = Jᵀ𝓕 and, where the robot has joints to spare, its posture: the reference is
-/// a motion of the joints, of which the frame follows the frame's, and what the frame leaves free follows the rest.
+/// 𝓕 = Λ(θ)a + η(θ, 𝒱) + the [`Law`]'s wrench, τ = Jᵀ𝓕 and, if the robot is redundant, control of its posture. The
+/// reference is a joint motion: the frame follows the frame's motion in it, and the null space follows the joints'
+/// motion.
 ///
 /// In one formula, whatever the number of joints, with z the acceleration of the posture: τ = Mz + h + f + Jᵀ(Λ(a −
-/// J̇θ̇ − Jz) + …), which is Jᵀ(Λa + η + …) where J is square.
+/// J̇θ̇ − Jz) + …), which is Jᵀ(Λa + η + …) if J is square.
 pub struct TaskSpace<'m, R> {
     model: &'m Model,
-    /// What is followed.
+    /// The reference to follow.
     pub reference: R,
     frame: FrameId,
     law: Law,
     posture: Gains,
 }
 
-/// Where the frame is, and where it should be, all in its own coordinates.
+/// The frame's error, in the frame's own coordinates.
 struct FrameError {
     /// X_e = log(T⁻¹T_d).
     X: Twist,
@@ -54,7 +54,7 @@ struct FrameError {
 }
 
 impl<'m, R: Reference> TaskSpace<'m, R> {
-    /// For a frame of a robot that this model describes, rightly or not; the gains of the posture are of accelerations.
+    /// For a frame of a robot with this model, which need not be exact; the posture's gains are gains on accelerations.
     ///
     /// # Errors
     /// [`mozzi::Error::WrongLength`]; [`mozzi::Error::BadArgument`] for gains that are negative or not finite, a frame
@@ -84,7 +84,7 @@ impl<'m, R: Reference> TaskSpace<'m, R> {
         let V = &model.body_jacobian(theta, self.frame)? * dtheta;
         let J = model.body_jacobian(&desired.theta, self.frame)?;
         let dJ = model.body_jacobian_rate(&desired.theta, &desired.dtheta, self.frame)?;
-        // seen from the frame: 𝒱_d, and its rate
+        // in the frame's coordinates: 𝒱_d, and its rate
         let V_d = T_bd.Ad() * (&J * &desired.dtheta[..]);
         let dV_d = T_bd.Ad() * (&J * &desired.ddtheta[..] + &dJ * &desired.dtheta[..]);
         let V_e = V_d - V;

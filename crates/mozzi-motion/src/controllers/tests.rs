@@ -1,4 +1,4 @@
-//! What the controllers promise: error dynamics, at random states and over time.
+//! Properties of the controllers: error dynamics, at random states and over time.
 
 use super::*;
 use crate::Policy;
@@ -83,7 +83,7 @@ fn pd_with_gravity_brings_the_robot_to_rest_at_its_goal() {
     let last = settled.last();
     assert!(last.theta.iter().zip(&goal).all(|(a, b)| (a - b).abs() < 2e-2), "{:?}", last.theta);
     assert!(stored(settled.len() - 1) < 0.01 * stored(0));
-    // a load that it does not know of: it hangs where the springs carry the load, K_p e = the load's torques
+    // a payload that the model does not have: the arm hangs where the springs carry it, K_p e = the payload's torques
     let hand = panda.frame("panda_hand").expect("there");
     let loaded = panda.with_payload(hand, SpatialInertia::point_mass(2.0, Vec3([0.0, 0.0, 0.1]))).expect("sound");
     let sagged = loaded.simulate(&goal, &[0.0; 7], &mut control, &Options::new(6.0, 6000)).expect("a motion");
@@ -114,7 +114,7 @@ fn a_frame_follows_as_its_law_says() {
             TaskSpace::new(&model, &motion, frame, Law::Acceleration { p, d }, posture.clone()).expect("fine");
         let t = 0.3;
         let ddtheta = acceleration(&model, &mut control, t, &theta, &dtheta);
-        // X_e and 𝒱_e of the moving robot beside the moving reference, by kinematics alone
+        // X_e and 𝒱_e of the moving robot relative to the moving reference, by kinematics alone
         let errors = |h: f64| {
             let (mut q, mut now) = (theta.clone(), motion.at(t + h));
             let middle: Vec<f64> = dtheta.iter().zip(&ddtheta).map(|(v, a)| v + 0.5 * a * h).collect();
@@ -133,7 +133,7 @@ fn a_frame_follows_as_its_law_says() {
             let expected = -d[r] * V.to_array()[r] - p[r] * X.to_array()[r];
             assert!((rate.to_array()[r] - expected).abs() < 1e-4, "{r}: {} {expected}", rate.to_array()[r]);
         }
-        // the book's Jᵀ(Λa + η) where J is square
+        // the book's Jᵀ(Λa + η) if J is square
         if n == 6 {
             let task = Task::all(frame, TaskFrame::Body);
             let found = model.task_space_dynamics(&theta, &dtheta, task, &model.environment()).expect("regular");
@@ -144,7 +144,8 @@ fn a_frame_follows_as_its_law_says() {
             let given = torque(&mut control, t, &theta, &dtheta);
             assert!((0..6).all(|j| (given[j] - tau[j] - friction[j]).abs() < 1e-8), "{given:?} {tau}");
         } else {
-            // beside the task the posture: J⁺-free, the part of θ̈ − z in the null space, M-orthogonal to it, is 0
+            // in addition to the task, the posture: J⁺-free, the part of θ̈ − z in the null space, M-orthogonal to it,
+            // is 0
             let now = motion.at(t);
             let z = (0..n).map(|j| {
                 now.ddtheta[j] + posture.d[j] * (now.dtheta[j] - dtheta[j]) + posture.p[j] * (now.theta[j] - theta[j])
@@ -205,7 +206,7 @@ fn motors_have_limits() {
             assert_eq!((first.joint.as_str(), first.largest, first.limit, first.first, first.last), expected);
         }
     }
-    // a wrench of the input's goes through
+    // the input's wrenches are passed on
     let tip = ur5.end_effector().expect("named");
     let mut wrenches = Vec::new();
     let mut pushing = Saturated::new(&ur5, applied(tip, |_, _, _| wrench(1)), Policy::Respect);

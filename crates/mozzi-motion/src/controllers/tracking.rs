@@ -26,10 +26,10 @@ impl TrackingError {
     }
 }
 
-/// Of a simulated motion, over its rows.
+/// The error of a simulated motion, over its rows.
 ///
 /// # Panics
-/// When the motion or the reference is another robot's.
+/// When the motion or the reference belongs to another robot.
 pub fn tracking_error(model: &Model, motion: &Trajectory, reference: &impl Reference) -> TrackingError {
     let mut tracking = Tracking::new(model, reference);
     for row in motion.samples() {
@@ -38,10 +38,10 @@ pub fn tracking_error(model: &Model, motion: &Trajectory, reference: &impl Refer
     tracking.error()
 }
 
-/// Of any rows (t, θ).
+/// The error of any rows (t, θ).
 ///
 /// # Panics
-/// When the rows or the reference are another robot's.
+/// When the rows or the reference belong to another robot.
 pub fn tracking_error_of_rows<'a>(
     model: &Model,
     rows: impl IntoIterator<Item = (f64, &'a [f64])>,
@@ -63,16 +63,16 @@ pub struct Tracking<'a, R> {
 }
 
 impl<'a, R: Reference> Tracking<'a, R> {
-    /// Of no rows.
+    /// Starts without rows.
     pub fn new(model: &'a Model, reference: &'a R) -> Self {
         let (n, joints) = (model.n(), model.n() - model.base().velocities());
         Tracking { model, reference, rows: 0, squares: vec![0.0; joints], largest: vec![0.0; joints], e: vec![0.0; n] }
     }
 
-    /// One more row.
+    /// Adds a row.
     ///
     /// # Panics
-    /// When it or the reference is another robot's.
+    /// When the row or the reference belongs to another robot.
     pub fn add(&mut self, t: f64, theta: &[f64]) {
         self.rows += 1;
         difference(self.model, theta, &self.reference.at(t).theta, &mut self.e);
@@ -83,7 +83,7 @@ impl<'a, R: Reference> Tracking<'a, R> {
         }
     }
 
-    /// Over the rows so far.
+    /// The error over the rows so far.
     pub fn error(&self) -> TrackingError {
         let rms = self.squares.iter().map(|sum| (sum / self.rows.max(1) as f64).sqrt()).collect();
         TrackingError { rms, largest: self.largest.clone() }

@@ -5,15 +5,15 @@ use mozzi::random::Random;
 use mozzi::{Freedom, SO3, Vec3};
 use std::f64::consts::PI;
 
-/// What a search under bounds needs.
+/// Operations of a search within bounds.
 pub(crate) trait Within {
-    /// −1 where joint k is at its lower bound, 1 at its upper one, 0 between; of a ball its largest angle is the upper.
+    /// −1 if joint k is at its lower bound, 1 at its upper one, 0 between; a ball's largest angle is its upper bound.
     fn side(&self, theta: &[f64], k: usize) -> f64;
 
     /// Puts each joint that is beyond a bound onto it.
     fn clamp(&self, theta: &mut [f64]);
 
-    /// Anywhere within the bounds; of a joint without, half a turn or a metre around the guess. A floating base and
+    /// Anywhere within the bounds; for a joint without, half a turn or a metre around the guess. A floating base and
     /// free joints stay.
     fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64>;
 }

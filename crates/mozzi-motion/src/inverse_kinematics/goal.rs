@@ -1,24 +1,24 @@
-//! Where a frame is to be, and how far it is from there.
+//! The goal of a frame, and the error from it.
 
 use mozzi::{SE3, SO3, Twist, Vec3};
 use std::fmt;
 use std::ops::Range;
 
-/// What is asked of a frame {b}, seen from {s}.
+/// The goal of a frame {b}, in {s}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// `T_sb`: six rows.
     Pose(SE3),
-    /// The origin of {b}, however {b} is turned: three rows.
+    /// The origin of {b}, at any orientation: three rows.
     Position(Vec3),
-    /// The orientation of {b}, wherever it is: three rows.
+    /// The orientation of {b}, at any position: three rows.
     Orientation(SO3),
 }
 
 impl Goal {
-    /// The body twist that leads from T to the goal in one second, and 0 where nothing is asked: log(T⁻¹T_d) of a pose,
-    /// (0, Rᵀ(p_d − p)) of a position, (log(RᵀR_d), 0) of an orientation. Its derivative along θ is −`J_b`, where it is
-    /// 0.
+    /// The body twist that leads from T to the goal in one second, and 0 in the rows that the goal leaves free:
+    /// log(T⁻¹T_d) for a pose, (0, Rᵀ(p_d − p)) for a position, (log(RᵀR_d), 0) for an orientation. If the error is 0,
+    /// its derivative along θ is −`J_b`.
     pub fn error(&self, T: SE3) -> Twist {
         match *self {
             Goal::Pose(goal) => (T.inverse() * goal).log(),
@@ -56,7 +56,7 @@ impl Goal {
     }
 }
 
-/// How far a frame is from its goal; `None` if the goal leaves it free.
+/// The error of a frame's goal; `None` if the goal leaves it free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// ‖ω‖ of the [error](Goal::error), rad.

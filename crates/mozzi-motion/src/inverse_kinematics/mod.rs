@@ -1,10 +1,10 @@
-//! Inverse kinematics: positions θ at which a frame is where it is to be (Modern Robotics, chapter 6).
+//! Inverse kinematics: joint positions θ that place a frame at a desired pose (Modern Robotics, chapter 6).
 //!
 //! > e = log(T_sb(θ)⁻¹T_sd),  δ = Jᵀ(JJᵀ + λI)⁻¹e,  θ ← θ ⊕ δ
 //!
-//! A joint at a bound that δ would take beyond it is held there, and δ computed anew of the others. A start that gets
-//! no nearer is given up for another. Where the robot has joints to spare, a [`Secondary`] goal chooses among the
-//! solutions: steps in the null space of J, each followed by steps back to the goal.
+//! A joint at a bound that δ would take beyond it is held there, and δ is recomputed for the others. A start that makes
+//! no progress is replaced by another. If the robot is redundant, a [`Secondary`] goal chooses among the solutions:
+//! steps in the null space of J, each followed by steps back to the goal.
 
 mod bounds;
 mod goal;
@@ -34,7 +34,7 @@ const PATIENCE: usize = 6;
 pub struct Solution {
     /// θ.
     pub theta: Vec<f64>,
-    /// What is left.
+    /// The remaining error.
     pub residual: Residual,
     /// Starts that were needed, at least 1.
     pub starts: usize,
@@ -79,17 +79,16 @@ impl<'m> InverseKinematics<'m> {
         Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0 })
     }
 
-    /// Positions that reach the goal, from a guess and, where it leads nowhere, from random ones. An iteration costs
-    /// O(n).
+    /// Positions that reach the goal, from a guess and, if that fails, from random ones. An iteration costs O(n).
     ///
     /// # Errors
-    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for a guess or a goal that make no sense.
+    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal.
     pub fn solve(&mut self, goal: Goal, guess: &[f64]) -> Result<Solution, Error> {
         self.solve_with(goal, guess, &Secondary::None)
     }
 
-    /// As [`solve`](Self::solve), and among the solutions one at which a secondary goal has a minimum, as far as the
-    /// null space leads.
+    /// As [`solve`](Self::solve), with a solution at which a secondary goal has a minimum, as far as the null space
+    /// leads.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
@@ -138,12 +137,12 @@ impl<'m> InverseKinematics<'m> {
         angle.is_none_or(|x| x <= self.options.angle) && distance.is_none_or(|x| x <= self.options.distance)
     }
 
-    /// e, its v in lengths.
+    /// e, with v in units of the length in the options.
     fn scaled(&self, V: Twist) -> Vector6<f64> {
         Twist { v: V.v * (1.0 / self.options.length), ..V }.to_array().into()
     }
 
-    /// J at θ, no joint held.
+    /// Computes J at θ, with no joint held.
     fn linearize(&mut self, theta: &[f64]) {
         body_jacobian(self.model, theta, self.frame, &mut self.step.columns);
         let one_over = 1.0 / self.options.length;
@@ -151,8 +150,8 @@ impl<'m> InverseKinematics<'m> {
         self.step.let_go();
     }
 
-    /// Steps towards the goal until it is reached, or no more is gained; leaves the best θ on the way and returns ‖e‖
-    /// there.
+    /// Steps towards the goal until it is reached, or there is no more progress; leaves the best θ on the way and
+    /// returns ‖e‖ there.
     fn approach(&mut self, goal: &Goal, theta: &mut [f64], iterations: usize) -> f64 {
         self.bounds.clamp(theta);
         let (mut best, mut least, mut mark, mut since) = (theta.to_vec(), f64::INFINITY, f64::INFINITY, 0);

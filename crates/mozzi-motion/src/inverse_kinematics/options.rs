@@ -4,24 +4,24 @@ use super::Method;
 use crate::Error;
 use crate::error::check;
 
-/// How a solution is searched for. Start from [`default`](Self::default) and change what differs.
+/// Options of the search. Start from [`default`](Self::default) and change what differs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How a step is damped; Levenberg-Marquardt.
+    /// How a step is damped; default Levenberg-Marquardt.
     pub method: Method,
-    /// The largest angle to the goal that is called reached, rad; 10⁻⁸.
+    /// Tolerance of the angle to the goal, rad; default 10⁻⁸.
     pub angle: f64,
-    /// The largest distance, m; 10⁻⁸.
+    /// Tolerance of the distance to the goal, m; default 10⁻⁸.
     pub distance: f64,
-    /// Iterations of one start; 60.
+    /// Maximum iterations of one start; default 60.
     pub iterations: usize,
-    /// Starts, the first from the guess, the others from random positions; 200.
+    /// Maximum number of starts, the first from the guess, the others from random positions; default 200.
     pub starts: usize,
-    /// Of the random starts: the same seed finds the same solution.
+    /// Seed of the random starts: the same seed finds the same solution.
     pub seed: u64,
-    /// What counts as much as a radian, m; 1.
+    /// The length that counts as much as a radian, m; default 1.
     pub length: f64,
-    /// Keep the joints within their limits? Yes, unless told otherwise.
+    /// Keep the joints within their limits? Default true.
     pub limits: bool,
 }
 

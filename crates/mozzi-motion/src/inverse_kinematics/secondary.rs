@@ -1,8 +1,8 @@
-//! What a robot with joints to spare does beside its goal.
+//! Secondary goals of a redundant robot.
 
 use mozzi::{Model, difference};
 
-/// What is made small among all positions that reach the goal.
+/// The function to minimize among all positions that reach the goal.
 #[derive(Default)]
 pub enum Secondary<'a> {
     /// Nothing: the first solution.

@@ -10,21 +10,21 @@ use std::ops::Range;
 /// How a step is damped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Newton and Raphson's, by the pseudo-inverse (Modern Robotics, section 6.2.2): δ = J⁺e. Few iterations from a
-    /// near guess; it wanders from afar and near singular positions.
+    /// The Newton-Raphson method, by the pseudo-inverse (Modern Robotics, section 6.2.2): δ = J⁺e. Few iterations from
+    /// a near guess; erratic far from the goal and near singular positions.
     Newton,
-    /// Levenberg and Marquardt's with λ = ‖e‖²/50 (after Chan and Lawrence 1988): δ = Jᵀ(JJᵀ + λI)⁻¹e. Cautious far
-    /// from the goal, Newton's near it.
+    /// The Levenberg-Marquardt method with λ = ‖e‖²/50 (after Chan and Lawrence 1988): δ = Jᵀ(JJᵀ + λI)⁻¹e. Cautious
+    /// far from the goal, like Newton's near it.
     LevenbergMarquardt,
 }
 
-/// Eigenvalues of JJᵀ below this part of the largest are directions that no joint moves.
+/// Eigenvalues of JJᵀ below this fraction of the largest belong to directions that no joint moves.
 const NEGLIGIBLE: f64 = 1e-12;
 
-/// The columns of J at a position, those of joints that are held at a bound left out.
+/// The columns of J at a position, without those of joints held at a bound.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
-    /// J with its v in lengths, one column for each velocity.
+    /// J with v in units of the length in the options, one column for each velocity.
     pub columns: Vec<Twist>,
     /// Velocities that are 0.
     pub held: Vec<bool>,
@@ -77,7 +77,7 @@ impl Step {
         self.cones.clear();
     }
 
-    /// z less what of it would move the frame: (I − J⁺J)z of the joints that move.
+    /// z without the part that would move the frame: (I − J⁺J)z of the joints that move.
     pub fn within_null_space(&self, z: &mut [f64]) {
         self.cones.iter().for_each(|(place, n)| remove_along(n, &mut z[place.velocities()]));
         let moved = self.moving().fold(Vector6::zeros(), |V, (j, column)| V + column * z[j]);

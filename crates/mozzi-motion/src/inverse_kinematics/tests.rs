@@ -1,4 +1,4 @@
-//! Against forward kinematics; the embedded robots, and random ones.
+//! Compared with forward kinematics: the embedded robots, and random ones.
 
 use super::*;
 use mozzi::model::description::{Joint, JointKind};
@@ -82,7 +82,7 @@ fn the_error_leads_to_the_goal_and_minus_the_jacobian_is_its_derivative() {
         // moved along e the goal is reached
         let reached = match goal {
             Goal::Pose(_) => T * SE3::exp(goal.error(T)),
-            // p and R apart
+            // p and R separately
             _ => SE3::new(
                 (SE3::new(T.R, Vec3::zero()) * SE3::exp(Twist { v: Vec3::zero(), ..goal.error(T) })).R,
                 T * goal.error(T).v,
@@ -190,7 +190,7 @@ fn a_free_base_moves_along() {
     assert!((found.theta[..4].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-14);
 }
 
-/// A ball with a tip 0.4 m along z, and where `wrist` says so another one there, 0.3 m from the tip then.
+/// A ball with a tip 0.4 m along z; with `wrist`, another ball there, 0.3 m from the tip then.
 fn on_balls(limit: f64, wrist: bool) -> Model {
     let ball = |name: &str, parent: &str, child: &str, z: f64| {
         let origin = SE3::new(mozzi::SO3::identity(), Vec3([0.0, 0.0, z]));

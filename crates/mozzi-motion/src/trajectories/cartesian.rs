@@ -30,7 +30,7 @@ impl Shape {
     }
 }
 
-/// The joints' path along a frame's: a spline through solutions of inverse kinematics.
+/// The joint path along a frame's path: a spline through solutions of inverse kinematics.
 #[derive(Clone, Debug)]
 pub struct Cartesian {
     spline: Spline,
@@ -44,12 +44,12 @@ pub struct Cartesian {
 const INTERVALS: [usize; 2] = [8, 4096];
 
 impl Cartesian {
-    /// A frame led from where it is at θ₀ to the goal, off its path by at most a tolerance (of ‖(ω, v)‖, rad and m),
-    /// kept by as many knots as that takes. Each knot is searched from the one before it, so that a robot with joints
-    /// to spare takes the shortest steps.
+    /// Moves a frame from its pose at θ₀ to the goal, off its path by at most a tolerance (of ‖(ω, v)‖, rad and m),
+    /// with as many knots as that takes. The search for each knot starts from the one before it, so that a redundant
+    /// robot takes the shortest steps.
     ///
     /// # Errors
-    /// [`Error::OffPath`] where the path leaves the robot's reach; [`Error::PathBroken`] where the solutions jump (at
+    /// [`Error::OffPath`] if the path leaves the robot's reach; [`Error::PathBroken`] if the solutions jump (at
     /// singular positions, or at a joint's limit); [`Error::Model`].
     pub fn new(
         model: &Model,

@@ -1,4 +1,4 @@
-//! What a path asks of the motors: τ = a s̈ + b ṡ² + c + d ṡ, linear in s̈ and ṡ² but for viscous friction.
+//! The torques that a path requires: τ = a s̈ + b ṡ² + c + d ṡ, linear in s̈ and ṡ² except for viscous friction.
 
 use super::path::Path;
 use crate::Error;
@@ -25,7 +25,7 @@ pub(super) struct Demand {
     pub d: Vec<f64>,
 }
 
-/// As [`demands`], of a path along which something moves.
+/// As [`demands`], with an error if nothing moves along the path.
 pub(super) fn demands_of_a_motion(model: &Model, path: &impl Path, s: &[f64]) -> Result<Vec<Demand>, Error> {
     let all = demands(model, path, s);
     let moves = all.iter().any(|demand| demand.slope.iter().any(|&x| x != 0.0));
@@ -33,7 +33,7 @@ pub(super) fn demands_of_a_motion(model: &Model, path: &impl Path, s: &[f64]) ->
     Ok(all)
 }
 
-/// At these s, by three inverse dynamics each.
+/// The demands at these s, by three inverse dynamics each.
 pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand> {
     let (n, mut workspace) = (model.n(), Workspace::new(model));
     let still = vec![0.0; n];
@@ -65,7 +65,7 @@ pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand>
     s.iter().map(|&s| at(s)).collect()
 }
 
-/// d of each velocity: what friction grows by from 1 to 2 rad/s.
+/// d of each velocity: the increase of friction from 1 to 2 rad/s.
 fn damping(model: &Model) -> Vec<f64> {
     (0..model.n()).map(|j| mozzi::joint_friction(model, j, 2.0) - mozzi::joint_friction(model, j, 1.0)).collect()
 }

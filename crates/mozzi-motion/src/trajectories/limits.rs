@@ -1,10 +1,10 @@
-//! How fast, how suddenly and how strongly the joints may move along a path.
+//! Limits of velocity, acceleration and torque along a path.
 
 use crate::Error;
 use crate::error::check;
 use mozzi::Model;
 
-/// Limits of each of the n velocities, ∞ where there is none. They hold either way.
+/// Limits of each of the n velocities, ∞ if there is none. They hold in both directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
     /// |θ̇|, rad/s or m/s.
@@ -16,14 +16,14 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// None.
+    /// No limits.
     pub fn none(model: &Model) -> Self {
         let none = vec![f64::INFINITY; model.n()];
         Limits { velocity: none.clone(), acceleration: none.clone(), torque: none }
     }
 
-    /// The velocity and effort limits of the robot's description, a ball's of each of its three velocities; it has none
-    /// of accelerations.
+    /// The velocity and effort limits of the robot's description; a ball's apply to each of its three velocities. The
+    /// description has no acceleration limits.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
         for (place, joint) in model.places().iter().zip(model.joints()) {

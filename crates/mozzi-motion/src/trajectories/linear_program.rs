@@ -1,4 +1,4 @@
-//! max q·(u, x) under half-planes, in two unknowns, one constraint after the other (Seidel 1991).
+//! max q·(u, x) subject to half-planes, in two unknowns, one constraint after the other (Seidel 1991).
 
 /// a u + b x ≤ c.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl HalfPlane {
     }
 }
 
-/// The best point within a box and all half-planes; `None` where there is none.
+/// The best point within a box and all half-planes; `None` if there is none.
 pub(super) fn maximize(q: [f64; 2], bounds: [[f64; 2]; 2], planes: &[HalfPlane]) -> Option<[f64; 2]> {
     let corner = |k: usize| if q[k] >= 0.0 { bounds[k][1] } else { bounds[k][0] };
     let mut best = [corner(0), corner(1)];
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use mozzi::testing::Random;
 
-    /// The best of all corners, which are where two lines meet.
+    /// The best of all corners, the intersections of two lines.
     fn by_corners(q: [f64; 2], bounds: [[f64; 2]; 2], planes: &[HalfPlane]) -> Option<[f64; 2]> {
         let [[u0, u1], [x0, x1]] = bounds;
         let mut all = planes.to_vec();

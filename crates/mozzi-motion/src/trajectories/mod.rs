@@ -1,9 +1,9 @@
-//! Trajectories: what the joints are to do, and when (Modern Robotics, chapter 9).
+//! Trajectories: joint motions in time (Modern Robotics, chapter 9).
 //!
-//! A [`Path`] says where, θ(s) for s from 0 to 1: a [`Line`] in the joints' space, a [`Spline`] through via points, or
-//! the joints' path along a [`Cartesian`] one. A [`Profile`] says when, s(t): cubic, quintic, trapezoidal, or as fast
-//! as limits allow ([`time_optimal`], [`stretched`]). Both together are [`Timed`], a [`Reference`] that a controller
-//! can follow; so is a table, [`Recorded`].
+//! A [`Path`] gives the positions θ(s) for s from 0 to 1: a [`Line`] in the joints' space, a [`Spline`] through via
+//! points, or the joints' path along a [`Cartesian`] one. A [`Profile`] gives the time scaling s(t): cubic, quintic,
+//! trapezoidal, or as fast as limits allow ([`time_optimal`], [`stretched`]). Both together are [`Timed`], a
+//! [`Reference`] that a controller can follow; so is a table, [`Recorded`].
 //!
 //! ```
 //! use mozzi_motion::trajectories::{Limits, Line, Reference, Timed, time_optimal};

@@ -1,4 +1,4 @@
-//! Trajectories of balls, free joints and floating bases: against differences, hinges, and closed motions.
+//! Trajectories of balls, free joints and floating bases: compared with differences, hinges, and closed-form motions.
 
 use super::tests::{assert_rates, used};
 use super::*;

@@ -1,4 +1,4 @@
-//! Where the joints go, whenever: θ(s) from s = 0 to 1.
+//! Paths without timing: θ(s) for s from 0 to 1.
 
 use crate::Error;
 use mozzi::{Model, difference, integrate};

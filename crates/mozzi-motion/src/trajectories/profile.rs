@@ -1,4 +1,4 @@
-//! How a path is run through: s(t) from 0 to 1.
+//! Time scaling of a path: s(t) from 0 to 1.
 
 use crate::Error;
 use crate::error::check;
@@ -18,17 +18,17 @@ pub struct Progress {
 /// rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// Where the pieces begin, and the end: s.
+    /// Start times of the pieces, and the end time: s.
     times: Vec<f64>,
     /// Coefficients of 1, τ, …, τ⁵ with τ the time since the piece began.
     pieces: Vec<[f64; 6]>,
 }
 
 impl Profile {
-    /// s = t/T: starts and stops at once. For paths that are functions of time already.
+    /// s = t/T: starts and stops abruptly. For paths that are functions of time already.
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] unless T is positive and finite; likewise of the others.
+    /// [`mozzi::Error::BadArgument`] unless T is positive and finite; likewise for the others.
     pub fn linear(duration: f64) -> Result<Self, Error> {
         Self::single(duration, [0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
     }
@@ -50,7 +50,7 @@ impl Profile {
         Self::single(duration, [0.0, 0.0, 0.0, 10.0, -15.0, 6.0])
     }
 
-    /// Constant s̈ = a, then constant ṡ = v, then s̈ = −a; where v is not reached (v² > a) without the middle.
+    /// Constant s̈ = a, then constant ṡ = v, then s̈ = −a; without the middle part if v is not reached (v² > a).
     ///
     /// # Errors
     /// [`mozzi::Error::BadArgument`] unless both are positive and finite.
@@ -77,7 +77,7 @@ impl Profile {
         })
     }
 
-    /// A trapezoid of this duration whose ṡ rises and falls for this part of it each, at most ½.
+    /// A trapezoid of this duration; ṡ rises during this part of it, at most ½, and falls during an equal part.
     ///
     /// # Errors
     /// [`mozzi::Error::BadArgument`] unless the duration is positive and the part within (0, ½].
@@ -88,7 +88,7 @@ impl Profile {
         Self::trapezoidal(v, v / (part * duration))
     }
 
-    /// Pieces of constant s̈ between places s[i] that are passed at the speeds ṡ[i], at rest at most at the two ends.
+    /// Pieces of constant s̈ between the points s[i], passed at the speeds ṡ[i]; only the two ends may be at rest.
     pub(super) fn of_speeds(s: &[f64], ds: &[f64]) -> Self {
         let (mut times, mut pieces) = (vec![0.0], Vec::new());
         for (s, v) in s.windows(2).zip(ds.windows(2)) {
@@ -107,7 +107,7 @@ impl Profile {
         Ok(Profile { times: vec![0.0, duration], pieces: vec![piece] })
     }
 
-    /// The same run through in another time: every ṡ changes by the ratio, every s̈ by its square.
+    /// The same profile with another duration: ṡ scales with the ratio, s̈ with its square.
     ///
     /// # Errors
     /// [`mozzi::Error::BadArgument`] unless the duration is positive and finite.
@@ -135,12 +135,12 @@ impl Profile {
             return Progress { s: 1.0, ..Progress::default() };
         }
         let Progress { s, ds, dds } = self.continued(t);
-        // none of them goes back but by rounding
+        // no profile goes back except by rounding
         Progress { s: s.clamp(0.0, 1.0), ds: ds.max(0.0), dds }
     }
 
-    /// As [`at`](Self::at), but before the start and after the end the first and the last polynomial go on, as in the
-    /// Modern Robotics package: s leaves 0 to 1 there.
+    /// As [`at`](Self::at), but extrapolates the first polynomial before the start and the last one after the end, as
+    /// in the Modern Robotics package: s leaves 0 to 1 there.
     pub fn continued(&self, t: f64) -> Progress {
         let k = self.times.partition_point(|&begin| begin <= t).clamp(1, self.pieces.len()) - 1;
         let ([a, b, c, d, e, f], x) = (self.pieces[k], t - self.times[k]);

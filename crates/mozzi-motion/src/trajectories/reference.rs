@@ -1,4 +1,4 @@
-//! What a robot is to do: θ, θ̇ and θ̈ at every time.
+//! Desired motions: θ, θ̇ and θ̈ at every time.
 
 use super::path::{Path, Point};
 use super::profile::Profile;
@@ -14,11 +14,11 @@ pub struct Desired {
     pub ddtheta: Vec<f64>,
 }
 
-/// A motion that a robot is to make.
+/// A desired motion of a robot.
 pub trait Reference {
     /// Seconds; the motion begins at 0.
     fn duration(&self) -> f64;
-    /// What is desired at a time. Before the motion, and after it, the robot is to stay where it begins, or ends.
+    /// The desired state at a time. Before the motion the robot stays at its start, afterwards at its end.
     fn at(&self, t: f64) -> Desired;
     /// At N + 1 equal times from 0 to the end.
     fn sampled(&self, steps: usize) -> Vec<(f64, Desired)> {
@@ -45,7 +45,7 @@ impl<R: Reference + ?Sized> Reference for Box<R> {
     }
 }
 
-/// A path, run through by a profile: θ̇ = θ′ṡ, θ̈ = θ″ṡ² + θ′s̈.
+/// A path with a time profile: θ̇ = θ′ṡ, θ̈ = θ″ṡ² + θ′s̈.
 #[derive(Clone, Debug)]
 pub struct Timed<P> {
     /// θ(s).
@@ -75,11 +75,11 @@ impl<P: Path> Reference for Timed<P> {
     }
 }
 
-/// A motion of the joints of a robot whose base floats. Nothing drives that, so that no controller looks at where it is
-/// desired: at one pose, at rest.
+/// A joint motion of a robot with a floating base. The base has no motors, so controllers ignore its desired state: a
+/// constant pose, at rest.
 #[derive(Clone, Debug)]
 pub struct OfJoints<R> {
-    /// What the joints are to do, as those of the fixed robot.
+    /// The joints' motion, as for the robot with a fixed base.
     pub joints: R,
     /// The base's, as in θ.
     pub pose: [f64; 7],
@@ -101,14 +101,14 @@ impl<R: Reference> Reference for OfJoints<R> {
     }
 }
 
-/// Positions to be held.
+/// Constant positions.
 #[derive(Clone, Debug)]
 pub struct Hold {
     desired: Desired,
 }
 
 impl Hold {
-    /// These positions, for good, of a robot with n velocities.
+    /// These positions at all times, of a robot with n velocities.
     pub fn new(theta: &[f64], n: usize) -> Self {
         Hold { desired: Desired { theta: theta.to_vec(), dtheta: vec![0.0; n], ddtheta: vec![0.0; n] } }
     }

@@ -27,15 +27,15 @@ pub struct Spline {
     s: Vec<f64>,
     /// Rows of positions.
     theta: Vec<Vec<f64>>,
-    /// Rows of y: of joints of one axis, their positions.
+    /// Rows of y: for joints of one axis, their positions.
     y: Vec<Vec<f64>>,
     /// Rows of second derivatives.
     curvatures: Vec<Vec<f64>>,
 }
 
 impl Spline {
-    /// Through rows of positions at these s. Scaled to begin at 0 and end at 1: times in seconds do, for a path that is
-    /// to be run through by [`Profile::linear`](super::Profile::linear) of their span.
+    /// A spline through rows of positions at these s, which are scaled to begin at 0 and end at 1. Times in seconds can
+    /// be used, for a path that is timed by [`Profile::linear`](super::Profile::linear) over their span.
     ///
     /// # Errors
     /// [`mozzi::Error::BadArgument`] for fewer than two points or an s that does not increase;
@@ -60,10 +60,10 @@ impl Spline {
         Ok(Spline { space: model.configuration_space().clone(), s, theta: points.to_vec(), y, curvatures })
     }
 
-    /// Through rows of positions, s in proportion to the distances between them, ‖θ_{k+1} ⊖ θ_k‖.
+    /// A spline through rows of positions, s in proportion to the distances between them, ‖θ_{k+1} ⊖ θ_k‖.
     ///
     /// # Errors
-    /// As [`new`](Self::new); also where two points in a row are the same.
+    /// As [`new`](Self::new); also if two consecutive points are the same.
     pub fn through(model: &Model, points: &[Vec<f64>], ends: Ends) -> Result<Self, Error> {
         let (mut s, mut way) = (vec![0.0], vec![0.0; model.n()]);
         points.iter().try_for_each(|point| model.check_configuration(point))?;
@@ -144,7 +144,7 @@ fn curvatures(s: &[f64], points: &[Vec<f64>], ends: Ends) -> Vec<Vec<f64>> {
                 (None, None, _) => (1.0, 0.0),
             };
         }
-        // beside the diagonal stands h, and 0 in the end rows of natural ends
+        // off-diagonal entries are h, and 0 in the end rows of natural ends
         let natural = ends == Ends::Natural;
         let above = |k: usize| if natural && k == 0 { 0.0 } else { h[k] };
         let below = |k: usize| if natural && k == count - 1 { 0.0 } else { h[k - 1] };

@@ -8,12 +8,12 @@ use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
 
-/// The profile, run through in the shortest time that keeps the limits at N + 1 equal times: with y the old duration
-/// over the new one, θ̇ grows as y, θ̈ as y², and τ = A y² + D y + c.
+/// The profile with the shortest duration that keeps the limits at N + 1 equal times: with y the old duration over the
+/// new one, θ̇ grows as y, θ̈ as y², and τ = A y² + D y + c.
 ///
 /// # Errors
-/// [`Error::TooWeak`] where a torque limit cannot hold the robot; [`Error::Unlimited`] where nothing is limited;
-/// [`mozzi::Error::BadArgument`], also of a path along which nothing moves.
+/// [`Error::TooWeak`] if a torque limit cannot hold the robot; [`Error::Unlimited`] if nothing is limited;
+/// [`mozzi::Error::BadArgument`], also for a path along which nothing moves.
 pub fn stretched(
     model: &Model,
     path: &impl Path,
@@ -51,7 +51,7 @@ pub fn stretched(
     profile.in_time(profile.duration() / fastest)
 }
 
-/// The smallest y > 0 at which A y² + D y + c, which is not positive at 0, becomes positive; ∞ where it never does.
+/// The smallest y > 0 at which A y² + D y + c, which is not positive at 0, becomes positive; ∞ if it never does.
 fn smallest_root(A: f64, D: f64, c: f64) -> f64 {
     if c == f64::NEG_INFINITY {
         return f64::INFINITY;

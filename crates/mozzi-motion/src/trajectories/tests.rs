@@ -1,4 +1,4 @@
-//! Rates against differences, splines against polynomials, the fastest ways against closed solutions.
+//! Rates compared with differences, splines with polynomials, time-optimal motions with closed-form solutions.
 
 use super::*;
 use crate::Error;
@@ -229,7 +229,7 @@ fn a_pendulum_swings_up_as_its_energy_says() {
     let shortest = time_optimal(&robot, &line, &limits, 500).expect("fine");
     let [_, _, share] = used(&robot, &Timed::new(&line, shortest), &limits, 700);
     assert!(share < 1.0001 && share > 0.97, "{share}");
-    // too weak to be held on the way
+    // too weak to hold the robot on the way
     let weak = time_optimal(&robot, &line, &Limits { torque: vec![6.0], ..limits }, 500).expect_err("weak");
     let Error::TooWeak { joint, s, needed, limit } = &weak else { panic!("{weak:?}") };
     assert!(joint == "pivot" && *limit == 6.0 && *needed > 6.0 && *s > 0.2 && *s < 0.4, "{weak}");

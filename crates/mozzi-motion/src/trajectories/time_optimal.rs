@@ -1,12 +1,12 @@
-//! The fastest way through a path under limits of velocity, acceleration and torque, by reachability (Pham and Pham
+//! The time-optimal profile of a path under limits of velocity, acceleration and torque, by reachability (Pham and Pham
 //! 2018).
 //!
-//! With u = s̈ and x = ṡ², of which u is constant between grid points, x[i+1] = x[i] + 2Δu and every limit is linear:
+//! With u = s̈, constant between grid points, and x = ṡ², x[i+1] = x[i] + 2Δu and every limit is linear:
 //!
 //! > |θ′u + θ″x| ≤ θ̈_max,  |a u + b x + c| ≤ τ_max,  x ≤ (θ̇_max/θ′)²
 //!
-//! Backwards, each point gets the largest x from which the next one's can be kept; forwards, each step takes the
-//! largest u. Limits hold at both ends of each interval.
+//! The backward pass gives each point the largest x from which the next point's x can be kept; the forward pass takes
+//! the largest u in each step. Limits hold at both ends of each interval.
 
 use super::demands::{Demand, demands, demands_of_a_motion};
 use super::limits::Limits;
@@ -17,7 +17,7 @@ use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
 
-/// What no limit bounds: ṡ² and |s̈| of a path between 0 and 1.
+/// The bound of ṡ² and |s̈| if no limit applies, for a path between 0 and 1.
 const UNBOUNDED: f64 = 1e12;
 /// Linearisations of viscous friction.
 const ROUNDS: usize = 4;
@@ -26,14 +26,14 @@ const ROUNDS: usize = 4;
 const BETWEEN: usize = 15;
 const CORRECTIONS: usize = 3;
 
-/// s(t) as fast as the limits allow, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques are those
-/// of the model's own gravity and friction; of viscous friction √x is replaced by a tangent, which is never below it.
-/// Limits hold at the ends of each interval; where they are passed within, by some 10⁻⁴ of them, they are drawn in by
-/// as much, and all is solved anew.
+/// The fastest s(t) within the limits, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques include
+/// the model's own gravity and friction; in viscous friction √x is replaced by a tangent, which is never below it.
+/// Limits hold at the ends of each interval. If they are exceeded within an interval, by some 10⁻⁴, they are tightened
+/// by as much and the problem is solved again.
 ///
 /// # Errors
-/// [`Error::TooWeak`] where a torque limit cannot hold the robot, or carry it along; [`Error::Unlimited`] where some
-/// part of the path is limited by nothing; [`mozzi::Error::BadArgument`], also of a path along which nothing moves.
+/// [`Error::TooWeak`] if a torque limit cannot hold the robot, or move it along the path; [`Error::Unlimited`] if no
+/// limit applies on some part of the path; [`mozzi::Error::BadArgument`], also for a path along which nothing moves.
 pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
     limits.check(model)?;
     check(intervals >= 2, "the number of intervals", intervals, "at least 2")?;
@@ -59,8 +59,8 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
     Ok(Profile::of_speeds(&s, &reachable(model, &s, &grid, &drawn_in)?))
 }
 
-/// The largest shares of the limits of velocity, acceleration and torque that are used at places between those of the
-/// grid, s̈ being constant in between.
+/// The largest used fractions of the limits of velocity, acceleration and torque at points between those of the grid,
+/// with s̈ constant in between.
 fn shares(s: &[f64], speeds: &[f64], inside: &[Demand], limits: &Limits) -> [Vec<f64>; 3] {
     let mut largest = [(); 3].map(|()| vec![0.0_f64; limits.torque.len()]);
     for (k, demand) in inside.iter().enumerate() {
@@ -83,7 +83,7 @@ fn shares(s: &[f64], speeds: &[f64], inside: &[Demand], limits: &Limits) -> [Vec
     largest
 }
 
-/// ṡ at each place of the grid.
+/// ṡ at each grid point.
 fn reachable(model: &Model, s: &[f64], demands: &[Demand], limits: &Limits) -> Result<Vec<f64>, Error> {
     for demand in demands {
         let weak = (0..model.n()).find(|&j| demand.c[j].abs() > limits.torque[j]);
@@ -93,7 +93,8 @@ fn reachable(model: &Model, s: &[f64], demands: &[Demand], limits: &Limits) -> R
     }
     let damped =
         demands.iter().any(|demand| demand.d.iter().any(|&d| d != 0.0)) && limits.torque.iter().any(|x| x.is_finite());
-    // where √x is touched by its tangent: 0 for no friction at first, so that a solution exists to start from
+    // the speeds at which √x is linearized: at first ∞, which means no friction, so that a solution exists to start
+    // from
     let mut speeds = vec![f64::INFINITY; s.len()];
     for round in 0..if damped { ROUNDS } else { 1 } {
         let mut all: Vec<Vec<HalfPlane>> =
@@ -105,7 +106,7 @@ fn reachable(model: &Model, s: &[f64], demands: &[Demand], limits: &Limits) -> R
         }
         let found = fastest(model, demands, limits, &all)?;
         if round == 0 && damped {
-            // the first round has none of the friction: half its speed is a place to touch
+            // the first round ignores friction: half its speed is a suitable point of linearization
             speeds = found.iter().map(|x| 0.5 * x.sqrt()).collect();
         } else {
             speeds = found.iter().map(|x| x.sqrt()).collect();
@@ -114,8 +115,8 @@ fn reachable(model: &Model, s: &[f64], demands: &[Demand], limits: &Limits) -> R
     Ok(speeds)
 }
 
-/// The limits at a point, as half-planes of (u, x); √x touched at a speed, viscous friction left out where that is
-/// infinite.
+/// The limits at a point, as half-planes of (u, x); √x is linearized at this speed, viscous friction is left out if it
+/// is infinite.
 fn planes(demand: &Demand, limits: &Limits, speed: f64) -> Vec<HalfPlane> {
     let mut planes = Vec::new();
     for j in 0..demand.a.len() {
@@ -129,7 +130,7 @@ fn planes(demand: &Demand, limits: &Limits, speed: f64) -> Vec<HalfPlane> {
         }
         if limits.torque[j].is_finite() {
             for sign in [1.0, -1.0] {
-                // a u + b x + c + d √x ≤ τ, where √x ≤ (x/y + y)/2 for every y; where d helps it is left out
+                // a u + b x + c + d √x ≤ τ, where √x ≤ (x/y + y)/2 for every y; if d helps, it is left out
                 let d = (sign * demand.d[j]).max(0.0);
                 let (slope, offset) = match speed {
                     y if d == 0.0 || y.is_infinite() => (0.0, 0.0),
@@ -147,7 +148,7 @@ fn planes(demand: &Demand, limits: &Limits, speed: f64) -> Vec<HalfPlane> {
 fn fastest(model: &Model, demands: &[Demand], limits: &Limits, planes: &[Vec<HalfPlane>]) -> Result<Vec<f64>, Error> {
     let (last, step) = (planes.len() - 1, 1.0 / (planes.len() - 1) as f64);
     let bounds = [[-UNBOUNDED, UNBOUNDED], [0.0, UNBOUNDED]];
-    // what an interval asks of (u, x) at its beginning, where x at its end must be between 0 and `next`
+    // the constraints of an interval on (u, x) at its beginning, if x at its end must be between 0 and `next`
     let interval = |i: usize, next: f64| {
         let mut all = planes[i].clone();
         all.extend(planes[i + 1].iter().map(|p| HalfPlane { a: p.a + 2.0 * step * p.b, ..*p }));
@@ -171,7 +172,7 @@ fn fastest(model: &Model, demands: &[Demand], limits: &Limits, planes: &[Vec<Hal
     let mut x = vec![0.0; last + 1];
     for i in 0..last {
         let mut all = interval(i, largest[i + 1]);
-        // x is given but for rounding
+        // x is fixed up to rounding
         let room = 1e-12 * x[i];
         all.extend([HalfPlane { a: 0.0, b: 1.0, c: x[i] + room }, HalfPlane { a: 0.0, b: -1.0, c: room - x[i] }]);
         let [u, _] = maximize([1.0, 0.0], bounds, &all).ok_or_else(|| stuck(i))?;

@@ -1,7 +1,7 @@
 //! Double-double: the unevaluated sum of two `f64`, 106 bits, 31 digits. For millions of states.
 //!
 //! The algorithms are those of Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks
-//! of double-word arithmetic" (2017): 1 to 4 units of 2⁻¹⁰⁶ an operation, also where leading digits cancel.
+//! of double-word arithmetic" (2017): 1 to 4 units of 2⁻¹⁰⁶ for each operation, even if leading digits cancel.
 
 use super::{Octuple, Wide, further_operators};
 use core::cmp::Ordering;
@@ -14,12 +14,12 @@ use std::sync::LazyLock;
 pub struct Double {
     /// The nearest `f64`.
     high: f64,
-    /// What that leaves.
+    /// The remainder.
     low: f64,
 }
 further_operators!(Double);
 
-/// a + b and what its rounding lost.
+/// a + b and its rounding error.
 #[inline(always)]
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
@@ -27,21 +27,21 @@ fn two_sum(a: f64, b: f64) -> Double {
     Double { high, low: (a - (high - b_there)) + (b - b_there) }
 }
 
-/// [`two_sum`] of |a| ≥ |b|.
+/// [`two_sum`] for |a| ≥ |b|.
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double { high, low: b - (high - a) }
 }
 
-/// a b and what its rounding lost.
+/// a b and its rounding error.
 #[inline(always)]
 fn two_product(a: f64, b: f64) -> Double {
     let high = a * b;
     Double { high, low: f64::mul_add(a, b, -high) }
 }
 
-// No operation is inlined: forty kernels of them would take minutes to compile.
+// No operation is inlined: otherwise forty kernels would take minutes to compile.
 
 impl Add for Double {
     type Output = Self;
@@ -119,7 +119,7 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     Constants { half_pi, inverse_factorials }
 });
 
-/// Σ (±1)ᵏ zᵏ / (first + 2k)!, enough terms for |z| ≤ (π/4)².
+/// Σ (±1)ᵏ zᵏ / (first + 2k)!, with enough terms for |z| ≤ (π/4)².
 fn series(z: Double, first: usize) -> Double {
     let coefficients = CONSTANTS.inverse_factorials[first..].iter().step_by(2).enumerate().rev();
     coefficients.fold(Scalar::zero(), |sum: Double, (k, &c)| sum * z + if k % 2 == 0 { c } else { -c })
@@ -131,7 +131,7 @@ impl Scalar for Double {
         Double { high: x, low: 0.0 }
     }
 
-    /// By x = k π/2 + r for |x| ≤ 2³⁰, and Taylor's series of r; beyond by [`Octuple`].
+    /// For |x| ≤ 2³⁰: x = k π/2 + r, and the Taylor series of r; beyond, by [`Octuple`].
     #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         if !(self.high.abs() <= 1073741824.0) {

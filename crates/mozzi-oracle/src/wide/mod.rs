@@ -1,4 +1,4 @@
-//! Numbers wider than `f64`, as scalars of mozzi's kernels and as entries of nalgebra's matrices.
+//! Numbers wider than `f64`, as scalars for mozzi's kernels and as entries of nalgebra's matrices.
 
 mod double;
 mod octuple;
@@ -8,7 +8,7 @@ pub use octuple::Octuple;
 
 use mozzi::Entry;
 
-/// A number of more digits than `f64`.
+/// A number with more digits than `f64`.
 pub trait Wide: Entry + Send + Sync {
     /// Its decimal digits, rounded down.
     const DIGITS: usize;
@@ -16,11 +16,11 @@ pub trait Wide: Entry + Send + Sync {
     /// The number nearest to a decimal one, `-1.5e-3`.
     fn parse(text: &str) -> Option<Self>;
 
-    /// Half a turn.
+    /// π.
     fn pi() -> Self;
 }
 
-/// What both types have in common: the operators that follow from the plain ones, and nalgebra's 0 and 1.
+/// The part that both types share: the operators that follow from the plain ones, and nalgebra's 0 and 1.
 macro_rules! further_operators {
     ($t:ty) => {
         impl core::ops::AddAssign for $t {

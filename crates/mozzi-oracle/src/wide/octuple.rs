@@ -1,4 +1,4 @@
-//! IEEE 754's binary256: 237 bits, 71 digits. The arithmetic is the crate `f256`'s, correctly rounded.
+//! IEEE 754's binary256: 237 bits, 71 digits. The crate `f256` does the arithmetic, correctly rounded.
 
 use super::{Wide, further_operators};
 use core::cmp::Ordering;
@@ -15,8 +15,8 @@ further_operators!(Octuple);
 const STORED: u32 = 236;
 const BIAS: i32 = 0x3FFFF;
 
-// No operation is inlined: forty kernels of them would take minutes to compile. Most entries of the stacked matrices
-// are zeros: a sum or product with one is known without arithmetic.
+// No operation is inlined: otherwise forty kernels would take minutes to compile. Most entries of the stacked matrices
+// are zeros: a sum or product with zero needs no arithmetic.
 
 impl Add for Octuple {
     type Output = Self;
@@ -75,7 +75,7 @@ impl Scalar for Octuple {
         Octuple(self.0.sqrt())
     }
     fn tanh(self) -> Self {
-        // (1 − e⁻²ˣ) / (1 + e⁻²ˣ) of |x|, by e⁻²ˣ − 1, which keeps the digits of small x
+        // (1 − e⁻²ˣ) / (1 + e⁻²ˣ) for |x|, by e⁻²ˣ − 1, which keeps the digits of small x
         let less_one = (f256::from(-2.0) * self.0.abs()).exp_m1();
         let size = -less_one / (less_one + f256::from(2.0));
         Octuple(size.copysign(self.0))
@@ -129,7 +129,7 @@ impl From<Octuple> for f64 {
         let significand = (high & ((1 << stored_high) - 1)) | (1 << stored_high); // 109 bits; what is below them is sticky
         let rounded = ((significand << 1) | u128::from(low != 0)) as f64; // to the nearest, 110 bits
         let exponent = exponent - stored_high as i32 - 1;
-        // in two steps: the power alone may be outside the range, subnormal results are rounded by the last product
+        // in two steps: the power alone may be out of range, and subnormal results are rounded by the last product
         sign * rounded * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
     }
 }
@@ -147,7 +147,7 @@ mod tests {
         let tenth = Octuple::parse("0.1").expect("a number");
         assert_eq!(f64::from(tenth), 0.1);
         let rest = f64::from(tenth - Octuple::from_f64(0.1));
-        assert!((rest + 5.551115123125783e-18).abs() < 1e-33, "{rest}"); // what f64 loses of 0.1
+        assert!((rest + 5.551115123125783e-18).abs() < 1e-33, "{rest}"); // the rounding error of 0.1 in f64
     }
 
     #[test]

@@ -29,7 +29,7 @@ const METHODS: &[Method] = {
                 positional: ffi::Py_ssize_t,
                 names: *mut ffi::PyObject,
             ) -> *mut ffi::PyObject {
-                // SAFETY: the arguments are those that Python passed.
+                // SAFETY: the arguments are the ones that Python passed.
                 unsafe { enter(Query::from(quantities::$Q).index(), this, values, positional, names) }
             }
             method
@@ -38,7 +38,7 @@ const METHODS: &[Method] = {
     mozzi::quantities!(methods)
 };
 
-/// From Python's arguments to a new reference, or none and Python's error set.
+/// Returns a new reference, or null with Python's error set.
 ///
 /// # Safety
 /// The arguments are those of a call of a method with `METH_FASTCALL | METH_KEYWORDS`, by a thread that holds Python's
@@ -63,7 +63,7 @@ unsafe fn enter(
         (py, Borrowed::from_ptr(py, this), values, names)
     };
     let (values, named) = values.split_at(positional as usize);
-    // what a panic leaves behind is memory without meaning between calls
+    // memory left by a panic means nothing between calls
     let found = catch_unwind(AssertUnwindSafe(|| call(index, &this, values, names, named)));
     let error = match found {
         Ok(Ok(found)) => return found.into_ptr(),
@@ -78,7 +78,7 @@ unsafe fn enter(
     std::ptr::null_mut()
 }
 
-/// With a first line that `inspect.signature` reads.
+/// Adds a first line that `inspect.signature` reads.
 fn help(declaration: &Declaration, class_of_results: &str) -> String {
     let signature = Signature::new(declaration).text("$self", false);
     format!("{}({signature})\n--\n\n{}", declaration.name, documentation(declaration, class_of_results))

@@ -1,4 +1,4 @@
-//! What is there to look at, at one state: the book's matrices, the recursion's parts, base parameters.
+//! Quantities for study, at one state: the book's matrices, the recursion's intermediate results, base parameters.
 
 use crate::arguments::{Arguments, Given};
 use crate::array::{Numbers, by_rows, wrong_shape};

@@ -1,4 +1,4 @@
-//! Constraints: what closes loops, assembly, rank, and their wrenches, at one state.
+//! Constraints: closing loops, assembly, rank, and constraint wrenches, at one state.
 
 use crate::array::list;
 use crate::failure::of_model;
@@ -12,7 +12,7 @@ use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
 
 impl PyModel {
-    /// Positions, and rates of n numbers each.
+    /// Positions, and rates with n numbers each.
     pub(super) fn state_of<const K: usize>(
         &self,
         theta: &Bound<'_, PyAny>,

@@ -1,4 +1,4 @@
-//! What `help` shows of a quantity's method, in numpydoc's sections, made from its declaration.
+//! The docstring of a quantity's method, in numpydoc's sections, made from its declaration.
 
 use crate::signature::{Argument, Signature, shape};
 use mozzi::quantities::{Declaration, Dim, Input, Of, Output};
@@ -63,7 +63,7 @@ fn raises(declaration: &Declaration) -> String {
     }
 }
 
-/// The UR5 at one state and at five, and the shapes that come back.
+/// The example: the UR5 at one state and at five, and the shapes of the results.
 fn example(declaration: &Declaration) -> String {
     let mut text = String::from("\nExamples\n--------\n>>> import mozzi\n>>> ur5 = mozzi.models.ur5()\n");
     let names: Vec<&str> = declaration.inputs.iter().map(|input| input.name).collect();
@@ -90,7 +90,7 @@ fn example(declaration: &Declaration) -> String {
     text
 }
 
-/// The shape of the UR5's result, as Python shows it; what the model counts is compared.
+/// The shape of the UR5's result, as Python shows it; it is compared with the model's sizes.
 fn found(leading: Option<&str>, output: &Output) -> String {
     let size = |dim: &Dim| match dim {
         Dim::N | Dim::Nq | Dim::Rows => "6".to_string(),

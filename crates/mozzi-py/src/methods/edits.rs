@@ -1,4 +1,4 @@
-//! A robot made of another one: with a load, a frame, another gravity or base, joints held, a part of it.
+//! Modified copies of a robot: with a payload, a frame, another gravity or base, locked joints, a part of it.
 
 use crate::array::Numbers;
 use crate::describe::{pose, refused};

@@ -1,4 +1,4 @@
-//! What a robot is: names, sizes, limits, parameters, the book's lists.
+//! Properties of a robot: names, sizes, limits, parameters, the book's lists.
 
 use crate::failure::of_model;
 use crate::model::{PyModel, array};

@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 
 static SIGNATURES: LazyLock<Vec<Signature>> = LazyLock::new(|| LIST.iter().map(Signature::new).collect());
 
-/// The quantity at this place of the list, for positional arguments and those with names.
+/// The quantity at this index of the list, for positional and keyword arguments.
 #[inline]
 pub fn call<'py>(
     index: usize,

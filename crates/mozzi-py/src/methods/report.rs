@@ -1,4 +1,4 @@
-//! A robot and its motion as a page.
+//! HTML report of a robot and its motion.
 
 use crate::array::list;
 use crate::failure::{LoadWarning, of_loader};

@@ -1,4 +1,4 @@
-//! Named states: what the robot's file names, and where it starts.
+//! Named states: those in the robot's file, and the initial state.
 
 use crate::array::list;
 use crate::failure::of_model;

@@ -122,7 +122,7 @@ impl PyController {
     }
 }
 
-/// K_p and K_d of each velocity, from numbers for all or for each.
+/// K_p and K_d of each velocity, from one number for all or one for each.
 fn gains(model: &Py<PyModel>, [p, d]: [(&'static str, &Bound<'_, PyAny>); 2]) -> PyResult<Gains> {
     let n = model.get().robot().model.n();
     Ok(Gains { p: one_or_each(p.0, p.1, n)?, d: one_or_each(d.0, d.1, n)? })
@@ -270,7 +270,7 @@ impl PyTaskSpace {
     }
 }
 
-/// A law for a frame, with the posture's K_p and K_d.
+/// A control law for a frame, with the posture's K_p and K_d.
 fn task(
     model: &Py<PyModel>,
     frame: Option<&str>,
@@ -287,7 +287,7 @@ fn task(
     Ok(ControlLaw::TaskSpace { frame: model.get().frame(frame)?, law, posture })
 }
 
-/// ω of a posture that nobody gave gains for, rad/s.
+/// ω of the default posture gains, rad/s.
 const POSTURE: f64 = 10.0;
 
 /// Impedance control of a frame, τ = Jᵀ(Λa + η + B𝒱_e + KX_e) (Modern Robotics, section 11.7; Hogan 1985).

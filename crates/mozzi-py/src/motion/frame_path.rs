@@ -1,4 +1,4 @@
-//! `mozzi.trajectories.poses_between`: where a frame is on its way from one pose to another.
+//! `mozzi.trajectories.poses_between`: a frame's poses between two given poses.
 
 use super::path::places;
 use crate::array::Numbers;
@@ -22,7 +22,7 @@ pub fn shape_named(name: &str) -> PyResult<Shape> {
 /// A pose of a frame.
 ///
 /// # Errors
-/// `TypeError`, `ValueError` for what is no pose.
+/// `TypeError`, `ValueError` for an invalid pose.
 pub fn pose_of(name: &'static str, given: &Bound<'_, PyAny>) -> PyResult<SE3> {
     pose(Numbers::matrix(name, given, "(4, 4)")?).map_err(|error| refused(format!("{name}: {error}")))
 }

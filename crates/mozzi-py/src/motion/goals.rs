@@ -1,4 +1,4 @@
-//! Where a frame is to be, for one target or for many: from Python's `pose`, `position` or `orientation`.
+//! The goal of a frame, for one target or for many: from Python's `pose`, `position` or `orientation`.
 
 use crate::arguments::Given;
 use crate::array::{Numbers, wrong_shape};
@@ -8,7 +8,7 @@ use mozzi_motion::Goal;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Which part of a frame's pose is the goal.
+/// The part of a frame's pose that is the goal.
 #[derive(Clone, Copy)]
 enum Kind {
     Pose,
@@ -26,7 +26,7 @@ impl<'py> Goals<'py> {
     /// From the one argument that was given.
     ///
     /// # Errors
-    /// `ValueError` for none, for several, and for a wrong shape; `TypeError`.
+    /// `ValueError` for no goal, for several, and for a wrong shape; `TypeError`.
     pub fn new(pose: Given<'_, 'py>, position: Given<'_, 'py>, orientation: Given<'_, 'py>) -> PyResult<Self> {
         let all = [
             (Kind::Pose, "pose", pose, "(..., 4, 4)"),
@@ -53,15 +53,15 @@ impl<'py> Goals<'py> {
         if fits { Ok(goals) } else { Err(wrong_shape(name, &goals.numbers.shape, expected)) }
     }
 
-    /// Axes of one target.
+    /// The number of axes of one target.
     pub fn axes(&self) -> usize {
         if matches!(self.kind, Kind::Position) { 1 } else { 2 }
     }
 
-    /// Each target, after all were spread along these axes.
+    /// Each target, after broadcasting along these axes.
     ///
     /// # Errors
-    /// `ValueError` for a matrix that is no pose or no rotation, with its place.
+    /// `ValueError` for an invalid pose or rotation matrix, with its index.
     pub fn each(&self, leading: &[usize]) -> PyResult<Vec<Goal>> {
         let numbers = self.numbers.slice::<f64>()?;
         let refused = |index: usize, why: String| {

@@ -1,5 +1,5 @@
-//! Functions of one number, such as a time, at one or at many: their lists as arrays, with the axes of the numbers
-//! before their own.
+//! Functions of one number, such as a time, at one value or at many: the results as arrays, whose leading axes are
+//! those of the values.
 
 use crate::array::{Numbers, shown};
 use crate::failure::place;
@@ -15,7 +15,7 @@ pub struct Instants {
 }
 
 impl Instants {
-    /// Any numbers, infinite ones and NaN too.
+    /// Any numbers, including infinite ones and NaN.
     ///
     /// # Errors
     /// `TypeError`.
@@ -29,7 +29,7 @@ impl Instants {
     /// Finite numbers within this range.
     ///
     /// # Errors
-    /// `TypeError`, `ValueError` with the place of the number.
+    /// `TypeError`, `ValueError` with the index of the number.
     pub fn new(name: &'static str, given: &Bound<'_, PyAny>, range: RangeInclusive<f64>, unit: &str) -> PyResult<Self> {
         let found = Self::any(name, given)?;
         let is_wrong = |x: &f64| !x.is_finite() || !range.contains(x);
@@ -39,7 +39,7 @@ impl Instants {
         Err(PyValueError::new_err(format!("{name}{place} is {}, expected {unit}", found.numbers[index])))
     }
 
-    /// Seconds.
+    /// Times in seconds.
     ///
     /// # Errors
     /// As [`new`](Self::new).

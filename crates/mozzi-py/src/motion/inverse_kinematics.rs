@@ -73,7 +73,7 @@ impl PyInverseKinematics {
         InverseKinematics::with_options(self.robot(), self.frame, self.options)
     }
 
-    /// All targets on this many threads, each taking the next target that is left.
+    /// Solves all targets on this many threads; each thread takes the next unsolved target.
     fn solve_on_threads(&self, count: usize, tasks: &[Task]) -> Result<Vec<Found>, Failure> {
         let next = AtomicUsize::new(0);
         let work = || -> Result<Vec<(usize, Found)>, Failure> {
@@ -94,7 +94,7 @@ impl PyInverseKinematics {
             parts.extend(others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic))));
             parts
         });
-        // of several failures the first target's
+        // if several targets failed, the first one's error
         parts.sort_by_key(|part| part.as_ref().err().map_or(usize::MAX, |failure| failure.0));
         let mut all: Vec<(usize, Found)> =
             parts.into_iter().collect::<Result<Vec<_>, Failure>>()?.into_iter().flatten().collect();
@@ -102,12 +102,12 @@ impl PyInverseKinematics {
         Ok(all.into_iter().map(|(_, found)| found).collect())
     }
 
-    /// All targets, one after the other, with H by a function of Python.
+    /// Solves all targets, one after the other, with H given by a Python function.
     fn solve_minimizing(&self, function: &Bound<'_, PyAny>, tasks: &[Task], leading: &[usize]) -> PyResult<Vec<Found>> {
         let (py, raised) = (function.py(), RefCell::new(None));
         let H = |theta: &[f64], gradient: &mut [f64]| {
             minimized(py, function, theta, gradient).unwrap_or_else(|error| {
-                gradient.fill(0.0); // nothing is downhill, and the solver ends
+                gradient.fill(0.0); // with a zero gradient the solver stops
                 raised.borrow_mut().get_or_insert(error);
                 0.0
             })
@@ -126,7 +126,7 @@ impl PyInverseKinematics {
     }
 }
 
-/// The place of a target, and what is wrong with it.
+/// The index of a target, and its error.
 type Failure = Box<(usize, Error)>;
 
 /// One target.
@@ -136,7 +136,7 @@ struct Task<'a> {
     near: Option<&'a [f64]>,
 }
 
-/// H(θ) and its gradient, by a function of Python that answers with both.
+/// H(θ) and its gradient, by a Python function that returns both.
 fn minimized(py: Python<'_>, function: &Bound<'_, PyAny>, theta: &[f64], gradient: &mut [f64]) -> PyResult<f64> {
     let answer = function.call1((array(py, &[theta.len()], theta.iter().copied())?,))?;
     let (H, slope): (f64, Bound<'_, PyAny>) = answer.extract().map_err(|_| {

@@ -6,7 +6,7 @@ use mozzi::Model;
 use mozzi_motion::trajectories::Limits;
 use pyo3::prelude::*;
 
-/// The robot's own limits, each replaced by the one that was given.
+/// The robot's own limits, each replaced by the given one.
 ///
 /// # Errors
 /// `TypeError`, `ValueError` for another shape.

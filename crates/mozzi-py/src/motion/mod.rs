@@ -1,4 +1,4 @@
-//! Motions: `mozzi.InverseKinematics`, `mozzi.trajectories`, `mozzi.controllers`, by `mozzi-motion`.
+//! Motions: `mozzi.InverseKinematics`, `mozzi.trajectories`, `mozzi.controllers`, computed by `mozzi-motion`.
 
 mod controller;
 mod frame_path;

@@ -44,7 +44,7 @@ pub struct PySaturated {
     motors: Mutex<Saturated<Asked>>,
 }
 
-/// The torques that were asked for.
+/// The torques before limiting.
 struct Asked(Vec<f64>);
 
 impl Input for Asked {

@@ -1,4 +1,4 @@
-//! What inverse kinematics found, for one target or for many, as Python's named tuple.
+//! Solutions of inverse kinematics, for one target or for many, as Python's named tuple.
 
 use crate::array::function;
 use crate::failure::{MotionError, place};
@@ -10,7 +10,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyList};
 
-/// One target's positions, reached or the best that were found.
+/// One target's positions: a solution, or the best positions found.
 pub struct Found {
     theta: Vec<f64>,
     residual: Residual,
@@ -25,16 +25,16 @@ impl Found {
         self.reason.is_empty()
     }
 
-    /// The error of a target that had to be reached.
+    /// Returns an error for a target that was not reached although `must_reach` is set.
     pub fn not_reached(&self, index: usize, leading: &[usize]) -> PyErr {
         let place = if leading.is_empty() { String::new() } else { format!("target [{}]: ", place(index, leading)) };
         MotionError::new_err(format!("{place}{}", self.reason))
     }
 
-    /// A target that is not reached is a result.
+    /// A target that is not reached is a result, not an error.
     ///
     /// # Errors
-    /// All others.
+    /// All other errors.
     pub fn of(found: Result<Solution, Error>) -> Result<Self, Error> {
         match found {
             Ok(Solution { theta, residual, starts, iterations }) => {
@@ -53,7 +53,7 @@ impl Found {
     }
 }
 
-/// `mozzi.Solution`: numbers and words of one target, arrays of many.
+/// `mozzi.Solution`: numbers and strings for one target, arrays for many.
 pub fn solution<'py>(py: Python<'py>, all: &[Found], leading: &[usize], nq: usize) -> PyResult<Bound<'py, PyAny>> {
     let column = |part: &dyn Fn(&Found) -> f64, dtype: &str| -> PyResult<Bound<'py, PyAny>> {
         let numbers = array(py, leading, all.iter().map(part))?.call_method1("astype", (dtype,))?;

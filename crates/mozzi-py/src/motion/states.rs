@@ -1,4 +1,4 @@
-//! States at times, one or many, in arrays that are spread along common leading axes: what controllers are called with.
+//! States at one time or many, as arrays broadcast along common leading axes: the arguments of controllers.
 
 use crate::array::{Numbers, common_leading};
 use crate::model::PyModel;
@@ -14,7 +14,7 @@ pub struct States<'py> {
 
 impl<'py> States<'py> {
     /// # Errors
-    /// `TypeError`, `ValueError` for shapes that do not fit the robot or each other.
+    /// `TypeError`, `ValueError` for shapes that do not match the robot or each other.
     pub fn new(
         model: &PyModel,
         t: &Bound<'py, PyAny>,
@@ -36,7 +36,7 @@ impl<'py> States<'py> {
     /// The states, one after the other.
     ///
     /// # Errors
-    /// None but NumPy's.
+    /// Only NumPy's.
     pub fn rows(&self) -> PyResult<impl Iterator<Item = (f64, &[f64], &[f64])>> {
         let (nq, n) = (self.theta.shape[self.leading.len()], self.dtheta.shape[self.leading.len()]);
         let (t, theta, dtheta) = (self.t.slice::<f64>()?, self.theta.slice::<f64>()?, self.dtheta.slice::<f64>()?);

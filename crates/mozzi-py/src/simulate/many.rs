@@ -15,10 +15,10 @@ use mozzi::{Environment, Error, Model};
 use mozzi_batch::{Batch, BatchEnvironment};
 use pyo3::prelude::*;
 
-/// Steps of all robots together between two looks at whether Python was interrupted: a part of a second. Not by the
-/// clock: how steps are cut into pieces may change a last bit.
+/// Steps of all robots together between two checks for an interrupt from Python: a fraction of a second. The number is
+/// fixed and does not depend on the clock, because the division of steps into pieces may change a last bit.
 const BETWEEN_LOOKS: usize = 5_000;
-/// Fewer steps in a row would spend too much on the state that each piece begins with.
+/// With fewer consecutive steps, the state at the beginning of each piece would cost too much.
 const FEWEST_STEPS: usize = 8;
 
 /// Rows of one quantity, robot after robot.
@@ -41,7 +41,7 @@ impl<'py> Table<'py> {
     }
 }
 
-/// What is recorded while robots move.
+/// The rows recorded while robots move.
 struct Record<'py> {
     t: Vec<f64>,
     theta: Table<'py>,
@@ -59,7 +59,7 @@ impl Record<'_> {
     }
 }
 
-/// The robots, and how they move.
+/// The robots, and how they are simulated.
 struct Robots<'a> {
     model: &'a Model,
     batch: Batch<f64>,
@@ -69,7 +69,7 @@ struct Robots<'a> {
 }
 
 impl Robots<'_> {
-    /// The error of one of them.
+    /// The error of one robot.
     fn wrong(&self, index: usize, error: Error) -> PyErr {
         of_state(error, index, self.leading)
     }
@@ -81,7 +81,7 @@ impl Robots<'_> {
         Err(self.wrong(k / width, Error::BadArgument { what, found, expected: "a finite number" }))
     }
 
-    /// Has a robot left the numbers? `place` tells of each state's number its robot and its step.
+    /// Checks that every state is finite. `place` maps a state's index to its robot and its step.
     fn check_bounded(
         &self,
         quantity: &'static str,
@@ -100,7 +100,7 @@ impl Robots<'_> {
         Err(self.wrong(robot, Error::Diverged { quantity, joint, value, step, time, step_size }))
     }
 
-    /// Under torques that stay as they are: the batch takes many steps at once.
+    /// Under constant torques: the batch takes many steps at once.
     fn move_steadily(&self, py: Python, start: [&[f64]; 2], tau: &[f64], record: &mut Record) -> PyResult<()> {
         let [mut theta, mut dtheta] = start.map(<[f64]>::to_vec);
         let Options { method, steps, record_every, .. } = *self.options;
@@ -124,7 +124,7 @@ impl Robots<'_> {
         Ok(())
     }
 
-    /// The error of steps that were counted from this one on.
+    /// The same error with steps counted from the beginning; this piece started at this step.
     fn later(&self, error: mozzi_batch::Error, done: usize) -> PyErr {
         match error {
             mozzi_batch::Error::State {
@@ -142,7 +142,7 @@ impl Robots<'_> {
         }
     }
 
-    /// With torques from the function at each stage of each step.
+    /// With torques computed by the function at each stage of each step.
     fn move_driven(
         &self,
         py: Python,
@@ -186,7 +186,7 @@ impl Robots<'_> {
         Ok(())
     }
 
-    /// What the function answers for all robots.
+    /// The function's torques for all robots.
     fn ask(
         &self,
         robot: &PyModel,

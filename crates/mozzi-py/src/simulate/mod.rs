@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use watched::Watched;
 
-/// What the motors do.
+/// The torques of the motors.
 enum Torque<'a, 'py> {
     None,
     Constant(Numbers<'py>),

@@ -1,4 +1,4 @@
-//! One start: what drives the robot, from Python's arguments, and the motion with its energies as arrays.
+//! One start: the motors' torques from Python's arguments, and the motion with its energies as arrays.
 
 use super::Torque;
 use super::watched::{Watched, happened, stopped};
@@ -22,7 +22,7 @@ impl Input for Constant {
     }
 }
 
-/// Motors: a function of Python. What it raises is kept, and ends the simulation.
+/// Motors: a Python function. An exception is kept, and ends the simulation.
 struct Function<'a, 'py> {
     model: &'a PyModel,
     function: &'a Bound<'py, PyAny>,
@@ -51,7 +51,7 @@ impl Input for Function<'_, '_> {
     }
 }
 
-/// Steps between two looks at whether Python was interrupted.
+/// Steps between two checks for an interrupt from Python.
 const BETWEEN_LOOKS: usize = 500;
 
 /// The motion of one robot.
@@ -81,7 +81,7 @@ pub fn simulate<'py>(
     trajectory(py, robot, found)
 }
 
-/// Looks now and then whether Python was interrupted, or a function raised an exception.
+/// Checks at intervals whether Python was interrupted or a function raised an exception.
 fn run(
     py: Python<'_>,
     robot: &Robot,

@@ -1,4 +1,4 @@
-//! What a simulation looks for: events, as functions of Python or conditions in words, and what came of them.
+//! Events of a simulation, as Python functions or as conditions in words, and their results.
 
 use crate::failure::of_model;
 use crate::model::array;
@@ -21,7 +21,7 @@ impl<'py> Watched<'_, 'py> {
         self.until.is_none() && self.events.is_none()
     }
 
-    /// What a function raises is kept.
+    /// An exception raised by a function is kept.
     pub fn events<'e>(&self, model: &'e Model, raised: &'e RefCell<Option<PyErr>>) -> PyResult<Vec<Event<'e>>>
     where
         'py: 'e,

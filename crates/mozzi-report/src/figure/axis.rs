@@ -1,6 +1,6 @@
 //! Ranges and round numbers along an axis.
 
-/// How numbers lie along an axis.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Evenly.
@@ -11,7 +11,7 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Where a number lies, in the units of [`range`](Self::range).
+    /// The place of a number on the axis, in the units of [`range`](Self::range).
     pub(super) fn place(self, x: f64) -> f64 {
         match self {
             Scale::Linear => x,
@@ -20,7 +20,7 @@ impl Scale {
         }
     }
 
-    /// The places of the lowest and the highest, with air.
+    /// The places of the lowest and the highest value, with a margin.
     pub(super) fn range(self, values: impl Iterator<Item = f64>) -> [f64; 2] {
         let places = values.map(|x| self.place(x)).filter(|x| x.is_finite());
         let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
@@ -36,11 +36,11 @@ impl Scale {
     }
 }
 
-/// Places and their names.
+/// Places and their labels.
 pub(super) struct Ticks(pub Vec<(f64, String)>);
 
 impl Ticks {
-    /// About so many round numbers in a range of places.
+    /// About `about` round numbers in a range of places.
     pub fn new(scale: Scale, [low, high]: [f64; 2], about: usize) -> Self {
         let about = about.max(1) as f64;
         let logarithmic = scale == Scale::Logarithmic;

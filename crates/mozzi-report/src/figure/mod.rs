@@ -7,10 +7,10 @@ pub use axis::Scale;
 
 use axis::Ticks;
 
-/// Panels in rows, below a legend that they share.
+/// Panels in rows, below a common legend.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
-    /// Above all.
+    /// The title, above all panels.
     pub title: String,
     /// In reading order.
     pub panels: Vec<Panel>,
@@ -18,16 +18,16 @@ pub struct Figure {
     pub columns: usize,
 }
 
-/// Two axes and what is drawn between them.
+/// Two axes and the curves between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
-    /// What the abscissa is: `"t [s]"`.
+    /// The label of the abscissa: `"t [s]"`.
     pub x_label: String,
-    /// What the ordinate is: `"θ [rad]"`.
+    /// The label of the ordinate: `"θ [rad]"`.
     pub y_label: String,
-    /// Of both axes.
+    /// The scale of both axes.
     pub scale: Scale,
-    /// Is a unit as long on both axes?
+    /// Does a unit have the same length on both axes?
     pub equal: bool,
     /// Later ones are drawn over earlier ones.
     pub curves: Vec<Curve>,
@@ -36,13 +36,13 @@ pub struct Panel {
 /// A list of points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
-    /// In the legend; an empty name is not.
+    /// The name in the legend; a curve with an empty name is not listed.
     pub name: String,
-    /// A number of the palette.
+    /// An index of the palette.
     pub color: usize,
     /// How it is drawn.
     pub stroke: Stroke,
-    /// (x, y); one that is not finite breaks the curve.
+    /// (x, y); a point that is not finite breaks the curve.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -70,7 +70,7 @@ impl Curve {
 }
 
 impl Panel {
-    /// Lowest and highest of both coordinates, with air.
+    /// Lowest and highest of both coordinates, with a margin.
     fn ranges(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|side| {
             let values = self.curves.iter().flat_map(|curve| &curve.points).map(|point| point[side]);

@@ -3,20 +3,20 @@
 use super::{Curve, Figure, Panel, Stroke};
 use std::fmt::Write;
 
-/// A page of a paper is 720 wide; all lengths are in these units.
+/// The width of a paper's page; all lengths are in these units.
 const WIDTH: f64 = 720.0;
 const PANEL_HEIGHT: f64 = 190.0;
-/// Of a panel that is alone.
+/// The height of a single panel.
 const ONLY_HEIGHT: f64 = 340.0;
-/// Around a panel's axes: left, right, above, below.
+/// Margins around a panel's axes: left, right, above, below.
 const MARGIN: [f64; 4] = [62.0, 12.0, 8.0, 40.0];
-/// Points that are nearer to each other are one.
+/// Points closer than this are merged.
 const HAIR: f64 = 0.35;
 const LEGEND_LINE: f64 = 17.0;
-/// A letter of the legend, about.
+/// Approximate width of a letter of the legend.
 const LETTER: f64 = 6.2;
 
-/// Told apart on white, also in grey, for the first four at least.
+/// Colours that can be distinguished on white; at least the first four also in grey.
 const PALETTE: [&str; 10] =
     ["#2f6fcb", "#d96a26", "#2a8f63", "#b83a5e", "#7a52c7", "#9a7b16", "#16879b", "#c253a6", "#555d66", "#111111"];
 
@@ -25,7 +25,7 @@ fn color(k: usize) -> &'static str {
 }
 
 impl Figure {
-    /// As SVG: black on white, text as text.
+    /// The figure as SVG: black on white, text as text.
     pub fn svg(&self) -> String {
         let columns = self.columns.max(1);
         let width = WIDTH / columns as f64;
@@ -52,7 +52,7 @@ impl Figure {
         )
     }
 
-    /// The names of all panels' curves, once each; answers where it ends.
+    /// The names of all panels' curves, once each; returns the legend's end.
     fn legend(&self, out: &mut String, top: f64) -> f64 {
         let mut names: Vec<&Curve> = Vec::new();
         for curve in self.panels.iter().flat_map(|panel| &panel.curves) {
@@ -90,7 +90,7 @@ impl Panel {
         if !self.equal {
             return if panels == 1 { ONLY_HEIGHT } else { PANEL_HEIGHT };
         }
-        // as tall as the units ask, within reason
+        // as tall as equal units need, within bounds
         let [[left, right], [low, high]] = self.ranges();
         let inner = (width - MARGIN[0] - MARGIN[1]) * ((high - low) / (right - left)).clamp(0.4, 1.2);
         inner + MARGIN[2] + MARGIN[3]

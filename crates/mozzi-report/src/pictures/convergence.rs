@@ -1,4 +1,4 @@
-//! How the error of each method falls with its step, and with the work.
+//! The error of each method over its step, and over its work.
 
 use crate::figure::{Curve, Figure, Panel, Scale, Stroke};
 
@@ -16,8 +16,8 @@ pub struct Convergence {
 }
 
 impl Convergence {
-    /// All methods in two panels: over the step, with the slopes that their orders promise as dashed lines, and over
-    /// the evaluations.
+    /// All methods in two panels: over the step, with the slopes of their orders as dashed lines, and over the
+    /// evaluations.
     pub fn figure(title: impl Into<String>, found: &[Convergence]) -> Figure {
         let (mut by_step, mut by_work) = (Vec::new(), Vec::new());
         for (color, Convergence { name, order, by_step: steps, by_work: work }) in found.iter().enumerate() {

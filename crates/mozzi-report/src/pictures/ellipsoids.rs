@@ -5,7 +5,7 @@ use mozzi::model::{Freedom, Place};
 use mozzi::nalgebra::{DMatrix, Matrix2, SymmetricEigen, U2, Vector2};
 use mozzi::{Error, FrameId, Model, Vec3};
 
-/// A velocity of 1 m/s is drawn so long, m.
+/// The drawn length of a velocity of 1 m/s, in m.
 const METRES: f64 = 0.25;
 const CORNERS: usize = 96;
 
@@ -34,10 +34,10 @@ impl Plane {
     }
 }
 
-/// At each configuration the robot's links up to a frame, and in its origin two ellipses of this plane of {s}: of
+/// At each configuration the robot's links up to a frame, and at its origin two ellipses of this plane of {s}: of
 /// velocities, { J_v θ̇ : ‖θ̇‖ = 1 }, and of forces, { f : ‖J_vᵀf‖ = 1 }, J_v being the two rows of the plane; a
 /// floating base and free joints are held. The force ellipse is scaled to the size of the other, as the legend states,
-/// and omitted where J_v is singular.
+/// and omitted if J_v is singular.
 ///
 /// # Errors
 /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
@@ -86,7 +86,7 @@ pub fn ellipsoids(model: &Model, configurations: &[Vec<f64>], frame: FrameId, pl
     Ok(Figure { title, panels: vec![panel], columns: 1 })
 }
 
-/// J_v J_vᵀ by its principal axes.
+/// The eigenvalues and principal axes of J_v J_vᵀ.
 type Gram = SymmetricEigen<f64, U2>;
 
 /// The singular values of J_v: semi-axes of velocities; those of forces are 1/σ.
@@ -139,7 +139,7 @@ mod tests {
             let v = [x / METRES, z / METRES];
             let rates = [(J[1].0[2] * v[0] - J[1].0[0] * v[1]) / det, (J[0].0[0] * v[1] - J[0].0[2] * v[0]) / det];
             assert!((rates[0].hypot(rates[1]) - 1.0).abs() < 1e-12, "{rates:?}");
-            // τ = Jᵀf is of one length
+            // τ = Jᵀf has constant length
             let [x, z] = [0, 1].map(|side| panel.curves[2].points[k][side] - pose.p.0[2 * side]);
             let torque = (J[0].0[0] * x + J[0].0[2] * z).hypot(J[1].0[0] * x + J[1].0[2] * z);
             scale = if k == 0 { torque } else { scale };

@@ -7,7 +7,7 @@ use mozzi::Model;
 use mozzi::model::{Freedom, Place, description};
 use std::ops::Range;
 
-/// An independent joint: its name, its place among them, where its numbers stand, whether it slides.
+/// An independent joint: its name, its index, the place of its numbers, whether it slides.
 struct Joint<'m> {
     name: &'m str,
     k: usize,
@@ -28,7 +28,7 @@ fn joints(model: &Model) -> Vec<Joint<'_>> {
     model.joint_names().zip(kinds).map(|(name, (k, place, slides))| Joint { name, k, place, slides }).collect()
 }
 
-/// Which numbers of a joint a row has.
+/// The numbers of a joint that a row contains.
 #[derive(Clone, Copy, PartialEq)]
 enum Entries {
     Positions,
@@ -51,8 +51,8 @@ impl Entries {
     }
 }
 
-/// A quantity of a motion: its symbol, its units of turning and sliding joints, and the two parts that it has of balls
-/// and free joints, each with its length.
+/// A quantity of a motion: its symbol, its units for turning and sliding joints, and its two parts for balls and free
+/// joints, each with its length.
 struct Quantity<'m> {
     symbol: &'static str,
     units: [&'static str; 2],
@@ -80,12 +80,12 @@ fn column(rows: &[f64], width: usize, k: usize) -> impl Iterator<Item = f64> {
     rows.chunks(width.max(1)).map(move |row| row[k])
 }
 
-/// θ, θ̇, θ̈ and τ of the joints over time, as far as they are known; turning and sliding joints apart. A ball and a
-/// free joint have panels of their own: quaternion and origin, angular and linear velocity, moment and force. A
-/// floating base is not shown.
+/// θ, θ̇, θ̈ and τ of the joints over time, if known; turning and sliding joints in separate panels. Balls and free
+/// joints have panels of their own: quaternion and origin, angular and linear velocity, moment and force. A floating
+/// base is not shown.
 ///
 /// # Errors
-/// [`Error::Motion`] where the rows are not as long as this robot's.
+/// [`Error::Motion`] if the rows are not as long as this robot's.
 pub fn trajectories(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     motion.check(model)?;
     let joints = joints(model);
@@ -118,10 +118,10 @@ pub fn trajectories(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     Ok(Figure { title: motion.title.clone(), panels, columns: 1 })
 }
 
-/// 𝒦, 𝒫 and their sum over time; below them the drift, where it is known.
+/// 𝒦, 𝒫 and their sum over time; below them the drift, if it is known.
 ///
 /// # Errors
-/// [`Error::Motion`] as [`trajectories`], and where no energy is known.
+/// [`Error::Motion`] as [`trajectories`], and if no energy is known.
 pub fn energy(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     motion.check(model)?;
     let over_time = |values: &[f64]| motion.t.iter().zip(values).map(|(&t, &x)| [t, x]).collect::<Vec<_>>();
@@ -150,11 +150,11 @@ pub fn energy(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     Ok(Figure { title: motion.title.clone(), panels, columns: 1 })
 }
 
-/// θ̇ over θ, a panel for each joint of one axis: the velocities of balls and free joints are no rates of their
+/// θ̇ over θ, a panel for each joint of one axis: the velocities of balls and free joints are not the rates of their
 /// positions.
 ///
 /// # Errors
-/// [`Error::Motion`] as [`trajectories`], and where velocities are not known.
+/// [`Error::Motion`] as [`trajectories`], and if velocities are not known.
 pub fn phase(model: &Model, motion: &Motion) -> Result<Figure, Error> {
     motion.check(model)?;
     let (rows, width) = (motion.t.len(), model.n());

@@ -29,7 +29,7 @@ pub fn contents(at: &At, robot: &Description) -> Result<Contents, Wrong> {
     Ok(Contents { constraints, motors: motors(&driven)?, place_of_motors: driven.place })
 }
 
-/// The frame of this name; if there is none, that of the joint of this name, which is its child's.
+/// The frame of this name or, if there is none, the child frame of the joint of this name.
 fn anchor(at: &At, robot: &Description) -> Result<Anchor, Wrong> {
     let name = at.text()?;
     let is_frame =

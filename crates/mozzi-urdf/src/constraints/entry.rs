@@ -1,16 +1,16 @@
-//! A constraint of an entry of JSON or YAML.
+//! Reads a constraint from an entry of JSON or YAML.
 
 use crate::spelling::did_you_mean;
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind};
 use mozzi::{SE3, SO3, Vec3};
 
-/// A value of a file, and where it is: what a reader of constraints needs of JSON or YAML.
+/// A value of a file and its place: the interface to JSON or YAML that a reader of constraints needs.
 pub trait Entry: Sized {
     /// Why a file is refused, with the place.
     type Error;
     /// The value of a key; a null if there is no such key.
     fn get(&self, key: &'static str) -> Self;
-    /// The keys of a map; none of any other value.
+    /// The keys of a map; none for any other value.
     fn keys(&self) -> Vec<String>;
     /// Whether it is null.
     fn is_null(&self) -> bool;
@@ -18,20 +18,20 @@ pub trait Entry: Sized {
     fn is_map(&self) -> bool;
     /// Its place in the file, such as `constraints[1].a`.
     fn name(&self) -> String;
-    /// The text that it is.
+    /// The value as a text.
     ///
     /// # Errors
-    /// It is no text.
+    /// The value is not a text.
     fn text(&self) -> Result<String, Self::Error>;
-    /// The number that it is.
+    /// The value as a number.
     ///
     /// # Errors
-    /// It is no number.
+    /// The value is not a number.
     fn number(&self) -> Result<f64, Self::Error>;
-    /// The entries of the list that it is.
+    /// The entries of a list.
     ///
     /// # Errors
-    /// It is no list.
+    /// The value is not a list.
     fn list(&self) -> Result<Vec<Self>, Self::Error>;
     /// An error at its place: "… is …, expected …".
     ///
@@ -78,7 +78,7 @@ pub fn constraint<E: Entry>(at: &E) -> Result<Constraint, E::Error> {
         let (joint, kind) = (required(at, "joint")?.text()?, required(at, "polynomial")?);
         let most = if source.is_some() { 5 } else { 1 };
         let given = numbers(&kind)?;
-        // what is written has five; without a source all but the first are zero
+        // written files have five coefficients; without a source all but the first are zero
         if given.is_empty() || given.len() > 5 || given.iter().skip(most).any(|c| *c != 0.0) {
             return kind.wrong(if most == 5 {
                 "one to five coefficients"
@@ -157,7 +157,7 @@ fn vector<E: Entry, const N: usize>(at: &E) -> Result<[f64; N], E::Error> {
     }
 }
 
-/// The value of a key that has to be there.
+/// The value of a required key.
 pub(super) fn required<E: Entry>(at: &E, key: &'static str) -> Result<E, E::Error> {
     if at.keys().iter().any(|known| known == key) {
         return Ok(at.get(key));
@@ -165,7 +165,7 @@ pub(super) fn required<E: Entry>(at: &E, key: &'static str) -> Result<E, E::Erro
     at.error(format!("`{key}` is missing in {}", at.name()))
 }
 
-/// Refuses a key that is not known.
+/// Refuses an unknown key.
 pub(super) fn known<E: Entry>(at: &E, words: &[&'static str]) -> Result<(), E::Error> {
     match at.keys().into_iter().find(|key| !words.contains(&key.as_str())) {
         None => Ok(()),

@@ -1,4 +1,4 @@
-//! A file of constraints: what it says, and the errors of its places.
+//! A file of constraints: its contents, and errors with their places.
 
 use super::closed_loop;
 use super::entry::{self, Entry};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Larger files are refused.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// Something wrong at a place of a file.
+/// An error at a place of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Misplaced {
     /// The file's name.
@@ -22,7 +22,7 @@ pub struct Misplaced {
     pub line: usize,
     /// From 1, in characters.
     pub column: usize,
-    /// What is wrong.
+    /// The message.
     pub message: String,
 }
 
@@ -38,9 +38,9 @@ impl fmt::Display for Misplaced {
 pub enum ConstraintsError {
     /// It cannot be read.
     File {
-        /// Which.
+        /// The path of the file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
     /// It has errors, each at its place.
@@ -126,7 +126,7 @@ fn contents(at: &At, robot: &Description) -> Result<Contents, yaml::Wrong> {
 pub struct At {
     node: Node,
     path: String,
-    /// Of its key, if it has one.
+    /// The place of its key, if it has one.
     pub place: (usize, usize),
 }
 

@@ -21,8 +21,8 @@
 //!
 //! # robot.yaml
 //! The format of Gepetto's parallel robots: `closed_loop` lists pairs of frames that coincide, `type` is `6d` (a weld)
-//! or `3d` (a point) for each pair, `name_mot` names the motors. A name that is no frame is a joint's: the frame of its
-//! child.
+//! or `3d` (a point) for each pair, `name_mot` names the motors. A name that is not a frame's is a joint's, and means
+//! the frame of its child.
 //!
 //! Unknown and missing keys are errors, and so are aliases and tags of YAML. Every error has its line and column.
 

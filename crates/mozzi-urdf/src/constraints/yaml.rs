@@ -26,7 +26,7 @@ pub enum Value {
     Map(Vec<(String, (usize, usize), Node)>),
 }
 
-/// Why a text is no tree, and where.
+/// Why a text is not a valid tree, and the place.
 pub type Wrong = ((usize, usize), String);
 
 /// The only document of a text.

@@ -29,7 +29,7 @@ impl<'a> Tag<'a> {
         self.children().find(|tag| tag.name() == name)
     }
 
-    /// The child of this element name whose attribute `name` is this.
+    /// The child with this element name and this `name` attribute.
     pub fn named(self, element: &str, name: &str) -> Option<Tag<'a>> {
         self.children().find(|tag| tag.name() == element && tag.node.attribute("name") == Some(name))
     }
@@ -49,7 +49,7 @@ impl<'a> Tag<'a> {
         self.text.get(self.node.range()).is_some_and(|text| text.ends_with("/>"))
     }
 
-    /// Where the children of an element with an end tag begin.
+    /// The start of the children of an element with an end tag.
     fn inside(self) -> usize {
         let Range { start, end } = self.node.range();
         let end_tag = || self.text.get(start..end).and_then(|text| text.rfind("</")).map_or(end, |at| start + at);
@@ -68,7 +68,7 @@ impl<'a> Editor<'a> {
         Editor { text, replacements: Vec::new() }
     }
 
-    /// Sets an attribute; a value of none removes it with the white space before it.
+    /// Sets an attribute; `None` removes it with the white space before it.
     pub fn set(&mut self, tag: Tag<'a>, name: &str, value: Option<&str>) {
         let found = tag.node.attribute_node(name);
         match (found, value) {
@@ -86,7 +86,7 @@ impl<'a> Editor<'a> {
         }
     }
 
-    /// Removes an element, with its line if it has one of its own.
+    /// Removes an element, and its line if nothing else is on it.
     pub fn remove(&mut self, tag: Tag<'a>) {
         let Range { start, end } = tag.node.range();
         let rest = &self.text[end..];

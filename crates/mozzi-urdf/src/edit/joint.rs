@@ -1,4 +1,4 @@
-//! A locked joint: a fixed one, whose origin is its child's pose.
+//! A locked joint becomes a fixed joint, with its child's pose as origin.
 
 use super::element::{Editor, Tag};
 use crate::number::numbers;
@@ -35,7 +35,7 @@ fn place<'a>(parent: Tag<'a>, T: SE3, editor: &mut Editor<'a>) {
     }
 }
 
-/// Rotations and sums round a number by some ε: no reason to rewrite it.
+/// Rotations and sums change a number by a few ε, which is no reason to rewrite it.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Equal up to rounding.

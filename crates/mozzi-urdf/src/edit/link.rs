@@ -1,4 +1,4 @@
-//! Another inertia of a link.
+//! Replaces the inertia of a link.
 
 use super::element::{Editor, Tag};
 use super::joint::{ROUNDING, is_near};
@@ -26,7 +26,7 @@ pub(super) fn set_inertia<'a>(link: Tag<'a>, G: SpatialInertia, editor: &mut Edi
         }
     }
     if let Some(origin) = origin {
-        editor.set(origin, "quat_xyzw", None); // of URDF 1.1, in place of rpy
+        editor.set(origin, "quat_xyzw", None); // URDF 1.1's replacement for rpy
     }
     let R = old(origin, "rpy").map_or_else(SO3::identity, |[roll, pitch, yaw]| SO3::from_rpy(roll, pitch, yaw));
     let I = G.about_center_of_mass().congruence(R.inverse().matrix());

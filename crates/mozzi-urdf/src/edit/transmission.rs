@@ -1,12 +1,12 @@
-//! What still drives a joint that an edit has fixed.
+//! Transmissions and controllers that still drive a joint fixed by an edit.
 
 use mozzi::Description;
 use mozzi::model::description::JointKind;
 use roxmltree::{Document, Node};
 
 /// Drives of joints that do not move in this robot, which controllers refuse: each `<joint>` in a `<transmission>` or a
-/// `<ros2_control>` of the text that names a fixed joint, as "`<transmission>` elbow_drive drives joint elbow, which
-/// is fixed". None in a text that is no XML.
+/// `<ros2_control>` of the text that names a fixed joint, as "`<transmission>` elbow_drive drives joint elbow, which is
+/// fixed". None if the text is not XML.
 pub fn drives_of_fixed_joints(text: &str, robot: &Description) -> Vec<String> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let Ok(document) = Document::parse(text) else { return Vec::new() };

@@ -1,11 +1,11 @@
-//! Where a mesh that a robot's file names is.
+//! Locates the meshes that a robot's file names.
 
 use crate::visible::visible;
 use std::ffi::OsString;
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 
-/// A mesh that was not found, or that is none of the robot's.
+/// A mesh that was not found, or that does not belong to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotLocated {
     /// The name in the robot's file.
@@ -46,13 +46,13 @@ impl std::error::Error for NotLocated {}
 /// file, then in those of `ROS_PACKAGE_PATH`, and as `share/NAME/PATH` in those of `AMENT_PREFIX_PATH`. Nothing is
 /// fetched.
 ///
-/// Whoever writes a robot's file must not reach other files of whoever reads it: links followed, the mesh lies in the
-/// folder of the robot's file, in the package around it (the nearest folder above that has a `package.xml`), or in the
-/// package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS. `root` is
-/// one more folder in which meshes may lie, if whoever reads the file names it.
+/// A robot's file must not give access to other files of its reader: with symbolic links followed, the mesh must lie in
+/// the folder of the robot's file, in the package around it (the nearest folder above that has a `package.xml`), or in
+/// the package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS. `root`
+/// is one more folder in which meshes may lie, chosen by the reader.
 ///
 /// # Errors
-/// [`NotLocated`] with the places, or with the file that is elsewhere.
+/// [`NotLocated`] with the places searched, or with the file that is outside of these folders.
 pub fn locate(robot_file: &Path, mesh: &str, root: Option<&Path>) -> Result<PathBuf, NotLocated> {
     let candidates = candidates(robot_file, mesh, &|name| std::env::var_os(name));
     let mut own = own_folders(robot_file);
@@ -71,7 +71,7 @@ pub fn locate(robot_file: &Path, mesh: &str, root: Option<&Path>) -> Result<Path
     })
 }
 
-/// The folder of the robot's file and the package around it; of a link, also those of the file itself.
+/// The folder of the robot's file and the package around it; for a symbolic link, also those of its target.
 fn own_folders(robot_file: &Path) -> Vec<PathBuf> {
     let parent = robot_file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let real = robot_file.canonicalize().ok().and_then(|file| file.parent().map(Path::to_path_buf));
@@ -93,7 +93,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// Is it, links followed, in one of these folders or in its package?
+    /// With symbolic links followed, is it in one of these folders or in its package?
     fn is_allowed(&self, own: &[PathBuf]) -> bool {
         let Ok(file) = self.path.canonicalize() else { return false };
         let of_package = self.package.as_ref().and_then(|(folder, is_of_ros)| {

@@ -1,18 +1,18 @@
-//! Is this file a mesh? A page embeds nothing else, whatever the file is called.
+//! Checks that a file is a mesh. A page embeds nothing else, whatever the file's name.
 
 use crate::bytes;
 use crate::dialect::Dialect;
 use crate::source::Source;
 use crate::syntax;
 
-/// What an OBJ's lines begin with (Wavefront's specification, version 3.0).
+/// The words that an OBJ's lines may begin with (Wavefront's specification, version 3.0).
 const WORDS: &str = "v vt vn vp deg bmat step cstype p l f curv curv2 surf parm trim hole scrv sp end con g s mg o \
                      bevel c_interp d_interp lod usemtl mtllib usemap maplib shadow_obj trace_obj ctech stech";
 
 /// Reads a file by its format, "stl", "obj" or "dae".
 ///
 /// # Errors
-/// The first thing that is not of a mesh.
+/// The first content that does not belong to a mesh.
 pub fn check_mesh(format: &str, file: &[u8]) -> Result<(), String> {
     match format {
         "stl" if is_binary_stl(file) => Ok(()),
@@ -36,9 +36,9 @@ fn is_binary_stl(file: &[u8]) -> bool {
     count > 0 && rest.len() / 50 == count && rest.len() % 50 < 4 && rest.chunks_exact(50).all(is_triangle)
 }
 
-/// solid NAME, then of each triangle: facet normal, outer loop, three vertices, endloop, endfacet; endsolid NAME.
+/// solid NAME, then for each triangle: facet normal, outer loop, three vertices, endloop, endfacet; endsolid NAME.
 fn ascii_stl(text: &str) -> Result<(), String> {
-    // the line of a triangle that is next; none outside of a solid
+    // the next expected line of a triangle; none outside of a solid
     let (mut next, mut triangles) = (None, 0);
     for (k, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let line = line.to_ascii_lowercase();
@@ -58,7 +58,7 @@ fn ascii_stl(text: &str) -> Result<(), String> {
     if triangles > 0 && next.is_none() { Ok(()) } else { Err("it has no triangles, or ends within them".into()) }
 }
 
-/// Do the words of a line begin as expected, three numbers for a 3?
+/// Do the words of a line begin as expected, with three numbers in place of a 3?
 fn is_line<'t>(expected: &str, first: &'t str, rest: impl Iterator<Item = &'t str>) -> bool {
     let words: Vec<&str> = std::iter::once(first).chain(rest).collect();
     let (start, count) = expected.strip_suffix(" 3").map_or((expected, 0), |start| (start, 3));

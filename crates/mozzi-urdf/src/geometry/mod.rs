@@ -31,7 +31,7 @@ pub struct Geometry {
     pub left_out: Vec<Diagnostic>,
 }
 
-/// The shapes of an embedded robot by its name, or of a file: URDF, or MJCF with what it includes. JSON has none.
+/// The shapes of an embedded robot by its name, or of a file: URDF, or MJCF with its included files. JSON has none.
 ///
 /// # Errors
 /// [`LoadError::File`] when it cannot be read, [`LoadError::NoSuchRobot`] when there is neither.
@@ -39,7 +39,7 @@ pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
     geometry_with(name_or_path, &XacroArguments::default())
 }
 
-/// The same with arguments of xacro.
+/// The same with xacro arguments.
 ///
 /// # Errors
 /// As there; [`LoadError::Refused`] if xacro cannot expand the file.
@@ -60,7 +60,7 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
     parse_in(None, file_name, text.as_ref(), &XacroArguments::default()).unwrap_or_else(|_| none())
 }
 
-/// What a text of MJCF includes is searched in a folder.
+/// The shapes of a text. Files that an MJCF text includes are searched in a folder.
 fn parse_in(
     folder: Option<&Path>,
     file_name: &str,
@@ -200,7 +200,7 @@ mod tests {
         assert_eq!((shapes[0].color, shapes[3].color), (Some([0.0, 1.0, 0.0, 1.0]), Some([1.0, 0.0, 0.0, 0.5])));
         let said: Vec<_> = left_out.iter().map(|found| (found.line(), found.code())).collect();
         assert_eq!(said, [(21, "mozzi::mjcf::ignored_mesh"), (23, "mozzi::mjcf::missing_size")], "{left_out:?}");
-        // a free body leaves the world, whose shapes are not drawn
+        // with a free body as the base, the world's shapes are not drawn
         let free = FIGURE.replace("<joint type=\"hinge\" axis=\"0 1 0\"/>", "<freejoint/>");
         let shapes = parse("figure.xml", free).shapes;
         assert!(shapes.len() == 4 && shapes.iter().all(|shape| shape.link == "arm"));

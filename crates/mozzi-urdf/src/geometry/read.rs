@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 type Colors = BTreeMap<String, [f64; 4]>;
 
-/// The shapes that can be read; the others are reported.
+/// The valid shapes; the others are reported.
 pub(crate) fn robot(root: &Element, cx: &mut Context) -> Vec<Shape> {
     let mut colors = Colors::new();
     for material in children(root, "material") {
@@ -87,7 +87,7 @@ fn lengths<const N: usize>(form: &Element, name: &str, cx: &mut Context) -> Opti
     None
 }
 
-/// The colour of a material; one that is told here is remembered by its name.
+/// The colour of a material; a colour defined here is stored under the material's name.
 fn name_color(material: &Element, colors: &mut Colors, cx: &mut Context) -> Option<[f64; 4]> {
     let name = material.attribute("name").map(|value| value.text);
     let own = children(material, "color").next().and_then(|color| {

@@ -1,4 +1,4 @@
-//! A shape: what it is, where it is, how it is painted.
+//! A shape: its form, its pose, its colour.
 
 use mozzi::SE3;
 
@@ -11,13 +11,13 @@ pub struct Shape {
     pub purpose: Purpose,
     /// Configuration of its frame relative to the link's.
     pub T: SE3,
-    /// What it is.
+    /// Its form.
     pub form: Form,
-    /// Red, green, blue, opacity from 0 to 1, where the file says it.
+    /// Red, green, blue, opacity from 0 to 1, if the file gives them.
     pub color: Option<[f64; 4]>,
 }
 
-/// What a shape is for.
+/// The purpose of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// `<visual>`; in MJCF a geom of the groups 0 to 2, which MuJoCo draws.
@@ -53,9 +53,9 @@ pub enum Form {
     },
     /// A cylinder about z, closed by two hemispheres.
     Capsule {
-        /// Of cylinder and hemispheres.
+        /// Radius of cylinder and hemispheres.
         radius: f64,
-        /// Of the cylinder alone.
+        /// Length of the cylinder alone, along z.
         length: f64,
     },
     /// A ball.

@@ -9,7 +9,7 @@ use crate::spelling::did_you_mean;
 use crate::vocabulary::{list, shown};
 use std::rc::Rc;
 
-/// An element that has a class of defaults, or none.
+/// An element with or without a default class.
 #[derive(Clone)]
 pub(crate) struct Item<'a> {
     pub element: Element<'a>,
@@ -30,17 +30,17 @@ impl<'a> Item<'a> {
         self.defaults.as_ref().and_then(|values| values.get(name)).map_or(&[], Vec::as_slice)
     }
 
-    /// The value of an attribute, by the element itself or its class.
+    /// The value of an attribute, from the element itself or its class.
     pub fn value(&self, name: &str) -> Option<Value<'a>> {
         self.element.attribute(name).or_else(|| self.inherited(name).last().cloned())
     }
 
-    /// Is it there, by the element itself or its class?
+    /// Is the attribute given, by the element itself or its class?
     pub fn has(&self, name: &str) -> bool {
         self.value(name).is_some()
     }
 
-    /// N numbers; None where there are none, or, which is reported, where they are not numbers.
+    /// N numbers; None if there are none or, with a diagnostic, if they are invalid.
     pub fn vector<const N: usize>(&self, name: &str, cx: &mut Context) -> Option<[f64; N]> {
         let value = self.value(name)?;
         match numbers::<N>(value.text) {
@@ -53,7 +53,7 @@ impl<'a> Item<'a> {
         self.vector::<1>(name, cx).map_or(default, |[x]| x)
     }
 
-    /// At most N numbers. Those that the element does not give are its class', and at last zero.
+    /// At most N numbers. Missing ones are taken from the class; the rest are zero.
     pub fn overlaid<const N: usize>(&self, name: &str, cx: &mut Context) -> [f64; N] {
         let own = self.element.attribute(name);
         let mut result = [0.0; N];
@@ -71,7 +71,7 @@ impl<'a> Item<'a> {
         result
     }
 
-    /// Reported once, however many elements take it from their class.
+    /// Reported once, even if many elements take it from their class.
     fn unreadable<T>(&self, name: &str, value: &Value<'a>, error: NotNumbers, cx: &mut Context) -> Option<T> {
         if cx.unreadable.insert(value.span.start) {
             self.element.report_numbers(name, value, error, cx);
@@ -79,7 +79,7 @@ impl<'a> Item<'a> {
         None
     }
 
-    /// One of some words; None where there is none, or, which is reported, where it is another.
+    /// One of some words; None if there is none or, with a diagnostic, if it is another word.
     pub fn word(&self, name: &str, known: &[&'static str], cx: &mut Context) -> Option<&'static str> {
         let value = self.value(name)?;
         let found = known.iter().copied().find(|&word| word == value.text);
@@ -97,7 +97,7 @@ impl<'a> Item<'a> {
         self.word(name, &["true", "false"], cx).map_or(default, |word| word == "true")
     }
 
-    /// An error at an attribute, or at the element where it is not written.
+    /// An error at an attribute, or at the element if the attribute is not written.
     pub fn error(&self, code: &'static str, name: &str, message: &str) -> Finding {
         let span = self.value(name).map_or_else(|| self.element.span(), |value| value.span);
         Finding::error(code, span, format!("{}: {message}", self.element.subject))

@@ -15,7 +15,7 @@ use crate::places::Place;
 use crate::vocabulary::shown;
 use mozzi::{SE3, SpatialInertia, Vec3};
 
-/// A body that carries others.
+/// A parent body.
 #[derive(Clone, Copy)]
 struct Carrier {
     link: usize,
@@ -25,7 +25,7 @@ struct Carrier {
 }
 
 impl<'a> Model<'a> {
-    /// The tree of bodies; what stands in the world itself does not move.
+    /// The tree of bodies; elements of the world itself do not move.
     pub fn world(&mut self, element: &Element<'a>, cx: &mut Context) {
         let element = element.called("worldbody");
         element.check_attributes(&vocabulary::WORLD, cx);
@@ -42,7 +42,7 @@ impl<'a> Model<'a> {
         self.rest(contents, Carrier { link: 0, is_static: true, depth: 0 }, cx);
     }
 
-    /// A body, and all that it carries.
+    /// A body and its descendants.
     fn body(&mut self, inside: Inside<'a>, carrier: Carrier, cx: &mut Context) {
         let element = inside.item.element.called("body");
         self.tree.bodies += 1;
@@ -92,7 +92,7 @@ impl<'a> Model<'a> {
         self.rest(contents, Carrier { link, is_static, depth: carrier.depth + 1 }, cx);
     }
 
-    /// The sites of a body, and the bodies that it carries.
+    /// The sites and the child bodies of a body.
     fn rest(&mut self, contents: Contents<'a>, carrier: Carrier, cx: &mut Context) {
         for site in &contents.sites {
             self.site(site, carrier.link, cx);
@@ -122,7 +122,7 @@ impl<'a> Model<'a> {
         self.tree.sites.push(Site { name, link, T: *T * frame, place });
     }
 
-    /// The words of a geom; a plugin in it makes its shape.
+    /// The vocabulary of a geom; a plugin in it defines its shape.
     fn check_geom(&mut self, geom: &Element<'a>, cx: &mut Context) {
         geom.check_attributes(&vocabulary::GEOM, cx);
         geom.check_children(&vocabulary::GEOM, cx);
@@ -154,7 +154,7 @@ impl<'a> Model<'a> {
             }
             match self.mass_of(&item, geom.T, cx) {
                 Mass::Known(inertia) => sum += inertia,
-                // what the checks say of a mass that is not known is an echo
+                // checks of an unknown mass would only repeat the error
                 Mass::Wrong => place.report("mass"),
                 Mass::Mesh if is_static => self.ignored.mesh(&item),
                 Mass::Mesh => {

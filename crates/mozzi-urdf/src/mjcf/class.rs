@@ -14,27 +14,27 @@ use std::rc::Rc;
 /// The values of attributes, outermost class first.
 pub(crate) type Values<'a> = BTreeMap<&'static str, Vec<Value<'a>>>;
 
-/// Suggestions are searched among so many names.
+/// Largest number of names that are searched for suggestions.
 pub(crate) const MOST_SUGGESTED: usize = 100;
-/// Longer values are refused: what a class holds is read for each element that takes it.
+/// Longer values are refused: a class's values are read again for each element that uses the class.
 const LONGEST_VALUE: usize = 256;
 
-/// The place of a class among all.
+/// The index of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Class(usize);
 
 impl Class {
-    /// The outermost one.
+    /// The outermost class.
     pub const MAIN: Class = Class(0);
 }
 
-/// All classes; a class holds what it inherits, as it was when the class was made.
+/// All classes. A class contains the values that it inherits, as they were when it was created.
 pub(crate) struct Classes<'a> {
     names: BTreeMap<String, Class>,
     values: Vec<BTreeMap<&'static str, Rc<Values<'a>>>>,
 }
 
-/// What a default gives to which elements, and the attributes that are read.
+/// The elements that each default applies to, and the attributes that are read.
 fn of_tag(tag: &str) -> Option<(&'static str, &'static Vocabulary)> {
     Some(match tag {
         "joint" => ("joint", &vocabulary::JOINT),
@@ -101,7 +101,7 @@ impl<'a> Classes<'a> {
                     cx.findings.error("long_value", value.span, message);
                     continue;
                 }
-                // of an outer class only the numbers beyond those of this one can still count
+                // an outer class's value still matters only if it has more numbers than this one
                 let values = values.entry(name).or_default();
                 let count = value.text.split_ascii_whitespace().count();
                 values.retain(|outer| outer.text.split_ascii_whitespace().count() > count);
@@ -123,7 +123,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// Keeps attributes that only shapes take.
+    /// Keeps attributes that only shapes use.
     fn keep(&mut self, class: Class, tag: &'static str, names: &[&'static str], element: &Element<'a>) {
         let values = Rc::make_mut(self.values[class.0].entry(tag).or_default());
         for &name in names {
@@ -133,7 +133,7 @@ impl<'a> Classes<'a> {
         }
     }
 
-    /// The class that an attribute names, or another.
+    /// The class named by an attribute, or `otherwise`.
     pub fn named(&self, element: &Element<'a>, attribute: &str, otherwise: Class, cx: &mut Context) -> Class {
         let Some(value) = element.attribute(attribute) else { return otherwise };
         if let Some(&class) = self.names.get(value.text) {
@@ -146,7 +146,7 @@ impl<'a> Classes<'a> {
         otherwise
     }
 
-    /// An element with the values of its class, or of the class around it.
+    /// An element with the values of its class, or of the enclosing class.
     pub fn item(&self, element: Element<'a>, tag: &str, around: Class, cx: &mut Context) -> Item<'a> {
         let class = self.named(&element, "class", around, cx);
         let defaults = self.values[class.0].get(tag).cloned();

@@ -1,4 +1,4 @@
-//! What acts on the tree of bodies from outside: equalities, tendons, actuators, flexible bodies, in this order.
+//! Elements outside the tree of bodies that act on it: equalities, tendons, actuators, flexible bodies, in this order.
 
 use super::Model;
 use super::equality::Named;
@@ -24,7 +24,7 @@ impl<'a> Model<'a> {
             };
         }
         let all = |is_first: bool| {
-            // actuators move tendons, so these come first
+            // actuators drive tendons, so tendons are read first
             let sections = sections.iter().filter(move |section| (section.name() != "actuator") == is_first);
             sections.flat_map(|section| section.elements().map(move |child| (section, child)))
         };

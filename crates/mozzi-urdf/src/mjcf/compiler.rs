@@ -1,4 +1,4 @@
-//! `<compiler>`: how the numbers of a model are meant.
+//! `<compiler>`: how to interpret the numbers of a model.
 
 use super::attributes::Item;
 use super::vocabulary;
@@ -13,11 +13,11 @@ use mozzi::{SO3, Vec3};
 pub(crate) enum FromGeoms {
     Never,
     Always,
-    /// Where a body has no `<inertial>`.
+    /// If a body has no `<inertial>`.
     Auto,
 }
 
-/// The settings that matter here.
+/// The settings that mozzi uses.
 pub(crate) struct Compiler {
     degrees: bool,
     /// The axis, and whether it turns with the frame.

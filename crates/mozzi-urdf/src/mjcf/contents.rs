@@ -1,4 +1,4 @@
-//! What stands in a body, frames resolved.
+//! The contents of a body, with frames resolved.
 
 use super::Model;
 use super::attributes::Item;
@@ -15,7 +15,7 @@ use mozzi::SE3;
 pub(crate) struct Inside<'a> {
     pub item: Item<'a>,
     pub T: SE3,
-    /// The class of what it contains.
+    /// The default class of its contents.
     pub class: Class,
 }
 

@@ -1,4 +1,4 @@
-//! MuJoCo's `qpos` and `qvel` of a robot, mimic joints among them, as states of mozzi.
+//! Conversion of a robot's `qpos` and `qvel` in MuJoCo, which include mimic joints, to states of mozzi.
 
 use super::tree::Tree;
 use crate::vocabulary::shown;
@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// A joint's numbers in `qpos` and `qvel`.
 pub(crate) struct Slot {
-    /// Its place among the description's joints; None of the base's.
+    /// Its index among the description's joints; None for the base's.
     joint: Option<usize>,
     /// Its name in messages.
     pub shown: String,
@@ -19,7 +19,7 @@ pub(crate) struct Slot {
 }
 
 impl Slot {
-    /// How many numbers of `qvel`.
+    /// Its number of entries in `qvel`.
     pub fn velocities(&self) -> usize {
         match self.qpos0.len() {
             1 => 1,
@@ -33,7 +33,7 @@ impl Slot {
         self.qpos0.iter().enumerate().all(|(k, &x)| x == if one == Some(k) { 1.0 } else { 0.0 })
     }
 
-    /// Index of its quaternion in its numbers of `qpos`.
+    /// Index of its quaternion among its entries of `qpos`.
     pub fn quaternion(&self) -> Option<Range<usize>> {
         match self.qpos0.len() {
             4 => Some(0..4),
@@ -44,7 +44,7 @@ impl Slot {
 }
 
 impl Tree {
-    /// The joints that move, in the order of `qpos`: that of the file.
+    /// The joints that move, in the order of `qpos`, which is the file's.
     pub fn slots(&self) -> Vec<Slot> {
         let at = |T: mozzi::SE3| {
             let [w, x, y, z, px, py, pz] = T.to_pose();
@@ -74,7 +74,7 @@ pub(crate) struct Coordinates<'s> {
     /// The robot without its inertias.
     model: Model,
     mujoco: MuJoCo,
-    /// Of each slot whose joint follows another: its source joint's slot, the ratio and the offset.
+    /// For each slot of a mimic joint: the source joint's slot, the ratio and the offset.
     sources: Vec<Option<Source>>,
 }
 
@@ -110,7 +110,7 @@ impl<'s> Coordinates<'s> {
         Some(Coordinates { slots, mujoco, sources, model })
     }
 
-    /// The state of `qpos`, its quaternions of length 1, and `qvel`.
+    /// The state of `qpos`, with its quaternions normalized, and `qvel`.
     pub fn state(&self, time: f64, qpos: &[f64], qvel: &[f64]) -> Option<State> {
         let qpos = self.independent(qpos, |slot| slot.qpos0.len());
         let qvel = self.independent(qvel, Slot::velocities);

@@ -20,12 +20,12 @@ use std::collections::BTreeMap;
 /// A link's number, and a frame in it.
 type End = (usize, SE3);
 
-/// What equalities refer to.
+/// The elements that equalities refer to.
 pub(crate) struct Named<'t> {
     joints: &'t BTreeMap<String, usize>,
     bodies: BTreeMap<String, usize>,
     sites: BTreeMap<String, End>,
-    /// Of all links in the file's own configuration.
+    /// The poses of all links in the file's own configuration.
     poses: Vec<SE3>,
 }
 
@@ -50,7 +50,7 @@ impl<'a> Model<'a> {
     /// An element of `<equality>`.
     pub fn equality(&mut self, element: Element<'a>, named: &Named, cx: &mut Context) {
         if !vocabulary::EQUALITY.many.contains(&element.name()) {
-            return; // which was reported
+            return; // already reported
         }
         let item = self.classes.item(element, "equality", Class::MAIN, cx);
         let name = item.element.name();
@@ -113,7 +113,7 @@ impl<'a> Model<'a> {
         self.tie(item, ends, Closure::Weld, cx);
     }
 
-    /// Adds a constraint between two frames. What is in the world itself is in {s}.
+    /// Adds a constraint between two frames. Frames in the world itself are in {s}.
     fn tie(&mut self, item: &Item<'a>, ends: [End; 2], closure: Closure, cx: &mut Context) {
         let links = ends.map(|(link, _)| Some(link).filter(|link| *link != 0));
         let [a, b] = ends.map(|(_, T)| Anchor { frame: None, T });
@@ -170,7 +170,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// What a tie is between.
+/// The two ends of a tie.
 enum Ends {
     Sites([End; 2]),
     Bodies([usize; 2]),
@@ -198,7 +198,7 @@ fn ends(item: &Item, named: &Named, cx: &mut Context) -> Option<Ends> {
     Some(Ends::Bodies([one?, two?]))
 }
 
-/// The element of the name that an attribute gives; None, and reported, if there is none.
+/// The element named by an attribute; None, with a diagnostic, if there is none.
 fn find<T: Copy>(
     element: &Element,
     attribute: &str,

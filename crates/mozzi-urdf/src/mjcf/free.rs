@@ -1,5 +1,5 @@
-//! `<freejoint>`, and joints of type `free`: a body that hangs on nothing, and, where it is all that moves, the robot's
-//! base.
+//! `<freejoint>`, and joints of type `free`: free bodies. A free body that carries all moving bodies is the robot's
+//! floating base.
 
 use super::Model;
 use super::attributes::Item;
@@ -86,7 +86,7 @@ impl<'a> Model<'a> {
         let link = base.child;
         let mut stays = vec![false; self.tree.links.len()];
         stays[link] = true;
-        // parents stand before their children
+        // parents precede their children
         for joint in self.tree.joints.iter().filter(|joint| joint.child != link) {
             stays[joint.child] = stays[joint.parent];
         }
@@ -124,7 +124,7 @@ impl<'a> Model<'a> {
         }
         self.tree.sites.iter_mut().for_each(|site| site.link = numbers[site.link]);
         for one in &mut self.tree.constraints {
-            // what stays behind is in {s}
+            // anchors outside the free body's tree are in {s}
             if let ConstraintKind::Frames { a, b, .. } = &mut one.kind {
                 for (link, anchor) in one.links.iter_mut().zip([a, b]) {
                     if let Some(still) = link.filter(|&i| !stays[i]) {

@@ -1,4 +1,4 @@
-//! `<geom>`: a homogeneous solid that a body is made of.
+//! `<geom>`: a homogeneous solid of a body.
 
 use super::Model;
 use super::attributes::Item;
@@ -12,13 +12,13 @@ const DENSITY: f64 = 1000.0;
 pub(crate) const TYPES: [&str; 9] =
     ["plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"];
 
-/// What a geom adds to its body.
+/// The contribution of a geom to its body.
 pub(crate) enum Mass {
     /// In the body's frame.
     Known(SpatialInertia),
     /// It needs a mesh, which is not read.
     Mesh,
-    /// It is invalid, which was reported.
+    /// It is invalid, already reported.
     Wrong,
 }
 
@@ -59,7 +59,7 @@ impl Model<'_> {
         Mass::Known(inertia.transformed(T * frame))
     }
 
-    /// The solid, centred in its frame; None, and reported, where a size is missing.
+    /// The solid, centred in its frame; None, with a diagnostic, if a size is missing.
     pub fn solid(&self, item: &Item, kind: &str, cx: &mut Context) -> Option<(Solid, SE3)> {
         let mut size = item.overlaid::<3>("size", cx);
         let mut frame = pose(item, &self.compiler, cx);
@@ -86,7 +86,7 @@ impl Model<'_> {
         };
         if !size[..needed].iter().all(|&x| x > 0.0) {
             if cx.findings.has_errors() && item.has("size") && size == [0.0; 3] {
-                return None; // numbers that cannot be read, which was said
+                return None; // invalid numbers, already reported
             }
             let sizes: Vec<String> = size[..needed].iter().map(f64::to_string).collect();
             let message = format!("size: is {}, expected numbers above 0 for a {kind}", sizes.join(" "));

@@ -1,4 +1,4 @@
-//! What of a model does not enter the dynamics: said once per kind, with how often it stands there.
+//! Model content that does not affect the dynamics: reported once per kind, with the number of occurrences.
 
 use super::attributes::Item;
 use crate::context::Context;
@@ -8,17 +8,17 @@ use crate::vocabulary::shown;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// MuJoCo's own plugins that put no force on bodies: they measure, they are actuators, or they are shapes.
+/// MuJoCo's own plugins that apply no force to bodies: sensors, actuators and shapes.
 const HARMLESS_PLUGINS: [&str; 3] = ["mujoco.sensor.", "mujoco.pid", "mujoco.sdf."];
 
-/// The first of a kind, and how many there are.
+/// The first occurrence of a kind, and the number of occurrences.
 struct Kind {
     code: &'static str,
     span: Range<usize>,
     message: String,
     help: &'static str,
     count: usize,
-    /// Of what is not used: what it concerns.
+    /// For unused content: what it concerns.
     topic: Option<Topic>,
 }
 
@@ -81,7 +81,7 @@ impl Ignored {
         }
     }
 
-    /// A body of the world next to a free body, which does not move.
+    /// A body or site of the world that does not move, next to a free body.
     pub fn beside(&mut self, what: &str, name: &str, span: Range<usize>, free: &str) {
         self.add(&format!("beside {what}"), || Kind {
             code: "ignored_element",
@@ -132,7 +132,7 @@ impl Ignored {
         }
     }
 
-    /// Reports all of it.
+    /// Reports everything left out.
     pub fn tell(&mut self, cx: &mut Context) {
         for ((element, name), span) in std::mem::take(&mut cx.left_out) {
             let message = format!("{element}: `{name}` is ignored");
@@ -149,7 +149,7 @@ impl Ignored {
     }
 }
 
-/// What an element concerns that is not used, or whose attribute is not.
+/// The topic of an unused element, or of an element with an unused attribute.
 fn topic_of(element: &str) -> Topic {
     match element {
         "actuator" | "sensor" | "key" => Topic::Actuators,

@@ -1,4 +1,4 @@
-//! `<include>`: files that stand in a model where they are named.
+//! `<include>`: files whose content replaces the `<include>` that names them.
 
 use crate::bytes::{self, MOST_BYTES};
 use crate::context::Context;
@@ -22,8 +22,8 @@ struct Include {
     file: Option<String>,
 }
 
-/// Reads what the first source includes, and what that includes. The place of each `<include>`, and the number of
-/// its source; None, and reported, where something cannot be read.
+/// Reads the files that the first source includes, recursively. Returns the place of each `<include>` and the number of
+/// its source; None, with a diagnostic, if something cannot be read.
 pub(crate) fn gather(
     sources: &mut Vec<Source>,
     folder: Option<&Path>,

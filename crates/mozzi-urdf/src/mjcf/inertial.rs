@@ -25,7 +25,7 @@ impl Model<'_> {
         let mass = match item.element.required("mass", cx) {
             Some(_) => item.number("mass", 0.0, cx),
             None => {
-                // what the checks say of a body without a mass is an echo
+                // checks of a body without mass would only repeat the error
                 place.report("mass");
                 place.report("inertia");
                 0.0
@@ -62,7 +62,7 @@ impl Model<'_> {
         if given.mass < 0.0
             || verdict.principal_moments.iter().any(|&moment| moment < -1e-12 * verdict.principal_moments[2])
         {
-            return given; // an error is not repaired in silence
+            return given; // an error is not repaired silently
         }
         let is_low = bound > 0.0 && verdict.principal_moments.iter().any(|&moment| moment < bound);
         let is_unbalanced = self.compiler.balance && !verdict.is_physical();
@@ -74,7 +74,7 @@ impl Model<'_> {
             let rows = I.to_mat3().rows();
             let Some(mut eigen) = SymmetricEigen::try_new(Matrix3::from_fn(|i, j| rows[i][j]), f64::EPSILON, 1000)
             else {
-                return given; // not finite, which the checks tell
+                return given; // not finite, which the checks report
             };
             eigen.eigenvalues.iter_mut().for_each(|moment| *moment = moment.max(bound));
             let raised = eigen.recompose();

@@ -15,7 +15,7 @@ use mozzi::model::description::{JointKind, Limits};
 use mozzi::{SE3, ScrewAxis, Vec3};
 
 impl<'a> Model<'a> {
-    /// Adds a joint between two links; its name as messages show it.
+    /// Adds a joint between two links; returns its name for messages.
     pub fn joint(&mut self, inside: &Inside<'a>, ends: [usize; 2], origin: SE3, cx: &mut Context) -> String {
         let number = self.tree.degrees;
         self.tree.degrees += 1;

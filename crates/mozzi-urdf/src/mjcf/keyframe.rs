@@ -1,4 +1,4 @@
-//! `<keyframe>`, and `qpos0`: named states, in mozzi's numbers.
+//! `<keyframe>`, and `qpos0`: named states, converted to mozzi's coordinates.
 
 use super::coordinates::{Coordinates, Slot};
 use super::tree::{Name, Names};
@@ -12,14 +12,14 @@ use crate::vocabulary::shown;
 use mozzi::Description;
 use std::collections::BTreeSet;
 
-/// Positions of all keys together; more are refused, to bound memory.
+/// Largest number of positions in all keys together, to bound memory.
 const MOST_POSITIONS: usize = 1_000_000;
 
 /// MuJoCo's initial state.
 const QPOS0: &str = "qpos0";
 
 /// Tolerance on a mimic joint's number against its source joint's, rad or m, and per second; relative above 1. MuJoCo's
-/// solver keeps a coupling approximately, and so do the keys that it saves.
+/// solver satisfies a coupling only approximately, and so do the keys that it saves.
 const TOLERANCE: f64 = 1e-3;
 
 /// A `<key>`.
@@ -72,7 +72,7 @@ impl<'a> Key<'a> {
     }
 }
 
-/// The numbers of an attribute; None where there are none, or, which is reported, where they are not numbers.
+/// The numbers of an attribute; None if there are none or, with a diagnostic, if they are invalid.
 fn numbers<'a>(element: &Element<'a>, attribute: &str, cx: &mut Context) -> Option<Numbers<'a>> {
     let value = element.attribute(attribute)?;
     match all_numbers(value.text) {
@@ -106,7 +106,7 @@ pub(crate) fn add(
     if keys.is_empty() && slots.iter().all(Slot::is_neutral) {
         return;
     }
-    // what is wrong with the robot itself is reported later
+    // errors of the robot itself are reported later
     let Some(coordinates) = Coordinates::new(slots, description) else { return };
     let given: BTreeSet<String> = keys.iter().filter_map(|key| key.name.given.clone()).collect();
     let mut names = Names::new("key", given);
@@ -144,7 +144,7 @@ fn contradictory(element: &Element, attribute: &str, given: &Numbers, wrong: &[S
     cx.findings.add(Finding::warning("contradictory_key", given.value.span.clone(), message).help(help));
 }
 
-/// The numbers of a key, or the default; None, and reported, where they are too few or too many.
+/// The numbers of a key, or the default; None, with a diagnostic, if there are too few or too many.
 fn sized(
     element: &Element,
     attribute: &str,

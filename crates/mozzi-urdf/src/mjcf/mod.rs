@@ -21,18 +21,18 @@
 //! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
 //! - Equalities are rigid here; MuJoCo's solver keeps them approximately: `solref`, `solimp` and `torquescale` are not
 //!   used. Anchor {a} is in body 1 and {b} in body 2, at the point that coincides with it in the file's own
-//!   configuration, or where `relpose` or the sites have it. One without a name is called by its number: `connect0`.
-//! - A key of `<keyframe>` is a named state ([`mozzi::Model::state`]): its time, `qpos` and `qvel`. A key without a
-//!   name is called by its number, `key0`. If the file's own configuration is not θ = 0, because a free body is
-//!   elsewhere or a joint has a `ref`, it is the state `qpos0`, and the robot starts there ([`mozzi::Model::start`]),
-//!   as in MuJoCo. Numbers of mimic joints are checked against their source joints', and not kept.
+//!   configuration, or as given by `relpose` or the sites. An unnamed equality is named by its number: `connect0`.
+//! - A key of `<keyframe>` is a named state ([`mozzi::Model::state`]): its time, `qpos` and `qvel`. An unnamed key is
+//!   named by its number, `key0`. If the file's own configuration is not θ = 0, because a free body is elsewhere or a
+//!   joint has a `ref`, it is the state `qpos0`, and the robot starts there ([`mozzi::Model::start`]), as in MuJoCo.
+//!   Numbers of mimic joints are checked against their source joints', and not kept.
 //!
 //! # What is not read
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed, shells.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
-//! - Loaded with a warning that nothing of the dynamics is lost: limits of tendons, reversed limits, an `<inertial>`
-//!   without moments, which is a point mass.
+//! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without
+//!   moments, which is a point mass.
 //! - Counted ([`Loaded::unused`](crate::Loaded)), once per kind, with the codes `ignored_element` and
 //!   `ignored_attribute`: actuators, sensors, contacts, assets, a key's numbers for actuators and mocap bodies,
 //!   settings of MuJoCo's solver, appearance.
@@ -102,7 +102,7 @@ pub(crate) struct Model<'a> {
     pub shapes: Option<Shapes>,
 }
 
-/// What a caller wants of a model.
+/// The result that a caller needs from a model.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Wanted {
     Dynamics,
@@ -159,7 +159,7 @@ fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> 
     let sections: Vec<Element> = root.elements().filter(|child| !child.has_prefix()).collect();
     let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
 
-    // the order of the sections means nothing
+    // the order of the sections does not matter
     let mut model = Model {
         compiler: Compiler::read(of("compiler"), cx),
         options: Options::default(),

@@ -1,4 +1,4 @@
-//! `<option>`: gravity, and what is switched off.
+//! `<option>`: gravity, and disabled effects.
 
 use super::attributes::Item;
 use super::ignored::Ignored;
@@ -6,7 +6,7 @@ use super::vocabulary;
 use crate::context::Context;
 use crate::element::Element;
 
-/// The options that matter here.
+/// The options that mozzi uses.
 pub(crate) struct Options {
     pub gravity: [f64; 3],
     pub damper: bool,

@@ -59,7 +59,7 @@ pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
     (length > 1e-100 && length < 1e100).then(|| v * (1.0 / length))
 }
 
-/// None where they are too nearly parallel for a rotation.
+/// None if the axes are too nearly parallel for a rotation.
 fn columns(x: Vec3, y: Vec3, z: Vec3) -> Option<SO3> {
     SO3::from_matrix(Mat3::from_rows([x.0, y.0, z.0]).transpose()).ok()
 }

@@ -1,5 +1,5 @@
-//! `<tendon>` and `<actuator>`, of which the inertia counts: that of a fixed tendon, which is a rotor that its joints
-//! turn, and that of an actuator, which is its joint's or its tendon's. Other forces of tendons are refused by name.
+//! The inertia of `<tendon>` and `<actuator>`. A fixed tendon is a rotor that its joints turn; an actuator's inertia is
+//! added to its joint or tendon. Other forces of tendons are refused by name.
 
 use super::Model;
 use super::attributes::Item;
@@ -16,11 +16,11 @@ use mozzi::model::description::Gear;
 use std::collections::BTreeMap;
 
 impl<'a> Model<'a> {
-    /// A tendon: a rotor, for now of all inertias, if it is fixed; one that joints do not turn at constant ratios has
-    /// none.
+    /// Reads a tendon as a rotor, whatever its inertia for now. Joints turn only a fixed tendon at constant ratios, so
+    /// others have no gears.
     pub fn tendon(&mut self, element: Element<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
         if !vocabulary::TENDONS.many.contains(&element.name()) {
-            return; // which was said
+            return; // already reported
         }
         let is_fixed = element.name() == "fixed";
         let item = self.classes.item(element, "tendon", Class::MAIN, cx);
@@ -112,7 +112,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Tendons without an inertia act on nothing, and that of one joint is the joint's armature.
+    /// Drops tendons without inertia. The inertia of a tendon of one joint becomes the joint's armature.
     pub fn settle_rotors(&mut self, names: &BTreeMap<String, usize>) {
         for rotor in std::mem::take(&mut self.tree.rotors) {
             match *rotor.gears.as_slice() {
@@ -124,7 +124,7 @@ impl<'a> Model<'a> {
                 [Gear { ref joint, ratio }] if names.contains_key(joint) => {
                     self.tree.joints[names[joint]].joint.armature += ratio * ratio * rotor.armature;
                 }
-                [] => {} // which was said
+                [] => {} // already reported
                 _ => self.tree.rotors.push(rotor),
             }
         }

@@ -7,7 +7,7 @@ use crate::{Diagnostic, parse};
 /// Made by `oracles/make_schema.py`: a path and its attributes on each line.
 const SCHEMA: &str = include_str!("../../../../oracles/mjcf_schema.txt");
 
-/// The words that are known at a path, where the elements there are read.
+/// The known words at a path, if the elements there are read.
 fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
     Some(match path {
         "mujoco" => &vocabulary::MUJOCO,
@@ -31,7 +31,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
     })
 }
 
-/// Elements that are reported with all their contents: the path, such an element, and the code.
+/// Elements that are reported with all their contents: the path, an example, and the code.
 const TOLD: [(&str, &str, &str); 21] = [
     ("mujoco/compiler/lengthrange", "<compiler><§/></compiler>", "ignored_attribute"),
     ("mujoco/size", "<§/>", "ignored_element"),
@@ -112,13 +112,13 @@ fn every_word_is_in_a_class() {
         let path = parts.next().expect("a path");
         let (parent, name) = path.rsplit_once('/').unwrap_or(("", path));
         if let Some(parent) = vocabulary(parent) {
-            // a body stands in the world first of all
+            // a top-level body is in `<worldbody>`
             let name = if path == "mujoco/body" { "worldbody" } else { name };
             let is_known = [parent.once, parent.many, parent.silent].iter().any(|known| known.contains(&name));
             assert!(is_known, "{path}: the element is not known");
         }
         let Some(known) = vocabulary(path) else {
-            // descendants are told with the first that is told; of an actuator's defaults, what matters is read
+            // an element reported as a whole covers its descendants; the relevant defaults of actuators are read
             let is_actuator =
                 path.strip_prefix("mujoco/default/").is_some_and(|tag| vocabulary::ACTUATORS.contains(&tag));
             let told = TOLD.iter().any(|(start, ..)| path.starts_with(start));
@@ -144,7 +144,7 @@ fn every_word_is_in_a_class() {
                 && !NAMES.contains(&attribute)
                 && !model(path, "").is_empty()
             {
-                // what is read is missed where it cannot be read
+                // an attribute that is read is reported if it is invalid
                 read += 1;
                 let found = said(&model(path, &format!("{attribute}='?'")));
                 assert!(found.iter().any(|d| d.excerpt() == "?"), "{path}: {attribute} is not read: {found:?}");

@@ -15,9 +15,9 @@ use mozzi::{SE3, SO3, Solid, Vec3};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Attributes of a default class that only shapes take.
+/// Attributes of a default class that only shapes use.
 pub(crate) const LOOKS: [&str; 2] = ["rgba", "material"];
-/// MuJoCo does not draw groups from this one on; by convention they have the shapes for contacts.
+/// MuJoCo does not draw groups from this one on; by convention they contain the shapes for contacts.
 const FIRST_HIDDEN_GROUP: f64 = 3.0;
 
 /// A mesh of `<asset>`.
@@ -29,14 +29,14 @@ struct Mesh {
     reference: SE3,
 }
 
-/// What the geoms of a model name, and the shapes found so far.
+/// The assets that geoms refer to, and the shapes found so far.
 #[derive(Default)]
 pub(crate) struct Shapes {
     meshes: BTreeMap<String, Mesh>,
     colors: BTreeMap<String, [f64; 4]>,
     /// With the index of their link.
     found: Vec<(usize, Shape)>,
-    /// Its own findings: they are warnings, as shapes do not affect the dynamics.
+    /// Findings about shapes: warnings, since shapes do not affect the dynamics.
     pub cx: Context,
 }
 
@@ -66,7 +66,7 @@ impl Shapes {
         shapes
     }
 
-    /// A mesh without a name is called after its file; one without a file is given by vertices, and is not drawn.
+    /// A mesh without a name is named after its file; one without a file is defined by vertices and is not drawn.
     fn mesh<'a>(&mut self, classes: &Classes<'a>, element: Element<'a>, folder: &str, strips: bool) {
         let Some(file) = element.attribute("file").map(|value| value.text) else { return };
         let path =
@@ -94,7 +94,7 @@ impl Shapes {
         (self.found.into_iter().filter_map(name).collect(), self.cx)
     }
 
-    /// Keeps the shapes of some links, which get other numbers.
+    /// Keeps the shapes of some links and renumbers them.
     pub fn renumber(&mut self, stays: &[bool], numbers: &[usize]) {
         self.found.retain(|(link, _)| stays[*link]);
         self.found.iter_mut().for_each(|(link, _)| *link = numbers[*link]);
@@ -116,7 +116,7 @@ impl<'a> Model<'a> {
         self.shapes = Some(shapes);
     }
 
-    /// Nothing for planes, height fields, and what is fully transparent.
+    /// Nothing for planes, height fields and fully transparent geoms.
     fn shape(&self, item: &Item<'a>, T: SE3, shapes: &mut Shapes) -> Option<Shape> {
         let kind = item.word("type", &TYPES, &mut shapes.cx).unwrap_or("sphere");
         let material = || item.value("material").and_then(|value| shapes.colors.get(value.text).copied());

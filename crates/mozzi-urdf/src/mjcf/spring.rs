@@ -19,10 +19,10 @@ pub(crate) struct SpringDamper {
     pub damper: bool,
 }
 
-/// A joint's own configuration and [`SpringDamper`], and where it stands in the file.
+/// A joint's own configuration, its [`SpringDamper`], and its place in the file.
 pub(crate) type Tuning = (f64, Option<(SpringDamper, std::ops::Range<usize>)>);
 
-/// What the description needs of the joints of a tree, in their order.
+/// The data that the description needs from the joints of a tree, in joint order.
 pub(crate) fn tunings(joints: &[Joint]) -> Vec<Tuning> {
     let tuning = |joint: &Joint| {
         let spring_damper = joint.spring_damper.map(|tuned| (tuned, joint.place.span("springdamper")));
@@ -32,7 +32,7 @@ pub(crate) fn tunings(joints: &[Joint]) -> Vec<Tuning> {
 }
 
 /// As MuJoCo's compiler: k = I / (T ζ)² and d = 2 I / T with the inertia I = 1 / (M⁻¹)_jj at the file's configuration,
-/// all joints independent. Of a robot that is refused for another reason nothing is computed.
+/// all joints independent. Nothing is computed for a robot that is refused for another reason.
 pub(crate) fn tune(robot: &mut Description, tunings: &[Tuning], cx: &mut Context) {
     if tunings.iter().all(|(_, tuned)| tuned.is_none()) {
         return;

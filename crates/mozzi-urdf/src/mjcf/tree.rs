@@ -1,4 +1,4 @@
-//! The tree while it is read: ends of joints are numbers, for names are settled when all are known.
+//! The tree while it is read. Joints refer to links by number, since names are assigned once all are known.
 
 use super::spring::SpringDamper;
 use crate::context::Context;
@@ -34,7 +34,7 @@ impl Name {
     }
 }
 
-/// A body, or a massless link between two joints of one.
+/// A body, or a massless link between two joints of one body.
 pub(crate) struct Link {
     pub name: Name,
     pub inertia: SpatialInertia,
@@ -51,7 +51,7 @@ pub(crate) struct Joint {
     pub reference: f64,
     /// The pose of a free body there.
     pub start: SE3,
-    /// In place of stiffness and damping.
+    /// Replaces stiffness and damping.
     pub spring_damper: Option<SpringDamper>,
     pub place: Place,
 }
@@ -104,7 +104,7 @@ pub(crate) struct Tree {
     pub constraints: Vec<Constraint>,
     /// The body that is free.
     pub free: Option<Free>,
-    /// How many bodies and joints MuJoCo counts so far.
+    /// MuJoCo's count of bodies and joints so far.
     pub bodies: usize,
     pub degrees: usize,
 }
@@ -150,7 +150,7 @@ impl Tree {
     /// The configurations of all links in the file's own configuration.
     pub fn poses(&self) -> Vec<SE3> {
         let mut poses = vec![SE3::identity(); self.links.len()];
-        // parents stand before their children
+        // parents precede their children
         for joint in &self.joints {
             let moved = match joint.joint.kind {
                 JointKind::Screw(A) => joint.joint.origin * SE3::exp(A.twist() * joint.reference),
@@ -162,7 +162,7 @@ impl Tree {
         poses
     }
 
-    /// The description, with names for what has none.
+    /// The description, with generated names for unnamed elements.
     pub fn describe(self, name: &str, gravity: [f64; 3], cx: &mut Context) -> (Description, Places) {
         let mut places = Places { robot: self.place, ..Places::default() };
         let (mut description, mut carriers) = (Description::new(name).with_gravity(gravity), Vec::new());
@@ -238,7 +238,7 @@ impl Tree {
     }
 }
 
-/// The names of bodies, joints or keys, as they are given out.
+/// The names of bodies, joints or keys, as they are assigned.
 pub(crate) struct Names {
     what: &'static str,
     /// Names from the file, and generated names.
@@ -266,7 +266,7 @@ impl Names {
     }
 }
 
-/// A name that is not taken.
+/// An unused name.
 fn free(name: &str, taken: &BTreeSet<String>) -> String {
     let mut name = name.to_string();
     while taken.contains(&name) {

@@ -1,4 +1,4 @@
-//! Derivatives and the regressor, beside Pinocchio's.
+//! Derivatives and the regressor, compared with Pinocchio's.
 
 use super::{Worst, column, matrix};
 use mozzi::Model;
@@ -6,7 +6,7 @@ use mozzi::conventions::Pinocchio;
 use nalgebra::DMatrix;
 use serde_json::Value;
 
-/// What the state carries of them; `velocities` are mozzi's numbers of the oracle's velocities.
+/// Compares those that the state contains; `velocities` are mozzi's indices of the oracle's velocities.
 pub fn compare(
     model: &Model,
     velocities: &[usize],
@@ -23,8 +23,8 @@ pub fn compare(
         worst.add("∂τ/∂θ̇", &theirs(&mine.d_dtheta), &matrix(&state["dtau_dv"]), 0.0);
     }
     if state.get("ddq_dq").is_some() {
-        // backward: M times the difference, over the size of M's products with it; by θ also over what θ̈ is uncertain
-        // by, M⁻¹ times τ's rounding, times ∂M/∂θ, which is as large as M
+        // backward error: M times the difference, relative to the size of M's products with it; for derivatives by θ
+        // also relative to the uncertainty of θ̈ (M⁻¹ times τ's rounding) times ∂M/∂θ, which is as large as M
         let M = theirs(&model.mass_matrix(theta).unwrap());
         let mine = model.forward_dynamics_derivatives(theta, dtheta, tau, &environment).unwrap();
         let largest = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -55,7 +55,8 @@ pub fn compare(
     }
 }
 
-/// mozzi's number of each of the oracle's bodies: a floating base, and what each joint moves, mimic joints among them.
+/// mozzi's index of each of the oracle's bodies: a floating base, and the body that each joint moves, including mimic
+/// joints.
 fn bodies(model: &Model, oracle: &Value) -> Vec<usize> {
     let base = usize::from(model.is_floating());
     let of =

@@ -1,4 +1,4 @@
-//! Numbers out of the files of `oracles/`, and how far off they are.
+//! Numbers from the files of `oracles/`, and errors relative to them.
 //!
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
 #![allow(dead_code)] // not every test needs all of it
@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Nothing may be further off than this many ε.
+/// Largest accepted error, in ε.
 pub const BOUND: f64 = 1000.0;
 
 pub fn repository() -> PathBuf {
@@ -41,11 +41,11 @@ impl Worst {
         assert_eq!(found.shape(), reference.shape(), "{what}");
         let error = normalized_error(found.as_slice(), reference.as_slice(), terms);
         let worst = self.0.entry(what).or_insert(0.0);
-        // NaN must not hide
+        // NaN must not be lost
         *worst = if error >= *worst || error.is_nan() { error } else { *worst };
     }
 
-    /// Of a list, or of a single number.
+    /// For a list, or a single number.
     pub fn add_list(&mut self, what: &'static str, found: &[f64], reference: &Value, terms: f64) {
         let reference = reference.as_f64().map_or_else(|| vector(reference), |number| vec![number]);
         self.add(what, &column(found), &column(&reference), terms);
@@ -55,7 +55,7 @@ impl Worst {
         self.0.iter().map(|(what, error)| format!("{what} {error:.1}")).collect::<Vec<_>>().join(", ")
     }
 
-    /// Too far off, or NaN.
+    /// Is an error too large, or NaN?
     pub fn failed(&self) -> bool {
         self.0.values().any(|error| !(*error < BOUND))
     }

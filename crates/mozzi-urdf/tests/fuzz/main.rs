@@ -1,6 +1,6 @@
-//! The fuzz targets under a plain driver: for `MOZZI_FUZZ_SECONDS` each (5 where it is not set), from a seed that
-//! `MOZZI_FUZZ_SEED` sets. Not in a plain `cargo test`; `cargo xtask test` runs it. A failing input is written to the
-//! folder for temporary files, and its name is said.
+//! The fuzz targets under a plain driver: for `MOZZI_FUZZ_SECONDS` each (5 if not set), from the seed
+//! `MOZZI_FUZZ_SEED`. Not in a plain `cargo test`; `cargo xtask test` runs it. A failing input is written to the folder
+//! for temporary files, and its name is printed.
 mod targets;
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -30,7 +30,7 @@ fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
-/// Runs the target on what `make` makes until the time is up.
+/// Runs the target on inputs from `make` until the time is up.
 fn run(name: &str, target: fn(&[u8]), mut make: impl FnMut(&mut Random) -> Vec<u8>) {
     let until = Instant::now() + Duration::from_secs(setting("MOZZI_FUZZ_SECONDS", 5));
     let (mut random, mut count) = (Random(setting("MOZZI_FUZZ_SEED", 1).max(1)), 0);
@@ -51,7 +51,7 @@ fn run(name: &str, target: fn(&[u8]), mut make: impl FnMut(&mut Random) -> Vec<u
     println!("{name}: {count} inputs");
 }
 
-/// Robots that are right, and robots that are not, of one ending.
+/// Valid and invalid robots with one file ending.
 fn corpus(folders: &[&str], ending: &str) -> Vec<Vec<u8>> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(here.join(folder)).into_iter().flatten());
@@ -233,7 +233,7 @@ fn mutate(text: &mut Vec<u8>, other: &[u8], words: &[&str], random: &mut Random)
     }
 }
 
-/// Each text of the corpus, and then texts made of them.
+/// Each text of the corpus, and then mutations of them.
 fn texts(name: &str, target: fn(&[u8]), corpus: &[Vec<u8>], words: &[&str]) {
     corpus.iter().for_each(|text| target(text));
     run(name, target, |random| {

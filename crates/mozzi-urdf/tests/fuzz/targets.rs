@@ -1,16 +1,16 @@
-//! What must hold of any input. `fuzz/` runs these under cargo-fuzz, `tests/fuzz` under a plain driver.
+//! Properties that hold for any input. `fuzz/` runs these under cargo-fuzz, `tests/fuzz` under a plain driver.
 
 use mozzi::model::description::{Joint, JointKind, Limits, Mimic};
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Twist, Vec3};
 use mozzi_urdf::{LoadError, Policy, Style, parse, parse_with, write};
 use std::cell::Cell;
 
-/// Any bytes are a robot whose model is finite, or are refused with places that lie in the text.
+/// Any bytes give a robot whose model is finite, or are refused with places inside the text.
 pub fn urdf(bytes: &[u8]) {
     text("fuzz.urdf", bytes);
 }
 
-/// The same of MuJoCo's models: where the bytes begin another root, they are read inside a body.
+/// The same for MuJoCo's models: bytes without a `<mujoco` are read inside a body.
 pub fn mjcf(bytes: &[u8]) {
     if bytes.windows(7).any(|word| word == b"<mujoco") {
         text("fuzz.xml", bytes);
@@ -26,7 +26,7 @@ fn text(name: &str, bytes: &[u8]) {
             Ok(robot) => {
                 let warnings = robot.warnings.iter().map(|warning| warning.pretty(Style::Ascii));
                 assert!(warnings.take(3).all(|text| !text.is_empty()));
-                // what is written is read again, to the same robot
+                // the written text is read back as the same robot
                 if let Ok(text) = write(&robot.description) {
                     let again = parse("again.urdf", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
                     assert_eq!(again.description.links.len(), robot.description.links.len());
@@ -47,7 +47,7 @@ fn text(name: &str, bytes: &[u8]) {
     }
 }
 
-/// Any description is a finite model, or is refused.
+/// Any description gives a finite model, or is refused.
 pub fn description(bytes: &[u8]) {
     let robot = Reader { bytes }.description();
     let problems = robot.check();
@@ -69,7 +69,7 @@ fn finite(model: &Model) {
     assert!(is_finite.get(), "not finite: {:?}", model.description());
 }
 
-/// Makes a description of bytes, zeros when they end.
+/// Makes a description from bytes; zeros after their end.
 struct Reader<'b> {
     bytes: &'b [u8],
 }
@@ -85,7 +85,7 @@ impl Reader<'_> {
         self.byte() % n
     }
 
-    /// Mostly harmless, now and then any bits at all.
+    /// Mostly harmless, sometimes arbitrary bits.
     fn number(&mut self) -> f64 {
         const NUMBERS: [f64; 24] = [
             0.0,

@@ -3,7 +3,7 @@
 /// A robot of n moving links, as text.
 pub type Robot = fn(usize) -> String;
 
-/// What they are called, and how they are made.
+/// Their names, and the functions that make them.
 pub const ROBOTS: [(&str, Robot); 4] = [
     ("URDF, a chain", |n| urdf(n, |k| k - 1)),
     ("URDF, a star", |n| urdf(n, |_| 0)),

@@ -1,4 +1,4 @@
-//! mozzi against Pinocchio and MuJoCo on real robots: the committed numbers of `oracles/`, and, where the environment
+//! mozzi against Pinocchio and MuJoCo on real robots: the committed numbers of `oracles/`, and, if the environment
 //! variable MOZZI_ORACLES names a folder made by `oracles/make.py`, a hundred states of every robot in it.
 //!
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
@@ -15,12 +15,12 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// What a model of MJCF may be refused for: it is more than a tree, or its numbers stand in meshes.
+/// Accepted reasons to refuse a model of MJCF: it is more than a tree, or its numbers are in meshes.
 const CLOSURES: [&str; 5] =
     ["unsupported_tendon", "unsupported_equality", "mesh_inertia", "actuator_armature", "unsupported_attribute"];
 
-/// The robot of a file of oracles, without friction and springs, and without armature where the oracle has none. The
-/// reason, where it is a model that mozzi refuses for good reason.
+/// The robot of a file of oracles, without friction and springs, and without armature if the oracle has none. The
+/// reason, if mozzi refuses the model for good reason.
 fn model(oracle: &Value) -> Result<Model, String> {
     let text = |key: &str| oracle.get(key).and_then(Value::as_str);
     let path = match text("urdf_path") {
@@ -61,7 +61,7 @@ fn compare(model: &Model, order: &[usize], oracle: &Value, state: &Value, worst:
     let columns = |J: mozzi::Jacobian| J.matrix().select_columns(order);
     let mut theta = vector(&state["theta"]);
     if !order.iter().copied().eq(0..n) {
-        // of joints of one axis
+        // joints of one axis only
         let (base, joints) = (model.base().positions(), model.base().velocities());
         let theirs_of_joints = theta.split_off(base);
         theta.resize(model.nq(), 0.0);
@@ -156,7 +156,7 @@ fn compare_all(name: &str, oracle: &Value, model: &Model) -> Worst {
     worst
 }
 
-/// Where MuJoCo starts, or one of its keys: the time, and each body's pose and twist.
+/// The start of MuJoCo, or one of its keys: the time, and each body's pose and twist.
 fn compare_start(name: &str, model: &Model, expected: &Value) {
     let state = match expected["state"].as_str() {
         None => model.start(),

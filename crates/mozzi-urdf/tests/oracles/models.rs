@@ -1,7 +1,7 @@
-//! `docs/published-models.md`: what becomes of each MJCF model of gymnasium and dm_control, where `MOZZI_ORACLES` names
-//! a folder that `oracles/make_mjcf.py` wrote into.
+//! `docs/published-models.md`: the outcome for each MJCF model of gymnasium and dm_control, if `MOZZI_ORACLES` names a
+//! folder that `oracles/make_mjcf.py` wrote into.
 //!
-//! `cargo xtask docs` writes the page anew.
+//! `cargo xtask docs` rewrites the page.
 
 use super::{compare_all, model};
 use mozzi_urdf::{LoadError, Loaded, Severity, load};
@@ -17,7 +17,7 @@ Every MJCF file of PyPI's `gymnasium` 1.4.0 and `dm_control` 1.0.50, as mozzi re
 `cargo xtask test` checks that it is current.
 ";
 
-/// What the refusals mean; one that is not here fails the test.
+/// The meaning of each refusal; one that is missing here fails the test.
 const WHY: [(&str, &str); 8] = [
     ("include", "An included file is missing; MuJoCo reports the same."),
     (
@@ -38,12 +38,12 @@ const WHY: [(&str, &str); 8] = [
     ("wrong_root", "A description of MJCF itself, not a model."),
 ];
 
-/// A model and its fate.
+/// A model and its outcome.
 struct Entry {
     name: String,
     verdict: String,
     outcome: Result<(usize, Loaded), LoadError>,
-    /// Worst normalised error, where MuJoCo's numbers are there.
+    /// Worst normalised error, if MuJoCo's numbers are available.
     error: Option<f64>,
 }
 
@@ -73,14 +73,14 @@ fn entries(folder: &Path) -> Vec<Entry> {
             let worst = compare_all(path, oracle, &model(oracle).ok()?);
             worst.0.values().copied().reduce(f64::max)
         });
-        // MuJoCo's own words hold paths of this machine
+        // MuJoCo's own messages contain paths of this machine
         let verdict = if verdict.starts_with("MuJoCo") { "refused" } else { verdict }.to_string();
         Entry { name: name_of(path), verdict, outcome, error }
     };
     list.lines().map(read).collect()
 }
 
-/// The bound of each model in a page that was written before.
+/// The bound of each model in the existing page.
 fn bounds(page: &str) -> BTreeMap<&str, f64> {
     let row = |line: &'_ str| -> Option<(usize, usize)> {
         let cell = line.split(" | ").nth(2)?.strip_prefix("≤ ")?;
@@ -94,8 +94,8 @@ fn bounds(page: &str) -> BTreeMap<&str, f64> {
         .collect()
 }
 
-/// A bound of an error that other processors' rounding stays below, too: the one that is written, if it holds within a
-/// factor of four, or the next power of two.
+/// A bound on an error that also holds with other processors' rounding: the existing one, if it holds within a factor
+/// of four, or the next power of two.
 fn bound(error: f64, written: Option<&f64>) -> f64 {
     match written {
         Some(&bound) if error <= 4.0 * bound => bound,

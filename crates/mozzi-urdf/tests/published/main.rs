@@ -1,7 +1,7 @@
-//! `docs/published-robots.md`: every warning and every refusal on the URDFs of `example-robot-data`, where
-//! `MOZZI_ROBOTS` names that package's folder of robots.
+//! `docs/published-robots.md`: every warning and every refusal on the URDFs of `example-robot-data`, if `MOZZI_ROBOTS`
+//! names that package's folder of robots.
 //!
-//! `cargo xtask docs` writes the page anew.
+//! `cargo xtask docs` rewrites the page.
 
 #[path = "../common/files.rs"]
 mod files;
@@ -19,7 +19,7 @@ The diagnostics of each URDF of PyPI's `example-robot-data` 6.0.0 under the defa
 table load without warnings. `cargo xtask docs` writes this page; a test of `cargo xtask test` checks that it is current.
 ";
 
-/// Why each kind is right; a kind that is not here fails the test.
+/// Why each kind is right; a kind that is missing here fails the test.
 const WHY: [(&str, &str); 12] = [
     (
         "fixed_mimic",
@@ -72,10 +72,10 @@ const WHY: [(&str, &str); 12] = [
     ),
 ];
 
-/// One file and what is said of it.
+/// One file and its diagnostics.
 struct Robot {
     name: String,
-    /// Degrees of freedom and links; None where it is refused.
+    /// Degrees of freedom and links; None if it is refused.
     size: Option<(usize, usize)>,
     said: Vec<Diagnostic>,
 }
@@ -102,7 +102,7 @@ fn short(found: &Diagnostic) -> &str {
     found.code().rsplit("::").next().unwrap_or_default()
 }
 
-/// The message without the list of what would have been right, fit for a line of a list.
+/// The message without the list of expected values, short enough for an item of a list.
 fn message(found: &Diagnostic) -> String {
     let text = found.message();
     text.split_once(", expected one of").map_or(text, |(start, _)| start).to_string()

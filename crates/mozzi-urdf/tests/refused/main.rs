@@ -1,4 +1,4 @@
-//! Broken files are refused, at the right place, in the right words.
+//! Broken files are refused, at the right place and with the right message.
 /// A body with something in it.
 macro_rules! body {
     ($inside:literal) => {

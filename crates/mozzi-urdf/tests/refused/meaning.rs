@@ -1,4 +1,4 @@
-//! Elements and attributes: misspelled, missing, twice, unknown, or of no sense.
+//! Elements and attributes: misspelled, missing, duplicate, unknown, or meaningless.
 
 use super::{refused, warned};
 use mozzi_urdf::parse;

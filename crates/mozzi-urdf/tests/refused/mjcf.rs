@@ -1,4 +1,4 @@
-//! Models of MuJoCo.
+//! MuJoCo models.
 use crate::{refused, warned};
 
 /// A model of two joints with something behind it.
@@ -269,7 +269,7 @@ fn words_and_numbers() {
             "unclear_limit",
             "joint `joint0`: range: is used only with limited=\"true\", since the compiler's autolimits is `false`",
         ),
-        // a default that is no number is told once, however many take it
+        // an invalid default is reported once, even if many elements take it
         (
             "<mujoco><default><joint armature='§x'/></default><worldbody><body><joint/><joint/><geom size='1'/></body></worldbody></mujoco>",
             "not_a_number",

@@ -1,4 +1,4 @@
-//! Models of MuJoCo that load, and what is left out of them is said.
+//! MuJoCo models that load, with a report of the content that is left out.
 use crate::warned;
 use mozzi_urdf::{Policy, parse, parse_with};
 

@@ -1,4 +1,4 @@
-//! What is no number, or not one that can be.
+//! Invalid numbers, and numbers out of range.
 
 use super::{refused, warned};
 use mozzi_urdf::{Policy, parse_with};

@@ -1,4 +1,4 @@
-//! What is no tree.
+//! Structures that are not trees.
 
 use super::{refused, warned};
 use mozzi_urdf::parse;
@@ -82,7 +82,7 @@ fn trees() {
             "robot: constraint: is a proposal for URDF that no version defines, and that readers ignore or refuse",
         ),
     ]);
-    // a ring beside the tree: each of its links is named
+    // a loop apart from the tree: each of its links is named
     let ring = parse("a.urdf", robot(&[("j", "b", "c"), ("k", "c", "b")])).expect_err("a ring").to_string();
     assert_eq!(ring.matches("is not connected to the base `a`").count(), 2, "{ring}");
 }

@@ -1,4 +1,4 @@
-//! What is no XML, or none that is read.
+//! Invalid XML, and XML that is not accepted.
 
 use super::refused;
 use mozzi_urdf::parse;

@@ -1,8 +1,8 @@
 //! Every diagnostic code of both languages, reached by a broken file, with the exact report that its author reads.
 //!
-//! `tests/broken/CODE.urdf` and `CODE-variant.urdf` are robots with one thing wrong, `CODE.txt` beside them the report;
-//! so are the models in `tests/broken/mjcf`. A code without a file fails the test.
-//! `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports` writes the reports anew: read them before you commit them.
+//! `tests/broken/CODE.urdf` and `CODE-variant.urdf` are robots with one error, `CODE.txt` next to them is the report;
+//! likewise the models in `tests/broken/mjcf`. A code without a file fails the test. `MOZZI_BLESS=1 cargo test -p
+//! mozzi-urdf --test reports` rewrites the reports: read them before you commit them.
 
 mod page;
 
@@ -10,7 +10,7 @@ use mozzi_urdf::{LoadError, Loaded, Policy, Style, codes, explain, load_with, mj
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// A broken file: its name without ending, and its bytes; a model of MuJoCo has a path, for what it includes.
+/// A broken file: its name without ending, and its bytes; a MuJoCo model has a path, for its included files.
 struct Broken {
     name: String,
     text: Vec<u8>,
@@ -81,7 +81,7 @@ fn models() -> Vec<Broken> {
     all
 }
 
-/// What its author reads, and the codes in it.
+/// The report for its author, and the codes in it.
 fn report(broken: &Broken) -> (String, BTreeSet<String>) {
     let (text, diagnostics) = match broken.load() {
         Ok(robot) => {
@@ -90,20 +90,20 @@ fn report(broken: &Broken) -> (String, BTreeSet<String>) {
         }
         Err(error) => (error.pretty(Style::Ascii) + "\n", error.diagnostics().to_vec()),
     };
-    // the folder is another on each machine
+    // the folder differs on each machine
     let text = text.replace(&*format!("{}/", folder().join("mjcf").to_string_lossy()), "");
     let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
     (lines.join("\n") + "\n", diagnostics.iter().map(|diagnostic| diagnostic.code().to_string()).collect())
 }
 
-/// Compares the reports with the files beside them; the codes that were reached.
+/// Compares the reports with the files next to them; returns the codes that were reached.
 fn compare(language: &str, folder: &Path, all: Vec<Broken>) -> BTreeSet<String> {
     let (bless, mut reached) = (std::env::var_os("MOZZI_BLESS").is_some(), BTreeSet::new());
     let mut differing = Vec::new();
     for broken in all {
         let (found, codes) = report(&broken);
         let code = format!("mozzi::{language}::{}", broken.code());
-        // a value that stands as text is stray, too; what is told may stand in a section that is listed
+        // a value written as text is also stray text; a reported element may be inside an ignored section
         let beside =
             ["stray_text", "ignored_element", "undeclared_prefix"].map(|short| format!("mozzi::{language}::{short}"));
         let others = codes.iter().filter(|found| **found != code && !beside.contains(*found)).count();

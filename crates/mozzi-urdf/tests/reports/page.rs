@@ -1,6 +1,6 @@
 //! `docs/diagnostics.md`: every code, its meaning, its remedy, and an example.
 //!
-//! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports`, writes it anew.
+//! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports`, rewrites it.
 
 use crate::{Broken, folder, models, report, robots};
 use mozzi_urdf::{Severity, codes, explain, mjcf, remedy};
@@ -18,7 +18,7 @@ first. After a *warning* the file is loaded; `--strict` turns warnings into erro
 `cargo xtask docs` writes this page.
 ";
 
-/// Lines of an example are cut here: some are of names of 300 letters.
+/// Lines of an example are cut here: some contain names of 300 letters.
 const WIDTH: usize = 130;
 const LINES: usize = 24;
 
@@ -29,7 +29,7 @@ fn example<'b>(all: &'b [Broken], code: &str) -> Option<&'b Broken> {
     Some(all.iter().find(|broken| broken.name == code).unwrap_or(first))
 }
 
-/// How its findings are meant: an error, a warning, or either.
+/// The severity of its findings: an error, a warning, or either.
 fn severity(all: &[Broken], language: &str, code: &str) -> &'static str {
     let full = format!("mozzi::{language}::{code}");
     let (mut error, mut warning) = (false, false);

@@ -1,5 +1,5 @@
-//! A file of xacro is expanded when it is read: it is the robot that PyPI's xacro 2.1.1 makes of it (`arm.urdf`, beside
-//! it). What is wrong with the robot stands in the xacro file, with the calls of macros.
+//! A xacro file is expanded when it is read. The result is the same robot as from PyPI's xacro 2.1.1 (`arm.urdf`, next
+//! to it). Errors in the robot are reported in the xacro file, with the calls of macros.
 
 use mozzi::model::Severity;
 use mozzi_urdf::{Settings, XacroArguments, expanded, load, load_with, model, open, parse};

@@ -141,7 +141,7 @@ fn of_one(cx: &Evaluator, name: &str, value: &Value) -> Result<Value> {
     }
 }
 
-/// The least or greatest; the first of equals.
+/// The least or greatest; the first one among equals.
 fn extreme(cx: &Evaluator, name: &str, mut arguments: Arguments, wanted: Ordering) -> Result<Value> {
     let (key, default) = (arguments.take("key"), arguments.take("default"));
     let mut values = arguments.only_positional(name)?;
@@ -170,7 +170,7 @@ fn extreme(cx: &Evaluator, name: &str, mut arguments: Arguments, wanted: Orderin
     best.map(|(_, value)| value).or(default).ok_or_else(|| Fault::new("no values, expected at least one"))
 }
 
-/// Sorted by key, equal ones in their order.
+/// Sorted by key; the sort is stable.
 pub(crate) fn sort(cx: &Evaluator, items: Vec<Value>, key: Option<&Value>, reverse: bool) -> Result<Vec<Value>> {
     let mut keyed = Vec::with_capacity(items.len());
     for item in items {

@@ -21,7 +21,7 @@ impl Arguments {
         Some(self.named.remove(at).1)
     }
 
-    /// The arguments by place or name, some optional; `called` names the function in errors.
+    /// Positional or keyword arguments, some optional; `called` names the function in errors.
     pub fn bound<const N: usize>(
         mut self,
         called: &str,
@@ -56,13 +56,13 @@ impl Arguments {
         }
     }
 
-    /// Exactly so many arguments by place.
+    /// Exactly this many positional arguments.
     pub fn exactly<const N: usize>(self, called: &str) -> Result<[Value; N]> {
         let values = self.bound(called, [""; N], N)?;
         Ok(values.map(|value| value.unwrap_or(Value::None)))
     }
 
-    /// All arguments by place; none by name.
+    /// All positional arguments; keyword arguments are refused.
     pub fn only_positional(self, called: &str) -> Result<Vec<Value>> {
         match self.named.first() {
             Some((name, _)) => Err(Fault::new(format!("`{called}` has no argument `{name}`"))),

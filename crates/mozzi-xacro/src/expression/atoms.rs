@@ -1,4 +1,4 @@
-//! The parts of an expression without operators: names, constants, displays, comprehensions, arguments, subscripts.
+//! Parses the operands of an expression: names, constants, displays, comprehensions, arguments, subscripts.
 
 use super::parser::{Parser, keyword_constant};
 use super::syntax::{Argument, Clause, Comprehension, Form, Kind, Node, Target};
@@ -13,7 +13,7 @@ impl Parser<'_> {
         let kind = match self.peek().clone() {
             Token::Constant(mut value) => {
                 self.advance();
-                // strings side by side are one
+                // adjacent strings are joined
                 while let (Value::Str(text), Token::Constant(Value::Str(next))) = (&value, self.peek()) {
                     value = Value::text(format!("{text}{next}"));
                     self.advance();
@@ -59,7 +59,7 @@ impl Parser<'_> {
         self.expression()
     }
 
-    /// The other items of a tuple whose first one was read, up to the closing bracket or the end.
+    /// The remaining items of a tuple whose first item was read, up to the closing bracket or the end.
     pub fn rest_of_tuple(&mut self, at: usize, first: Node, may_star: bool) -> Result<Node> {
         let mut items = vec![first];
         while self.takes(",") {
@@ -142,7 +142,7 @@ impl Parser<'_> {
         Ok(node)
     }
 
-    /// `: value` after a key; without one, `**items`.
+    /// `: value` after a key; or, without a key, `**items`.
     fn entry(&mut self, key: Option<Node>) -> Result<(Option<Node>, Node)> {
         match key {
             Some(key) => {
@@ -182,7 +182,7 @@ impl Parser<'_> {
         Ok(Node { at, kind: Kind::Comprehension(Rc::new(Comprehension { form, element, value, clauses })) })
     }
 
-    /// One name, or several with commas.
+    /// One name, or several separated by commas.
     fn targets(&mut self) -> Result<Target> {
         let at = self.at();
         let first = self.target()?;
@@ -259,7 +259,7 @@ impl Parser<'_> {
         Ok(arguments)
     }
 
-    /// What follows `[` after a value.
+    /// The subscript after `[`.
     pub fn subscript(&mut self, at: usize, of: Node) -> Result<Node> {
         let start = self.at();
         let first = if self.is(":") { None } else { Some(self.item()?) };

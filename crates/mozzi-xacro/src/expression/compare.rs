@@ -27,7 +27,7 @@ pub(crate) fn holds(cx: &Evaluator, operator: Compare, left: &Value, right: &Val
     }
 }
 
-/// The order of two numbers; None with NaN.
+/// The order of two numbers; None if one is NaN.
 fn numbers(left: &Value, right: &Value) -> Option<Ordering> {
     match (left, right) {
         (Value::Float(a), Value::Float(b)) => a.partial_cmp(b),
@@ -37,7 +37,7 @@ fn numbers(left: &Value, right: &Value) -> Option<Ordering> {
     }
 }
 
-/// A float and an int compare exactly.
+/// Compares a float and an int exactly.
 fn mixed(float: f64, int: &BigInt) -> Option<Ordering> {
     if float.is_nan() {
         return None;
@@ -50,10 +50,10 @@ fn mixed(float: f64, int: &BigInt) -> Option<Ordering> {
     match BigInt::from_f64(float) {
         Some(whole) if !float.is_infinite() => {
             let order = whole.cmp(int);
-            // the part that the float has beyond its whole number
+            // the float's fractional part
             Some(if order == Ordering::Equal { float.fract().partial_cmp(&0.0)? } else { order })
         }
-        _ => float.partial_cmp(&0.0), // infinite, or no number
+        _ => float.partial_cmp(&0.0), // infinite or NaN
     }
 }
 

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// What the elements are collected in.
+/// The collection that receives the elements.
 enum Collected {
     Items(VecDeque<Value>),
     Entries(Dictionary),
@@ -21,7 +21,8 @@ impl Evaluator<'_> {
             Form::Dict => Collected::Entries(Dictionary::default()),
             _ => Collected::Items(VecDeque::new()),
         };
-        // the first items are those of the expression around; a generator fails there when it is made
+        // the first items are evaluated in the surrounding scope; for a generator, an error there is raised when it is
+        // made
         let Some((first, rest)) = parts.clauses.split_first() else {
             return Err(Fault::new("a comprehension without `for`"));
         };
@@ -41,7 +42,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Binds each item in turn, and goes on with the other clauses.
+    /// Binds each item in turn, and continues with the other clauses.
     fn through(
         &self,
         parts: &Comprehension,

@@ -15,7 +15,7 @@ pub(crate) const NAMES: [&str; 10] =
 pub(crate) const SET_NAMES: [&str; 9] =
     ["add", "copy", "difference", "discard", "intersection", "issubset", "issuperset", "symmetric_difference", "union"];
 
-/// Of a dictionary from YAML, Python's own methods see the plain values: without dotted access.
+/// For a dictionary from YAML, Python's own methods use the plain values: without dotted access.
 pub(crate) fn call(cx: &Evaluator, dict: &Entries, is_dotted: bool, name: &str, arguments: Arguments) -> Result<Value> {
     let count = dict.borrow().len();
     cx.spend(1 + count as u64 / 64)?;

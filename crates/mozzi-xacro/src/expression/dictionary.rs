@@ -7,7 +7,7 @@ use num_traits::FromPrimitive;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// What makes two keys equal: 1, 1.0 and True are one.
+/// Equality of keys: 1, 1.0 and True are equal.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) enum Key {
     None,
@@ -68,7 +68,7 @@ impl Dictionary {
         self.index.get(&Key::Str(key.into())).map(|&at| &self.entries[at].1)
     }
 
-    /// A key that is there keeps its place and its first form.
+    /// Inserts an entry. An existing key keeps its position and its first form.
     pub fn insert(&mut self, key: Value, value: Value) -> Result<()> {
         match self.index.entry(Key::of(&key)?) {
             std::collections::hash_map::Entry::Occupied(at) => self.entries[*at.get()].1 = value,
@@ -102,8 +102,8 @@ impl Dictionary {
         Ok(set)
     }
 
-    /// The keys of a set in the order in which Python has them, where that is defined: small whole numbers lie in
-    /// their own slots of its hash table. None otherwise.
+    /// The keys of a set in Python's order, if that is defined: small integers are in their own slots of its hash
+    /// table. None otherwise.
     pub fn ordered_keys(&self) -> Option<Vec<Value>> {
         let mut keys: Vec<Value> = self.keys().cloned().collect();
         if keys.len() < 2 {

@@ -1,4 +1,4 @@
-//! From a syntax tree to a value.
+//! Evaluates a syntax tree.
 
 use super::arguments::Arguments;
 use super::syntax::{Argument, Binary, Compare, Kind, Lambda, Node, Unary};
@@ -38,7 +38,7 @@ impl Evaluator<'_> {
         self.host.budget().spend(work)
     }
 
-    /// The value of a part; an error has the part's place, if it has none of its own.
+    /// The value of a node; an error gets the node's place, if it has none of its own.
     pub fn value(&self, node: &Node, bindings: &Bindings) -> Result<Value> {
         let budget = self.host.budget();
         budget.spend(1).and_then(|()| budget.deeper(|| self.part(node, bindings))).map_err(|fault| fault.or_at(node.at))
@@ -158,7 +158,7 @@ impl Evaluator<'_> {
         Ok(Value::Bool(result))
     }
 
-    /// `and` and `or`: the first value of this truth, or the last one.
+    /// `and` and `or`: the first value with this truth, or the last one.
     fn until(&self, parts: &[Node], stop: bool, bindings: &Bindings) -> Result<Value> {
         let mut value = Value::None;
         for part in parts {
@@ -183,7 +183,7 @@ impl Evaluator<'_> {
     }
 
     fn call_node(&self, called: &Node, arguments: &[Argument], bindings: &Bindings) -> Result<Value> {
-        // a method's receiver, without an object for the bound method between
+        // a method call on a receiver, without a bound-method object
         let (method, function) = match &called.kind {
             Kind::Attribute(of, name) => {
                 let of = self.value(of, bindings)?;
@@ -248,7 +248,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// Builtins of Python's that xacro has under another name, or not at all.
+/// Python builtins that xacro has under another name, or not at all.
 fn unknown_name(name: &str) -> String {
     let hint = if function::module_has("python", name) {
         format!("; Python's function is `python.{name}`")

@@ -1,10 +1,10 @@
-//! Floats as Python reads and prints them.
+//! Reads and prints floats as Python does.
 
 use crate::fault::{Fault, Result};
 use num_bigint::BigInt;
 use num_traits::FromPrimitive;
 
-/// The shortest text that gives the number back: `0.1`, `1e-05`, `1e+16`, `-0.0`, `inf`.
+/// The shortest text that round-trips: `0.1`, `1e-05`, `1e+16`, `-0.0`, `inf`.
 pub(crate) fn repr(number: f64) -> String {
     if !number.is_finite() {
         return if number.is_nan() {
@@ -26,7 +26,7 @@ pub(crate) fn repr(number: f64) -> String {
     format!("{mantissa}e{sign}{:02}", exponent.abs())
 }
 
-/// A number as `float("…")` reads it.
+/// Reads a number as `float("…")` does.
 pub(crate) fn parse(text: &str) -> Option<f64> {
     let text = text.trim_matches(crate::text::is_space);
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
@@ -36,7 +36,7 @@ pub(crate) fn parse(text: &str) -> Option<f64> {
     if !is_word && !is_number {
         return None;
     }
-    // underscores stand between digits only
+    // underscores are allowed between digits only
     let bytes = unsigned.as_bytes();
     let is_digit = |at: Option<usize>| at.and_then(|at| bytes.get(at)).is_some_and(u8::is_ascii_digit);
     let underscores = || bytes.iter().enumerate().filter(|(_, b)| **b == b'_');
@@ -51,7 +51,7 @@ pub(crate) fn whole(number: f64) -> Result<BigInt> {
     BigInt::from_f64(number).ok_or_else(|| Fault::new(format!("{} is not a whole number", repr(number))))
 }
 
-/// `round(number, digits)`: the nearest number of so many decimals, ties to even, by the exact decimal digits.
+/// `round(number, digits)`: the nearest number with this many decimals, ties to even, by the exact decimal digits.
 pub(crate) fn round(number: f64, digits: i64) -> Result<f64> {
     if !number.is_finite() || number == 0.0 || digits > 330 {
         return Ok(number);
@@ -64,7 +64,7 @@ pub(crate) fn round(number: f64, digits: i64) -> Result<f64> {
     } else {
         let exponent: i64 = format!("{number:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or_default();
         match exponent + 1 + digits {
-            // one digit further than the first: more than half of the unit rounds up, half itself to 0
+            // one place before the first digit: more than half of the unit rounds up, exactly half rounds to 0
             0 => {
                 let half = format!("5e{exponent}").parse().unwrap_or(f64::INFINITY);
                 let unit: f64 = format!("1e{}", exponent + 1).parse().unwrap_or(f64::INFINITY);

@@ -1,4 +1,4 @@
-//! `format(value, specification)`: Python's small language of widths, signs and precisions.
+//! `format(value, specification)`: Python's format specification with width, sign and precision.
 
 use super::operators::a_kind;
 use super::value::Value;
@@ -72,7 +72,7 @@ impl Specification {
         Ok(spec)
     }
 
-    /// A number's sign, prefix and digits in their width.
+    /// A number's sign, prefix and digits, padded to the width.
     pub fn padded(&self, sign: &str, prefix: &str, digits: &str, default: char) -> String {
         let digits = match self.grouping {
             None => digits.to_string(),
@@ -103,7 +103,7 @@ impl Specification {
     }
 }
 
-/// Marks between groups of digits of the whole part, and zeros before it up to a length.
+/// Inserts separators between groups of digits of the integer part, and zeros before it up to a length.
 fn grouped(digits: &str, mark: char, size: usize, least: usize) -> String {
     let end =
         digits.find(|c: char| !c.is_ascii_hexdigit() || matches!(c, 'e' | 'E') && size == 3).unwrap_or(digits.len());
@@ -230,8 +230,8 @@ fn exponential(size: f64, precision: usize, is_alternate: bool) -> String {
     format!("{mantissa}{point}e{}{:02}", if exponent < 0 { '-' } else { '+' }, exponent.abs())
 }
 
-/// So many digits, without zeros at the end; as an exponential where that is shorter. `is_repr`: at least one decimal,
-/// as a float without a kind has.
+/// This many digits, without trailing zeros; in exponential form if that is shorter. `is_repr`: at least one decimal,
+/// as for a float without a presentation type.
 fn general(size: f64, precision: usize, is_alternate: bool, is_repr: bool) -> String {
     if !size.is_finite() {
         return float::repr(size);

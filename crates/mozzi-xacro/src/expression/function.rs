@@ -1,4 +1,4 @@
-//! The functions and constants that expressions can name.
+//! The functions and constants available to expressions.
 
 use super::arguments::Arguments;
 use super::evaluate::Evaluator;
@@ -12,7 +12,7 @@ pub(crate) struct Function {
     pub name: &'static str,
 }
 
-/// Of the builtins, those without `python.`
+/// The builtins that need no `python.`
 const BARE: [&str; 13] =
     ["list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range"];
 const PYTHON: [&str; 32] = [
@@ -125,11 +125,11 @@ const XACRO: [&str; 10] = [
     "fatal",
     "tokenize",
 ];
-/// Types among the functions.
+/// The functions that are types.
 pub(crate) const TYPES: [&str; 11] =
     ["list", "dict", "map", "str", "float", "int", "bool", "tuple", "set", "frozenset", "type"];
 
-/// What a name means that no property has.
+/// The meaning of a name that no property has.
 pub(crate) fn global(name: &str) -> Option<Value> {
     let function = |module, names: &[&'static str]| {
         names.iter().find(|known| **known == name).map(|name| Value::Function(Function { module, name }))
@@ -171,7 +171,7 @@ impl Function {
         self.module == "python" && (TYPES.contains(&self.name) || ["range", "zip"].contains(&self.name))
     }
 
-    /// As Python prints it, where that is the same in each run.
+    /// As Python prints it, if that is the same in each run.
     pub fn shown(self) -> Option<String> {
         match self.module {
             "xacro" => None,
@@ -247,7 +247,7 @@ fn joined(cx: &Evaluator, values: &[Value]) -> Result<String> {
     Ok(texts.join(" "))
 }
 
-/// `xacro.tokenize(text, sep=',; ', skip_empty=True)`: the parts between any of the separators.
+/// `xacro.tokenize(text, sep=',; ', skip_empty=True)`: the parts between the separators.
 fn tokenize(cx: &Evaluator, arguments: Arguments) -> Result<Value> {
     let [text, separators, skip] = arguments.bound("tokenize", ["s", "sep", "skip_empty"], 1)?;
     let (Some(Value::Str(text)), None | Some(Value::Str(_))) = (&text, &separators) else {

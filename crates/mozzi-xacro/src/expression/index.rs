@@ -8,7 +8,7 @@ use crate::fault::{Fault, Result};
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive};
 
-/// A whole number for an index, a count or a size; beyond 64 bits, the nearest.
+/// A whole number for an index, a count or a size; a number beyond 64 bits is clamped.
 pub(crate) fn whole(value: &Value, what: &str) -> Result<i64> {
     match value.as_int() {
         Some(number) => Ok(number.to_i64().unwrap_or(if number.is_negative() { i64::MIN } else { i64::MAX })),
@@ -16,7 +16,7 @@ pub(crate) fn whole(value: &Value, what: &str) -> Result<i64> {
     }
 }
 
-/// The place of an index among so many items.
+/// The position of an index among this many items.
 pub(crate) fn place(index: &Value, count: usize, kind: &str) -> Result<usize> {
     let number = whole(index, &format!("an index of a {kind}"))?;
     let from_end = if number < 0 { number.saturating_add(count as i64) } else { number };
@@ -49,7 +49,7 @@ pub(crate) fn item(of: &Value, at: &Value) -> Result<Value> {
     }
 }
 
-/// The indices of a slice of so many items, as Python clips them.
+/// The indices of a slice of this many items, clipped as in Python.
 fn bounds(values: [Option<i64>; 3], count: usize) -> Result<Progression> {
     let (count, step) = (count as i64, values[2].unwrap_or(1));
     if step == 0 {
@@ -93,7 +93,7 @@ pub(crate) fn slice(cx: &Evaluator, of: &Value, values: [Option<i64>; 3]) -> Res
 /// The indices, which are within the items.
 fn indices(range: &Progression) -> impl Iterator<Item = usize> {
     let (start, step, count) = (range.start, range.step, range.len());
-    // a step beyond the items is taken once at most
+    // a step larger than the items is taken at most once
     (0..count).map(move |k| start.saturating_add(step.saturating_mul(k as i64)).max(0) as usize)
 }
 

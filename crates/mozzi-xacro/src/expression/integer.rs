@@ -1,4 +1,4 @@
-//! Whole numbers of any size, up to a bound.
+//! Integers of any size, up to a bound.
 
 use crate::bounds::{MOST_BITS, MOST_DIGITS};
 use crate::fault::{Fault, Result};
@@ -46,7 +46,7 @@ pub(crate) fn divide(a: &BigInt, b: &BigInt) -> Result<f64> {
     if a.bits() <= EXACT && b.bits() <= EXACT {
         return Ok(a.to_f64().unwrap_or(f64::NAN) / b.to_f64().unwrap_or(f64::NAN));
     }
-    // a quotient of at least 66 bits, its last bit set if anything remains, is rounded as the exact one
+    // a quotient of at least 66 bits, whose last bit is set if there is a remainder, is rounded like the exact one
     let shift = (66 + b.bits() as i64 - a.bits() as i64).max(0) as u64;
     let (numerator, denominator) = (a.abs() << shift, b.abs());
     let (mut quotient, remainder) = (&numerator / &denominator, &numerator % &denominator);
@@ -72,12 +72,12 @@ fn scaled(number: &BigInt, exponent: i64) -> Result<f64> {
     if exponent + bits < -1080 {
         return Ok(0.0);
     }
-    // in two steps, none of which overflows or rounds but the last
+    // in two steps; only the last one can overflow or round
     let half = exponent / 2;
     Ok(mantissa * 2f64.powi(half as i32) * 2f64.powi((exponent - half) as i32))
 }
 
-/// The decimal digits; more than Python prints are refused.
+/// The decimal digits; refused if there are more than Python prints.
 pub(crate) fn text(number: &BigInt) -> Result<String> {
     let text = number.to_string();
     let digits = text.trim_start_matches('-').len();
@@ -87,7 +87,7 @@ pub(crate) fn text(number: &BigInt) -> Result<String> {
     Ok(text)
 }
 
-/// A number as `int("…")` reads it: white space around it, a sign, single underscores between digits.
+/// Reads a number as `int("…")` does: white space around it, a sign, single underscores between digits.
 pub(crate) fn parse(text: &str, radix: u32) -> Option<BigInt> {
     let text = text.trim_matches(crate::text::is_space);
     let (is_negative, digits) = match text.as_bytes().first()? {

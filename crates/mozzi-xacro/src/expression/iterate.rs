@@ -1,17 +1,17 @@
-//! Going through the items of a value.
+//! Iterates over the items of a value.
 
 use super::evaluate::Evaluator;
 use super::value::{Value, View};
 use crate::fault::{Fault, Result};
 
 impl Evaluator<'_> {
-    /// All items, bounded in number. An iterator is used up.
+    /// All items, bounded in number. An iterator is consumed.
     pub fn all_items(&self, value: &Value) -> Result<Vec<Value>> {
         let (items, end) = self.items_until_error(value)?;
         end.map_or(Ok(items), Err)
     }
 
-    /// The items up to an error that comes later.
+    /// The items before an error, and that error.
     pub fn items_until_error(&self, value: &Value) -> Result<(Vec<Value>, Option<Box<Fault>>)> {
         let budget = self.host.budget();
         let items = match value {
@@ -60,7 +60,7 @@ impl Evaluator<'_> {
         Ok((items, None))
     }
 
-    /// The items in any order, for what does not depend on it.
+    /// The items in any order, for results that do not depend on it.
     pub fn items_in_any_order(&self, value: &Value) -> Result<Vec<Value>> {
         match value {
             Value::Set(entries) => {

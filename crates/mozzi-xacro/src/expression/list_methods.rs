@@ -87,7 +87,7 @@ fn position(cx: &Evaluator, items: &[Value], wanted: &Value, from: usize) -> Res
     Err(Fault::new(format!("{} is not in it", repr::short(wanted))))
 }
 
-/// `count` and `index`, of tuples, too.
+/// `count` and `index`, also of tuples.
 pub(crate) fn search(cx: &Evaluator, items: &[Value], name: &str, arguments: Arguments) -> Result<Value> {
     if name == "index" {
         let [item, start, stop] = arguments.bound(name, [""; 3], 1)?;

@@ -1,4 +1,4 @@
-//! Numbers and strings as an expression writes them.
+//! Numbers and strings in an expression.
 
 use super::token::{KEYWORDS, begins_name, continues_name};
 use super::value::Value;
@@ -137,7 +137,7 @@ pub(crate) fn string(text: &str) -> Result<Option<(Value, usize)>> {
     }
 }
 
-/// What a backslash and the text after it mean, and how much of that text it is.
+/// The meaning of a backslash and the text after it, and the length of that text.
 fn escape(text: &str) -> Result<(String, usize)> {
     let Some(letter) = text.chars().next() else { return Ok((String::new(), 0)) };
     let one = |c: &str| Ok((c.to_string(), 1));

@@ -6,7 +6,7 @@ use super::value::Value;
 use super::{float, gamma};
 use crate::fault::{Fault, Result};
 
-/// The function of this name, if it is one of floats by place alone.
+/// The function of this name, if it takes only positional floats.
 pub(crate) fn call(name: &str, arguments: &Arguments) -> Option<Result<Value>> {
     let values = &arguments.positional;
     if !arguments.named.is_empty() {
@@ -50,7 +50,7 @@ fn overflow(x: f64) -> Box<Fault> {
     Fault::new(format!("its value at {} is too large for a float", float::repr(x)))
 }
 
-/// A result that is NaN or infinite at a number that is not.
+/// The error for a result that is NaN or infinite although the arguments are finite.
 fn checked(x: f64, result: f64, may_overflow: bool) -> Result<f64> {
     match result {
         result if result.is_nan() && !x.is_nan() => Err(domain(x)),
@@ -117,7 +117,7 @@ fn of_two(name: &str) -> Option<OfTwo> {
     })
 }
 
-/// The whole number of a float that has no fraction left.
+/// The integer value of a float without a fraction.
 pub(crate) fn to_int(number: f64) -> Result<Value> {
     if number.is_finite() {
         return float::whole(number).map(Value::Int);

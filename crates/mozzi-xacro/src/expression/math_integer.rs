@@ -29,9 +29,9 @@ pub(crate) fn call(cx: &Evaluator, name: &str, mut arguments: Arguments) -> Opti
             }
             let whole = int(&n)?;
             if whole.is_negative() {
-                size(&n)?; // says so
+                size(&n)?; // reports the error
             }
-            // n over k is n over n − k: the smaller one is fewer steps
+            // n over k equals n over n − k: the smaller one needs fewer steps
             let rest = Value::Int(&whole - int(&k)?);
             let k = if int(&rest)? < int(&k)? { size(&rest)? } else { size(&k)? };
             let mut result = BigInt::from(1);
@@ -79,7 +79,7 @@ pub(crate) fn call(cx: &Evaluator, name: &str, mut arguments: Arguments) -> Opti
             Ok(Value::Float(math::norm(&p.iter().zip(&q).map(difference).collect::<Result<Vec<_>>>()?)))
         }),
         "isclose" => is_close(arguments),
-        // a function of floats that was called with a name
+        // a function of floats that was called with a keyword argument
         _ => return Some(Err(Fault::new(format!("`{name}` takes no arguments by name")))),
     };
     Some(result)
@@ -89,7 +89,7 @@ fn int(value: &Value) -> Result<BigInt> {
     value.as_int().ok_or_else(|| Fault::new(format!("expected an int, found {}", a_kind(value))))
 }
 
-/// A number that is not negative, and small enough to count to.
+/// A number that is not negative, and small enough to iterate up to.
 fn size(value: &Value) -> Result<u64> {
     let number = int(value)?;
     match number.to_u64().filter(|n| *n <= 1 << 32) {
@@ -113,7 +113,7 @@ fn exact_sum(numbers: &[f64]) -> Result<f64> {
         let sum: f64 = numbers.iter().filter(|x| !x.is_finite()).sum();
         return if sum.is_nan() && !odd.is_nan() { Err(Fault::new("inf and -inf have no sum")) } else { Ok(sum) };
     }
-    // each number is a whole multiple of 2⁻¹⁰⁷⁴
+    // each number is an integer multiple of 2⁻¹⁰⁷⁴
     let mut sum = BigInt::zero();
     for &x in numbers {
         let (mantissa, exponent) = libm::frexp(x);

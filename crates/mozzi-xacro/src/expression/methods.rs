@@ -9,7 +9,7 @@ use crate::fault::{Fault, Result};
 use num_traits::Signed;
 use std::rc::Rc;
 
-/// Is this a method of the value?
+/// True if the value has this method.
 pub(crate) fn has(of: &Value, name: &str) -> bool {
     match of {
         Value::Str(_) => string_methods::NAMES.contains(&name) || string_split::NAMES.contains(&name),

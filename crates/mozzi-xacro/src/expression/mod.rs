@@ -49,7 +49,7 @@ use crate::fault::Result;
 use crate::scope::Scope;
 use std::rc::Rc;
 
-/// What an expression can see of the expansion around it.
+/// The names of the surrounding expansion that an expression can use.
 pub(crate) trait Host {
     fn budget(&self) -> &Budget;
     /// The value of a name; `is_nested` inside comprehensions and lambdas.

@@ -145,7 +145,7 @@ fn real(operator: Binary, a: f64, b: f64) -> Result<Value> {
     Ok(Value::Float(result))
 }
 
-/// Quotient rounded down, and the rest, whose sign is the divisor's.
+/// Quotient rounded down, and the remainder, whose sign is the divisor's.
 pub(crate) fn floor_and_rest(a: f64, b: f64) -> (f64, f64) {
     let mut rest = a % b;
     let mut quotient = (a - rest) / b;

@@ -1,4 +1,4 @@
-//! From words to a syntax tree: operators by precedence, loosest first.
+//! Parses tokens into a syntax tree: operators by precedence, loosest first.
 
 use super::syntax::{Binary, Compare, Kind, LambdaSyntax, Node, Unary};
 use super::token::{Token, tokens};
@@ -93,7 +93,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What is next was not expected.
+    /// An error for an unexpected token.
     pub fn unexpected(&self, expected: &str) -> Box<Fault> {
         let found = match self.peek() {
             Token::End => "the expression ends".to_string(),
@@ -108,7 +108,7 @@ impl Parser<'_> {
         Fault::at(self.at(), format!("{found}, expected {expected}"))
     }
 
-    /// One level deeper, within the bound.
+    /// Parses one level deeper, within the bound.
     pub fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         self.depth += 1;
         if self.depth > MOST_EXPRESSION_DEPTH {
@@ -301,7 +301,7 @@ impl Parser<'_> {
     }
 }
 
-/// The only one, or what is made of several.
+/// The only node, or one made of several.
 fn single(mut parts: Vec<Node>, several: impl FnOnce(Vec<Node>) -> Node) -> Node {
     match parts.pop() {
         Some(only) if parts.is_empty() => only,

@@ -9,7 +9,7 @@ use crate::bounds::MOST_TEXT;
 use crate::fault::{Fault, Result};
 use num_bigint::Sign;
 
-/// The values that are still to be written.
+/// The values that are not written yet.
 struct Values<'v> {
     all: &'v Value,
     next: usize,
@@ -59,7 +59,7 @@ pub(crate) fn format(cx: &Evaluator, template: &str, all: &Value) -> Result<Valu
     out.push_str(rest);
     let all_used = match all {
         Value::Tuple(items) => values.next == items.len(),
-        // what has items may stay unused
+        // a value with items may stay unused
         Value::Dict(..) | Value::List(..) | Value::Range(_) => true,
         _ => values.next == 1 || is_named,
     };

@@ -24,7 +24,7 @@ pub(crate) fn repr(budget: &Budget, value: &Value) -> Result<String> {
     Ok(out)
 }
 
-/// At most a few words of it, for messages.
+/// A shortened `repr`, for messages.
 pub(crate) fn short(value: &Value) -> String {
     let text = repr(&Budget::default(), value).unwrap_or_else(|_| value.kind().to_string());
     match text.char_indices().nth(60) {

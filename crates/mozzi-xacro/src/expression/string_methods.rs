@@ -149,7 +149,7 @@ fn plain(text: &str, name: &str) -> Result<Value> {
     Ok(Value::text(changed))
 }
 
-/// How many characters are missing to a width, within the bound on text.
+/// The padding in characters up to a width, within the bound on text.
 fn missing(cx: &Evaluator, text: &str, width: &Value) -> Result<usize> {
     let width = usize::try_from(index::whole(width, "a width")?).unwrap_or(0);
     cx.host.budget().text(width.max(text.len()))?;
@@ -169,13 +169,13 @@ fn pad(cx: &Evaluator, text: &str, name: &str, arguments: Arguments) -> Result<V
     let left = match name {
         "ljust" => 0,
         "rjust" => missing,
-        // Python's rounding: the odd one goes left if the width is odd
+        // Python's rounding: if the width is odd, the surplus character goes to the left
         _ => missing / 2 + (missing & width.max(0) as usize & 1),
     };
     Ok(Value::text(format!("{}{text}{}", fill.repeat(left), fill.repeat(missing - left))))
 }
 
-/// The part between two indices in characters, and where it begins; None if it is out of reach.
+/// The part between two indices in characters, and its beginning; None if it is out of range.
 fn part(text: &str, start: Option<Value>, stop: Option<Value>) -> Result<Option<(&str, usize)>> {
     let count = text.chars().count() as i64;
     let clip = |value: Option<Value>, default: i64| match value {

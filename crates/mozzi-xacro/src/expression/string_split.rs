@@ -1,4 +1,4 @@
-//! Methods of strings that take them apart or join them.
+//! Methods of strings that split or join.
 
 use super::arguments::Arguments;
 use super::evaluate::Evaluator;
@@ -82,7 +82,7 @@ fn separator_of(separator: Option<String>) -> Result<Option<String>> {
     }
 }
 
-/// By a separator, or by white space; at most so many cuts, from the right if `from_right`.
+/// Splits by a separator, or by white space; at most this many splits, from the right if `from_right`.
 fn split<'t>(text: &'t str, separator: Option<&str>, most: usize, from_right: bool) -> Vec<&'t str> {
     let count = most.saturating_add(1);
     let mut parts: Vec<&str> = match (separator, from_right) {
@@ -102,7 +102,7 @@ fn split<'t>(text: &'t str, separator: Option<&str>, most: usize, from_right: bo
                         rest = if from_right { before } else { after };
                     }
                     _ => {
-                        // what is left keeps its inner white space
+                        // the remainder keeps its inner white space
                         words.push(rest);
                         break;
                     }

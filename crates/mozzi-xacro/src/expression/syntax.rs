@@ -3,7 +3,7 @@
 use super::value::Value;
 use std::rc::Rc;
 
-/// A part of an expression, and the byte where it begins (an operator for operations).
+/// A node of an expression, and the byte where it begins (the operator's for operations).
 pub(crate) struct Node {
     pub at: usize,
     pub kind: Kind,
@@ -134,7 +134,7 @@ pub(crate) struct LambdaSyntax {
     pub body: Node,
 }
 
-/// A function of an expression, with the names that were bound where it stood.
+/// A lambda, with the names bound where it was defined.
 pub(crate) struct Lambda {
     pub syntax: Rc<LambdaSyntax>,
     pub defaults: Vec<Option<Value>>,

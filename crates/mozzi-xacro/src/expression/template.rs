@@ -7,7 +7,7 @@ use super::{format, index, methods, repr};
 use crate::bounds::MOST_TEXT;
 use crate::fault::{Fault, Result};
 
-/// How the places are numbered: by themselves, or by the text. Python does not mix these.
+/// How fields are numbered: automatically, or explicitly. Python does not allow both in one template.
 #[derive(Default)]
 struct Numbering {
     next: usize,
@@ -72,7 +72,7 @@ fn expand(
     Ok(())
 }
 
-/// Where the field ends, past braces inside it.
+/// The end of the field, past braces inside it.
 fn closing(text: &str) -> Result<usize> {
     let mut depth = 0;
     for (at, c) in text.char_indices() {
@@ -86,7 +86,7 @@ fn closing(text: &str) -> Result<usize> {
     Err(Fault::new("`{` of the format is never closed"))
 }
 
-/// The name and the specification, which a colon outside of brackets separates.
+/// The name and the specification, separated by a colon outside of brackets.
 fn split(field: &str) -> (&str, &str) {
     let mut in_brackets = false;
     for (at, c) in field.char_indices() {

@@ -1,4 +1,4 @@
-//! Words of an expression.
+//! Tokens of an expression.
 
 use super::literal;
 use super::value::Value;
@@ -28,7 +28,7 @@ pub(crate) const KEYWORDS: [&str; 35] = [
     "not", "or", "pass", "raise", "return", "try", "while", "with", "yield",
 ];
 
-/// Is this a letter that a name may begin with? Letters beyond ASCII may.
+/// True if a name may begin with this letter. Letters beyond ASCII are allowed.
 pub(crate) fn begins_name(c: char) -> bool {
     c == '_' || c.is_alphabetic()
 }
@@ -37,7 +37,7 @@ pub(crate) fn continues_name(c: char) -> bool {
     c == '_' || c.is_alphanumeric()
 }
 
-/// All words of a text, each with the byte where it begins.
+/// All tokens of a text, each with the byte where it begins.
 pub(crate) fn tokens(text: &str) -> Result<Vec<(usize, Token)>> {
     let mut found: Vec<(usize, Token)> = Vec::new();
     let mut open: Vec<(&str, usize)> = Vec::new();

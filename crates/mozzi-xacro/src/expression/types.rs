@@ -1,4 +1,4 @@
-//! Types as functions: `int(…)`, `str(…)`, `list(…)`; and what asks for a type.
+//! Types as functions: `int(…)`, `str(…)`, `list(…)`; and type tests.
 
 use super::arguments::Arguments;
 use super::evaluate::Evaluator;
@@ -33,7 +33,7 @@ pub(crate) fn call(cx: &Evaluator, name: &'static str, mut arguments: Arguments)
         }
         _ => {}
     }
-    // the others take one value, or none
+    // the others take at most one value
     let value = match arguments.positional.len() {
         0 if arguments.named.is_empty() => None,
         _ => {

@@ -1,4 +1,4 @@
-//! Values of expressions: Python's, as far as xacro needs them.
+//! Values of expressions: the subset of Python's that xacro needs.
 
 use super::dictionary::Dictionary;
 use super::function::Function;
@@ -10,7 +10,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// A list's elements, shared by all that hold the list.
+/// A list's elements, shared by all references to the list.
 pub(crate) type Elements = Rc<RefCell<Vec<Value>>>;
 /// A dictionary's entries, shared likewise.
 pub(crate) type Entries = Rc<RefCell<Dictionary>>;
@@ -22,15 +22,15 @@ pub(crate) enum Value {
     Int(BigInt),
     Float(f64),
     Str(Rc<str>),
-    /// With whether it came from YAML: then its items allow dotted access, too.
+    /// The flag is true for a list from YAML: its items allow dotted access, too.
     List(Elements, bool),
     Tuple(Rc<[Value]>),
     /// Likewise.
     Dict(Entries, bool),
-    /// Only the keys count.
+    /// A set: only the keys count.
     Set(Entries),
     Range(Progression),
-    /// What `map`, `zip` and generator expressions give: read once.
+    /// The result of `map`, `zip` and generator expressions: read once.
     Iterator(Rc<RefCell<Stream>>),
     /// `keys`, `values` or `items` of a dictionary.
     View(View, Entries),
@@ -156,7 +156,7 @@ impl Value {
         matches!(self, Value::Bool(_) | Value::Int(_) | Value::Float(_))
     }
 
-    /// As an item of a list or dictionary from YAML is seen: with dotted access, a copy.
+    /// The value as an item of a list or dictionary from YAML: a copy with dotted access.
     pub fn dotted(&self) -> Value {
         match self {
             Value::List(items, _) => Value::List(Rc::new(RefCell::new(items.borrow().clone())), true),

@@ -91,7 +91,7 @@ mod tests {
     use crate::{dynamics as kernel, model::Environment};
     use alloc::vec::Vec;
 
-    /// τ at rates and accelerations that do not move.
+    /// τ at constant rates and accelerations.
     fn tau<S: Scalar + From<f64>>(model: &Model, theta: &[S], rates: &[f64]) -> Vec<S> {
         let rates: Vec<S> = rates.iter().map(|&x| S::from(x)).collect();
         let mut tau = rates.clone();

@@ -22,7 +22,7 @@ impl Model<f64> {
         self.vector(q::InverseDynamics, &[theta, dtheta, ddtheta], environment)
     }
 
-    /// h = c + g (+ JᵀF + the base's terms, where given): see [`bias_forces`](crate::bias_forces()).
+    /// h = c + g (+ JᵀF + the base's terms, if given): see [`bias_forces`](crate::bias_forces()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

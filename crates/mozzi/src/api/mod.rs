@@ -1,5 +1,5 @@
-//! The methods of [`Model`]: the kernels on `f64`. They return errors where a kernel would panic, and nalgebra's
-//! vectors and matrices. They allocate; a control loop calls the kernels with its own memory.
+//! The methods of [`Model`]: the kernels on `f64`. They return errors instead of panicking, and nalgebra's vectors and
+//! matrices. They allocate; a control loop calls the kernels with its own memory.
 
 pub(crate) mod constraints;
 mod derivatives;
@@ -96,7 +96,7 @@ fn check_length<C>(what: &'static str, slice: &[C], expected: usize) -> Result<(
     if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
 }
 
-/// A floating base's quaternion may have lost digits; it is not a rotation's where it has another length altogether.
+/// A floating base's quaternion may have lost digits, but a clearly different length is an error.
 pub(crate) fn check_unit(q: [f64; 4]) -> Result<(), Error> {
     let Some(length) = length_off_unit(q) else { return Ok(()) };
     let found = format!("{q:?}, of length {length}");

@@ -171,7 +171,8 @@ mod tests {
         let ddtheta = model.forward_dynamics(&theta, &dtheta, &tau, &environment).expect("regular");
         let c = model.center_of_mass(&theta).expect("a mass");
         let dh = model.momentum_rate(&theta, &dtheta, ddtheta.as_slice(), c).expect("lengths");
-        // gravity at the centre, the base's wrench, less what the tip gives away, all about the centre
+        // gravity at the centre of mass, plus the base's wrench, minus the wrench that the tip applies, all about the
+        // centre
         let seen = |frame, F: Wrench| {
             let T = model.forward_kinematics(&theta, frame).expect("lengths");
             (T.inverse().Ad().transpose() * F).about(c)

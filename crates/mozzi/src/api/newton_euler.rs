@@ -53,7 +53,7 @@ impl Model<f64> {
         self.check_environment(environment)?;
         let (mut workspace, mut tau) = (Workspace::new(self), vec![0.0; self.n()]);
         kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
-        // the recursion's observers move along with the links (see the kernel): back to {s}
+        // the kernel uses classical accelerations: convert them back to spatial accelerations relative to {s}
         link_twists(self, theta, dtheta, environment.base_twist, &mut workspace);
         let Workspace { V, mut dV, F, .. } = workspace;
         for (dV, V) in dV.iter_mut().zip(&V) {

@@ -1,13 +1,13 @@
-//! The Delassus matrix A M⁻¹Aᵀ, and the multipliers that solve with it.
+//! The Delassus matrix A M⁻¹Aᵀ, and the solution for the multipliers.
 //!
-//! With M = LᵀDL and Y = A L⁻¹ it is G = Y D⁻¹Yᵀ; a row of Y has the zeros of the tree. Constraints may be redundant,
-//! so that G is singular: the multipliers are found by a proximal iteration,
+//! With M = LᵀDL and Y = A L⁻¹, it is G = Y D⁻¹Yᵀ; a row of Y has the sparsity of the tree. Constraints may be
+//! redundant, so that G is singular: the multipliers are found by a proximal iteration,
 //!
 //! > λ₀ = 0,  λ ← λ + (G + ρ1)⁻¹(b − Gλ),  three times,
 //!
 //! which needs no decision about the rank and so works on registers, dual numbers and recordings. Its error in the
-//! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021). After a step by δ, b − Gλ
-//! is ρδ.
+//! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021). After a step by δ, the
+//! residual b − Gλ is ρδ.
 
 use crate::dynamics::composite_inertias;
 use crate::linalg::{dense_ldlt, ldlt};
@@ -16,10 +16,10 @@ use crate::scalar::Scalar;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Of the proximal iteration.
+/// The number of proximal iterations.
 const STEPS: usize = 3;
 
-/// The rows of a weld; no constraint has more.
+/// The number of rows of a weld, the most of any constraint.
 const MOST_ROWS: usize = 6;
 
 /// Memory of the constrained dynamics, m constraint rows and n velocities.
@@ -33,15 +33,15 @@ pub struct ConstraintMemory<S = f64> {
     pub(crate) M: Vec<S>,
     /// Y = A L⁻¹, m × n.
     pub(crate) Y: Vec<S>,
-    /// The rows of one constraint of Y D⁻¹.
+    /// The rows of Y D⁻¹ that belong to one constraint.
     scaled: Vec<S>,
     /// G, m × m, and then the factors of G + ρ1.
     G: Vec<S>,
     one_over_d: Vec<S>,
     rho: S,
-    /// By how much λ grows.
+    /// The increment of λ.
     step: Vec<S>,
-    /// m and n numbers.
+    /// The right-hand side, m numbers; `lambda` has m as well, `vector` n.
     pub(crate) right: Vec<S>,
     pub(crate) lambda: Vec<S>,
     pub(crate) vector: Vec<S>,
@@ -78,7 +78,8 @@ impl<S: Scalar> ConstraintMemory<S> {
     }
 }
 
-/// Factors M(θ), which the memory then holds as L and D, and G + ρ1. The workspace holds T_{i,i−1}(θ), the memory A.
+/// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. The workspace holds T_{i,i−1}(θ), the
+/// memory A.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -101,7 +102,7 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
         }
     }
     let ConstraintMemory { G, one_over_d, rho, .. } = memory;
-    let mut trace = S::from_f64(1e-30); // no row can move: 0/ρ stays 0
+    let mut trace = S::from_f64(1e-30); // keeps ρ positive if no row can move: 0/ρ stays 0
     for r in 0..m {
         trace += G[r * m + r];
     }
@@ -112,8 +113,8 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
     dense_ldlt::factor(G, one_over_d);
 }
 
-/// R rows of Y, LᵀY = Aᵀ, and of G's upper triangle: side by side, since each number of one row waits for the one before
-/// it. `vector` holds 1/D.
+/// Computes R rows of Y, LᵀY = Aᵀ, and of G's upper triangle. The rows are interleaved because each number of a row
+/// depends on the one before it. `vector` holds 1/D.
 #[cfg_attr(not(test), inline(always))]
 fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>, memory: &mut ConstraintMemory<S>) {
     let (m, n, pattern) = (model.ties.rows, model.n(), &model.structure.pattern);
@@ -156,7 +157,7 @@ fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>
     }
 }
 
-/// Of the first columns those that may be in the second; both begin with their last.
+/// The columns of the first list that may also be in the second; both lists are descending.
 #[inline(always)]
 fn shared<'s>(columns: &'s [usize], others: &[usize]) -> &'s [usize] {
     let (mut from, last) = (0, others.first().copied().unwrap_or_default());
@@ -166,7 +167,7 @@ fn shared<'s>(columns: &'s [usize], others: &[usize]) -> &'s [usize] {
     &columns[from..]
 }
 
-/// ρ over the mean diagonal entry of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
+/// ρ relative to the mean diagonal entry of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
 fn relative_rho<S: Scalar>() -> f64 {
     let half: f64 = 0.5;
     (0..S::DIGITS * 5 / 8).fold(1.0, |x, _| x * half)
@@ -205,7 +206,7 @@ pub(crate) fn subtract_forces<S: Scalar, C: Scalar>(model: &Model<C>, memory: &C
     }
 }
 
-/// b_r = Σ_j Y_rj x_j, added to what `right` holds.
+/// Adds b_r = Σ_j Y_rj x_j to `right`.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn add_products<S: Scalar, C: Scalar>(model: &Model<C>, rows: &[S], x: &[S], right: &mut [S]) {
     let n = model.n();

@@ -14,9 +14,9 @@ use crate::scalar::Scalar;
 ///
 /// > τ = M θ̈ + h + f + Aᵀλ,  A θ̈ + Ȧθ̇ = 0,  so (A M⁻¹Aᵀ)λ = A M⁻¹(τ − h − f) + Ȧθ̇
 ///
-/// with h in this environment and f friction and springs. λ, m numbers, is what the robot applies through its
-/// constraints; N and N m. θ is taken to satisfy the constraints, θ̇ too: see [`constraint_impulse`]. Without
-/// constraints this is forward dynamics by the mass matrix.
+/// with h in this environment and f friction and springs. λ, m numbers, are the forces and moments that the robot
+/// applies through its constraints; N and N m. θ and θ̇ are assumed to satisfy the constraints: see
+/// [`constraint_impulse`]. Without constraints this is forward dynamics by the mass matrix.
 ///
 /// Cost O(n · depth² + m · depth² + m³), no allocation.
 ///

@@ -1,4 +1,4 @@
-//! The impulse of constraints that act all at once (Modern Robotics, section 8.7).
+//! The impulse of constraints that begin to act suddenly (Modern Robotics, section 8.7).
 
 use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_forces};
 use super::jacobian::constraint_jacobian;
@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 ///
 /// > M(θ̇⁺ − θ̇) = −AᵀΛ,  A θ̇⁺ = 0,  so (A M⁻¹Aᵀ)Λ = A θ̇
 ///
-/// θ̇⁺ is the velocity that satisfies the constraints nearest to θ̇ in the metric of M. Of the impact, inelastic,
+/// θ̇⁺ is the velocity that satisfies the constraints nearest to θ̇ in the metric of M. The impact is inelastic:
 /// kinetic energy is lost.
 ///
 /// Cost O(n · depth² + m · depth² + m³), no allocation.
@@ -39,7 +39,7 @@ pub fn constraint_impulse<S: Scalar + From<C>, C: Scalar>(
     impulse.copy_from_slice(&memory.lambda);
 }
 
-/// −M⁻¹Aᵀλ of the λ with A M⁻¹Aᵀλ = b, b being what `memory.right` holds.
+/// −M⁻¹Aᵀλ, where λ solves A M⁻¹Aᵀλ = b and b is `memory.right`.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>, x: &mut [S]) {
     solve(model, memory);

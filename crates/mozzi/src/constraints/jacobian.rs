@@ -13,12 +13,12 @@ use crate::spatial::{Twist, Wrench};
 /// A(θ), m × n by rows, Ȧ(θ, θ̇)θ̇ and φ(θ), m each: A θ̇ = 0 and Aθ̈ + Ȧθ̇ = 0 are the constraints on velocities and
 /// accelerations, φ = 0 those on positions. Rows are those of [`Closure`] in the axes of anchor {a}; rad and m.
 ///
-/// φ is the position of the origin of {b} in {a}, and before it 2 sin(α/2) times the axis of the rotation by α from {a}
+/// φ is the position of the origin of {b} in {a}, preceded by 2 sin(α/2) times the axis of the rotation by α from {a}
 /// to {b}; for a hinge −z_y and z_x of the z-axis of {b}; for a distance d (pᵀp − d²)/2d; for a wheel the height of its
-/// lowest point, after two zeros; for a joint θ_j − Σ c_k θ_iᵏ. Where A is not the derivative of φ (angles), it is for
-/// φ = 0.
+/// lowest point, after two zeros; for a joint θ_j − Σ c_k θ_iᵏ. If A is not the derivative of φ (angles), it is the
+/// derivative at φ = 0.
 ///
-/// Outputs that are empty are not computed. Cost O(Σ depth of the anchors), no allocation.
+/// Empty outputs are not computed. Cost O(Σ depth of the anchors), no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or an output has another length than its own and 0.
@@ -115,7 +115,7 @@ fn frame_rows<S: Scalar + From<C>, C: Scalar>(
 ) {
     let motion = relative_motion(model, base, dtheta, ends, workspace);
     let RelativeMotion { T, V, bias, .. } = &motion;
-    let mut direction = Vec3::zero(); // which the rows of distances and wheels depend on
+    let mut direction = Vec3::zero(); // the rows of distances and wheels depend on it
     match closure {
         Closure::Point => {
             set(dA_dtheta, bias.v.0);
@@ -187,7 +187,7 @@ fn set<S: Scalar, const K: usize>(rows: &mut [S], values: [S; K]) {
     }
 }
 
-/// What a hinge about z keeps.
+/// The components of a twist that a hinge about z constrains.
 #[inline(always)]
 fn without_wz<S: Scalar>(V: Twist<S>) -> [S; 5] {
     let [wx, wy, _, vx, vy, vz] = V.to_array();
@@ -233,7 +233,7 @@ impl<S: Scalar> Wheel<S> {
     }
 }
 
-/// The wrench that the constraint's multipliers stand for: in the axes of {a}, about the origin of {b}.
+/// The wrench of the constraint's multipliers: in the axes of {a}, about the origin of {b}.
 pub(crate) fn wrench_of(closure: Closure, T_ab: SE3, lambda: &[f64]) -> Wrench {
     let vector = |k: usize| Vec3([lambda[k], lambda[k + 1], lambda[k + 2]]);
     match closure {

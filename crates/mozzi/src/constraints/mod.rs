@@ -3,8 +3,8 @@
 //!
 //! > A(θ)θ̇ = 0,  τ = M(θ)θ̈ + h(θ, θ̇) + Aᵀ(θ)λ
 //!
-//! λ is what the robot applies through its constraints: between anchors {a} and {b} the wrench that {b} applies to {a},
-//! in the axes of {a}, about the origin of {b}.
+//! λ are the forces and moments that the robot applies through its constraints: between anchors {a} and {b} the wrench
+//! that {b} applies to {a}, in the axes of {a}, about the origin of {b}.
 //!
 //! Constraints belong to the robot: see [`Constraint`](crate::model::description::Constraint) and
 //! [`Model::with_constraints`](crate::Model::with_constraints). They may be redundant: λ is then the one of least norm

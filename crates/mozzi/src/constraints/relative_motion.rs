@@ -6,7 +6,7 @@ use crate::model::{End, Model, Way, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{JointAxis, Twist};
 
-/// The motion of {b} relative to {a}, in the axes of {a}, as an observer on {a} sees it.
+/// The motion of {b} relative to {a}, in the axes of {a}, with rates taken in {a}.
 pub(super) struct RelativeMotion<S> {
     /// T_ab.
     pub T: SE3<S>,
@@ -14,7 +14,7 @@ pub(super) struct RelativeMotion<S> {
     pub V: Twist<S>,
     /// dω/dt and p̈ at θ̈ = 0.
     pub bias: Twist<S>,
-    /// The Jacobian's columns of a floating base, where it carries one of the anchors alone.
+    /// The Jacobian's columns of a floating base, if it carries only one of the anchors.
     pub by_base: Option<[Twist<S>; 6]>,
 }
 
@@ -42,11 +42,11 @@ impl<S: Scalar> Side<S> {
     }
 }
 
-/// The motion of {b} relative to {a}. Both are followed to the link that carries them both, so that what moves this
-/// link does not enter.
+/// The motion of {b} relative to {a}. Each anchor is followed up to the link that carries both, so that link's own
+/// motion does not enter.
 ///
-/// `base` is the pose of the base, and the workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the [`Way`] of the anchors, the columns
-/// of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
+/// `base` is the pose of the base, and the workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the
+/// [`Way`] of the anchors, the columns of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
 #[inline(always)]
 pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -93,7 +93,7 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     }
     let mut by_base = None;
     if let Some((k, T)) = carried {
-        // Ad_T e: turns (R e, p × R e), slides (0, R e), then as the columns above, which are linear
+        // Ad_T e: rotations (R e, p × R e), translations (0, R e), then as the columns above, which are linear
         let axes = T.R.inverse().matrix(); // R e_x, R e_y, R e_z
         let axes = [axes.x, axes.y, axes.z];
         let mut six = [Twist::zero(); 6];

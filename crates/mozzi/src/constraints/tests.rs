@@ -85,7 +85,7 @@ fn A_is_the_derivative_of_the_residual_and_its_rate_that_of_the_velocities() {
     }
 }
 
-/// θ̈ and Aᵀλ of the system of equations, by singular values.
+/// θ̈ and Aᵀλ from the system of equations, by singular values.
 fn dense(model: &Model, [theta, dtheta, tau]: [&[f64]; 3], environment: &Environment) -> (DVector<f64>, DVector<f64>) {
     let (A, bias, _) = found(model, theta, dtheta);
     let M = model.mass_matrix(theta).expect("lengths");
@@ -101,7 +101,7 @@ fn dense(model: &Model, [theta, dtheta, tau]: [&[f64]; 3], environment: &Environ
 fn constrained_forward_dynamics_solves_the_equations() {
     for (k, (mut model, [theta, dtheta, tau])) in robots().into_iter().enumerate() {
         if k % 2 == 1 {
-            // the same again, so that rows are redundant
+            // the same constraints again, so that rows are redundant
             let mut again = model.constraints()[0].clone();
             again.name = "again".into();
             model = model.with_constraints([again]).expect("sound");

@@ -1,4 +1,4 @@
-//! The order in which another library has the joints.
+//! The order of the joints in another library.
 
 use crate::model::{Error, Model, Place};
 use alloc::format;
@@ -7,19 +7,19 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// The joints as the other has them.
+/// The other library's joint order.
 #[derive(Clone, Debug)]
 pub(super) struct JointOrder {
-    /// mozzi's number of the other's k-th joint, at k.
+    /// mozzi's number of the other library's k-th joint, at k.
     joints: Vec<usize>,
-    /// mozzi's place of each, after that of a floating base.
+    /// mozzi's place of each of these joints, after that of a floating base.
     places: Vec<Place>,
-    /// mozzi's number of the other's k-th velocity, at k: linear first, where there are both.
+    /// mozzi's number of the other library's k-th velocity, at k: linear first, if a joint has both.
     velocities: Vec<usize>,
 }
 
 impl JointOrder {
-    /// By number.
+    /// From mozzi's numbers of the other library's joints.
     pub fn new(model: &Model, joints: Vec<usize>) -> Self {
         let base = model.is_floating().then(|| model.configuration_space().places()[0]);
         let places: Vec<Place> = base.into_iter().chain(joints.iter().map(|&k| model.places()[k])).collect();
@@ -31,7 +31,7 @@ impl JointOrder {
         JointOrder { joints, places, velocities }
     }
 
-    /// By name: each independent joint once.
+    /// From joint names: each independent joint once.
     pub fn by_name(model: &Model, names: &[&str]) -> Result<Self, Error> {
         check_length("the list of joint names", names.len(), model.joint_names().len())?;
         let mut is_taken = vec![false; names.len()];
@@ -68,7 +68,7 @@ impl JointOrder {
         self.velocities.len()
     }
 
-    /// A vector of velocities or forces in the other's order of joints, and linear first where there are both.
+    /// A vector of velocities or forces in the other's order of joints, and linear first if a joint has both.
     pub fn velocities_to(&self, what: &'static str, mine: &[f64]) -> Result<DVector<f64>, Error> {
         check_length(what, mine.len(), self.n())?;
         Ok(DVector::from_fn(self.n(), |k, _| mine[self.velocity(k)]))
@@ -82,7 +82,7 @@ impl JointOrder {
         Ok(mine)
     }
 
-    /// A form on velocities likewise, M for one.
+    /// A bilinear form on velocities, such as M, in the other's order.
     pub fn matrix_to(&self, what: &'static str, mine: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         self.check_matrix(what, mine)?;
         Ok(DMatrix::from_fn(self.n(), self.n(), |i, j| mine[(self.velocity(i), self.velocity(j))]))

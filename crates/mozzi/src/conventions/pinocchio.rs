@@ -224,18 +224,18 @@ impl Pinocchio {
     }
 }
 
-/// Which stand side by side in both orders.
+/// Swaps I_yy and I_xz, which are adjacent in both orders.
 fn swap_yy_and_xz(mut parameters: [f64; 10]) -> [f64; 10] {
     parameters.swap(6, 7);
     parameters
 }
 
-/// Without position limits, and nothing but a turn.
+/// Is it a revolute joint without position limits?
 fn turns_without_limits(joint: &Joint) -> bool {
     joint.limits.position.is_none() && joint.kind.name() == "revolute"
 }
 
-/// The numbers of the independent joints: depth first, siblings, also those that do not move, by their names' bytes.
+/// The numbers of the independent joints: depth first, siblings (also fixed ones) by their names' bytes.
 fn depth_first_by_the_alphabet(model: &Model) -> Vec<usize> {
     let robot = model.description();
     let number: BTreeMap<&str, usize> = model.joint_names().enumerate().map(|(j, name)| (name, j)).collect();
@@ -243,7 +243,7 @@ fn depth_first_by_the_alphabet(model: &Model) -> Vec<usize> {
     for joint in &robot.joints {
         carried.entry(&joint.parent).or_default().push(joint);
     }
-    // last first: the stack turns them round
+    // last first: the stack reverses them
     carried.values_mut().for_each(|siblings| siblings.sort_by(|a, b| b.name.cmp(&a.name)));
     let on = |link: &str| carried.get(link).cloned().unwrap_or_default();
     let (mut stack, mut numbers) = (on(&robot.links[model.structure.base].name), Vec::new());
@@ -320,7 +320,7 @@ mod tests {
             let found = &M * pinocchio.acceleration(needed.as_slice()).expect("n") + h.expect("n") + friction;
             let error = (found - pinocchio.force(&tau).expect("n")).amax();
             assert!(error < 1e-12 * M.amax() * (needed.amax() + dtheta.len() as f64), "{error}");
-            // back, to the bit
+            // round trip, to the bit
             assert_eq!(pinocchio.from_velocity(v.as_slice()).expect("n").as_slice(), dtheta);
             assert_eq!(pinocchio.from_acceleration(a.as_slice()).expect("n").as_slice(), ddtheta);
             let back = pinocchio.from_force(pinocchio.force(&tau).expect("n").as_slice()).expect("n");

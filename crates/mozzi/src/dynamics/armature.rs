@@ -1,15 +1,15 @@
-//! The rotors' inertia: on the diagonal of M for a joint's own, a JᵀJ for a rotor that several joints turn, and the
-//! velocity product of a free joint's.
+//! Rotor inertia (armature): a joint's own is on the diagonal of M, a rotor that several joints turn adds a JᵀJ to M,
+//! and a free joint's adds a velocity product.
 //!
-//! A joint's armature a adds ½ a‖θ̇‖² to the kinetic energy, θ̇ being all its velocities. Of one axis and of a ball it
-//! gives the force a θ̈ alone. A free joint's velocities are a twist (ω, v) in the axes of a link that turns: there,
-//! the linear part gives a(v̇ + ω × v).
+//! A joint's armature a adds ½ a‖θ̇‖² to the kinetic energy, θ̇ being all velocities of the joint. For a joint of one
+//! axis and for a ball, the force is a θ̈ alone. A free joint's velocities are a twist (ω, v) in the axes of a turning
+//! link, so the linear part gives a(v̇ + ω × v).
 
 use crate::linalg::Vec3;
 use crate::model::Model;
 use crate::scalar::Scalar;
 
-/// Adds the rotors' part of M θ̈, what is not on the diagonal.
+/// Adds the part of M θ̈ from rotors that several joints turn.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_rotor_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], tau: &mut [S]) {
     for rotor in &model.rotors {
@@ -17,7 +17,7 @@ pub(super) fn add_rotor_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>,
     }
 }
 
-/// M = 0 but for all armature: the diagonal, and a JᵀJ.
+/// Sets M to the rotors' inertia alone: armature on the diagonal, and a JᵀJ for each rotor that several joints turn.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn set_armature<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, M: &mut [S]) {
     let n = model.n();
@@ -80,14 +80,16 @@ pub(super) fn add_velocity_product_vjp<S: Scalar + From<C>, C: Scalar>(
     for &j in &model.structure.free {
         let ((w, v), (_, lambda)) = (of_free_joint(dtheta, j), of_free_joint(lambda, j));
         let a = S::from(model.armature[j]);
-        for (k, x) in [v.cross(lambda), lambda.cross(w)].into_iter().flat_map(|x| x.0).enumerate() {
-            d_dtheta[j + k] = a.mul_add(x, d_dtheta[j + k]);
+        let (by_w, by_v) = (v.cross(lambda), lambda.cross(w));
+        for k in 0..3 {
+            d_dtheta[j + k] = a.mul_add(by_w.0[k], d_dtheta[j + k]);
+            d_dtheta[j + 3 + k] = a.mul_add(by_v.0[k], d_dtheta[j + 3 + k]);
         }
     }
 }
 
-/// Adds to C what gives a ω × v, and is skew-symmetric since the armature's part of M is constant: a`[ω]` in the linear
-/// block.
+/// Adds the block of C that gives a ω × v: a`[ω]` in the linear block. It is skew-symmetric, since the armature's part
+/// of M is constant.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_coriolis_blocks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], X: &mut [S]) {
     for &j in &model.structure.free {
@@ -96,7 +98,7 @@ pub(super) fn add_coriolis_blocks<S: Scalar + From<C>, C: Scalar>(model: &Model<
     }
 }
 
-/// (ω, v) of the free joint with its first velocity at j.
+/// (ω, v) of the free joint whose first velocity has the index j.
 #[inline(always)]
 pub(super) fn of_free_joint<S: Scalar>(dtheta: &[S], j: usize) -> (Vec3<S>, Vec3<S>) {
     let of = |first: usize| Vec3(core::array::from_fn(|k| dtheta[first + k]));

@@ -1,15 +1,16 @@
-//! −M⁻¹X by articulated bodies, for robots of long limbs (Featherstone 2008, section 7.3): O(n) a column, where the
-//! factors of M take O(n · depth).
+//! −M⁻¹X by articulated bodies, for robots with long limbs (Featherstone 2008, section 7.3): O(n) per column; with the
+//! factors of M it would be O(n · depth).
 //!
-//! The factors of forward dynamics are those of M: with what a joint feels once all joints beyond it are free,
+//! The factors of forward dynamics are factors of M. With Ĝ, the articulated inertia of a link (all joints beyond it
+//! free),
 //!
 //! > d = AᵀĜA + armature, U = ĜA/d
 //!
-//! M x = b is solved by what b's forces hand on to the base, and by what its accelerations hand on to the tips:
+//! M x = b is solved in two passes: wrenches P go inward to the base, accelerations a go outward to the tips:
 //!
 //! > u = b − AᵀP, P_p += P + U u, then x = u/d − Uᵀa, with a = a_p from the parent, a += A x
 //!
-//! All in the base's axes about each link's own origin: a step to a parent is a shift.
+//! All quantities are in the base's axes, about each link's own origin, so a step to a parent is a shift.
 
 use crate::linalg::ldlt;
 use crate::model::{AtLink, Model, TOGETHER as W, Turned, Workspace};
@@ -18,7 +19,7 @@ use crate::spatial::Wrench;
 use alloc::vec::Vec;
 
 /// Overwrites X and Y, n × n by rows, with −M⁻¹X and −M⁻¹Y, and `inverse` with M⁻¹. The workspace holds the factors of
-/// forward dynamics, and of links R, p and A in the base's axes.
+/// forward dynamics, and R, p and A of the links in the base's axes.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn solve_columns<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -30,7 +31,7 @@ pub(super) fn solve_columns<S: Scalar + From<C>, C: Scalar>(
     for (now, U) in turned.iter_mut().zip(U.iter()).skip(1) {
         now.U = Wrench { m: now.R * U.m, f: now.R * U.f };
     }
-    // M⁻¹ = −M⁻¹(−1), of which the lower triangle is solved for: a column of −1 has one entry
+    // M⁻¹ = −M⁻¹(−1), solved for the lower triangle alone: a column of −1 has one entry
     inverse.fill(S::zero());
     for j in 0..n {
         inverse[j * (n + 1)] = -S::one();
@@ -58,8 +59,8 @@ struct Factors<'w, S> {
 }
 
 impl<S: Scalar> Factors<'_, S> {
-    /// W columns from c on of three matrices, which do not wait for each other. Each has its first row, and the
-    /// outermost link, that are not 0; rows before the first are not written.
+    /// Solves W columns, from c on, of three matrices; they are interleaved because they are independent. Each matrix
+    /// comes with its first nonzero row and its outermost nonzero link; rows before the first are not written.
     #[inline(always)]
     fn solve<C: Scalar>(
         &self,
@@ -105,7 +106,8 @@ impl<S: Scalar> Factors<'_, S> {
         }
     }
 
-    /// u = −b − AᵀP, and what goes on to the parent, about its origin, to which p leads: m − p × f.
+    /// u = −b − AᵀP, and the wrench passed on to the parent, about the parent's origin: m − p × f, with p from the
+    /// link's origin to the parent's.
     #[inline(always)]
     #[rustfmt::skip]
     fn inward(&self, i: usize, parent: usize, at: &mut [AtLink<S>]) {
@@ -130,7 +132,7 @@ impl<S: Scalar> Factors<'_, S> {
         }
     }
 
-    /// The acceleration of a floating base, in place of the wrench at it; 0 of a fixed one.
+    /// Replaces the wrench at a floating base by the base's acceleration; for a fixed base it is 0.
     #[inline(always)]
     #[rustfmt::skip]
     fn base(&self, X: &mut [S], first: usize, n: usize, c: usize, P: &mut [[S; W]; 6]) {
@@ -148,7 +150,7 @@ impl<S: Scalar> Factors<'_, S> {
         }
     }
 
-    /// x = u/d − Uᵀa, with a from the parent, at the link's origin: v + p × ω.
+    /// x = u/d − Uᵀa, with the parent's a shifted to the link's origin: v + p × ω.
     #[inline(always)]
     #[rustfmt::skip]
     fn outward(&self, i: usize, parent: usize, one_over_d: S, at: &mut [AtLink<S>]) {

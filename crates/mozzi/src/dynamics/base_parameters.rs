@@ -11,20 +11,20 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// What is left of a column of the stacked regressor beside the columns before it, relative to its length: less is
-/// rounding.
+/// Independence threshold: a column of the stacked regressor depends on the columns before it if the part orthogonal to
+/// them is smaller than this, relative to the column's length.
 const INDEPENDENT: f64 = 1e-9;
 
-/// The identifiable combinations π_b = K π of a model's parameters π: as few numbers as give the same forces at every
-/// state,
+/// The identifiable combinations π_b = K π of a model's parameters π: the smallest set that gives the same forces at
+/// every state,
 ///
 /// > Y π = Y_b π_b, Y_b the [`columns`](Self::columns) of Y
 ///
-/// Each is a parameter and multiples of others that have no effect apart from it.
+/// Each is one parameter plus multiples of others that have no separate effect.
 #[derive(Clone, Debug)]
 pub struct BaseParameters {
-    /// The columns of the regressor that are independent, ascending: those that are none of the columns before them
-    /// combined.
+    /// The independent columns of the regressor, ascending: those that are not linear combinations of the columns
+    /// before them.
     pub columns: Vec<usize>,
     /// K, one row for each base parameter and a column for each parameter.
     pub combination: DMatrix<f64>,
@@ -33,7 +33,7 @@ pub struct BaseParameters {
 }
 
 impl BaseParameters {
-    /// Their number: the rank of the stacked regressor.
+    /// The number of base parameters: the rank of the stacked regressor.
     pub fn count(&self) -> usize {
         self.columns.len()
     }
@@ -54,12 +54,14 @@ impl BaseParameters {
         Y.select_columns(&self.columns)
     }
 
-    /// Each as text: `link1.Izz + 0.25 link2.m`. Coefficients are rounded to six digits, those below 10⁻⁹ left out.
+    /// Each combination as text: `link1.Izz + 0.25 link2.m`. Coefficients are rounded to six digits; those below 10⁻⁹
+    /// are left out.
     pub fn names(&self) -> Vec<String> {
         (0..self.count()).map(|row| self.name(row)).collect()
     }
 
-    /// The parameters that no force depends on, at no state: `link1.m` of a link that turns about a vertical axis, say.
+    /// The parameters that affect no force at any state, for example `link1.m` of a link that turns about a vertical
+    /// axis.
     pub fn without_effect(&self) -> impl Iterator<Item = &str> {
         let silent = |k: &usize| self.combination.column(*k).iter().all(|c| c.abs() < INDEPENDENT);
         (0..self.parameters.len()).filter(silent).map(|k| self.parameters[k].as_str())
@@ -82,8 +84,9 @@ impl BaseParameters {
 
 impl Model<f64> {
     /// The base parameters under the model's gravity, {s} at rest: by rank of the regressor, stacked at random states
-    /// (always the same ones). Of parameters that cannot be told apart the one nearest to the base is kept, and the
-    /// others are added to it. Joint limits are not asked: these are the combinations that *some* motion tells.
+    /// (always the same ones). Among parameters that cannot be distinguished, the one nearest to the base is kept and
+    /// the others are added to it. Joint limits are ignored: these are the combinations that *some* motion can
+    /// identify.
     ///
     /// Cost O(p³) for p parameters.
     pub fn base_parameters(&self) -> BaseParameters {
@@ -116,7 +119,7 @@ impl Model<f64> {
     }
 }
 
-/// Regressors at more random states than there are parameters to tell apart, one below the other.
+/// Regressors at random states, stacked: more rows than parameters.
 fn stacked_regressor(model: &Model) -> DMatrix<f64> {
     let (n, p) = (model.n(), model.parameter_count());
     let states = (2 * p).checked_div(n).map_or(0, |enough| enough + 10);
@@ -151,8 +154,8 @@ mod tests {
     #[test]
     fn the_planar_arm_has_the_combinations_derived_by_hand() {
         // By Lagrange, with the elbow at l: 𝒦 = ½ (Izz₁ + l² m₂) θ̇₁² + ½ Izz₂ (θ̇₁ + θ̇₂)² + l θ̇₁(θ̇₁ + θ̇₂)(mcx₂ cos
-        // θ₂ − mcy₂ sin θ₂), and 𝒫 holds mcx₁ + l m₂ and mcy₁. Armature 1 acts as Izz₁, and all the rest of the joints'
-        // on its own.
+        // θ₂ − mcy₂ sin θ₂), and 𝒫 holds mcx₁ + l m₂ and mcy₁. Armature 1 acts as Izz₁, and each other joint parameter
+        // acts on its own.
         let of_joints = [
             "joint1.damping",
             "joint1.friction",

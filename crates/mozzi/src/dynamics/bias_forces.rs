@@ -8,8 +8,8 @@ use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
 
-/// h(θ, θ̇) = c + g: what the joints must carry at θ̈ = 0. Without friction and springs. Wrenches in
-/// `environment.applied` and a base that moves are counted in, where they are given.
+/// h(θ, θ̇) = c + g: the joint forces at θ̈ = 0, without friction and springs. Wrenches in `environment.applied` and a
+/// moving base are included, if given.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -64,8 +64,7 @@ pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
     rest(model, theta, &Environment::with_gravity(gravity), workspace, g);
 }
 
-/// JᵀF: what the joints must carry for the wrenches that frames apply to the environment, each in its frame's
-/// coordinates.
+/// JᵀF: the joint forces for the wrenches that frames apply to the environment, each in its frame's coordinates.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -98,7 +97,7 @@ fn rest<S: Scalar + From<C>, C: Scalar>(
     workspace.vector = zero;
 }
 
-/// n zeros, lent by the workspace: to be given back.
+/// n zeros, taken from the workspace; the caller must give them back.
 #[inline(always)]
 pub(super) fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
     let mut zero = core::mem::take(&mut workspace.vector);

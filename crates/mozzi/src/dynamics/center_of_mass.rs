@@ -1,4 +1,4 @@
-//! The centre of mass of all that moves, and how it moves, by the momentum.
+//! The robot's centre of mass; its velocity and acceleration follow from the momentum.
 
 use super::momentum::{composite_inertia, momentum, momentum_matrix, momentum_rate};
 use crate::kinematics::base_pose;
@@ -9,8 +9,7 @@ use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity,
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
-/// The centre of mass of all that moves (the moving links, and a floating base), in {s}, m. Not a number where nothing
-/// has mass.
+/// The centre of mass of the moving links and a floating base, in {s}, m. NaN if they have no mass.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -25,8 +24,8 @@ pub fn center_of_mass<S: Scalar + From<C>, C: Scalar>(
     base_pose(model, theta) * center_in_base(model, theta, workspace)
 }
 
-/// The centre of mass in the base's frame: to compute about it without the base's distance from {s}, which would cost
-/// digits.
+/// The centre of mass in the base's frame. Computing about it avoids the rounding error that the base's distance from
+/// {s} would cause.
 #[cfg_attr(not(test), inline(always))]
 fn center_in_base<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -36,8 +35,8 @@ fn center_in_base<S: Scalar + From<C>, C: Scalar>(
     composite_inertia(model, theta, workspace).mc * one_over_mass(model)
 }
 
-/// A frame with the axes of {s} and its origin at the centre of mass, seen from the base; the workspace then holds
-/// composite inertias.
+/// A frame with the axes of {s} and its origin at the centre of mass, seen from the base. Afterwards the workspace
+/// holds composite inertias.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn centroidal_frame<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -1,5 +1,5 @@
-//! The book's stacked closed form (Modern Robotics, section 8.4): dense, to look at, and computed apart from the
-//! kernels, from the screws in the centre-of-mass frames.
+//! The book's stacked closed form (Modern Robotics, section 8.4): dense, for reading and comparison. It is computed
+//! independently of the kernels, from the screws in the centre-of-mass frames.
 
 use super::armature::{add_coriolis_blocks, set_armature};
 use super::joint_friction::joint_friction;
@@ -13,7 +13,7 @@ use alloc::vec;
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, DMatrix, DVector};
 use num_traits::{One, Zero};
 
-/// A number of which nalgebra has matrices: `f64`, [`Dual`](crate::Dual), a wide number.
+/// A scalar type for which nalgebra has matrices: `f64`, [`Dual`](crate::Dual), a wide number.
 pub trait Entry:
     Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign
 {
@@ -26,14 +26,14 @@ impl<S: Real + Into<f64> + nalgebra::Scalar + Zero + One + ClosedAddAssign + Clo
 /// Every stacked vector and matrix of the closed form at one state, for N moving links and n velocities. Frame {i} is
 /// at the centre of mass of link i, oriented as the link's; blocks are base to tips, angular first. A floating base is
 /// the first of the N moving links, with the axes I, in the base link's own frame. A ball is three links and a free
-/// joint six, massless but for the last, in frames of their own axes that stand still in the last; so the whole joint's
-/// twist is in the first one's block of [ad_𝒜θ̇], and nothing in the others'.
+/// joint six, massless but for the last. Their frames have their own axes and are fixed in the last link, so the whole
+/// joint's twist is in the first link's block of [ad_𝒜θ̇], and the others' blocks are 0.
 ///
 /// > 𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base, 𝒱̇ = 𝒲𝒱̇ + 𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base,
 /// > 𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip, τ = 𝒜ᵀ𝓕
 #[derive(Clone, Debug)]
 pub struct ClosedForm<S = f64> {
-    /// 𝒜, 6N × n: the screw axes on the block diagonal; a mimic joint's stands in its source joint's column, times its
+    /// 𝒜, 6N × n: the screw axes on the block diagonal; a mimic joint's is in its source joint's column, times its
     /// ratio.
     pub A: DMatrix<S>,
     /// 𝒢, 6N × 6N: the spatial inertias.
@@ -52,13 +52,13 @@ pub struct ClosedForm<S = f64> {
     pub V_base: DVector<S>,
     /// 𝒱̇_base, 6N: `[Ad_T_i0]` 𝒱̇₀ for the links on the base, gravity in it.
     pub dV_base: DVector<S>,
-    /// 𝓕_tip, 6N: what each link applies to the environment.
+    /// 𝓕_tip, 6N: the wrench that each link applies to the environment.
     pub F_tip: DVector<S>,
     /// θ̇.
     pub dtheta: DVector<S>,
     /// The rotors' inertia, n × n: armature on the diagonal, and a JᵀJ of a rotor that several joints turn.
     pub armature: DMatrix<S>,
-    /// The armature's part of C, n × n: `a[ω]` where a free joint has armature, else 0.
+    /// The armature's part of C, n × n: `a[ω]` for a free joint with armature, else 0.
     pub armature_coriolis: DMatrix<S>,
     /// f(θ̇), the friction in the joints.
     pub friction: DVector<S>,
@@ -67,7 +67,7 @@ pub struct ClosedForm<S = f64> {
 }
 
 impl<S: Entry> Model<S> {
-    /// The stacked closed form at (θ, θ̇). O(N³): to read and to compare.
+    /// The stacked closed form at (θ, θ̇). O(N³): for reading and comparison.
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -178,8 +178,8 @@ impl<S: Entry> ClosedForm<S> {
         &self.L * &self.A
     }
 
-    /// The book's matrix before θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + `[ad_𝒱]`ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ less
-    /// twice this matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
+    /// The book's matrix that multiplies θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + `[ad_𝒱]`ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ
+    /// minus twice this matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
     pub fn book_coriolis_matrix(&self) -> DMatrix<S> {
         let inner = &self.G * &self.L * &self.ad_Adtheta * &self.W + self.ad_V.transpose() * &self.G;
         -(self.jacobians().transpose() * inner * self.jacobians())

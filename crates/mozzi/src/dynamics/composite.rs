@@ -5,8 +5,8 @@
 //!
 //! > X_ij = A_iᵀ (𝒢ᶜ r_j + 𝓑ᶜ s_j) for i and j on one path from the base to a tip, else 0
 //!
-//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the inertia of all that its link carries,
-//! 𝓑ᶜ the sum of 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
+//! with 𝒢ᶜ and 𝓑ᶜ of the outer one of i and j. A is a joint's screw axis, 𝒢ᶜ the composite inertia of its link and all
+//! links beyond it, 𝓑ᶜ the sum of 𝓑 = 𝒢̇ + H(𝒢𝒱) (see [`CoriolisFactor`]).
 //!
 //! | X | r | s |
 //! |---|---|---|
@@ -15,12 +15,12 @@
 //! | ∂τ/∂θ̇ | D | A |
 //! | ∂τ/∂θ | Ä | Ȧ |
 //!
-//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has a term more where j is beyond i. A mimic joint's axis is
-//! taken times its ratio, and its entries are added to its source joint's.
+//! D, Ȧ and Ä are explained in `derivatives.rs`; ∂τ_i/∂θ_j has one more term if j is beyond i. A mimic joint's axis is
+//! multiplied by its ratio, and its entries are added to its source joint's.
 //!
 //! Bodies are in each link's own frame, whose z is the joint's axis: in one frame for all, the moment of inertia of a
-//! slender link about its own joint becomes a difference of large numbers. How a wrench goes from a link to the base is
-//! [`Path`]'s.
+//! slender link about its own joint becomes a difference of large numbers. [`Path`] moves a wrench from a link to the
+//! base.
 
 use super::armature::set_armature;
 use super::path::{BaseAxes, LinkFrames, Pairs, Path, turn};
@@ -35,7 +35,7 @@ use crate::spatial::{CoriolisFactor, SpatialInertia, Twist, Wrench};
 #[derive(Clone, Copy)]
 pub(super) struct BaseRates<S> {
     pub X: Twist<S>,
-    /// None where it is 0.
+    /// None if it is 0.
     pub Y: Option<Twist<S>>,
     pub sigma: S,
 }
@@ -71,31 +71,31 @@ pub(super) struct Filled<'x, S> {
     pub base: BaseRates<S>,
 }
 
-/// The matrices to fill. Their pairs stand in the workspace.
+/// The matrices to fill; their pairs are in the workspace.
 pub(super) struct Matrices<'x, S> {
-    /// ∂τ/∂θ, which has the term of wrenches that are carried past axes.
+    /// ∂τ/∂θ, which has the additional term `[ad_A]`ᵀ𝓕ᶜ of wrenches that move past axes.
     pub by_theta: Option<Filled<'x, S>>,
     /// ∂τ/∂θ̇ or C.
     pub by_rates: Option<Filled<'x, S>>,
-    /// It then holds the rotors' inertia.
+    /// M, with the rotors' inertia.
     pub M: Option<&'x mut [S]>,
 }
 
-/// What the pass does besides.
+/// Options of the pass.
 #[derive(Clone, Copy)]
 pub(super) struct Does {
-    /// 𝓑, too, becomes that of composite bodies; 𝒢 does always.
+    /// Whether 𝓑 is accumulated over composite bodies; 𝒢 always is.
     pub adds_factors: bool,
-    /// And so do the wrenches 𝓕.
+    /// Whether the wrenches 𝓕 are accumulated too.
     pub adds_wrenches: bool,
-    /// 𝒢ᶜA is kept in `workspace.U`.
+    /// Whether 𝒢ᶜA is kept in `workspace.U`.
     pub keeps_columns: bool,
-    /// They are composite already, of a pass before.
+    /// Whether 𝒢, 𝓑 and 𝓕 are composite already, from an earlier pass.
     pub is_composite: bool,
 }
 
-/// Fills the matrices. The workspace holds T_{i,i−1}(θ), and of each link 𝒢, the pairs, 𝓑 and 𝓕, as far as the matrices
-/// take them.
+/// Fills the matrices. The workspace holds T_{i,i−1}(θ) and, for each link, 𝒢, the pairs, 𝓑 and 𝓕, if the matrices need
+/// them.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
 pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
@@ -145,7 +145,7 @@ pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Of each link, and then of all that it carries.
+/// Quantities of each link, accumulated to those of its composite body (the link and all links beyond it).
 struct Bodies<'w, S> {
     T: &'w [SE3<S>],
     F: &'w mut [Wrench<S>],
@@ -154,7 +154,7 @@ struct Bodies<'w, S> {
     B: &'w mut [CoriolisFactor<S>],
 }
 
-/// The entries of the joints, and the rows and columns of a floating base at them.
+/// Fills the joints' entries, and their rows and columns at a floating base.
 #[inline(always)]
 #[rustfmt::skip] // one equation a line
 fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
@@ -251,7 +251,8 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
     }
 }
 
-/// Adds to r of the axes of a joint, whose last is i, that its link moves them: `[ad_𝒱]` A, 𝒱 seen from each axis.
+/// Adds the motion of a joint's own link to r of the joint's axes: `[ad_𝒱]` A, 𝒱 seen from each axis. i is the last
+/// axis.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
@@ -268,8 +269,8 @@ pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Takes back, between axis i and those before it of one joint, that what axis i carries is carried past them: W =
-/// `[ad_A]`ᵀ𝓕ᶜ. They move together.
+/// Cancels the term W = `[ad_A]`ᵀ𝓕ᶜ between axis i and the earlier axes of the same joint: they move together, so the
+/// wrench at axis i does not move past them.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn carried_together<S: Scalar + From<C>, C: Scalar>(
@@ -293,7 +294,7 @@ fn check_size<S: Scalar, C: Scalar>(model: &Model<C>, X: &[S]) {
     assert!(X.len() == n * n, "a matrix has {} entries, expected n² = {}", X.len(), n * n);
 }
 
-/// Column j and row j at a floating base's six.
+/// Adds column j and row j at a floating base's six rows and columns.
 #[cfg_attr(not(test), inline(always))]
 fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
     for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
@@ -319,7 +320,7 @@ fn add_row<const W: usize, S: Scalar>(X: &mut [S], at: usize, entries: [S; W]) {
     }
 }
 
-/// A column of a floating base's 6 × 6 block.
+/// Sets a column of a floating base's 6 × 6 block.
 #[cfg_attr(not(test), inline(always))]
 fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     for (s, entry) in column.to_array().into_iter().enumerate() {

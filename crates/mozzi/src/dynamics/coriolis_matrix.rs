@@ -13,10 +13,10 @@ use crate::spatial::{AxisRate, CoriolisFactor, Twist};
 ///
 /// > C = Σ_k J_kᵀ (𝒢_k J̇_k + ½ (𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 + H(𝒢𝒱)) J_k), H(m, f) = `[[−[m], −[f]], [−[f], 0]]`
 ///
-/// With J̇_k = Ad `[ad_𝒱_i]` A_i − `[ad_𝒱_k]` Ad A_i, what stands before Ad A_i is ½ (𝒢̇ + H(𝒢𝒱)): the rate of the
-/// inertia and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too,
-/// but Ṁ − 2C is not skew for it.) A floating base's velocities are no coordinates' rates and have no Christoffel
-/// symbols; the same formula gives a C with the same two properties for it.
+/// With J̇_k = Ad `[ad_𝒱_i]` A_i − `[ad_𝒱_k]` Ad A_i, the factor of Ad A_i is ½ (𝒢̇ + H(𝒢𝒱)): the rate of the inertia
+/// and its momentum, which add up over composite bodies. (The factor of θ̇ in the book's c gives Cθ̇ = c too, but Ṁ −
+/// 2C is not skew for it.) A floating base's velocities are not rates of coordinates and have no Christoffel symbols;
+/// the same formula gives a C with the same two properties for it.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -30,7 +30,7 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     with_base_twist(model, theta, dtheta, base_twist(model, theta, dtheta, Twist::zero()), workspace, C);
 }
 
-/// C at this twist of the base.
+/// C for a given twist of the base.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
@@ -61,8 +61,8 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     add_coriolis_blocks(model, dtheta, C);
 }
 
-/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on where a floating base is, so its twist is
-/// left out: in C + Cᵀ what it adds would cancel, up to rounding.
+/// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on the pose of a floating base, so its twist
+/// is left out: its contribution to C + Cᵀ would cancel, up to rounding.
 ///
 /// Cost O(n · depth), no allocation.
 ///
@@ -80,7 +80,7 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
     add_transpose(model.n(), dM);
 }
 
-/// See [`coriolis_matrix`]. The kernel answers Ṁ where that is kept.
+/// See [`coriolis_matrix`]. The kernel computes Ṁ instead if that output is kept.
 #[derive(Clone, Copy, Debug)]
 pub struct CoriolisMatrix;
 impl Quantity for CoriolisMatrix {
@@ -97,7 +97,7 @@ impl Kernel for CoriolisMatrix {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [C, dM, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
-        // one text for both, compiled once
+        // one call for both, so that it is compiled once
         let (base, X) = match dM.is_empty() {
             true => (base_twist(c.model, theta, dtheta, Twist::zero()), C),
             false => (Twist::zero(), &mut *dM),

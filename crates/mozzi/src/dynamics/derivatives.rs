@@ -1,18 +1,18 @@
 //! The two passes behind ∂τ and ∂θ̈, analytic (Carpentier and Mansard 2018; Singh, Russell and Wensing 2022).
 //!
 //! All twists and wrenches are in each link's **own frame**, whose z is the joint's axis. One frame for all would save
-//! the transport of wrenches, and lose digits: the moment of inertia of a slender link about its own joint becomes a
+//! the transport of wrenches but lose digits: the moment of inertia of a slender link about its own joint becomes a
 //! difference of large numbers, and ∂θ̈ divides by it. (Measured by `cargo xtask accuracy` on Tiago: 5·10⁵ units about
 //! one origin, 350 in one frame's axes about each link's own origin, 12 in link frames.)
 //!
-//! A joint's axis A is carried by its parent, which moves with 𝒱_p and 𝒱̇_p, both seen from the link. So its rates are,
-//! θ̇ and θ̈ being per unit,
+//! A joint's axis A moves with its parent, whose motion is 𝒱_p and 𝒱̇_p, both seen from the link. So its rates are, θ̇
+//! and θ̈ being per unit,
 //!
 //! > Ȧ = `[ad_𝒱_p]` A, Ä = `[ad_𝒱̇_p]` A + `[ad_𝒱_p]` Ȧ, and 𝒱 = 𝒱_p + A θ̇, 𝒱̇ = 𝒱̇_p + Ȧ θ̇ + A θ̈
 //!
-//! **What a body beyond the joint sees.** A small motion of the joint carries all links beyond it along, without a
-//! change of the joints between them. Seen from such a link, whose own coordinates are carried too, its twist, its
-//! acceleration and the wrench 𝓕 = 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 change by
+//! **Bodies beyond the joint.** A small motion of the joint carries all links beyond it along; the joints between them
+//! do not change. Seen from such a link, in its own coordinates, which move too, its twist, its acceleration and the
+//! wrench 𝓕 = 𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 change by
 //!
 //! > ∂𝒱 = Ȧ, ∂𝒱̇ = Ä − `[ad_𝒱]` Ȧ, ∂𝓕 = 𝒢 Ä + (−𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢) Ȧ − `[ad_Ȧ]`ᵀ 𝒢𝒱 = 𝒢 Ä + 𝓑 Ȧ, by θ
 //! >
@@ -23,12 +23,12 @@
 //!
 //! with 𝓑 = 𝒢̇ + H(𝒢𝒱), 𝒢̇ = −𝒢`[ad_𝒱]` − `[ad_𝒱]`ᵀ𝒢 the rate of an inertia and H(P)A = −`[ad_A]`ᵀP, skew. Half of 𝓑
 //! cancels: it is `[[K, 0], [−2[f], 0]]`, K = İ − `[m]`, (m, f) = 𝒢𝒱. Seen from one frame, 𝒢, K, f and 𝓕 add up over
-//! all that hangs from the joint: 28 numbers, no 6 × 6 matrix. A wrench that is applied to a link is constant in its
+//! all links that the joint carries: 28 numbers, no 6 × 6 matrix. A wrench applied to a link is constant in its
 //! coordinates and adds to 𝓕 alone.
 //!
-//! **What a joint i carries**, τ_i = A_iᵀ𝓕ᶜ_i. By a joint j at i or between it and the base, axis and wrench are both
-//! carried, and what is left is ∂𝓕 of the bodies beyond i. By a joint j beyond i, they are the bodies beyond j that
-//! change, and are carried past an axis that is not:
+//! **Force of joint i**, τ_i = A_iᵀ𝓕ᶜ_i. If joint j is i itself or between i and the base, its motion carries both axis
+//! and wrench along, and only ∂𝓕 of the bodies beyond i remains. If j is beyond i, only the bodies beyond j change, and
+//! they move past axis i, which does not:
 //!
 //! > ∂τ_i/∂θ_j = A_iᵀ (𝒢ᶜ_i Ä_j + 𝓑ᶜ_i Ȧ_j), j at or before i; A_iᵀ (𝒢ᶜ_j Ä_j + 𝓑ᶜ_j Ȧ_j − `[ad_A_j]`ᵀ 𝓕ᶜ_j), j beyond
 //! > i
@@ -68,7 +68,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The pairs of a floating base's axes by θ and by θ̇: {s} carries them.
+/// The pairs of a floating base's axes by θ and by θ̇: the axes move with {s}.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn base_rates<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -121,7 +121,7 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// From those of the base, the rates of the axes, twists and accelerations, and 𝒢, 𝓑 and 𝓕 of each link.
+/// Outward from the base: the rates of the axes, twists and accelerations, and 𝒢, 𝓑 and 𝓕 of each link.
 #[inline(always)]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
@@ -161,8 +161,8 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Adds θ̈ to what was carried and filled without: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä
-/// grows by `[ad_𝒱̇'_p]` A, and 𝓕 of a composite body by 𝒢ᶜ𝒱̇'_p, and 𝒢ᶜAθ̈ of its joint and of each beyond.
+/// Adds θ̈ to quantities computed without it: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by
+/// `[ad_𝒱̇'_p]` A. 𝓕 of a composite body grows by 𝒢ᶜ𝒱̇'_p, and by 𝒢ᶜAθ̈ of its joint and of each joint beyond.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
@@ -195,7 +195,7 @@ pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
     F[0] += G_c[0] * dV[0] + U[0];
 }
 
-/// What joints and a floating base carry of what was carried, as far as links make it: τ_i = A_iᵀ𝓕ᶜ_i.
+/// The links' part of the forces at the joints and a floating base, from the composite wrenches: τ_i = A_iᵀ𝓕ᶜ_i.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
     let Workspace { F, .. } = workspace;

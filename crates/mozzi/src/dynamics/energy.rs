@@ -8,8 +8,8 @@ use crate::quantity::{Call, DTHETA, Declaration, Kernel, NUMBER, Quantity, THETA
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of all that moves: the moving links,
-/// and a floating base. `V_s` is the twist of {s} in its own coordinates (zero for ½ θ̇ᵀMθ̇).
+/// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of the moving links and a floating base. `V_s` is the
+/// twist of {s} in its own coordinates (zero for ½ θ̇ᵀMθ̇).
 ///
 /// Cost O(n), no allocation.
 ///
@@ -34,8 +34,8 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     (twice + rotor_energy(model, dtheta)) * S::from_f64(0.5)
 }
 
-/// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of all that moves seen from {s}; 0 for a mass at
-/// its origin and a spring at rest.
+/// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of the moving links and a floating base, seen
+/// from {s}; 0 for a mass at the origin of {s} and a spring at rest.
 ///
 /// Cost O(n), no allocation.
 ///

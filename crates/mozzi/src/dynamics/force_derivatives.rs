@@ -11,10 +11,11 @@ use crate::quantity::{
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
-/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric where the base is fixed: g is a gradient. Of a floating
-/// base along its body twist, as of [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
+/// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric if the base is fixed, since g is a gradient. For a
+/// floating base the derivative is along its body twist, as in
+/// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
-/// Cost O(n · depth) beside n² zeros, no allocation.
+/// Cost O(n · depth) plus n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, or `dg` not n².
@@ -29,9 +30,9 @@ pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     at_rest(model, theta, None, &Environment::with_gravity(gravity), workspace, dg);
 }
 
-/// ∂(JᵀF)/∂θ, n × n, row-major into `dtau`, of wrenches that keep their coordinates in their frames.
+/// ∂(JᵀF)/∂θ, n × n, row-major into `dtau`, for wrenches that are constant in their frames' coordinates.
 ///
-/// Cost O(n · depth) beside n² zeros, no allocation.
+/// Cost O(n · depth) plus n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, or `dtau` not n².
@@ -49,7 +50,7 @@ pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 
 /// ∂(M(θ)x)/∂θ for a constant x, n × n, row-major into `dMx`. Armature is constant and drops out.
 ///
-/// Cost O(n · depth) beside n² zeros, no allocation.
+/// Cost O(n · depth) plus n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, x not n, or `dMx` not n².

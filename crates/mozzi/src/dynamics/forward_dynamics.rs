@@ -17,9 +17,9 @@ use crate::spatial::{Twist, Wrench};
 /// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ, θ̇)
 ///
 /// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a
-/// 6 × 6 LDLᵀ at the root; where joints are coupled, by a mimic joint or a rotor, by the mass matrix. No allocation.
-/// Where M is singular the result is not finite or meaningless: the methods of [`Model`] look at the pivots and answer
-/// with an error.
+/// 6 × 6 LDLᵀ at the root; if joints are coupled, by a mimic joint or a rotor, by the mass matrix. No allocation. If M
+/// is singular, the result is infinite, NaN or meaningless: the methods of [`Model`] check the pivots and return an
+/// error.
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, τ or θ̈ not n.
@@ -42,8 +42,8 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Each link's articulated inertia Ĝ and bias wrench 𝓕 are what it presents to its joint while all joints beyond it
-/// are free.
+/// Ĝ and 𝓕 of each link are its articulated inertia and bias wrench, felt at its joint while all joints beyond it are
+/// free.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
@@ -64,14 +64,14 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         G_hat[0] = G.into();
     }
 
-    // f − τ, in place of θ̈ until that is known
+    // f − τ, stored in θ̈ until that is known
     for j in 0..model.n() {
         ddtheta[j] = joint_friction(model, j, dtheta[j]) - tau[j];
     }
     add_spring_forces(model, theta, ddtheta);
     add_velocity_products(model, dtheta, ddtheta);
 
-    // base to tips: twists, and what each link's motion needs where no joint accelerates
+    // base to tips: twists, and the wrench for each link's motion if no joint accelerates
     match model.structure.of_one_axis {
         true => motions::<true, S, C>(model, theta, dtheta, workspace),
         false => motions::<false, S, C>(model, theta, dtheta, workspace),
@@ -84,7 +84,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
     }
 
-    // tips to base: free each joint and hand what is left to the parent
+    // tips to base: free each joint and pass the remaining inertia and wrench to the parent
     for (i, link) in model.inward::<S>() {
         let (A, j) = (link.A(), link.j);
         let GA = G_hat[i] * A;
@@ -119,8 +119,8 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// From that of the base, 𝒱 of each link where no joint accelerates, 𝒱̇ less what the parent adds, and 𝓕 and 𝒢 of its
-/// own.
+/// Outward from the base, with no joint accelerating: 𝒱 of each link, its own part of 𝒱̇ (without the parent's), and
+/// its own 𝓕 and 𝒢.
 #[inline(always)]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(

@@ -1,4 +1,4 @@
-//! Forward dynamics as the book has it (Modern Robotics, section 8.5): to read and to compare.
+//! Forward dynamics by the book's method (Modern Robotics, section 8.5): for reading and comparison.
 
 use super::armature::set_armature;
 use super::inverse_dynamics::{inverse_dynamics, newton_euler};

@@ -1,4 +1,5 @@
-//! ∂θ̈ of forward dynamics, by those of inverse dynamics and the factors of M (Carpentier and Mansard 2018).
+//! ∂θ̈ of forward dynamics, from the derivatives of inverse dynamics and the factors of M (Carpentier and Mansard
+//! 2018).
 
 use super::armature::{add_velocity_product_rates, add_velocity_products};
 use super::articulated_solve::solve_columns;
@@ -17,18 +18,18 @@ use crate::quantity::{
 use crate::scalar::Scalar;
 
 /// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n
-/// × n, row-major: row i is θ̈_i's, and columns are as of
+/// × n, row-major: row i is θ̈_i's, and columns are those of
 /// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
-/// θ̈ is by M, which the derivatives need as well; of robots of long limbs by articulated bodies, whose factors solve
-/// for all columns. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
+/// θ̈ is computed from M, which the derivatives need as well; for robots with long limbs by articulated bodies, whose
+/// factors then solve for all columns. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
 ///
 /// > ∂θ̈/∂θ = −M⁻¹ ∂τ/∂θ, ∂θ̈/∂θ̇ = −M⁻¹ ∂τ/∂θ̇, ∂θ̈/∂τ = M⁻¹, all at this θ̈
 ///
-/// Where M is singular the results are not finite or meaningless: the methods of [`Model`] look at the pivots and
-/// answer with an error.
+/// If M is singular, the results are infinite, NaN or meaningless: the methods of [`Model`] check the pivots and return
+/// an error.
 ///
-/// Cost O(n² · depth), of robots of long limbs O(n²), no allocation.
+/// Cost O(n² · depth), for robots with long limbs O(n²), no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or a derivative not n².

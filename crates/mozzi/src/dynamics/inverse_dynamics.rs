@@ -15,9 +15,9 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇), with f = k(θ − θ₀) + d θ̇ + μ sgn θ̇
 ///
-/// where M holds the rotors' inertia (armature) and F is what `environment.applied` says the robot applies to its
-/// environment. N m for revolute and helical joints, N for prismatic ones. The first six entries of a floating base are
-/// the wrench (m, f) on it that the motion takes, in its own coordinates.
+/// where M includes the rotors' inertia (armature) and F are the wrenches that the robot applies to its environment,
+/// `environment.applied`. N m for revolute and helical joints, N for prismatic ones. The first six entries of a
+/// floating base are the wrench (m, f) that the motion requires on the base, in its own coordinates.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -42,15 +42,15 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     add_spring_forces(model, theta, tau);
 }
 
-/// The links' part of τ and all velocity products, without what armature adds to Mθ̈, friction and springs, added to
-/// what `tau` holds. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link, the motion as seen from beside it;
-/// 𝓕_0 is the wrench that a fixed base applies to the chain, or that a free one, itself included, needs.
+/// Adds the links' part of τ and all velocity products to `tau`, without friction, springs and the armature's part of
+/// Mθ̈. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link, 𝒱 and 𝒱̇ in the classical form below. 𝓕_0 is the
+/// wrench that a fixed base applies to the chain, or that a floating base, itself included, needs.
 ///
-/// **Seen from beside the link.** The equations of a body are the same for all observers in uniform motion. One of them
-/// moves, at this moment, along with the origin of link i: for him 𝒱_i = (ω, 0), and 𝒱̇_i = (ω̇, a) with the
-/// acceleration a = v̇ + ω × v of the origin. So link i's motion is computed from its parent's as the parent's observer
-/// sees it, by the book's equations, and handed on as its own does. The wrench 𝓕_i is the same for both; the linear
-/// part of 𝒱 costs nothing.
+/// **Classical acceleration.** The equations of a body are the same in every frame in uniform motion. One such frame
+/// moves, at this moment, with the origin of link i: in it 𝒱_i = (ω, 0) and 𝒱̇_i = (ω̇, a), with the acceleration a =
+/// v̇ + ω × v of the origin. Link i's motion is computed from its parent's in this form by the book's equations, then
+/// converted to the frame that moves with its own origin. The wrench 𝓕_i is the same in both; the linear part of 𝒱
+/// costs nothing.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
@@ -60,7 +60,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), tau.len()]);
     joint_sines(model, theta, workspace);
 
-    // base: its twist, accelerating against gravity; nothing hangs from it yet
+    // base: its twist and acceleration, with gravity as an upward acceleration; no child wrench is added yet
     let (V_0, dV_0) = base_motion(model, theta, dtheta, ddtheta, environment);
     let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
     (workspace.V[0], workspace.dV[0]) = (V_0.twist(), dV_0);
@@ -70,7 +70,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         workspace.F[0] = G * dV_0 - V_0.ad_transpose() * (G * V_0);                       // (8.53)
     }
 
-    // base to tips: twist and acceleration of each link, and what its own motion needs
+    // base to tips: twist and acceleration of each link, and the wrench for its own motion
     match model.structure.of_one_axis {
         true => motions::<true, S, C>(model, theta, dtheta, ddtheta, workspace),
         false => motions::<false, S, C>(model, theta, dtheta, ddtheta, workspace),
@@ -82,7 +82,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;                        // by link i to the environment
     }
 
-    // tips to base: what each joint must carry (a mimic joint adds to its source joint)
+    // tips to base: the force of each joint (a mimic joint adds to its source joint)
     for (i, link) in model.inward::<S>() {
         let p = link.parent;
         tau[link.j] += link.A() * F[i];                                  // (8.54)
@@ -94,8 +94,8 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     add_velocity_products(model, dtheta, tau);
 }
 
-/// From those of the base, 𝒱 and 𝒱̇ of each link, and of 𝓕 what its own motion needs; `ONE_AXIS` says that all joints
-/// have one.
+/// Outward from the base: 𝒱 and 𝒱̇ of each link, and the wrench for its own motion in 𝓕. `ONE_AXIS`: all joints have
+/// one axis.
 #[inline(always)]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
@@ -118,9 +118,9 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The twist with which a joint's axis is carried, up to what the axis itself adds: that of its own link `V_i`; of a
-/// further axis of a ball or a free joint that of the joint's parent, for the observer who moves along with the origin
-/// of all of them.
+/// The twist that moves a joint's axis, up to a multiple of the axis itself. For the first or only axis of a joint it
+/// is the twist `V_i` of its own link; for a further axis of a ball or a free joint it is that of the joint's parent
+/// about the joint's origin, with v set to zero.
 #[inline(always)]
 pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
     link: &Lifted<C, S>,

@@ -12,13 +12,13 @@ use crate::scalar::Scalar;
 /// row-major: row i is τ_i's.
 ///
 /// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ
-/// for a joint, the body twist of a floating base, in its own coordinates. The wrenches that are applied keep their
-/// coordinates in their frames, {s} its motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of ∂τ/∂θ̇
-/// (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
+/// for a joint, the body twist of a floating base, in its own coordinates. Applied wrenches keep their coordinates in
+/// their frames, and {s} keeps its motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of ∂τ/∂θ̇ (the
+/// derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
 ///
 /// Entries are 0 unless [`couples`](Model::couples) i and j.
 ///
-/// Cost O(n · depth) beside 3 n² zeros, no allocation.
+/// Cost O(n · depth) plus 3 n² zeros, no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or a derivative not n².

@@ -6,11 +6,11 @@ use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
-/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ of each rotor
+/// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ for each rotor
 /// that several joints turn. kg m², kg m or kg.
 ///
-/// Each link's composite inertia 𝒢ᶜ holds all that hangs from it. Accelerating joint i alone needs the wrench 𝒢ᶜA at
-/// link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their
+/// Each link's composite inertia 𝒢ᶜ includes all links that it carries. Accelerating joint i alone needs the wrench 𝒢ᶜA
+/// at link i, which every joint between it and the base feels. A floating base's six rows and columns come first; their
 /// block is the whole robot's composite inertia.
 ///
 /// Cost O(n · depth), no allocation.
@@ -27,7 +27,7 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     composite_inertias(model, workspace, M);
 }
 
-/// M where the workspace holds T_{i,i−1}(θ).
+/// M; the workspace already holds T_{i,i−1}(θ).
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn composite_inertias<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

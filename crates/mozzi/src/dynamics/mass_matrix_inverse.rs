@@ -1,4 +1,4 @@
-//! The inverse of the mass matrix, by the factors of M along the tree (Featherstone 2008, section 6.5).
+//! The inverse of the mass matrix, from the factors of M along the tree (Featherstone 2008, section 6.5).
 
 use super::mass_matrix::mass_matrix;
 use crate::linalg::ldlt;
@@ -6,10 +6,10 @@ use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
-/// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: what accelerations a unit of each joint force produces. 1/(kg
+/// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: the accelerations produced by a unit force at each joint. 1/(kg
 /// m²), 1/(kg m) or 1/kg.
 ///
-/// Where M is singular the result is not finite or meaningless: the methods of [`Model`] judge the pivots.
+/// If M is singular, the result is infinite, NaN or meaningless: the methods of [`Model`] check the pivots.
 ///
 /// Cost O(n² · depth), no allocation.
 ///

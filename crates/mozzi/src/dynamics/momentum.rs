@@ -1,5 +1,5 @@
-//! Momentum of all that moves: its matrix by composite rigid bodies, its rate by Newton-Euler (Orin, Goswami and Lee
-//! 2013).
+//! Momentum of the moving links and a floating base: its matrix by composite rigid bodies, its rate by Newton-Euler
+//! (Orin, Goswami and Lee 2013).
 
 use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
@@ -10,8 +10,8 @@ use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, 
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist, Wrench};
 
-/// The spatial inertia of all that moves (the moving links, and a floating base), about the origin of {s} in its
-/// coordinates: its `mass`, and its `mc`, the mass times the centre of mass.
+/// The spatial inertia of the moving links and a floating base together, about the origin of {s} in its coordinates:
+/// its `mass`, and its `mc`, the mass times the centre of mass.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -23,11 +23,13 @@ pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
     composite_inertia(model, theta, workspace).transformed(base_pose(model, theta))
 }
 
-/// The momentum of all that moves, (angular, linear), about the origin of {s} in its coordinates, {s} at rest:
+/// The momentum of the moving links and a floating base, (angular, linear), about the origin of {s} in its coordinates,
+/// {s} at rest:
 ///
 /// > h = Σ `[Ad_T_is]`ᵀ 𝒢_i 𝒱_i
 ///
-/// in kg m²/s and kg m/s. About a point p it is (m − p × f, f): see [`Wrench::about`]. Rotors (armature) are not in it.
+/// in kg m²/s and kg m/s. About a point p it is (m − p × f, f): see [`Wrench::about`]. Rotors (armature) are not
+/// included.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -71,7 +73,7 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
     columns(model, base_pose(model, theta).inverse(), workspace, A);
 }
 
-/// The columns in a frame {s}, seen from the base, of the workspace's composite inertias.
+/// The columns of the momentum matrix in a frame {s}, seen from the base; the workspace holds the composite inertias.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE3<S>, workspace: &mut Workspace<S>, A: &mut [Wrench<S>]) {
@@ -90,8 +92,8 @@ pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE
     }
 }
 
-/// ḣ of the [`momentum`] h along a motion: Aθ̈ + Ȧθ̇, about the origin of {s}. It is what gravity, the ground and all
-/// else that pushes must add up to.
+/// ḣ of the [`momentum`] h along a motion: Aθ̈ + Ȧθ̇, about the origin of {s}. It equals the sum of all external
+/// wrenches: gravity, ground contact and others.
 ///
 /// Cost O(n), no allocation.
 ///
@@ -118,7 +120,7 @@ pub(super) fn rate_in_base<S: Scalar + From<C>, C: Scalar>(
     workspace.F[0]
 }
 
-/// 𝒢ᶜ of every slot, of a fixed base without its own; the base's is of all that moves.
+/// 𝒢ᶜ of every slot. Slot 0 is the base: it holds all moving links, and the base's own inertia only if it is floating.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
@@ -136,7 +138,7 @@ pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
     G_c[0]
 }
 
-/// 𝒢 of the base as far as it moves.
+/// 𝒢 of a floating base, 0 for a fixed one.
 #[cfg_attr(not(test), inline(always))]
 fn base_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> SpatialInertia<S> {
     if model.is_floating() { model.base_inertia.map(S::from) } else { SpatialInertia::zero() }

@@ -1,10 +1,10 @@
-//! The way of a wrench from a link to the base, in one of two kinds of coordinates.
+//! Transport of a wrench from a link to the base, in one of two kinds of coordinates.
 //!
-//! In each link's own frame an axis is along z, and of a wrench little is multiplied, but it is turned at every step.
-//! In the base's axes, about each link's own origin, a step is a shift, but an axis is a general twist, and every link
-//! is turned once. Links that follow each other are then taken together, about the origin of the last, the nearest to
-//! where the wrench comes from. Composite bodies stay in the links' own frames either way, where they keep their
-//! digits.
+//! In each link's own frame an axis is along z, so few components of a wrench are multiplied, but the wrench is rotated
+//! at every step. In the base's axes, about each link's own origin, a step is a shift, but an axis is a general twist,
+//! and every link is rotated once. Consecutive links are then processed together, about the origin of the last, the
+//! nearest to the wrench's starting point. In both cases composite bodies stay in the links' own frames, where they are
+//! most accurate.
 
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
@@ -19,15 +19,15 @@ pub(super) struct Pairs<'w, S> {
     pub by_rates: &'w [ByRates<S>],
 }
 
-/// What the composite-body pass asks on the way from link i to the base.
+/// The operations of the composite-body pass on the path from link i to the base.
 pub(super) trait Path<S: Scalar> {
-    /// A wrench that is given in link i's frame, as the way begins.
+    /// Converts a wrench in link i's frame to the path's coordinates, at the start of the path.
     fn taken(&self, i: usize, F: Wrench<S>) -> Wrench<S>;
-    /// A moment without a force likewise, which is the same about every origin.
+    /// The same for a moment without a force, which does not depend on the origin.
     fn taken_moment(&self, i: usize, m: Vec3<S>) -> Vec3<S>;
-    /// A wrench as it goes on from a link to its parent.
+    /// Moves a wrench from a link to its parent.
     fn carried(&self, link: usize, F: Wrench<S>) -> Wrench<S>;
-    /// A moment likewise.
+    /// The same for a moment without a force.
     fn carried_moment(&self, link: usize, m: Vec3<S>) -> Vec3<S>;
     /// A_kᵀF.
     fn force<C: Scalar>(&self, k: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
@@ -35,13 +35,13 @@ pub(super) trait Path<S: Scalar> {
         S: From<C>;
     /// rᵀ(𝒢ᶜA) + sᵀ(𝓑ᶜᵀA) of axis k, by θ.
     fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S;
-    /// And by rates.
+    /// The same for the pairs by rates.
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S;
-    /// The links that are taken together, of which k is the last.
+    /// The links that are processed together, of which k is the last.
     fn row(&self, k: usize) -> Option<(&Run, &Row<S>)>;
 }
 
-/// Each link's own frame.
+/// Coordinates in each link's own frame.
 pub(super) struct LinkFrames<'w, S> {
     pub T: &'w [SE3<S>],
     pub pairs: Pairs<'w, S>,
@@ -85,7 +85,7 @@ impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
     }
 }
 
-/// The base's axes, about each link's own origin.
+/// Coordinates in the base's axes, about each link's own origin.
 pub(super) struct BaseAxes<'w, S> {
     pub links: &'w [Turned<S>],
     pub runs: &'w Runs,
@@ -134,7 +134,8 @@ impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
     }
 }
 
-/// Turns into the base's axes what the pass asks of links, from T_{i,i−1} and those lists of pairs that are `taken`.
+/// Rotates the links' quantities that the pass needs into the base's axes, from T_{i,i−1} and the lists of pairs that
+/// are `taken`.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn turn<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -15,8 +15,8 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// > Y π = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇)
 ///
-/// with π = [`parameters`](Model::parameters). Gravity and a {s} that moves are in it; `environment.applied` is not,
-/// since no parameter is in JᵀF: τ = Y π + JᵀF.
+/// with π = [`parameters`](Model::parameters). Gravity and a moving {s} are included; `environment.applied` is not,
+/// since JᵀF depends on no parameter: τ = Y π + JᵀF.
 ///
 /// The wrench that a body needs is linear in its ten parameters: its columns are the wrenches of ten unit inertias in
 /// the link's frame, each felt by every joint between the body and the base.
@@ -24,9 +24,9 @@ use crate::spatial::{SpatialInertia, Twist};
 /// > F_k = 𝒢_k 𝒱̇ − `[ad_𝒱]`ᵀ 𝒢_k 𝒱, Y_jk = Σ ratio A_jᵀ `[Ad_T]`ᵀ F_k
 ///
 /// A joint's armature, damping, friction, stiffness and preload have the columns θ̈_j, θ̇_j, sgn θ̇_j, θ_j and −1 in
-/// its own row; of a ball the first four in each of its three rows, its rotation vector in place of θ_j; of a free
-/// joint the first three in each of its six, and ω × v beside the linear θ̈. A rotor's armature has the column Jᵀ Jθ̈,
-/// J the row of its gears. Entries are N m or N over the parameter's unit.
+/// its own row. A ball has the first four in each of its three rows, with its rotation vector in place of θ_j. A free
+/// joint has the first three in each of its six rows, with ω × v added to the linear θ̈. A rotor's armature has the
+/// column Jᵀ Jθ̈, J the row of its gear ratios. Entries are N m or N per unit of the parameter.
 ///
 /// Cost O(N · depth), no allocation.
 ///
@@ -91,15 +91,16 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, as [`kinetic_energy`](super::kinetic_energy)
-/// and [`potential_energy`](super::potential_energy) have them, with π = [`parameters`](Model::parameters); `V_s` is
-/// the twist of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy at θ = 0.
+/// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, as defined in
+/// [`kinetic_energy`](super::kinetic_energy) and [`potential_energy`](super::potential_energy), with π =
+/// [`parameters`](Model::parameters); `V_s` is the twist of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy
+/// at θ = 0.
 ///
 /// > y_𝒦 = ½ 𝒱ᵀ𝒢_k𝒱 of unit inertias 𝒢_k, ½ θ̇² of armatures; y_𝒫 = −gᵀ`p_sb` of masses, −R_sbᵀg of first moments, ½ θ²
 /// > (½ ‖φ‖² of a ball) of
 /// > stiffnesses, −θ of preloads
 ///
-/// Joules over the parameter's unit. Cost O(N), no allocation.
+/// Joules per unit of the parameter. Cost O(N), no allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `kinetic` or `potential` not p.

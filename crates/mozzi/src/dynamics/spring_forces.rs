@@ -4,10 +4,10 @@ use crate::model::Model;
 use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, Rare, THETA, VECTOR, output};
 use crate::scalar::Scalar;
 
-/// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: what holds the joints against their springs. θ is not wrapped. A
-/// mimic joint's spring acts on q = ratio θ + offset and adds ratio k(q − θ₀) to its source joint. A ball's is kφ in
-/// the axes of its link, φ being the rotation vector, ‖φ‖ ≤ π, of its quaternion: the spring turns it back the shorter
-/// way, and jumps at a half turn.
+/// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: the forces that hold the joints against their springs. θ is not
+/// wrapped. A mimic joint's spring acts on q = ratio θ + offset and adds ratio k(q − θ₀) to its source joint. A ball's
+/// is kφ in the axes of its link, φ being the rotation vector, ‖φ‖ ≤ π, of its quaternion: the spring acts along the
+/// shorter rotation, and its force jumps at a half turn.
 ///
 /// Cost O(n), no allocation.
 ///

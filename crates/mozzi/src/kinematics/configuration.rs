@@ -33,7 +33,7 @@ impl<C: Scalar> Model<C> {
 }
 
 impl ConfigurationSpace {
-    /// Of n numbers.
+    /// A flat space of n numbers.
     pub fn of_numbers(n: usize) -> Self {
         ConfigurationSpace((0..n).map(|k| Place { freedom: Freedom::One, q: k, j: k }).collect())
     }
@@ -43,7 +43,7 @@ impl ConfigurationSpace {
         &self.0
     }
 
-    /// Whether it is flat, so that ⊕ is +.
+    /// Whether the space is flat, so that ⊕ is +.
     pub fn is_flat(&self) -> bool {
         self.0.iter().all(|place| place.freedom == Freedom::One)
     }

@@ -54,7 +54,7 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
         *entry = T_sb.Ad() * *entry;
     }
     if model.is_floating() {
-        // a floating base's own columns turn and slide with it
+        // a floating base's own columns rotate and translate with it
         let (n, Ad) = (model.n(), base_pose(model, theta).Ad());
         for (j, along) in Twist::axes().into_iter().enumerate() {
             for (i, axis) in Twist::axes().into_iter().enumerate() {
@@ -64,8 +64,8 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Adds `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and says whether they
-/// are axes of one ball or free joint, which all move with the link that they carry; returns `T_sb`.
+/// Calls `add` with `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and with
+/// whether both are axes of one ball or free joint, which all move with the link that they carry; returns `T_sb`.
 #[cfg_attr(not(test), inline(always))]
 fn brackets<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -6,9 +6,9 @@ use crate::quantity::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity,
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
-/// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` takes its n columns,
-/// J̇_i = `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link
-/// beyond all three.
+/// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` receives its n columns, J̇_i =
+/// `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link beyond
+/// all three.
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -38,9 +38,10 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     }
 }
 
-/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` takes its n columns, J̇_i =
-/// `[ad_𝒱]` J_i, 𝒱 the twist of the link that carries joint i; of a ball's axes, which move with what they carry, the
-/// twist of the link beyond all three. (By J̇_b and the frame's own twist, the joints between would cancel.)
+/// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` receives its n columns, J̇_i =
+/// `[ad_𝒱]` J_i, with 𝒱 the twist of the link that carries joint i. A ball's axes move with the link beyond all three,
+/// so their 𝒱 is the twist of that link. (Computed from J̇_b and the frame's own twist, the contributions of the joints
+/// in between would have to cancel.)
 ///
 /// Cost O(depth), no allocation.
 ///
@@ -73,7 +74,7 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
         let J_i = T.Ad() * link.A().twist();
         if link.is_last && link.is_next() {
             V += J_i * dtheta[link.j];
-            // all axes of the joint, whose columns were kept
+            // all axes of the joint, whose columns were stored above
             for slot in path[at..].iter().copied() {
                 let axis = model.link::<S>(slot);
                 let J = if slot == i { J_i } else { dJ[axis.j] };

@@ -12,8 +12,8 @@ pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>,
     for (i, link) in model.outward::<S>() { T[i] = link.transform_with(sin_cos[i], theta); }
 }
 
-/// `workspace.sin_cos[i]` of every joint's angle: all come first, for they do not wait for one another, as the
-/// recursions that follow do.
+/// `workspace.sin_cos[i]` of every joint's angle. All are computed first because they are independent of each other,
+/// unlike the steps of the recursions that follow.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn joint_sines<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {

@@ -150,7 +150,7 @@ fn the_books_lists_make_the_same_robot_in_every_form() {
             assert!(distance(model.forward_kinematics(&theta, tip).expect("lengths"), pose) < 1e-13);
         }
     }
-    // out again: the lists in centre-of-mass frames make the same robot once more
+    // round trip: the lists in centre-of-mass frames make the same robot again
     let out = reference.screws().expect("one axis a joint");
     let again = Description::from_screws("again", HomeFrames::Base(&out.home_frames()), &out.G, Screws::Space(&out.S));
     let again = again.expect("lengths").build().expect("a sound robot");

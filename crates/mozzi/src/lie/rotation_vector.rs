@@ -7,8 +7,8 @@ use crate::scalar::Scalar;
 /// rotation, the sign is that of the given quaternion with w = 0.
 ///
 /// With u = tan²(‖φ‖/4) = ‖v‖²/(|w| + ‖q‖)² and A(u) = atan(√u)/√u, φ = 4 A(u) v sgn w/(|w| + ‖q‖), without a division
-/// by 0 at angle 0. A is 1 − u D(u) with D(u) = ⅓ − u/5 + u²/7 − …, where u is first made small by halving the angle
-/// twice: D(u) = (1 + 2D(u')/s)/s² with s = 1 + √(1 + u), u' = u/s².
+/// by 0 at angle 0. A is 1 − u D(u) with D(u) = ⅓ − u/5 + u²/7 − …. First, u is made small by halving the angle twice:
+/// D(u) = (1 + 2D(u')/s)/s² with s = 1 + √(1 + u), u' = u/s².
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RotationVector<S> {
     /// φ, rad.
@@ -20,7 +20,7 @@ pub(crate) struct RotationVector<S> {
 }
 
 impl<S: Scalar> RotationVector<S> {
-    /// Of a quaternion (w, v) of any length but 0.
+    /// From a quaternion (w, v) of any length but 0.
     #[inline(always)]
     pub fn new(w: S, v: Vec3<S>) -> Self {
         let sign = w.sgn();
@@ -41,7 +41,7 @@ impl<S: Scalar> RotationVector<S> {
         }
     }
 
-    /// ∂φ by a small rotation δ of what is turned, in its own axes, q ⊗ (1, δ/2): the inverse of the right Jacobian,
+    /// ∂φ for a small rotation δ of the rotated body, in its own axes, q ⊗ (1, δ/2): the inverse of the right Jacobian,
     /// I + ½`[φ]` + (1 − (‖φ‖/2) cot(‖φ‖/2))/‖φ‖² `[φ]`².
     #[inline(always)]
     pub fn derivative(&self) -> Mat3<S> {
@@ -63,7 +63,8 @@ fn doubled<S: Scalar>(over: S, D: S) -> S {
     over * over * (S::from_f64(2.0) * over).mul_add(D, S::one())
 }
 
-/// D(u) = Σ (−u)ᵏ/(2k + 3) for u ≤ tan²(π/16), which is 4.6 binary digits: as many terms as the number has digits for.
+/// D(u) = Σ (−u)ᵏ/(2k + 3) for u ≤ tan²(π/16). Each term adds 4.6 binary digits; the scalar's precision sets the number
+/// of terms.
 #[inline(always)]
 fn series<S: Scalar>(u: S) -> S {
     let mut sum = S::zero();

@@ -5,7 +5,7 @@ use crate::scalar::{Real, Scalar};
 
 impl SO3<f64> {
     /// Roll, pitch and yaw in radians with Rot(z, yaw) Rot(y, pitch) Rot(x, roll) = R, pitch in −π/2 … π/2; accurate
-    /// also where the pitch is ±π/2 and only roll ∓ yaw is defined.
+    /// also if the pitch is ±π/2 and only roll ∓ yaw is defined.
     pub fn to_rpy(self) -> [f64; 3] {
         let [[xx, xy, xz], [yx, yy, yz], [zx, ..]] = self.matrix().rows();
         let yaw = Real::atan2(yx, xx);

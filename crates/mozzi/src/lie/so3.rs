@@ -89,7 +89,7 @@ impl SO3<f64> {
     pub fn from_matrix(R: Mat3) -> Result<Self, InvalidRotation> {
         let (error, tolerance, determinant) = (R.transpose() * R - Mat3::identity(), 1e-12, R.determinant());
         let deviation = error.x.max_abs().max(error.y.max_abs()).max(error.z.max_abs());
-        // written so that NaN is refused
+        // written so that NaN is rejected
         if deviation <= tolerance && determinant > 0.0 {
             Ok(SO3(R))
         } else {

@@ -4,7 +4,7 @@ pub(crate) use super::pattern::Pattern;
 use crate::scalar::Scalar;
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
-/// `pivots` take D, too: the caller checks that they are positive.
+/// `pivots` receives D too: the caller checks that they are positive.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]) {
     let n = pattern.len();
@@ -37,7 +37,7 @@ pub(crate) fn solve_transposed_all<S: Scalar>(pattern: &Pattern, L: &[S], b: &mu
     solve_transposed(pattern, L, b, (0..pattern.len()).rev());
 }
 
-/// The same for a b that is zero but in these rows, the last first, and in which the ancestors of each are contained.
+/// The same if b is zero outside these rows, listed from the last; with each row the list must contain its ancestors.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S], rows: impl Iterator<Item = usize>) {
     let n = pattern.len();
@@ -65,8 +65,8 @@ pub(crate) fn solve_rest<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     }
 }
 
-/// Overwrites two right sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column are
-/// relatives.
+/// Overwrites two right-hand sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column
+/// are equal or one is an ancestor of the other.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S]; 2]) {
     let n = pattern.len();
@@ -85,15 +85,16 @@ pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S
     }
 }
 
-/// Every step of [`solve`], up to the sign, on W columns of each from c on: a step waits for the one before it, so that
-/// several columns take no longer than one. Two rows on a path have the same ancestors: they go together.
+/// Every step of [`solve`], up to the sign, on W columns of each matrix, from c on. The steps of one column depend on
+/// each other, so several columns take no longer than one. Two consecutive rows of a path have the same ancestors and
+/// are processed together.
 #[cfg_attr(not(test), inline(always))]
 fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize, B: &mut [&mut [S]; 2]) {
     let mut k = pattern.end[c..c + W].iter().fold(0, |end, &e| end.max(e));
     while k > 0 {
         k -= 1;
         if k < c && pattern.end[k] <= c {
-            continue; // no relative of these columns
+            continue; // neither an ancestor nor a descendant of these columns
         }
         if pattern.is_next(k) {
             k -= 1;
@@ -113,7 +114,7 @@ fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize
     }
 }
 
-/// X of LᵀX = B by rows k to k + R, a path: they leave their ancestors' rows.
+/// X of LᵀX = B for rows k to k + R, a path: subtracts their contribution from their ancestors' rows.
 #[cfg_attr(not(test), inline(always))]
 fn eliminate<const R: usize, const W: usize, S: Scalar>(
     pattern: &Pattern,
@@ -148,7 +149,7 @@ fn eliminate<const R: usize, const W: usize, S: Scalar>(
     }
 }
 
-/// X of DLX = −B by rows k to k + R, a path.
+/// X of DLX = −B for rows k to k + R, a path.
 #[cfg_attr(not(test), inline(always))]
 fn substitute<const R: usize, const W: usize, S: Scalar>(
     pattern: &Pattern,
@@ -206,8 +207,8 @@ fn add<const W: usize, S: Scalar>(mut y: [S; W], a: S, x: [S; W]) -> [S; W] {
     y
 }
 
-/// Overwrites L and D with M⁻¹, both triangles; above the diagonal may stand any number. In LM⁻¹ = D⁻¹L⁻ᵀ the right
-/// side is upper triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
+/// Overwrites L and D with M⁻¹, both triangles; entries above the diagonal are ignored on input. In LM⁻¹ = D⁻¹L⁻ᵀ the
+/// right side is upper triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]) {
     match pattern.len() {
@@ -218,7 +219,7 @@ pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]
     }
 }
 
-/// By W columns at a time, W ≤ n; the last of them overlap with others.
+/// W columns at a time, W ≤ n; the last block may overlap others.
 #[cfg_attr(not(test), inline(always))]
 fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut [S]) {
     let n = pattern.len();
@@ -246,8 +247,8 @@ fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut 
     }
 }
 
-/// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots, of
-/// the last row first eliminated, for the caller to check.
+/// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots for
+/// the caller to check. The last row is eliminated first.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], [S; 6]) {
     let mut pivots = [S::zero(); 6];
@@ -295,7 +296,7 @@ mod tests {
         assert!((0..6).all(|k| (pivots[k] - M[7 * k]).abs() < 1e-14 * pivots[k]));
     }
 
-    /// Behind the base's rows, limbs: each hangs from a slot (0: the base) and has so many joints.
+    /// After the base's rows, limbs: each is given by its carrier slot (0: the base) and its number of joints.
     fn limbs(base: usize, limbs: &[(usize, usize)]) -> Pattern {
         let mut links = Vec::new();
         for &(mut carrier, joints) in limbs {
@@ -320,7 +321,7 @@ mod tests {
         for (base, branches) in trunk_and_branches {
             solve_a_random_system(&limbs(base, branches));
         }
-        // two arms on joint 1, the last joint of the second following joint 8 of the first
+        // two arms on joint 1, the last joint of the second mimics joint 8 of the first
         let arms: Vec<_> = (0..9).map(|j| (j, j)).chain([(2, 9), (10, 10), (11, 8)]).collect();
         solve_a_random_system(&Pattern::new(0, 11, arms.into_iter()));
     }

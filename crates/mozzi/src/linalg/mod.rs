@@ -26,7 +26,7 @@ pub fn add_transpose<S: Scalar>(n: usize, A: &mut [S]) {
     }
 }
 
-/// Implements +, −, negation, · number and the assigning forms for a type that is a list of components, each with +, −,
+/// Implements +, −, negation, · number and the assigning forms for a type that consists of components, each with +, −,
 /// ….
 macro_rules! linear_space {
     ($T:ident { $($field:tt),* }) => {

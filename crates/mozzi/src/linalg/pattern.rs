@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 pub(crate) struct Pattern {
     /// `usize::MAX` for a root.
     pub(super) parent: Vec<usize>,
-    /// One beyond the last descendant of k, or beyond k.
+    /// One past the last descendant of k; k + 1 if it has none.
     pub(super) end: Vec<usize>,
 }
 
@@ -21,7 +21,7 @@ impl Pattern {
         Self::coupled(base, n, links, core::iter::empty::<[usize; 0]>())
     }
 
-    /// The same where further rows are coupled all with each other, list by list.
+    /// The same with further lists of rows; the rows of each list are all coupled with each other.
     pub fn coupled<L: IntoIterator<Item = usize>>(
         base: usize,
         n: usize,
@@ -72,7 +72,7 @@ impl Pattern {
         Pattern::of(parent)
     }
 
-    /// With each one's parent before it.
+    /// From each row's parent, which precedes it.
     fn of(parent: Vec<usize>) -> Self {
         let mut end: Vec<usize> = (1..=parent.len()).collect();
         for (k, &i) in parent.iter().enumerate().rev().filter(|&(_, &i)| i != usize::MAX) {
@@ -93,8 +93,7 @@ impl Pattern {
         self.parent.len()
     }
 
-    /// k's ancestors, nearest (largest) first. A row of n numbers can be indexed by them without a further look at its
-    /// length.
+    /// k's ancestors, nearest (largest) first. They index a row of n numbers without further bounds checks.
     #[inline(always)]
     pub fn ancestors(&self, k: usize) -> impl Iterator<Item = usize> {
         let mut i = self.parent[k];
@@ -111,10 +110,10 @@ mod tests {
 
     #[test]
     fn a_mimic_joint_couples_two_paths() {
-        // slots 1 → 2 → 3 and 1 → 4; slot 4 follows joint 2 (of slot 3): joints 0, 1, 2, 2
+        // slots 1 → 2 → 3 and 1 → 4; slot 4 mimics joint 2 (of slot 3): joints 0, 1, 2, 2
         let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (2, 2), (1, 2)].into_iter());
         assert_eq!(pattern.ancestors(2).collect::<Vec<_>>(), [1, 0]);
-        // two arms whose last joints are one: joints 0, 1 and 2, 1
+        // two arms that share their last joint: joints 0, 1 and 2, 1
         let pattern = Pattern::new(0, 3, [(0, 0), (1, 1), (0, 2), (3, 1)].into_iter());
         assert_eq!(pattern.parent, [usize::MAX, 0, 1], "joint 2 couples with 1, and 1 with 0");
         // two arms of two joints, the last of each turning one rotor

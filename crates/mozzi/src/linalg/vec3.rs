@@ -61,7 +61,7 @@ impl<S: Scalar> Vec3<S> {
         Vec3([ax.mul_add(k, bx), ay.mul_add(k, by), az.mul_add(k, bz)])
     }
 
-    /// ‖a‖; squares must neither overflow nor vanish.
+    /// ‖a‖; squares must neither overflow nor underflow.
     pub fn norm(self) -> S {
         self.dot(self).sqrt()
     }

@@ -1,5 +1,6 @@
-//! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame: of s the
-//! angular part, what its linear one multiplies being 0. The axis is along z; a rate of it has no part along z.
+//! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame. Only the
+//! angular part of s is kept, because its linear part is multiplied by 0. The axis is along z; its rate has no
+//! component along z.
 
 use super::TOGETHER as W;
 use crate::lie::SO3;
@@ -7,7 +8,7 @@ use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use crate::spatial::{AxisRate, CoriolisFactor, JointAxis, SpatialInertia, Twist, Wrench};
 
-/// Of ∂τ/∂θ: (Ä, Ȧ).
+/// For ∂τ/∂θ: (Ä, Ȧ).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ByTheta<S> {
     pub r: Twist<S>,
@@ -15,7 +16,7 @@ pub(crate) struct ByTheta<S> {
     pub s: [S; 2],
 }
 
-/// Of ∂τ/∂θ̇, (D, A), and of C, (`[ad_𝒱]` A, ½ A).
+/// For ∂τ/∂θ̇: (D, A); for C: (`[ad_𝒱]` A, ½ A).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ByRates<S> {
     pub r: AxisRate<S>,
@@ -70,7 +71,7 @@ pub(crate) struct Turned<S> {
     /// From the link's origin to the parent's.
     pub p: Vec3<S>,
     pub A: Twist<S>,
-    /// ĜA/d, where articulated bodies are solved for.
+    /// ĜA/d, if the articulated-body equations are solved.
     pub U: Wrench<S>,
     /// (r, s).
     pub by_theta: (Twist<S>, Vec3<S>),
@@ -92,9 +93,9 @@ impl<S: Scalar> Turned<S> {
     }
 }
 
-/// W columns of a right-hand side, as `dynamics/articulated_solve.rs` solves for them, at a link: the joint's row, and
-/// the wrench P or the acceleration a, angular first. A step waits for the one before it, so that several columns take
-/// no longer than one.
+/// W columns of a right-hand side in `dynamics/articulated_solve.rs`, at one link: the joint's row, and the wrench P or
+/// the acceleration a, angular first. Each step depends on the one before it, so several columns take no longer than
+/// one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtLink<S> {
     pub x: [S; W],

@@ -1,4 +1,4 @@
-//! How far the joints may go.
+//! Joint limits.
 
 use super::description::Source;
 use super::{Freedom, Model, Place};
@@ -7,11 +7,11 @@ use crate::linalg::Vec3;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Lowest and highest value of each independent joint, as many as there are joints: −∞ and ∞ where there is no limit. A
-/// mimic joint's limits are its source joint's, too. Of a ball the value is the angle that it turns from 0.
+/// Lowest and highest value of each independent joint, −∞ and ∞ if there is no limit. A mimic joint's limits also
+/// restrict its source joint. A ball's value is its angle from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
-    /// Where the joints stand in θ and in θ̇.
+    /// The joints' indices in θ and in θ̇.
     pub places: Vec<Place>,
     /// Lowest and highest values, rad or m.
     pub joints: Vec<[f64; 2]>,
@@ -20,7 +20,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Those of a robot.
+    /// The limits of a robot's joints.
     pub fn of(model: &Model) -> Self {
         let free = [f64::NEG_INFINITY, f64::INFINITY];
         let mut joints = vec![free; model.joint_names().len()];
@@ -29,24 +29,24 @@ impl Bounds {
             let [a, b] = limits.map(|x| (x - offset) / ratio);
             let [low, high] = joints[j];
             let both = [low.max(a.min(b)), high.min(a.max(b))];
-            // a mimic joint that its source joint's limits never let into its own says nothing
+            // if the source joint's limits keep a mimic joint outside its own, the mimic joint's limits are ignored
             joints[j] = if both[0] <= both[1] { both } else { joints[j] };
         }
         let turns = model.joints().map(|joint| joint.kind.name() != "prismatic").collect();
         Bounds { places: model.places().to_vec(), joints, turns }
     }
 
-    /// What of joint k is within its bounds: its position, of a ball the angle that it turns from 0.
+    /// The value of joint k that its limits bound: its position; for a ball, its angle from 0.
     ///
     /// # Panics
-    /// On a θ of a wrong length, or where there is no joint k.
+    /// On a θ of a wrong length, or if there is no joint k.
     pub fn value(&self, theta: &[f64], k: usize) -> f64 {
         self.places[k].bounded_value(theta)
     }
 }
 
 impl Place {
-    /// What a limit of this joint bounds: its position; of a ball the angle ‖φ‖ that it turns from 0.
+    /// The value that this joint's limits bound: its position; for a ball, its angle ‖φ‖ from 0.
     ///
     /// # Panics
     /// On a θ of a wrong length.
@@ -57,8 +57,8 @@ impl Place {
         }
     }
 
-    /// The gradient n of [`bounded_value`](Self::bounded_value), whose rate is nᵀθ̇, along the joint's velocities, with
-    /// zeros behind it: 1, and φ/‖φ‖ of a ball.
+    /// The gradient n of [`bounded_value`](Self::bounded_value), whose rate is nᵀθ̇, with respect to the joint's
+    /// velocities, padded with zeros: 1, or φ/‖φ‖ for a ball.
     ///
     /// # Panics
     /// On a θ of a wrong length.
@@ -72,8 +72,8 @@ impl Place {
         }
     }
 
-    /// Moves the joint to a limit: a ball about its present axis, short of the limit by the rounding of its quaternion,
-    /// so that [`bounded_value`](Self::bounded_value) is within.
+    /// Moves the joint to a limit. A ball turns about its present axis and stops short of the limit by the rounding
+    /// error of its quaternion, so that [`bounded_value`](Self::bounded_value) is within the limit.
     ///
     /// # Panics
     /// On a θ of a wrong length.

@@ -18,7 +18,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 impl<C: Real + Into<f64>> Description<C> {
-    /// The model of this robot, its constants in the description's numbers; the checks see them rounded to `f64`.
+    /// The model of this robot, with constants of the description's number type; the checks use them rounded to `f64`.
     /// Joints are numbered depth first, siblings in the order of the file; a mimic joint takes no number. Fixed links
     /// are folded into the link that carries them.
     ///
@@ -34,12 +34,12 @@ impl<C: Real + Into<f64>> Description<C> {
     }
 }
 
-/// The model of a description that was checked, which it keeps as `rounded`.
+/// The model of a checked description. The model keeps `rounded`, the description in `f64`.
 pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Description) -> Model<C> {
     let link_index = index(description.links.iter().map(|link| link.name.as_str()));
     let (joints_of, base) = branches(description, &link_index);
 
-    // depth first: each link's frame on its slot, the moving links, and what each slot weighs
+    // depth first: each link's frame on its slot, the moving links, and each slot's inertia
     let mut frames = vec![Frame { slot: 0, T: SE3::identity() }; description.links.len()];
     let mut inertias = vec![SpatialInertia::zero()];
     let (mut links, mut moving_joints) = (Vec::new(), Vec::new());
@@ -48,7 +48,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         if let Some(i) = joint {
             let joint = &description.joints[i];
             let carrier = frames[link_index[joint.parent.as_str()]];
-            let home = carrier.T * joint.origin; // the child's frame at 0, seen from the carrier's normal frame
+            let home = carrier.T * joint.origin; // the child's frame at 0, relative to the carrier's normal frame
             frames[link] = match joint.kind {
                 JointKind::Fixed => Frame { slot: carrier.slot, T: home },
                 JointKind::Screw(A) => {
@@ -175,8 +175,8 @@ fn branches<C>(description: &Description<C>, link_index: &BTreeMap<&str, usize>)
 }
 
 /// Numbers the independent joints in the order of their links, and gives each mimic joint its source joint's number,
-/// ratio and offset, through chains of mimic joints. Returns the description's joint of each number, and the places of
-/// a floating base and of them.
+/// ratio and offset, through chains of mimic joints. Returns the description's joint for each number, and the places of
+/// a floating base and of these joints.
 fn couple<C: Real>(
     description: &Description<C>,
     moving_joints: &[usize],
@@ -208,14 +208,14 @@ fn couple<C: Real>(
     (joints, places)
 }
 
-/// Mean numbers of links between a link and the base above which the base's axes are faster, and articulated bodies;
+/// Mean numbers of links between a link and the base above which the base's axes, and articulated bodies, are faster;
 /// measured, see `docs/performance-log.md`.
 const DEEP: usize = 8;
 const VERY_DEEP: usize = 10;
 const TURN: [bool; 2] = [true, false];
 const SLIDE: [bool; 2] = [false, true];
 
-/// A link without mass, and not yet in a place of θ.
+/// A massless link that has no index in θ yet.
 fn massless<C: Real>(parent: usize, motion: Motion, screw: JointAxis<C>, M: SE3<C>) -> Link<C> {
     let (ratio, offset) = (C::one(), C::zero());
     Link { parent, q: 0, j: 0, screw, A: screw, motion, is_last: true, M, G: SpatialInertia::zero(), ratio, offset }
@@ -234,7 +234,7 @@ fn several<C: Real>(links: &mut Vec<Link<C>>, parent: usize, motion: Motion, M: 
     }
 }
 
-/// Is the mean number of links between a link and the base more than that?
+/// Is the mean number of links between a link and the base above `mean`?
 fn mean_depth_exceeds<C>(mean: usize, links: &[Link<C>]) -> bool {
     let mut depths = vec![0];
     for link in links {
@@ -243,7 +243,7 @@ fn mean_depth_exceeds<C>(mean: usize, links: &[Link<C>]) -> bool {
     depths.iter().sum::<usize>() > mean * links.len()
 }
 
-/// The rotors that several joints turn, by independent joints. What is locked does not turn them.
+/// The rotors that several joints turn, expressed by independent joints. Locked joints do not turn them.
 fn rotors<C: Real>(description: &Description<C>, moving_joints: &[usize], links: &[Link<C>]) -> Vec<Rotor<C>> {
     let of = |rotor: &description::Rotor<C>| {
         let mut J = BTreeMap::new();
@@ -258,7 +258,7 @@ fn rotors<C: Real>(description: &Description<C>, moving_joints: &[usize], links:
     description.rotors.iter().map(of).collect()
 }
 
-/// The springs by independent joints, and their energy at θ = 0.
+/// The springs, expressed by independent joints, and their energy at θ = 0.
 fn springs<C: Real>(
     description: &Description<C>,
     moving_joints: &[usize],
@@ -281,8 +281,8 @@ fn springs<C: Real>(
     (springs.into_values().collect(), energy)
 }
 
-/// The joint's axis in the normal form, and the normal frame seen from the link's: z along the screw, the origin on it.
-/// The other axes are the link's own where the screw is along one of them, so that zeros stay zeros.
+/// The joint's axis in the normal form, and the normal frame relative to the link's: z along the screw, the origin on
+/// it. If the screw is along one of the link's axes, the other axes are the link's own too, so that zeros stay zeros.
 fn normal_frame<C: Real>(A: ScrewAxis<C>) -> (JointAxis<C>, SE3<C>) {
     let V = A.twist();
     let (axis, z, p) = if A.is_prismatic() {

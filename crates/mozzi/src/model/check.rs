@@ -46,7 +46,7 @@ pub enum Severity {
     Error,
 }
 
-/// Something wrong with a description.
+/// A problem of a description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// Warning or error.
@@ -115,7 +115,7 @@ impl Report<'_> {
         self.add(Severity::Error, element, attribute, code, message);
     }
 
-    /// An error for each name that came before.
+    /// Reports an error for each duplicate name.
     fn unique<'n>(&mut self, names: impl Iterator<Item = (Element, &'n str)>) -> BTreeMap<&'n str, Element> {
         let mut first = BTreeMap::new();
         for (element, name) in names {

@@ -275,7 +275,7 @@ pub struct Source<C = f64> {
     pub joint: usize,
     /// The ratio, of the whole chain of mimic joints.
     pub ratio: C,
-    /// The offset likewise.
+    /// The offset, of the whole chain likewise.
     pub offset: C,
 }
 
@@ -347,7 +347,7 @@ impl<C: Real> Description<C> {
     }
 
     /// The source joint of the joint of this name, by its index in [`joints`](Self::joints), through chains of mimic
-    /// joints; `None` if there is no such joint. The robot must pass [`check`](Self::check): with a circle of mimic
+    /// joints; `None` if there is no such joint. The robot must pass [`check`](Self::check): with a cycle of mimic
     /// joints this does not terminate.
     pub fn source_of(&self, name: &str) -> Option<Source<C>> {
         let find = |name: &str| self.joints.iter().position(|joint| joint.name == name);
@@ -356,7 +356,8 @@ impl<C: Real> Description<C> {
 }
 
 impl Joint {
-    /// A joint without limits, friction, armature or spring. `origin` is the child's frame seen from the parent's at 0.
+    /// A joint without limits, friction, armature or spring. `origin` is the child's frame relative to the parent's at
+    /// 0.
     pub fn new(
         name: impl Into<String>,
         parent: impl Into<String>,

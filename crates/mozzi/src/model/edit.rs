@@ -31,7 +31,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with further constraints: loops that close, feet that are pinned. See [`constraints`].
+    /// The same robot with further constraints, such as closed loops or pinned feet. See [`constraints`].
     ///
     /// # Errors
     /// [`Error::Invalid`] for a name that is taken, an anchor that does not exist, anchors that are fixed to each
@@ -68,11 +68,11 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with its base fixed or floating. Named states keep the joints' numbers; a base that was fixed is
-    /// at {s} in them, at rest.
+    /// The same robot with its base fixed or floating. Named states keep the joints' numbers; if the base was fixed,
+    /// they place it at {s}, at rest.
     ///
     /// # Errors
-    /// None that the model did not have before.
+    /// Only those that the model had before.
     pub fn with_base(&self, base: Base) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         robot.base = base;
@@ -249,7 +249,7 @@ impl Model<f64> {
         self.frame(name).is_ok_and(|frame| links.contains(&self.link_of(frame).0))
     }
 
-    /// The link of the description that carries a frame, and the frame seen from it.
+    /// The link of the description that carries a frame, and the frame relative to it.
     fn link_of(&self, frame: FrameId) -> (usize, SE3) {
         let robot = self.description();
         match frame.0.checked_sub(robot.links.len()) {

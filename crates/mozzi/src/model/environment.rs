@@ -53,7 +53,7 @@ impl<S: Scalar> Environment<'_, S> {
         }
     }
 
-    /// 𝒱̇₀ of the recursion: gravity is a base accelerating upwards.
+    /// 𝒱̇₀ of the recursion: gravity acts like a base that accelerates upwards.
     #[inline(always)]
     pub(crate) fn proper_base_acceleration(&self) -> Twist<S> {
         self.base_acceleration - Twist::linear(self.gravity)

@@ -24,7 +24,7 @@ pub enum Error {
         constraint: String,
         /// By how much, rad or m, or their rates.
         residual: f64,
-        /// What was looked for.
+        /// The configuration or state that was searched for.
         what: &'static str,
     },
     /// A simulation's start violates a constraint.
@@ -153,7 +153,7 @@ pub enum Error {
         quantity: &'static str,
         /// The joint.
         joint: String,
-        /// Infinite, NaN, or so large (10¹⁵⁰) that energies are.
+        /// Infinite, NaN, or so large (10¹⁵⁰) that energies overflow.
         value: f64,
         /// Steps are counted from 1; 0 is the start.
         step: usize,
@@ -167,12 +167,12 @@ pub enum Error {
     Stalled {
         /// Seconds.
         time: f64,
-        /// The joint whose motion asks for the shortest steps.
+        /// The joint whose motion requires the shortest steps.
         joint: String,
         /// The steps, their reason, and a remedy.
         cause: String,
     },
-    /// An implicit step has no solution that iteration finds.
+    /// The iteration of an implicit step does not converge.
     #[error(
         "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations at joint `{joint}`, which is stiff, \
          or jumps; a smaller step or smooth friction may help"
@@ -193,7 +193,7 @@ pub enum Error {
         /// kg.
         mass: f64,
     },
-    /// A condition that a simulation cannot look for.
+    /// An invalid event condition of a simulation.
     #[error("`{text}`{problem}")]
     Condition {
         /// The condition.

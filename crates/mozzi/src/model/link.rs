@@ -7,13 +7,13 @@ use crate::spatial::{JointAxis, SpatialInertia};
 use core::marker::PhantomData;
 use core::ops::Deref;
 
-/// How θ moves a link. A ball is three axes at one place, a free joint six (three turns, then three slides), each with
-/// a link of its own, of which all but the last are massless: so every pivot is a number, and every axis along z. The
-/// axes are those of the joint's link itself, x, y, z in turn, so that the first link's axes are the joint's link's y,
-/// z, x, and each next has those of the one before in turn.
+/// How θ moves a link. A ball is modelled by three axes at one point, a free joint by six (three rotations, then three
+/// translations). Each axis has a link of its own, and all but the last are massless, so that every pivot is a number
+/// and every axis is along z. The axes are x, y, z of the joint's link in turn: the first link has the joint's link's
+/// y, z, x as its axes, and each next link those of the one before, permuted in the same way.
 ///
-/// Such axes are carried **all by the joint's parent**: in 𝒱̇ = 𝒱̇_p + `[ad_𝒱]` 𝒱_J + 𝒱̇_J the joint's own part of 𝒱
-/// cancels, so that each of them adds `[ad_𝒱_p]` A θ̇, 𝒱_p being the parent's twist and not that of the axis before.
+/// These axes are **all carried by the joint's parent**: in 𝒱̇ = 𝒱̇_p + `[ad_𝒱]` 𝒱_J + 𝒱̇_J the joint's own part of 𝒱
+/// cancels, so each of them adds `[ad_𝒱_p]` A θ̇, where 𝒱_p is the twist of the parent and not of the axis before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Motion {
     /// The one axis of its joint: T = e^{−`[A]`q} M.
@@ -26,14 +26,14 @@ pub(crate) enum Motion {
     Next,
 }
 
-/// One moving link, with all that is fixed to it, in the frame whose z-axis is its joint's screw axis.
+/// One moving link, with all links fixed to it, in the frame whose z-axis is its joint's screw axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<C> {
     /// Slot of the parent.
     pub parent: usize,
-    /// Place in θ of this joint, or of the joint that it follows.
+    /// Index in θ of this joint, or of its source joint.
     pub q: usize,
-    /// Place in θ̇, θ̈, τ.
+    /// Index in θ̇, θ̈, τ.
     pub j: usize,
     /// The joint's screw axis, (0, 0, a, 0, 0, b).
     pub screw: JointAxis<C>,
@@ -43,12 +43,12 @@ pub(crate) struct Link<C> {
     pub motion: Motion,
     /// Is this the joint's last axis, whose link is not massless?
     pub is_last: bool,
-    /// M_{i,i−1}: the parent's frame seen from this one when the joint is at 0; of a ball's or a free joint's first
-    /// axis, seen from the link's frame.
+    /// M_{i,i−1}: the parent's frame relative to this one when the joint is at 0; for the first axis of a ball or a
+    /// free joint, relative to the link's frame.
     pub M: SE3<C>,
     /// 𝒢.
     pub G: SpatialInertia<C>,
-    /// The joint's own variable is ratio · θ + offset; (1, 0) where it follows none.
+    /// The joint's own variable is ratio · θ + offset; (1, 0) for an independent joint.
     pub ratio: C,
     pub offset: C,
 }
@@ -71,12 +71,12 @@ impl<C: Scalar> Link<C> {
     }
 }
 
-/// A link, its constants as `S`, each converted where it is used: a kernel that holds all of them at once has no
-/// registers left.
+/// A link with constants of type `S`, each converted when it is used: a kernel that holds all of them at once runs out
+/// of registers.
 #[derive(Clone, Copy)]
 pub(crate) struct Lifted<'m, C, S> {
     link: &'m Link<C>,
-    /// The link's own, or known to be [`Motion::Screw`].
+    /// The link's own, or [`Motion::Screw`] if that is known.
     motion: Motion,
     number: PhantomData<S>,
 }
@@ -87,15 +87,15 @@ impl<'m, C, S> Lifted<'m, C, S> {
         Lifted { link, motion: link.motion, number: PhantomData }
     }
 
-    /// The same. If all joints of the model have one axis, what is done about others is left out where this is
-    /// compiled: it costs a twentieth.
+    /// The same. If all joints of the model have one axis, the code for other joints is left out at compile time; it
+    /// would cost 5 %.
     #[inline(always)]
     pub fn among<const ONE_AXIS: bool>(self) -> Self {
         if ONE_AXIS { Lifted { motion: Motion::Screw, ..self } } else { self }
     }
 }
 
-/// What of a link is no number.
+/// Access to the link's fields.
 impl<C, S> Deref for Lifted<'_, C, S> {
     type Target = Link<C>;
     #[inline(always)]
@@ -158,8 +158,8 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         }
     }
 
-    /// The sine and cosine of the joint's angle; of an axis of a ball or a free joint numbers that nobody reads, which
-    /// costs less than to ask.
+    /// The sine and cosine of the joint's angle; for an axis of a ball or a free joint, unused numbers, which cost less
+    /// than a branch.
     #[inline(always)]
     pub fn sin_cos(&self, theta: &[S]) -> (S, S) {
         self.screw().sin_cos(self.own(theta))
@@ -182,12 +182,12 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     }
 }
 
-/// Tells the compiler that this way is the rare one.
+/// Marks a branch as unlikely for the compiler.
 #[cold]
 #[inline(always)]
 fn rarely() {}
 
-/// P T: what is seen from a frame, seen from the one whose axes are its y, z and x.
+/// P T: a configuration in a frame, expressed in the frame whose axes are its y, z and x.
 #[inline(always)]
 fn in_turn<S: Scalar>(T: SE3<S>) -> SE3<S> {
     let (R, [x, y, z]) = (T.R.matrix(), T.p.0);

@@ -69,18 +69,18 @@ pub use workspace::Workspace;
 pub struct Model<C = f64> {
     /// Moving links, parents before children; slot i of the kernels is `links[i - 1]`, slot 0 the base.
     pub(crate) links: Vec<Link<C>>,
-    /// What the base link and all that is fixed to it weighs, in the base frame.
+    /// Inertia of the base link and all links fixed to it, in the base frame.
     pub(crate) base_inertia: SpatialInertia<C>,
-    /// Rotor inertia of each of the n velocities, 0 for a floating base's; seen at the joint, mimic joints included:
+    /// Rotor inertia of each of the n velocities, 0 for a floating base's; as felt at the joint, mimic joints included:
     /// Σ ratio² · armature.
     pub(crate) armature: Vec<C>,
-    /// Of the rotors that several joints turn.
+    /// The rotors that several joints turn.
     pub(crate) rotors: Vec<Rotor<C>>,
     /// Viscous friction likewise: Σ ratio² · d.
     pub(crate) damping: Vec<C>,
     /// Coulomb friction likewise: Σ |ratio| · μ.
     pub(crate) friction: Vec<C>,
-    /// Of the joints that have a spring, themselves or by a mimic joint.
+    /// The springs of joints that have one, directly or through a mimic joint.
     pub(crate) springs: Vec<Spring<C>>,
     /// The springs' energy at θ = 0, Σ ½k(θ₀ − offset)².
     pub(crate) spring_energy: C,
@@ -91,13 +91,13 @@ pub struct Model<C = f64> {
     pub(crate) structure: Arc<Structure>,
 }
 
-/// What of a model is no number.
+/// The parts of a model that do not depend on the number type.
 #[derive(Debug)]
 pub(crate) struct Structure {
     pub description: Description,
     /// The link of the description that no joint moves.
     pub base: usize,
-    /// The joint of the description that moves slot i, at i − 1; of a ball all three.
+    /// The joint of the description that moves slot i, at i − 1; a ball moves three slots.
     pub moving_joints: Vec<usize>,
     /// The link of the description that it moves.
     pub moving_links: Vec<usize>,
@@ -105,22 +105,22 @@ pub(crate) struct Structure {
     pub joints: Vec<usize>,
     /// A floating base's place, then those joints'.
     pub space: ConfigurationSpace,
-    /// Of the positions and of the velocities.
+    /// Names of the positions and of the velocities.
     pub names: [Vec<String>; 2],
     /// The first frames are those of the description's links, in its order; then its further frames.
     pub end_effector: Option<FrameId>,
-    /// Candidates, where the end effector must be named.
+    /// Candidates, if the end effector must be named.
     pub leaves: Vec<FrameId>,
     pub pattern: Pattern,
-    /// Some joint follows another.
+    /// Is there a mimic joint?
     pub has_mimic_joints: bool,
-    /// Of each free joint its first place in θ̇.
+    /// The first index in θ̇ of each free joint.
     pub free: Vec<usize>,
-    /// A link has many between it and the base, on average: the composite-body pass then goes by the base's axes.
+    /// Are there on average many links between a link and the base? The composite-body pass then uses the base's axes.
     pub is_deep: bool,
-    /// Its joints are not coupled, and so deep that ∂θ̈ goes by articulated bodies.
+    /// Are the joints uncoupled, and so deep that ∂θ̈ uses articulated bodies?
     pub solves_by_bodies: bool,
-    /// Of a deep robot the links that are then taken together.
+    /// For a deep robot, the links that are then processed together.
     pub runs: Runs,
     /// No joint is a ball or free.
     pub of_one_axis: bool,
@@ -155,11 +155,11 @@ impl<C: Scalar> Model<C> {
     /// Are the axes of these slots, the inner one first, of one ball or free joint?
     #[inline(always)]
     pub(crate) fn is_one_joint(&self, inner: usize, outer: usize) -> bool {
-        // the axes of one joint stand together: each but the first is a next one
+        // the axes of one joint are consecutive: each but the first is a next one
         self.links[inner..outer].iter().all(|link| link.motion == Motion::Next)
     }
 
-    /// The slots of moving links: of a ball or a free joint the last axis, which carries the link.
+    /// The slots of moving links; for a ball or a free joint, that of the last axis, which carries the link.
     pub(crate) fn moving_slots(&self) -> impl Iterator<Item = usize> {
         (1..).zip(&self.links).filter(|(_, link)| link.is_last).map(|(slot, _)| slot)
     }

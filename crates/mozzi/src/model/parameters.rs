@@ -8,7 +8,8 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Of a body, in the order of [`SpatialInertia::to_parameters`](crate::SpatialInertia::to_parameters).
+/// Names of a body's parameters, in the order of
+/// [`SpatialInertia::to_parameters`](crate::SpatialInertia::to_parameters).
 const OF_BODY: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz"];
 const OF_JOINT: [&str; 5] = ["armature", "damping", "friction", "stiffness", "preload"];
 /// The number of parameters of an independent joint.
@@ -95,7 +96,7 @@ impl<C: Scalar> Model<C> {
         model
     }
 
-    /// The spring of a joint, a new one of stiffness 0 where it has none; None of a free joint.
+    /// The spring of a joint, a new one of stiffness 0 if it has none; None for a free joint.
     pub(super) fn spring_mut(&mut self, &place: &Place) -> Option<&mut Spring<C>> {
         if place.freedom == Freedom::Free {
             return None;
@@ -107,17 +108,17 @@ impl<C: Scalar> Model<C> {
         self.springs.get_mut(at)
     }
 
-    /// The slots of all that moves: of a floating base, and of the moving links.
+    /// The slots of all moving bodies: a floating base, and the moving links.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = usize> {
         self.is_floating().then_some(0).into_iter().chain(self.moving_slots())
     }
 
-    /// The link of the description whose frame a slot's body is told in: the base, or the one that a joint moves.
+    /// The link of the description in whose frame a slot's body is expressed: the base, or the link that a joint moves.
     fn link_at(&self, slot: usize) -> usize {
         slot.checked_sub(1).map_or(self.structure.base, |i| self.structure.moving_links[i])
     }
 
-    /// That link's frame, seen from the slot's normal frame.
+    /// That link's frame, relative to the slot's normal frame.
     #[inline(always)]
     pub(crate) fn link_frame(&self, slot: usize) -> SE3<C> {
         self.frames[self.link_at(slot)].T
@@ -145,7 +146,7 @@ mod tests {
         for model in [tree(3, 6, 1), floating_tree(4, 5, 0)] {
             let (pi, names) = (model.parameters(), model.parameter_names());
             assert_eq!((pi.len(), names.len()), (model.parameter_count(), model.parameter_count()));
-            // link3 carries nothing that is fixed to it
+            // no link is fixed to link3
             let link3 = &model.description().links.iter().find(|link| link.name == "link3").expect("a link").inertia;
             let k = names.iter().position(|name| name == "link3.m").expect("a body");
             let error = DVector::from_column_slice(&pi[k..k + 10]) - DVector::from_column_slice(&link3.to_parameters());

@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 pub struct Pivots<'a, S = f64>(&'a [S]);
 
 impl<'a, S: Copy + Into<f64>> Pivots<'a, S> {
-    /// Of these numbers.
+    /// The pivots in this list.
     pub fn new(pivots: &'a [S]) -> Self {
         Pivots(pivots)
     }

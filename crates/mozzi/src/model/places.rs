@@ -76,8 +76,7 @@ impl<C: Scalar> Model<C> {
         &self.structure.space.0[usize::from(self.is_floating())..]
     }
 
-    /// The configurations at 0, seen from {s}, of the links of free joints on a fixed base, by the joint's first number
-    /// in θ̇.
+    /// The configurations at 0, in {s}, of the links of free joints on a fixed base, by the joint's first index in θ̇.
     pub(crate) fn homes_on_base(&self) -> BTreeMap<usize, SE3<C>> {
         let on_base = self.links.iter().filter(|link| link.motion == Motion::Free && link.parent == 0);
         on_base.filter(|_| !self.is_floating()).map(|link| (link.j, link.M.inverse())).collect()

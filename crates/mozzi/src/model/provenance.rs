@@ -80,7 +80,7 @@ mod tests {
             bodies.iter().map(|body| body.joint).collect::<alloc::vec::Vec<_>>(),
             [None, Some("shoulder"), Some("elbow")]
         );
-        // what the kernels read weighs the same
+        // the inertias in the kernels have the same mass
         assert_eq!(bodies[0].mass(), model.base_inertia.mass);
         assert!(model.links.iter().zip(&bodies[1..]).all(|(link, body)| link.G.mass == body.mass()));
     }

@@ -5,7 +5,7 @@ use crate::linalg::{Sym3, Vec3};
 use crate::spatial::SpatialInertia;
 use alloc::vec::Vec;
 
-/// Of this size a number is rounding of 0 beside 1: what a few products by cos(π/2) = 6 · 10⁻¹⁷ leave.
+/// A number of this size is a rounding error of 0 relative to 1, as a few products with cos(π/2) = 6 · 10⁻¹⁷ leave.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Model<f64> {
@@ -56,7 +56,7 @@ fn largest(v: Vec3) -> f64 {
     v.0.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
 
-/// 0 where x is rounding beside numbers of this size.
+/// 0 if x is a rounding error relative to numbers of this size, else x.
 fn clean(x: f64, size: f64) -> f64 {
     if x.abs() <= ROUNDING * size { 0.0 } else { x }
 }

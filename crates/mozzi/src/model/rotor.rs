@@ -3,13 +3,13 @@
 use crate::scalar::Scalar;
 use alloc::vec::Vec;
 
-/// A rotor whose rate is a constant combination of velocities, J θ̇: it adds a JᵀJ to M. Mimic joints are counted in as
-/// M has them, by their source joints.
+/// A rotor whose rate is a constant combination of velocities, J θ̇: it adds a JᵀJ to M. Mimic joints are included by
+/// their source joints, as in M.
 #[derive(Clone, Debug)]
 pub(crate) struct Rotor<C> {
     /// a.
     pub armature: C,
-    /// J: places among the velocities, in order, and the entries there.
+    /// J: indices of velocities, in order, and the entries there.
     pub J: Vec<(usize, C)>,
 }
 

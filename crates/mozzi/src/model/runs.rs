@@ -1,4 +1,4 @@
-//! Links that follow each other, taken together where wrenches go to the base: one product for all of them.
+//! Consecutive links, processed together when wrenches are transformed to the base: one product for all of them.
 
 use super::{Link, Turned};
 use crate::linalg::Vec3;
@@ -7,7 +7,7 @@ use crate::spatial::{Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// How many links, or columns, are taken together: two registers of four numbers.
+/// Number of links, or columns, that are processed together: two registers of four numbers.
 pub(crate) const TOGETHER: usize = 8;
 const W: usize = TOGETHER;
 
@@ -22,11 +22,11 @@ pub(crate) struct Run {
     pub j: usize,
 }
 
-/// Those of a robot; no link is in two of them.
+/// The runs of a robot; no link is in two of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
     pub list: Vec<Run>,
-    /// By slot, one more than the run's number, 0 where none ends.
+    /// For each slot, one more than the number of the run that ends there, 0 if none does.
     ending_at: Vec<usize>,
 }
 
@@ -54,8 +54,8 @@ impl Runs {
     }
 }
 
-/// The axes of a run and their pairs in the base's axes, about the origin of its last link: of each link one number in
-/// each list.
+/// The axes of a run and their pairs in the base's axes, about the origin of its last link: each list has one number
+/// per link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<S> {
     A: [[S; W]; 6],
@@ -71,7 +71,7 @@ impl<S: Scalar> Row<S> {
         Row { A: [o; 6], by_theta: [o; 9], by_rates: [o; 9], p: Vec3::zero() }
     }
 
-    /// From the links, with those pairs that are `taken`.
+    /// Fills the row from the links, with the pairs that are `taken`.
     #[inline(always)]
     pub fn gather(&mut self, run: &Run, links: &[Turned<S>], taken: [bool; 2]) {
         let mut p = Vec3::zero();
@@ -104,7 +104,7 @@ impl<S: Scalar> Row<S> {
     }
 }
 
-/// Number w of each list: of r, then of s.
+/// Sets number w of each list: those of r, then those of s.
 #[inline(always)]
 fn set<const K: usize, S: Scalar>(lists: &mut [[S; W]; K], w: usize, r: Twist<S>, s: Vec3<S>) {
     let ([a, b, c], [x, y, z], [u, v, t]) = (r.w.0, r.v.0, s.0);
@@ -138,7 +138,7 @@ mod tests {
         assert_eq!((first, second), (Run { first: 1, parent: 0, j: 6 }, Run { first: 9, parent: 8, j: 14 }));
         assert_eq!((model.structure.runs.ending_at(16), model.structure.runs.ending_at(17)), (Some(1), None));
         assert!(runs(&tree(5, 20, 0)).is_empty(), "a shallow robot has none");
-        // a joint that follows another has its source's place: no run reaches across it
+        // a mimic joint has its source's index: no run extends across it
         let follows = chain(&tree(70, 20, 4));
         for run in runs(&follows) {
             assert!((0..W).all(|w| follows.links[run.first - 1 + w].j == run.j + w));

@@ -51,7 +51,7 @@ impl Description {
         length("the list of spatial inertias", inertias.len(), n)?;
         length("the list of home frames (one for each link, and the end effector's)", given.len(), n + 1)?;
 
-        let mut home = given.to_vec(); // seen from the base
+        let mut home = given.to_vec(); // relative to the base
         if let HomeFrames::Relative(_) = frames {
             (1..=n).for_each(|i| home[i] = home[i - 1] * home[i]);
         }
@@ -124,9 +124,9 @@ pub struct ScrewLists {
     pub links: Vec<String>,
     /// Number of the link that carries it, from 1; 0 is the base.
     pub parents: Vec<usize>,
-    /// M_i: frame {i} seen from the base.
+    /// M_i: frame {i} relative to the base.
     pub M: Vec<SE3>,
-    /// M_{i−1,i}: frame {i} seen from its parent's.
+    /// M_{i−1,i}: frame {i} relative to its parent's.
     pub M_relative: Vec<SE3>,
     /// S_i, in the base frame.
     pub S: Vec<ScrewAxis>,
@@ -198,7 +198,7 @@ impl Model<f64> {
 }
 
 impl<C: Real> Model<C> {
-    /// The book's frame {i} seen from the slot's normal frame; the base frame itself for slot 0.
+    /// The book's frame {i} relative to the slot's normal frame; the base frame itself for slot 0.
     pub(crate) fn body_frame(&self, slot: usize) -> SE3<C> {
         if slot > 0 && !self.links[slot - 1].is_last {
             return SE3::identity(); // an axis that carries no link
@@ -211,13 +211,13 @@ impl<C: Real> Model<C> {
         link * SE3::translation(c.0)
     }
 
-    /// M_{p,i}: frame {i} of this slot seen from its parent's when the joint is at 0.
+    /// M_{p,i}: frame {i} of this slot relative to its parent's when the joint is at 0.
     pub(crate) fn home_in_parent(&self, slot: usize) -> SE3<C> {
         let link = &self.links[slot - 1];
         self.body_frame(link.parent).inverse() * link.M.inverse() * self.body_frame(slot)
     }
 
-    /// 𝒢_i in frame {i}: block-diagonal; the first moment at the centre of mass is rounding alone.
+    /// 𝒢_i in frame {i}: block-diagonal; the first moment at the centre of mass is only rounding error.
     pub(crate) fn body_inertia(&self, slot: usize) -> SpatialInertia<C> {
         let G = self.links[slot - 1].G.congruence(self.body_frame(slot).Ad());
         if G.mass == C::zero() { G } else { SpatialInertia { mc: crate::Vec3::zero(), ..G } }

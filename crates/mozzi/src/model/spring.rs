@@ -6,11 +6,11 @@ use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 
 /// The springs of an independent joint and its mimic joints, as one spring on θ_j: f = K θ_j − p and 𝒫 = ½K θ_j² − p
-/// θ_j + a constant. Of springs k(q − θ₀) on q = ratio θ_j + offset these are K = Σ ratio² k and p = Σ ratio k (θ₀ −
-/// offset). A ball's acts on the rotation vector φ from where it is at 0: f = K φ and 𝒫 = ½K ‖φ‖², with p = 0.
+/// θ_j + a constant. For springs k(q − θ₀) on q = ratio θ_j + offset, K = Σ ratio² k and p = Σ ratio k (θ₀ − offset). A
+/// ball's spring acts on the rotation vector φ from its orientation at 0: f = K φ and 𝒫 = ½K ‖φ‖², with p = 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring<C> {
-    /// Of the joint.
+    /// The joint's place.
     pub place: Place,
     /// K.
     pub stiffness: C,
@@ -37,7 +37,7 @@ impl<C: Scalar> Spring<C> {
         }
     }
 
-    /// Adds ∂f_s/∂θ to the n × n entries of ∂τ/∂θ: K on the diagonal, of a ball K ∂φ.
+    /// Adds ∂f_s/∂θ to the n × n entries of ∂τ/∂θ: K on the diagonal; for a ball, K ∂φ.
     #[inline(always)]
     pub fn add_stiffness<S: Scalar + From<C>>(&self, n: usize, theta: &[S], d_theta: &mut [S]) {
         let (stiffness, j) = (S::from(self.stiffness), self.place.j);

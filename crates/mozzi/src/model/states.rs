@@ -106,7 +106,7 @@ impl<C: Scalar> Model<C> {
         State { time: 0.0, theta: self.neutral_configuration(), dtheta: vec![0.0; self.n()] }
     }
 
-    /// A state that was checked, in the order of the model.
+    /// A checked state, in the order of the model.
     fn numbered(&self, named: &NamedState) -> State {
         let mut state = State { time: named.time, ..self.at_rest() };
         if let (true, Some(base)) = (self.is_floating(), &named.base) {
@@ -132,14 +132,14 @@ impl AsRef<str> for NamedState {
 }
 
 impl NamedState {
-    /// Leaves out the joints that are none of these.
+    /// Keeps only the joints for which `is_kept` is true.
     pub(super) fn retain(&mut self, is_kept: impl Fn(&str) -> bool) {
         self.joints.retain(|joint| is_kept(&joint.name));
     }
 }
 
 impl Freedom {
-    /// Where the unit quaternion stands among the positions.
+    /// The unit quaternion among the positions, if there is one.
     pub(super) fn quaternion(self, positions: &[f64]) -> Option<[f64; 4]> {
         if self == Freedom::One { None } else { positions.first_chunk().copied() }
     }

@@ -63,7 +63,7 @@ pub struct TaskMemory<S = f64> {
     /// The pivots of Λ⁻¹: if one is within rounding error of the others, the task is singular. The pivots of M are in
     /// the workspace.
     pub pivots: Vec<S>,
-    /// Λ⁻¹ has no zeros to use.
+    /// The dense pattern: Λ⁻¹ has no structural zeros.
     pub(crate) dense: Pattern,
     pub(crate) M: Vec<S>,
     /// M⁻¹h.
@@ -111,7 +111,7 @@ impl TaskMemory {
         }
         let k = self.pivots.len();
         let J = DMatrix::from_row_slice(k, n, &self.J);
-        // nothing can be decomposed where no joint moves
+        // if no joint moves, there is nothing to decompose
         let mut singular_values: Vec<f64> =
             if n == 0 { Vec::new() } else { J.singular_values().iter().copied().collect() };
         singular_values.resize(k, 0.0); // more rows than joints

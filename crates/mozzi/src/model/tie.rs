@@ -90,7 +90,7 @@ pub(super) fn ties<C: Real>(
     let names = description.links.iter().map(|l| &l.name).chain(description.frames.iter().map(|f| &f.name));
     let names: BTreeMap<&str, usize> = names.enumerate().map(|(k, name)| (name.as_str(), k)).collect();
     let joint_names = moving_joints.iter().map(|&i| description.joints[i].name.as_str());
-    // of links at one joint, the first, whose position is the joint's own
+    // among the links of one joint the first, whose position is the joint's own
     let slots: BTreeMap<&str, usize> = joint_names.enumerate().rev().map(|(slot, name)| (name, slot)).collect();
     let end = |anchor: &Anchor<C>| match &anchor.frame {
         None if is_floating => End { slot: None, T: anchor.T },
@@ -138,7 +138,7 @@ fn between<C>(a: Option<usize>, b: Option<usize>, links: &[Link<C>]) -> Vec<usiz
     moved
 }
 
-/// The slots on the ways from two slots to the one that carries both, the last first, each with the end that it
+/// The slots on the paths from two slots to the one that carries both, the last first, each with the end that it
 /// carries: 0 or 1. {s} is beyond the base.
 pub(crate) struct Way<'m, C> {
     links: &'m [Link<C>],
@@ -168,7 +168,7 @@ impl<C> Iterator for Way<'_, C> {
 }
 
 impl<C: Scalar> Own<C> {
-    /// Of the joint, ratio · θ + offset.
+    /// The joint's position, ratio · θ + offset.
     #[inline(always)]
     pub fn position<S: Scalar + From<C>>(&self, theta: &[S]) -> S {
         S::from(self.ratio).mul_add(theta[self.q], S::from(self.offset))

@@ -1,7 +1,7 @@
-//! The ways over a tree: base to tips, tips to base, and from one link to the base.
+//! Traversals of a tree: base to tips, tips to base, and from one link to the base.
 //!
-//! Iterators of our own, and not closures, so that a kernel's whole body is compiled for the instruction set of the
-//! entry that it is inlined into.
+//! These are iterators and not closures, so that a kernel's whole body is compiled for the instruction set of the entry
+//! that it is inlined into.
 
 use super::{Lifted, Link, Model};
 use crate::scalar::Scalar;
@@ -10,7 +10,7 @@ use core::marker::PhantomData;
 /// Moving links with their slots, constants as `S`.
 pub(crate) struct Traverse<'m, C, S, Order> {
     links: &'m [Link<C>],
-    /// The slot that comes next in `Order`; 0 ends the ways that lead inward.
+    /// The slot that comes next in `Order`; 0 ends the inward traversals.
     slot: usize,
     types: PhantomData<(S, Order)>,
 }
@@ -20,7 +20,7 @@ pub(crate) struct Inward;
 pub(crate) struct ToBase;
 
 impl<C: Scalar> Model<C> {
-    /// The link of a slot, which is not the base's.
+    /// The link of a slot other than the base's.
     #[inline(always)]
     pub(crate) fn link<S>(&self, slot: usize) -> Lifted<'_, C, S> {
         Lifted::new(&self.links[slot - 1])

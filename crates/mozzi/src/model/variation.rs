@@ -13,21 +13,22 @@ use alloc::vec;
 /// A change of a robot's parameters, for [`Model::with_parameter_tangent`]. ε is the size of the change:
 #[derive(Clone, Copy, Debug)]
 pub enum Variation<'a> {
-    /// π + δπ ε: of [`parameters`](Model::parameters), among them armature, damping, friction and springs; p numbers.
+    /// π + δπ ε: change of the [`parameters`](Model::parameters), which include armature, damping, friction and
+    /// springs; p numbers.
     Parameters(&'a [f64]),
-    /// 𝒢 + δ𝒢 ε: of a link's own inertia, in its frame.
+    /// 𝒢 + δ𝒢 ε: change of a link's own inertia, in its frame.
     Inertia {
         /// A link of the description, fixed to others or not.
         link: &'a str,
         /// δ𝒢.
         rate: SpatialInertia,
     },
-    /// m + ε: of a link, its centre of mass and the inertia about it kept.
+    /// m + ε: change of a link's mass; its centre of mass and the inertia about it are kept.
     Mass {
         /// A link of the description.
         link: &'a str,
     },
-    /// c + δc ε: of a link, its mass and the inertia about the centre of mass kept.
+    /// c + δc ε: change of a link's centre of mass; its mass and the inertia about the centre of mass are kept.
     CenterOfMass {
         /// A link of the description.
         link: &'a str,
@@ -111,7 +112,7 @@ impl Model<f64> {
                 }
                 Variation::Axis { joint, motion } => {
                     let slot = self.slot_of_one_axis(joint)?;
-                    // the slot's normal frame moves along: all that is seen from it moves back
+                    // the slot's normal frame moves along, so everything expressed in it moves back
                     move_contents(&mut model, slot, small_motion(self.link_frame(slot), -motion));
                 }
                 Variation::Pitch { joint } => {
@@ -163,7 +164,7 @@ impl Model<f64> {
         Ok(())
     }
 
-    /// A moving joint takes its link along; a fixed one all links that are fixed to its child, and what they carry.
+    /// A moving joint moves its link; a fixed joint moves all links fixed to its child, and the links that they carry.
     fn vary_placement(&self, model: &mut Model<Dual>, name: &str, motion: Twist) -> Result<(), Error> {
         let robot = self.description();
         let joint = &robot.joints[robot.joint_at(name)?];
@@ -219,7 +220,7 @@ impl Model<f64> {
         }
     }
 
-    /// The slot that a joint moves; of a ball or a free joint that of its first axis.
+    /// The slot that a joint moves; for a ball or a free joint, that of its first axis.
     fn slot_of(&self, name: &str) -> Result<usize, Error> {
         let joint = self.description().joint_at(name)?;
         let slot = self.structure.moving_joints.iter().position(|&moving| moving == joint);
@@ -232,7 +233,7 @@ fn seed(rate: f64) -> Dual {
     Dual { value: 0.0, derivative: rate }
 }
 
-/// e^{`[Ad_T ξ]`ε}: the motion ξ of a frame at T, as one of all that T is seen from.
+/// e^{`[Ad_T ξ]`ε}: the motion ξ of a frame at T, expressed in the frame in which T is given.
 fn small_motion(T: SE3, xi: Twist) -> SE3<Dual> {
     SE3::exp(Twist::from_array((T.Ad() * xi).to_array().map(seed)))
 }
@@ -244,7 +245,7 @@ fn inertia(model: &mut Model<Dual>, slot: usize) -> &mut SpatialInertia<Dual> {
     }
 }
 
-/// Moves a link and all that it carries against its joint's axis: D is seen from the slot's normal frame.
+/// Moves a link and the links that it carries relative to its joint's axis: D is in the slot's normal frame.
 fn move_contents(model: &mut Model<Dual>, slot: usize, D: SE3<Dual>) {
     for (i, link) in (1..).zip(&mut model.links) {
         if i == slot {
@@ -273,7 +274,7 @@ mod tests {
     use crate::{Description, Environment, Workspace, Wrench};
     use alloc::vec::Vec;
 
-    /// τ, θ̈ and the tip's position, and their derivatives along the changes: by dual constants.
+    /// τ, θ̈ and the tip's position, and their derivatives along the changes, from dual constants.
     fn by_duals(model: &Model, changes: &[Variation], seed: u64) -> Vec<Dual> {
         let with_parameter_tangent = model.with_parameter_tangent(changes).expect("known names");
         let [theta, dtheta, ddtheta] = state(model, seed).map(|x| Dual::constants(&x));
@@ -291,7 +292,7 @@ mod tests {
         by_duals(model, &[], seed).into_iter().map(|x| x.value).collect()
     }
 
-    /// Against central differences of the description, built anew.
+    /// Compares with central differences of the rebuilt description.
     fn check(model: &Model, change: Variation, what: &str, perturb: impl Fn(&mut Description, f64)) {
         let h = 1e-5;
         let at = |step: f64| {

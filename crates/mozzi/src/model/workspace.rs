@@ -19,16 +19,16 @@ pub struct Workspace<S = f64> {
     pub(crate) path: Vec<usize>,
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
-    /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, seen from each of its axes.
+    /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, in the frame of each of its axes.
     pub(crate) carrier: Vec<[Twist<S>; 2]>,
     pub(crate) F: Vec<Wrench<S>>,
     /// The pairs of ∂τ/∂θ.
     pub(crate) by_theta: Vec<ByTheta<S>>,
-    /// Those of ∂τ/∂θ̇ or C.
+    /// The pairs of ∂τ/∂θ̇ or C.
     pub(crate) by_rates: Vec<ByRates<S>>,
-    /// Of links in the base's axes; empty unless the robot is deep.
+    /// Links in the base's axes; empty unless the robot is deep.
     pub(crate) turned: Vec<Turned<S>>,
-    /// Of links that follow each other, likewise.
+    /// Runs of consecutive links; empty unless the robot is deep.
     pub(crate) rows: Vec<Row<S>>,
     /// Composite inertia 𝒢ᶜ.
     pub(crate) G_c: Vec<SpatialInertia<S>>,
@@ -38,7 +38,7 @@ pub struct Workspace<S = f64> {
     pub(crate) G_hat: Vec<ArticulatedInertia<S>>,
     /// ĜA.
     pub(crate) U: Vec<Wrench<S>>,
-    /// Of several columns of three matrices at each link.
+    /// Several columns of three matrices at each link.
     pub(crate) columns: [Vec<AtLink<S>>; 3],
     /// One number for each joint.
     pub(crate) u: Vec<S>,

@@ -27,8 +27,7 @@ pub use query::Query;
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
 
-/// Every quantity there is, in the order of documentation: `quantities!(callback)` becomes `callback! { InverseDynamics
-/// … }`.
+/// All quantities, in the order of documentation: `quantities!(callback)` becomes `callback! { InverseDynamics … }`.
 #[macro_export]
 macro_rules! quantities {
     ($callback:ident) => {
@@ -117,7 +116,7 @@ impl Query<'_> {
         Entries::<S, C>::LIST[self.index](&self.subject, model, &inputs, environment, memory, &mut outputs);
     }
 
-    /// As many as the quantity has, in their places.
+    /// The given inputs at their positions, after a check of their number.
     #[inline(always)]
     pub(crate) fn inputs<'a, S>(&self, given: &[&'a [S]]) -> Inputs<'a, S> {
         assert!(given.len() == self.declaration().inputs.len(), "{} inputs of {}", given.len(), self.name());
@@ -125,7 +124,7 @@ impl Query<'_> {
         [input(0), input(1), input(2), input(3)]
     }
 
-    /// Likewise.
+    /// The same for outputs.
     #[inline(always)]
     pub(crate) fn outputs<'a, S>(&self, given: &'a mut [&mut [S]]) -> Outputs<'a, S> {
         match given {

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Query<'a> {
     pub(crate) index: usize,
-    /// What it is of.
+    /// The frame, task or point.
     pub subject: Subject<'a>,
 }
 

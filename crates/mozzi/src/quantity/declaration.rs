@@ -160,7 +160,7 @@ pub struct Input {
     pub dim: Dim,
     /// Its unit for revolute joints, then for prismatic ones.
     pub unit: &'static str,
-    /// What it is.
+    /// A short description.
     pub about: &'static str,
 }
 
@@ -211,7 +211,7 @@ pub(crate) const FORCE: &str = "N m or N";
 pub(crate) const ACCELERATION: &str = DDTHETA.unit;
 /// A unit that depends on that of a given vector.
 pub(crate) const ANY: &str = "any";
-/// Of ∂τ and of ∂θ̈.
+/// The unit of ∂τ and of ∂θ̈.
 pub(crate) const D_FORCE: &str = "N m or N, each per unit of its column";
 pub(crate) const D_ACCELERATION: &str = "rad/s² or m/s², each per unit of its column";
 pub(crate) const INERTIA: &str = "kg m², kg m or kg";

@@ -21,11 +21,11 @@ pub struct Memory<S = f64> {
     pub(crate) poses: Vec<SE3<S>>,
     pub(crate) matrix: Vec<S>,
     pub(crate) vector: Vec<S>,
-    /// Of n × n without zeros.
+    /// The dense n × n pattern.
     pub(crate) dense: Option<Pattern>,
     pub(crate) task: Option<(usize, TaskMemory<S>)>,
     pub(crate) constraints: Option<ConstraintMemory<S>>,
-    /// In place of the query's point, for the next call.
+    /// Replaces the query's point in the next call.
     pub(crate) point: Option<Vec3<S>>,
 }
 
@@ -81,7 +81,7 @@ impl<S: Scalar> Memory<S> {
     }
 }
 
-/// The first numbers of a list, which grows where it is too short.
+/// The first `length` entries of a list, which grows if it is too short.
 #[inline(always)]
 pub(crate) fn sized<T: Clone>(list: &mut Vec<T>, length: usize, fill: T) -> &mut [T] {
     if list.len() < length {

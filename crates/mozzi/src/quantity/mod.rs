@@ -36,7 +36,7 @@ pub trait Kernel: 'static {
     fn run<S: Scalar + From<C>, C: Scalar>(call: Call<S, C>);
 }
 
-/// No code for registers: many states of a rare quantity go through its recorded program.
+/// No code for registers: many states of a rarely used quantity are computed by its recorded program.
 #[derive(Clone, Copy, Debug)]
 pub struct Rare;
 
@@ -70,11 +70,11 @@ pub struct Call<'a, S, C> {
     pub outputs: [&'a mut [S]; MOST_OUTPUTS],
 }
 
-/// Inputs in their order; those that are not there are empty.
+/// Inputs in their order; missing ones are empty.
 pub(crate) type Inputs<'a, S> = [&'a [S]; MOST_INPUTS];
-/// Likewise outputs.
+/// Outputs in their order; missing ones are empty.
 pub(crate) type Outputs<'a, S> = [&'a mut [S]; MOST_OUTPUTS];
-/// One quantity, at one state or at as many as a number holds.
+/// One quantity, at one state or at all states that a number of type `S` holds.
 pub(crate) type Entry<S, C> = fn(&Subject, &Model<C>, &Inputs<S>, &Environment<S>, &mut Memory<S>, &mut Outputs<S>);
 
 /// A quantity's inputs, environment and outputs, routed to its kernel: inputs that it does not have are zeros, parts of

@@ -17,7 +17,7 @@ pub struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// The frame, which [`Query::check`] has seen.
+    /// The frame; [`Query::check`] ensures that there is one.
     #[inline(always)]
     pub(crate) fn frame(&self) -> FrameId {
         self.frame.expect("a frame: checked by Query::check")

@@ -1,5 +1,5 @@
 //! For the tests: a scalar that records what a kernel does, and can be played back. It has no order and no value, so a
-//! kernel that compiles and plays back right never looked at one.
+//! kernel that compiles and plays back correctly never branches on a value.
 
 use super::{Scalar, assign_ops};
 use core::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,9 +1,9 @@
 //! Sine and cosine together: reduction by π/2 in three parts (Cody and Waite), then polynomials on ±π/4.
 //!
-//! The polynomials interpolate (sin r − r)/r³ and (cos r − 1 + r²/2)/r⁴ in z = r² at Chebyshev points. One text for a
-//! number and for a register of numbers: no branch, and what depends on the quadrant is done on the bits. The tests
-//! bound the error: 1 ulp in `f64` up to |x| = 10⁶; 1.5 ulp in `f32` up to 8192, values below 10⁻³ (close to a zero of
-//! the function) held to 10⁻³'s ulp.
+//! The polynomials interpolate (sin r − r)/r³ and (cos r − 1 + r²/2)/r⁴ in z = r² at Chebyshev points. The same code
+//! serves a number and a register of numbers: it has no branches, and handles the quadrants by bit operations. The
+//! tests bound the error: 1 ulp in `f64` up to |x| = 10⁶; 1.5 ulp in `f32` up to 8192, where errors of values below
+//! 10⁻³ (close to a zero of the function) are measured in ulps of 10⁻³.
 
 use super::{Fused, Scalar};
 
@@ -17,7 +17,7 @@ pub trait Float: super::Real + Send + Sync + 'static {
     const ROUND: Self;
     /// 2/π.
     const TWO_OVER_PI: Self;
-    /// π/2 as a sum; the leading parts have so many trailing zeros that their products with k are exact.
+    /// π/2 as a sum; the leading parts have enough trailing zeros that their products with k are exact.
     const HALF_PI: [Self; 3];
     /// ±1/(2k + 1)! from the highest k down to 1.
     const SIN: &[Self];
@@ -25,20 +25,21 @@ pub trait Float: super::Real + Send + Sync + 'static {
     const COS: &[Self];
 }
 
-/// What [`sin_cos`] needs of a number, or of a register of numbers, beyond its arithmetic: constants, and its bits.
+/// Operations that [`sin_cos`] needs beyond arithmetic, on a number or a register of numbers: constants and bit
+/// operations.
 pub trait Bits: Scalar {
-    /// The number that a register is of.
+    /// The type of the numbers in a register.
     type Number: Float;
 
     /// A constant.
     fn constant(x: Self::Number) -> Self;
-    /// The bits of one that are not those of the other.
+    /// Bitwise exclusive or.
     fn xor(self, other: Self) -> Self;
-    /// The bits of both.
+    /// Bitwise and.
     fn and(self, other: Self) -> Self;
-    /// All bits where the lowest is set, else none.
+    /// All bits if the lowest is set, else none.
     fn lowest_everywhere(self) -> Self;
-    /// The sign's bit where the second lowest is set, else none.
+    /// The sign bit if the second lowest is set, else none.
     fn second_lowest_as_sign(self) -> Self;
 }
 
@@ -54,7 +55,7 @@ pub fn sin_cos<S: Bits>(x: S) -> (S, S) {
     let hi = t - w;
     let lo = k.mul_add(p2, w - (t - hi));
     let r = hi - lo;
-    let tail = (hi - r) - lo; // what the rounding of r lost
+    let tail = (hi - r) - lo; // the rounding error of r
     let z = r * r;
     let s = polynomial(S::Number::SIN, z);
     let c = polynomial(S::Number::COS, z);
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn f64_is_within_an_ulp_of_the_standard_library() {
-        // the standard library itself is within half an ulp and a little
+        // the standard library's own error is at most slightly above half an ulp
         let mut worst: f64 = 0.0;
         for k in 0..400_000 {
             let t = k as f64 * 1e-5 - 2.0;

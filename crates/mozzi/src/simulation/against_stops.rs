@@ -1,4 +1,4 @@
-//! Joints that come to their limits where these are respected: closed solutions and energy.
+//! Joints at their limits, with limits respected: closed-form solutions and energy.
 
 extern crate std;
 use super::{Method, Options, Policy, Run, Simulation, Zero, torque};
@@ -31,7 +31,7 @@ fn run(model: &Model, theta: &[f64], dtheta: &[f64], method: Method, duration: f
     Simulation::new(options).run(model, theta, dtheta, Zero).expect("a motion")
 }
 
-/// No joint passes its limit, and without motors no stop gives energy.
+/// No joint exceeds its limit, and without motors no stop adds energy.
 fn check_limits_and_energy(model: &Model, run: &Run, tolerance: f64) {
     let bounds = Bounds::of(model);
     let size = run.motion.largest_kinetic_energy();

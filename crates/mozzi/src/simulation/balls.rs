@@ -1,4 +1,4 @@
-//! Robots with balls and free joints: closed solutions, conservation laws, orders.
+//! Robots with balls and free joints: closed-form solutions, conservation laws, orders.
 
 extern crate std;
 use super::{Friction, Method, Options, Zero};
@@ -55,7 +55,7 @@ fn the_midpoint_rules_energy_has_no_trend() {
     }
 }
 
-/// In release ten seconds: `cargo test --release -p mozzi --lib -- --ignored hundred_thousand --nocapture`.
+/// Takes ten seconds in release: `cargo test --release -p mozzi --lib -- --ignored hundred_thousand --nocapture`.
 #[test]
 #[ignore = "a hundred thousand steps"]
 fn the_midpoint_rules_energy_has_no_trend_over_a_hundred_thousand_steps() {

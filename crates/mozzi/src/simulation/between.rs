@@ -1,5 +1,5 @@
-//! Events, stops, rows between the steps, and the methods that find their steps or solve for them: against closed
-//! solutions, conservation laws, the orders of the methods, and Runge-Kutta 4.
+//! Events, stops, rows between the steps, adaptive and implicit methods: compared with closed-form solutions,
+//! conservation laws, the orders of the methods, and Runge-Kutta 4.
 
 extern crate std;
 use super::robots::double_pendulum;
@@ -15,7 +15,7 @@ use nalgebra::DMatrix;
 
 const DOPRI: Method = Method::DormandPrince { tolerance: 1e-10 };
 
-/// By steps of this many seconds.
+/// Options with steps of this many seconds.
 fn by(method: Method, duration: f64, step: f64) -> Options {
     Options { method, ..Options::with_step(duration, step).expect("fits") }
 }
@@ -149,7 +149,7 @@ fn the_midpoint_rule_is_of_second_order_and_turns_back() {
         let order = (error(1e-3) / error(5e-4)).log2();
         assert!((order - 2.0).abs() < 0.2, "{order}");
     }
-    // without friction: there, and with the velocities turned round back again
+    // without friction: forward, then back with reversed velocities
     let model = floating_tree(8, 3, 0);
     let [theta, dtheta, _] = state(&model, 2);
     let frictionless = {
@@ -168,7 +168,8 @@ fn the_midpoint_rule_is_of_second_order_and_turns_back() {
 
 #[test]
 fn the_midpoint_rule_is_symplectic() {
-    // D of (θ, p) → (θ, p) over a few steps, by differences: DᵀΩD = Ω. Runge-Kutta's steps of the same size are not.
+    // the Jacobian D of (θ, p) → (θ, p) over a few steps, by differences: DᵀΩD = Ω. Runge-Kutta steps of the same size
+    // are not symplectic.
     let model = double_pendulum();
     let defect = |method: Method| {
         let map = |x: &[f64]| {
@@ -233,7 +234,7 @@ fn the_midpoint_rules_energy_is_bounded() {
     assert!(lost < 1e-11 * momentum(0).norm(), "{lost:e}");
 }
 
-/// A million steps: seconds in release, so `cargo test --release -p mozzi --lib -- --ignored million`.
+/// A million steps take seconds in release: `cargo test --release -p mozzi --lib -- --ignored million`.
 #[test]
 #[ignore = "a million steps"]
 fn the_midpoint_rules_energy_is_bounded_over_a_million_steps() {
@@ -268,7 +269,7 @@ fn a_slide_falls_onto_its_stop_and_is_lifted_off() {
         let expected = -fall + 10.0 / 1.5 * (3.0 - off).powi(3) / 6.0;
         let found = run.motion.last().theta[0];
         assert!((found - expected).abs() < 1e-6, "{method:?}: {found} {expected}");
-        // what the impact took is counted
+        // the energy lost in the impact is counted
         let end = run.motion.last().energy;
         assert!((end.friction_loss - 1.5 * g * fall).abs() < 1e-5 && run.motion.largest_drift() < 1e-4, "{end:?}");
     }
@@ -306,7 +307,7 @@ fn stops_of_a_chain_take_energy_and_are_never_passed() {
 
 #[test]
 fn a_free_top_turns_as_euler_says() {
-    // as of a symmetric body: e^{[H/I] t} in space and a turn about its own axis
+    // as for a symmetric body: e^{[H/I] t} in space and a turn about its own axis
     let (I, I3, t, w) = (0.3, 0.5, 2.0, Vec3([0.8, -0.3, 1.5]));
     let body = SpatialInertia::new(2.0, Vec3::zero(), Sym3::diagonal(I, I, I3));
     let top = Description::new("top").link("body", body).floating().build().expect("sound");
@@ -335,7 +336,7 @@ fn motions_that_no_step_follows_are_refused() {
     let still = Options { method: DOPRI, ..Options::new(0.0, 1) };
     let still = model.simulate(&[0.3, 0.1], &[0.0; 2], Zero, &still).expect("no motion");
     assert!(still.complete && still.last().theta == [0.3, 0.1]);
-    // a step of its own for many robots, or for derivatives, is explicit
+    // single steps, for many robots or for derivatives, must be explicit
     let error = model.held_step(&[0.0; 2], &[0.0; 2], &[0.0; 2], &fine).expect_err("adaptive").to_string();
     assert!(error.starts_with("the method is Dormand-Prince 5(4), expected Euler, "), "{error}");
 }

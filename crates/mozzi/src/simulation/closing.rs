@@ -7,7 +7,7 @@ use crate::scalar::Float;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Corrections with one factorization, and factorizations.
+/// Maximum numbers of corrections with one factorization, and of factorizations.
 const CORRECTIONS: usize = 4;
 const FACTORIZATIONS: usize = 6;
 
@@ -16,7 +16,7 @@ fn closed<S: Float + Into<f64>>() -> f64 {
     4.5 * S::EPSILON.into()
 }
 
-/// One above this, rad or m, is not closed; 10⁻¹⁰ for `f64`, 5 · 10⁻⁵ for `f32`.
+/// A constraint with a residual above this, rad or m, is not closed; 10⁻¹⁰ for `f64`, 5 · 10⁻⁵ for `f32`.
 fn open<S: Float + Into<f64>>() -> f64 {
     (450_000.0 * S::EPSILON.into()).min(5e-5)
 }
@@ -56,7 +56,7 @@ impl<S: Float + Into<f64>> Closer<S> {
         })
     }
 
-    /// Does the start satisfy the constraints, to 10⁻⁶ (`f32`: 5 · 10⁻⁵)?
+    /// Checks that the start satisfies the constraints, to 10⁻⁶ (`f32`: 5 · 10⁻⁵).
     ///
     /// # Errors
     /// [`Error::OpenStart`].
@@ -79,8 +79,8 @@ impl<S: Float + Into<f64>> Closer<S> {
         Ok(())
     }
 
-    /// θ ← θ ⊕ δ with M δ = −Aᵀλ, A δ = −φ, until φ is 0; then θ̇ ← θ̇ − M⁻¹AᵀΛ with A θ̇ = 0: the nearest in the
-    /// metric of M. t is for the error.
+    /// θ ← θ ⊕ δ with M δ = −Aᵀλ, A δ = −φ, until φ is 0; then θ̇ ← θ̇ − M⁻¹AᵀΛ with A θ̇ = 0: the nearest velocities
+    /// in the metric of M. t is only used in the error.
     ///
     /// # Errors
     /// [`Error::Opened`].
@@ -121,7 +121,7 @@ impl<S: Float + Into<f64>> Closer<S> {
             return Err(Error::Opened { constraint, residual, time: t });
         }
         self.account.residual = self.account.residual.max(residual);
-        // A is that of the corrected θ, its factors are not: each round gains as many digits as θ had
+        // A is evaluated at the corrected θ, its factors are not: each round gains as many digits as θ had
         for _ in 0..CORRECTIONS {
             self.find_speeds(model, dtheta);
             if largest(&self.memory.right) <= closed * largest(dtheta).max(1.0) {

@@ -1,4 +1,4 @@
-//! Conditions in words: `elbow > 1.2`.
+//! Event conditions as text: `elbow > 1.2`.
 
 use super::{Direction, Event};
 use crate::kinematics::forward_kinematics;
@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 
 /// The word for any limit of any joint.
 const LIMIT: &str = "joint-limit";
-/// As many names of a robot's are listed in a message.
+/// A message lists at most this many of a robot's names.
 const LISTED: usize = 12;
 
 /// What a condition compares with a number.
@@ -33,9 +33,9 @@ impl Measured {
 }
 
 impl<'m> Event<'m> {
-    /// Events of a condition in words: a joint's position, `>` (as it rises through it), `<` (falls) or `=` (either),
-    /// and a number, as in `elbow > 1.2`; or `theta_2`, `dtheta_2`, `dtheta_elbow`, `tool0.z` (a frame's origin in {s})
-    /// in the joint's place; or `joint-limit`, an event for each limit of position.
+    /// Events from a condition as text: a joint's position, `>` (rising), `<` (falling) or `=` (either), and a number,
+    /// as in `elbow > 1.2`. The joint can be replaced by `theta_2`, `dtheta_2`, `dtheta_elbow` or `tool0.z` (a frame's
+    /// origin in {s}). `joint-limit` gives an event for each position limit.
     ///
     /// # Errors
     /// [`Error::Condition`].
@@ -62,7 +62,7 @@ impl<'m> Event<'m> {
             '<' => Direction::Falling,
             _ => Direction::Any,
         };
-        // ">=" and "==" mean no more than ">" and "=": numbers do not stay at a value
+        // ">=" and "==" mean the same as ">" and "=": numbers do not stay at a value
         let right = text[at + 1..].strip_prefix('=').unwrap_or(&text[at + 1..]).trim();
         let value = match right.replace('−', "-").parse::<f64>() {
             Ok(value) if value.is_finite() => value,
@@ -73,13 +73,13 @@ impl<'m> Event<'m> {
         Ok(vec![Event { direction, ..Event::new(text, function) }])
     }
 
-    /// Is its condition true already at (θ, θ̇), so that it counts only when it becomes true again?
+    /// Is its condition already true at (θ, θ̇)? It then counts only when it becomes true again.
     pub fn is_true_at(&self, theta: &[f64], dtheta: &[f64]) -> bool {
         let now = (self.function)(0.0, theta, dtheta);
         self.direction == Direction::Rising && now > 0.0 || self.direction == Direction::Falling && now < 0.0
     }
 
-    /// Is it an event of this condition?
+    /// Is an event of this name from this condition?
     pub fn is_of(name: &str, condition: &str) -> bool {
         let condition = condition.trim();
         if condition == LIMIT { name.starts_with(LIMIT) } else { name == condition }

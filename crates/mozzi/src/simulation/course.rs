@@ -1,4 +1,4 @@
-//! The one loop: steps, what happens on the way, and the rows that are recorded.
+//! The simulation loop: steps, events and stops within them, and recorded rows.
 
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
@@ -34,12 +34,12 @@ impl Integrator {
         })
     }
 
-    /// What makes steps short, if the method knows it.
+    /// The causes of short steps, if the method knows them.
     fn trouble(&mut self) -> Option<&mut Trouble> {
         if let Integrator::DormandPrince(method) = self { Some(&mut method.trouble) } else { None }
     }
 
-    /// The state was changed from outside.
+    /// Restarts the method after the state was changed from outside.
     fn restart(&mut self) {
         if let Integrator::Midpoint(method) = self {
             method.restart();
@@ -47,7 +47,7 @@ impl Integrator {
     }
 }
 
-/// A simulation on its way.
+/// A running simulation.
 pub(super) struct Course<'r> {
     options: Options,
     events: &'r [Event<'r>],
@@ -56,11 +56,11 @@ pub(super) struct Course<'r> {
     pub stops: Stops,
     stall: Stall,
     motion: Motion<f64, 3>,
-    /// Where the step began; kept where something may happen within it.
+    /// The state at the beginning of the step; kept only if something may happen within it.
     from: State,
-    /// Can anything happen within a step, or are there rows within it?
+    /// Can events, stops or rows lie within a step?
     is_watched: bool,
-    /// The number of the next row's step, where steps are watched.
+    /// The step number of the next row, if steps are watched.
     next: usize,
     recorder: &'r mut dyn Recorder,
     /// Has the recorder ended the simulation?
@@ -164,7 +164,7 @@ impl<'r> Course<'r> {
         Ok(())
     }
 
-    /// A step to where something happens, and the rows before it. Is the simulation over there?
+    /// A step up to the next event or stop, and the rows before it. Does the simulation end there?
     fn watched_step(&mut self, done: usize) -> Result<bool, Error> {
         let Options { duration, method, .. } = self.options;
         let (model, step) = (self.driven.model, self.options.step());
@@ -208,7 +208,7 @@ impl<'r> Course<'r> {
         Ok(over)
     }
 
-    /// A whole step, and what lies within it.
+    /// A whole step, with its dense output.
     fn step(&mut self, step: f64) -> Result<Dense, Error> {
         let Course { options: Options { duration, .. }, integrator, driven, motion, from, .. } = self;
         let (h, end) = step_to(step, from.t, *duration);
@@ -233,7 +233,8 @@ impl<'r> Course<'r> {
         Ok(Dense::hermite(driven.model, from, &State::of(motion)))
     }
 
-    /// Events within the step; where one of them ends the simulation, that is the end, and the answer is true.
+    /// Records the events within the step. If one of them ends the simulation, `end` becomes its time and the result is
+    /// true.
     fn events_until(&mut self, dense: &Dense, end: &mut f64) -> bool {
         let model = self.driven.model;
         let mut found = Vec::new();
@@ -254,7 +255,7 @@ impl<'r> Course<'r> {
         false
     }
 
-    /// Rows before the end of what counts of the step.
+    /// Records the rows before `end`, up to which the step counts.
     fn rows_until(&mut self, dense: &Dense, end: f64) -> Result<(), Error> {
         let end = end - self.tolerance();
         while !self.is_closed && self.next < self.options.steps && self.options.time(self.next) < end {
@@ -271,7 +272,7 @@ impl<'r> Course<'r> {
         Ok(())
     }
 
-    /// Times nearer than this are one.
+    /// Times closer than this are equal.
     fn tolerance(&self) -> f64 {
         1e-12 * self.options.duration
     }
@@ -282,7 +283,7 @@ impl<'r> Course<'r> {
         (next - self.motion.t).abs() <= self.tolerance()
     }
 
-    /// The state brought back onto the constraints.
+    /// Brings the state back onto the constraints.
     fn close(&mut self) -> Result<(), Error> {
         let Motion { t, theta, dtheta, .. } = &mut self.motion;
         self.driven.close(*t, theta, dtheta)
@@ -315,7 +316,8 @@ impl<'r> Course<'r> {
     }
 }
 
-/// A step from t, and where it ends: of its own length, or to `until`, where rounding leaves no crumb for a last one.
+/// A step from t, and its end: the full length, or to `until` if at most a rounding error would be left for a last
+/// step.
 fn step_to(step: f64, t: f64, until: f64) -> (f64, f64) {
     if t + 1.001 * step >= until { (until - t, until) } else { (step, t + step) }
 }

@@ -12,11 +12,11 @@ pub(super) struct Dense {
     pub t: f64,
     pub h: f64,
     theta: Vec<f64>,
-    /// Of u, then of θ̇, then of the works: y = c₀ + x(c₁ + (1 − x)(c₂ + x(c₃ + (1 − x)c₄))).
+    /// Coefficients of u, then of θ̇, then of the works: y = c₀ + x(c₁ + (1 − x)(c₂ + x(c₃ + (1 − x)c₄))).
     pub coefficients: [Vec<f64>; 5],
 }
 
-/// u̇ of θ = θ₀ ⊕ u, that moves with θ̇.
+/// u̇ of θ = θ₀ ⊕ u, where θ moves with θ̇.
 pub(super) fn rate(model: &Model, u: &[f64], dtheta: &[f64], du: &mut [f64]) {
     du.copy_from_slice(dtheta);
     model.configuration_space().rate(u, du);

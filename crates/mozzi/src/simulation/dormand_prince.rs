@@ -25,7 +25,7 @@ const A: [[f64; 6]; 7] = [
 /// The difference of the two orders.
 const E: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
-/// Of the dense output's fourth order.
+/// Coefficients of the fourth-order dense output.
 const D: [f64; 7] = [
     -12715105075.0 / 11282082432.0,
     0.0,
@@ -40,7 +40,7 @@ const D: [f64; 7] = [
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince {
     tolerance: f64,
-    /// What the next step may be.
+    /// The largest length of the next step.
     h: f64,
     pub trouble: Trouble,
     /// Rates of (u, θ̇, w) at the stages; memory.
@@ -64,7 +64,7 @@ impl DormandPrince {
         let mut changes = vec![false; n];
         loop {
             let room = until - from.t;
-            // no crumb is left for a last step
+            // no tiny remainder is left for a last step
             let h = if self.h >= 0.99 * room { room } else { self.h };
             if !(h > 1e-13 * from.t.abs().max(1e-3).max(1e-6 * until)) && room > h {
                 return Err(too_short(model, driven.options(), [from.t, h], self.tolerance, self.trouble.sensitive));
@@ -100,7 +100,7 @@ impl DormandPrince {
                 self.h = h * if mean.is_finite() { factor } else { 0.2 };
                 continue;
             }
-            // a step cut short by `until` says little about the next one
+            // a step that `until` cuts short is no basis for the next step's length
             self.h = if h < self.h { self.h.max(h * factor) } else { h * factor };
             return Ok(self.finish(from, start, h, until));
         }
@@ -125,8 +125,8 @@ impl DormandPrince {
     }
 }
 
-/// θ at the end of N equal steps of this method, whatever their errors: what its order is measured by. Of the options,
-/// the duration, the steps, gravity and friction count.
+/// θ at the end of N equal steps of this method, whatever their errors, to measure its order. Only the options'
+/// duration, steps, gravity and friction are used.
 ///
 /// # Errors
 /// Those of [`Model::simulate`].

@@ -21,7 +21,7 @@ pub(super) struct Driven<'m> {
     workspace: Workspace,
     M: Vec<f64>,
     closer: Option<Closer>,
-    /// Of the constraints, where M was factored last.
+    /// A of the constraints at the last factorization of M.
     A: DMatrix<f64>,
 }
 
@@ -41,7 +41,7 @@ impl<'m> Driven<'m> {
         }
     }
 
-    /// For errors.
+    /// Sets the step that errors report.
     pub fn at_step(&mut self, step: usize, step_size: f64) {
         self.equation.at_step(step, step_size);
     }
@@ -64,19 +64,19 @@ impl<'m> Driven<'m> {
         Ok(powers)
     }
 
-    /// Has the robot constraints?
+    /// Does the robot have constraints?
     pub fn has_constraints(&self) -> bool {
         self.closer.is_some()
     }
 
-    /// Does the start satisfy the constraints? If so, it is brought onto them.
+    /// Checks that the start satisfies the constraints, then brings it onto them.
     pub fn close_start(&mut self, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
         let Some(closer) = &mut self.closer else { return Ok(()) };
         closer.check_start(self.model, theta, dtheta)?;
         closer.close(self.model, 0.0, theta, dtheta)
     }
 
-    /// Positions and velocities brought back onto the constraints.
+    /// Brings positions and velocities back onto the constraints.
     pub fn close(&mut self, t: f64, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
         match &mut self.closer {
             Some(closer) => closer.close(self.model, t, theta, dtheta),
@@ -114,7 +114,7 @@ impl<'m> Driven<'m> {
         let M = self.mass(theta);
         match M.cholesky() {
             Some(M) => Ok(M),
-            // looks closer, and names the joint
+            // checks each pivot, and names the joint
             None => {
                 let zeros = vec![0.0; self.model.n()];
                 self.model.forward_dynamics_by_mass_matrix(theta, &zeros, &zeros, &self.model.environment())?;
@@ -127,9 +127,9 @@ impl<'m> Driven<'m> {
         }
     }
 
-    /// x ← x + M⁻¹Eλ with the λ that keeps the held joints at their limits, which is returned: Eᵀx = 0 of velocities x,
-    /// with λ impulses; Eᵀx + Ėᵀθ̇ = 0 of accelerations x at the velocities θ̇, with λ forces. E has the column n of
-    /// each held joint.
+    /// x ← x + M⁻¹Eλ, and returns the λ that keeps the held joints at their limits. For velocities x, Eᵀx = 0 and λ are
+    /// impulses; for accelerations x at the velocities θ̇, Eᵀx + Ėᵀθ̇ = 0 and λ are forces. E has the column n of each
+    /// held joint.
     pub fn bring_to_rest(
         &self,
         M: &Cholesky<f64, Dyn>,
@@ -153,11 +153,11 @@ impl<'m> Driven<'m> {
         };
         let change = columns * &lambda;
         x.iter_mut().zip(change.iter()).for_each(|(x, d)| *x += d);
-        self.held.iter().for_each(|held| held.add(theta, -excess(held, x), x)); // what rounding left
+        self.held.iter().for_each(|held| held.add(theta, -excess(held, x), x)); // the rounding error
         lambda.as_slice().to_vec()
     }
 
-    /// The accelerations by forces E: M⁻¹E, and of a robot with constraints what they let through of it, M⁻¹P E.
+    /// The accelerations due to forces E: M⁻¹E; for a robot with constraints, their projection M⁻¹P E.
     fn response(&self, M: &Cholesky<f64, Dyn>, E: &DMatrix<f64>) -> DMatrix<f64> {
         let mut columns = M.solve(E);
         if self.has_constraints() {
@@ -168,8 +168,8 @@ impl<'m> Driven<'m> {
         columns
     }
 
-    /// Lets go of the held joints whose stop would have to pull, the worst first: x, and what is moving, as for
-    /// [`bring_to_rest`](Self::bring_to_rest), are what they would be without stops. Returns whether some were let go.
+    /// Releases the held joints whose stop would have to pull, the worst first. x and `moving`, as for
+    /// [`bring_to_rest`](Self::bring_to_rest), are the values without stops. Returns whether some were released.
     pub fn let_go(&mut self, M: &Cholesky<f64, Dyn>, theta: &[f64], moving: Option<&[f64]>, x: &[f64]) -> bool {
         let mut found = false;
         while !self.held.is_empty() {
@@ -187,7 +187,7 @@ impl<'m> Driven<'m> {
         found
     }
 
-    /// The largest force with which a stop would have to pull; −∞ where no joint is held.
+    /// The largest force with which a stop would have to pull; −∞ if no joint is held.
     pub fn pull(&mut self, state: &State) -> Result<f64, Error> {
         if self.held.is_empty() {
             return Ok(f64::NEG_INFINITY);
@@ -202,8 +202,8 @@ impl<'m> Driven<'m> {
             .fold(f64::NEG_INFINITY, f64::max))
     }
 
-    /// Puts held balls, which the step's error moved, back onto their limits; the kinetic energy that this takes is
-    /// friction's. Held joints of one axis do not move.
+    /// Puts held balls, which the step's error moved, back onto their limits; the kinetic energy lost is counted as
+    /// friction. Held joints of one axis do not move.
     pub fn keep_at_limits(&mut self, state: &mut State) -> Result<(), Error> {
         if self.held.iter().all(|held| held.place.freedom == Freedom::One) {
             return Ok(());
@@ -216,7 +216,7 @@ impl<'m> Driven<'m> {
         self.complete(state)
     }
 
-    /// Of held joints, those whose stop would pull now.
+    /// Releases the held joints whose stop would pull now.
     pub fn release(&mut self, state: &mut State) -> Result<(), Error> {
         if self.held.is_empty() {
             return Ok(());

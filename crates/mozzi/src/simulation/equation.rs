@@ -1,7 +1,7 @@
-//! The differential equation of a driven robot: θ̈ = FD(θ, θ̇, τ, F), and the powers beside it.
+//! The differential equation of a driven robot: θ̈ = FD(θ, θ̇, τ, F), and the powers.
 //!
-//! Forward dynamics is computed with the machine's fused multiply-add, where there is `std` to find it, or [by
-//! another](ForwardDynamics).
+//! Forward dynamics uses the machine's fused multiply-add, if `std` is there to detect it, or [another
+//! implementation](ForwardDynamics).
 
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
@@ -19,23 +19,23 @@ use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Powers in watts: of the motors, of friction, and what the environment takes.
+/// Powers in watts: of the motors, of friction, and given to the environment.
 pub type Powers = [f64; 3];
 
-/// Another way to θ̈ than the kernels: a program for the one robot, in its own gravity, touching nothing, such as
-/// `mozzi_batch::Compiled`. Elsewhere the kernels are asked.
+/// An implementation of θ̈ that replaces the kernels: a program for one robot, with its own gravity and no applied
+/// wrenches, such as `mozzi_batch::Compiled`. In all other cases the kernels are used.
 pub trait ForwardDynamics {
     /// The robot.
     fn model(&self) -> &Model;
 
-    /// Writes θ̈. Are the pivots of M that it was divided by clear of rounding? See [`Pivots`](crate::Pivots).
+    /// Writes θ̈. Are the pivots of M well above rounding error? See [`Pivots`](crate::Pivots).
     ///
     /// # Panics
     /// On slices of a wrong length.
     fn write(&self, theta: &[f64], dtheta: &[f64], tau: &[f64], ddtheta: &mut [f64]) -> bool;
 }
 
-/// A robot, its input, and memory: what a method of integration asks, [`Method`](super::Method)'s or one's own.
+/// A robot, its input, and memory: the equation that a [`Method`](super::Method), or your own, integrates.
 pub struct Equation<'m, I> {
     model: &'m Model,
     pub(super) options: Options,
@@ -50,7 +50,7 @@ pub struct Equation<'m, I> {
     other: Option<&'m dyn ForwardDynamics>,
     /// The motors' τ of the last evaluation.
     tau: Vec<f64>,
-    /// τ as forward dynamics gets it.
+    /// τ as passed to forward dynamics.
     force: Vec<f64>,
     /// λ of the last evaluation.
     lambda: Vec<f64>,
@@ -61,7 +61,7 @@ pub struct Equation<'m, I> {
 }
 
 impl<'m, I: Input> Equation<'m, I> {
-    /// At step 0. Of the options, gravity and friction belong to the equation; the rest is for
+    /// The equation at step 0. Only the options' gravity and friction are used; the other options are for
     /// [`Simulation`](super::Simulation).
     pub fn new(model: &'m Model, input: I, options: &Options) -> Self {
         Equation {
@@ -83,10 +83,10 @@ impl<'m, I: Input> Equation<'m, I> {
         }
     }
 
-    /// θ̈ by another way, where there is one, nothing is touched and gravity is the robot's own.
+    /// θ̈ by another implementation, if there is one, no wrench is applied and gravity is the robot's own.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] where it is another robot's.
+    /// [`Error::BadArgument`] if it is for another robot.
     pub fn with_forward_dynamics(mut self, other: Option<&'m dyn ForwardDynamics>) -> Result<Self, Error> {
         let Some(other) = other else { return Ok(self) };
         let (mine, its) = (self.model.description(), other.model().description());
@@ -102,7 +102,7 @@ impl<'m, I: Input> Equation<'m, I> {
         self.model
     }
 
-    /// Which step is being taken, from 1, and how long it is in seconds: for errors.
+    /// Sets which step is being taken, from 1, and its length in seconds: for errors.
     pub fn at_step(&mut self, step: usize, step_size: f64) {
         (self.step, self.step_size) = (step, step_size);
     }
@@ -112,11 +112,11 @@ impl<'m, I: Input> Equation<'m, I> {
         &self.tau
     }
 
-    /// Asks the input, writes θ̈ and returns the powers. O(n), no allocation but the input's.
+    /// Calls the input, writes θ̈ and returns the powers. O(n), no allocation but the input's.
     ///
     /// # Errors
-    /// [`Error::Diverged`], [`Error::SingularMassMatrix`], [`Error::BadArgument`] for an input that is not finite, what
-    /// the input answers.
+    /// [`Error::Diverged`], [`Error::SingularMassMatrix`], [`Error::BadArgument`] for an input that is not finite, and
+    /// the input's own errors.
     ///
     /// # Panics
     /// On slices of a wrong length.
@@ -197,7 +197,7 @@ impl<'m, I: Input> Equation<'m, I> {
         Ok(())
     }
 
-    /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ with
+    /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ plus
     /// the difference of the two laws. Returns the power of friction.
     fn friction(&mut self, dtheta: &[f64]) -> f64 {
         if self.is_frictionless {
@@ -241,13 +241,12 @@ impl<'m, I: Input> Equation<'m, I> {
     }
 }
 
-/// All of them, NaN is not; without a branch for each.
+/// Are all values below the bound? False for NaN; without a branch for each.
 fn are_below(values: &[f64], bound: f64) -> bool {
     values.iter().fold(true, |fine, x| fine & (x.abs() < bound))
 }
 
-/// The quantity by which a robot moves: forward dynamics, with constraints if it has some. Its outputs are θ̈ and, with
-/// constraints, λ.
+/// The forward dynamics of a robot, with constraints if it has some. Its outputs are θ̈ and, with constraints, λ.
 pub fn forward_dynamics_of(model: &Model) -> Query<'static> {
     match model.constraint_rows() {
         0 => quantities::ForwardDynamics.into(),

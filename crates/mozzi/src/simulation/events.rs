@@ -1,4 +1,4 @@
-//! When something happens: the zeros of functions along a motion.
+//! Events: zeros of functions along a motion.
 
 use super::dense::Dense;
 use super::state::State;
@@ -20,9 +20,9 @@ pub enum Direction {
     Falling,
 }
 
-/// A function of (t, θ, θ̇) whose zeros are looked for. Two zeros within a quarter of a step are none.
+/// A function of (t, θ, θ̇) whose zeros are located. Two zeros within a quarter of a step can be missed.
 pub struct Event<'a> {
-    /// For the answer.
+    /// The name in the results.
     pub name: String,
     /// Which zeros count.
     pub direction: Direction,
@@ -41,13 +41,13 @@ impl<'a> Event<'a> {
         Event { name: name.into(), direction: Direction::Any, stop: false, function: Box::new(function) }
     }
 
-    /// A joint that reaches an end of its way, from within: an event for each limit of position that there is, called
-    /// `lower limit of shoulder`. A mimic joint's limits are its source joint's.
+    /// Events of joints that reach a position limit from within: one for each limit, called `lower limit of shoulder`.
+    /// A mimic joint's limits also restrict its source joint.
     pub fn joint_limits(model: &Model) -> Vec<Self> {
         let all = Rc::new(Bounds::of(model));
         let mut events = Vec::new();
         for (k, (bounds, joint)) in all.joints.iter().zip(model.joint_names()).enumerate() {
-            let is_ball = all.places[k].freedom == Freedom::Ball; // which cannot turn less than not at all
+            let is_ball = all.places[k].freedom == Freedom::Ball; // whose angle cannot be below 0
             for (limit, side, sign) in [(bounds[0], "lower", -1.0), (bounds[1], "upper", 1.0)] {
                 if is_ball && side == "lower" {
                     continue;
@@ -71,7 +71,7 @@ pub struct Occurrence {
     pub t: f64,
     /// θ there.
     pub theta: Vec<f64>,
-    /// θ̇ there; where the joint comes to rest at its limit there, that before it.
+    /// θ̇ there; if the joint comes to rest at its limit there, θ̇ before the impact.
     pub dtheta: Vec<f64>,
     /// Did the simulation end there?
     pub stop: bool,
@@ -80,8 +80,8 @@ pub struct Occurrence {
 /// Parts of a step at whose ends signs are compared.
 const PARTS: usize = 4;
 
-/// The first zero of f within the step, of the direction, after its beginning: a time at which the sign has changed, as
-/// near as numbers go.
+/// The first zero of f within the step, after its beginning, with this direction: a time just after the sign change, to
+/// rounding.
 pub(super) fn first_zero(
     model: &Model,
     dense: &Dense,
@@ -104,7 +104,7 @@ pub(super) fn first_zero(
     None
 }
 
-/// By chords with the weight of the end that stays halved (Illinois), which always keep the zero between them.
+/// The Illinois method: chords, with a halved weight of the end that stays, which always bracket the zero.
 fn bisect(f: impl Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
     let side = |x: f64, rises: bool| if rises { x >= 0.0 } else { x <= 0.0 };
     let rises = a.1 < 0.0;
@@ -113,7 +113,7 @@ fn bisect(f: impl Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
             break;
         }
         let chord = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
-        // every third step by halves, so that none is wasted on a function that is not smooth
+        // every third step bisects, so that a function that is not smooth converges, too
         let t = if k % 3 == 2 || !(chord > a.0 && chord < b.0) { 0.5 * (a.0 + b.0) } else { chord };
         let value = f(t);
         if side(value, rises) {

@@ -1,4 +1,5 @@
-//! Robots with a floating base, simulated: against closed solutions, conservation laws and the methods' orders.
+//! Robots with a floating base, simulated: compared with closed-form solutions, conservation laws and the methods'
+//! orders.
 
 extern crate std;
 use super::{Method, Options, Zero, torque};
@@ -81,7 +82,7 @@ fn keeps_order(model: &Model) {
     }
 }
 
-/// A tumbling robot's momentum is kept to rounding, its quaternion's length too; what becomes of the energy is printed.
+/// A tumbling robot's momentum is kept to rounding, its quaternion's length too; the energy's drift is printed.
 #[test]
 fn a_tumbling_robot_keeps_its_momentum() {
     let model = floating_tree(8, 4, 0);

@@ -1,4 +1,4 @@
-//! What drives a simulated robot.
+//! Inputs of a simulated robot.
 
 use crate::dynamics::{add_spring_forces, gravity_forces};
 use crate::linalg::Vec3;
@@ -11,19 +11,19 @@ use alloc::vec::Vec;
 /// The motors' τ and the wrenches that the robot applies *to* the environment, at time t in the state (θ, θ̇).
 ///
 /// Each input adds its part: τ starts at zero and `wrenches` empty, so a pair of inputs `(a, b)` is an input, their
-/// sum. Inputs are asked once at each stage of a step, in the order of time (Runge-Kutta: t, t + h/2 twice, t + h) and
-/// once at the end; one that keeps a memory must expect that.
+/// sum. Inputs are called once at each stage of a step, in the order of time (Runge-Kutta: t, t + h/2 twice, t + h) and
+/// once at the end; an input with internal state must expect that.
 pub trait Input {
     /// Adds to τ, n entries: N m (revolute, helical) or N (prismatic).
     ///
     /// # Errors
-    /// Whatever makes τ unknown, such as a table that ended.
+    /// Any reason why τ is unknown, such as the end of a table.
     fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
         let _ = (t, theta, dtheta, tau);
         Ok(())
     }
 
-    /// Appends wrenches, each by a frame on the environment, in that frame's coordinates.
+    /// Appends wrenches, each applied by a frame to the environment, in that frame's coordinates.
     ///
     /// # Errors
     /// As for [`torque`](Self::torque).
@@ -67,10 +67,10 @@ impl<A: Input, B: Input> Input for (A, B) {
 pub struct Zero;
 impl Input for Zero {}
 
-/// τ = g(θ) + k(θ − θ₀), what holds the robot against gravity and its springs, and nothing against friction: a robot at
-/// rest stays, a moving one coasts. (With Coulomb friction that is not smooth it trembles instead of staying, see
-/// [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it falls. Of a robot with
-/// constraints whose [`motors`](crate::Description::motors) are named, the torques of these that hold it.
+/// τ = g(θ) + k(θ − θ₀), which holds the robot against gravity and its springs and does not compensate friction: a
+/// robot at rest stays, a moving one coasts. (Non-smooth Coulomb friction makes it chatter instead of staying, see
+/// [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it falls. If a robot with
+/// constraints has named [`motors`](crate::Description::motors), these alone produce the torques that hold it.
 #[derive(Clone, Debug)]
 pub struct GravityCompensation<'m> {
     model: &'m Model,
@@ -162,7 +162,7 @@ mod tests {
                 let options = Options { method, friction, ..Options::new(0.5, 100) };
                 let motion = model.simulate(&theta, &rest, GravityCompensation::new(&model), &options).expect("holds");
                 assert!(difference(motion.last().theta, &theta) < 1e-9, "{:?}", motion.last());
-                // and the motors carry what the method of the model says, doing no work
+                // and the motors' torques equal those of the model's method, and do no work
                 let g = model.gravity_forces(&theta).expect("lengths") + model.spring_forces(&theta).expect("lengths");
                 assert!(difference(motion.sample(0).tau, g.as_slice()) == 0.0);
                 assert!(motion.last().energy.motor_work.abs() < 1e-8);

@@ -2,8 +2,8 @@
 
 use crate::model::Error;
 
-/// How time passes. The first three are explicit, with given steps: of those [`Motion::step`](super::Motion::step) takes one on any number,
-/// see [`explicit`](Self::explicit). With θ̈ = F(t, θ, θ̇) and step h:
+/// A method of integration. The first three are explicit, with fixed steps; [`Motion::step`](super::Motion::step) takes
+/// such a step on any number type, see [`explicit`](Self::explicit). With θ̈ = F(t, θ, θ̇) and step h:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// The book's: θ\[k+1\] = θ\[k\] + θ̇\[k\]h, θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h. Order 1; a swinging robot gains
@@ -11,21 +11,21 @@ pub enum Method {
     Euler,
     /// θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h, then θ\[k+1\] = θ\[k\] + θ̇\[k+1\]h. Order 1; a pendulum's energy stays bounded.
     SemiImplicitEuler,
-    /// The classical one with four stages. Order 4, as long as F is smooth: kinks of a table, Coulomb friction and
-    /// contacts cost order at the step in which they fall.
+    /// The classical method with four stages. Order 4, as long as F is smooth: kinks of a table, Coulomb friction and
+    /// contacts reduce the order of the step in which they occur.
     RungeKutta4,
-    /// Dormand and Prince's of order 5, by steps whose estimated error is below a tolerance: absolutely for θ (rad, m),
-    /// for θ̇ relative to 1 + |θ̇|.
+    /// Dormand and Prince's method of order 5, with adaptive steps whose estimated error is below a tolerance: absolute
+    /// for θ (rad, m), relative to 1 + |θ̇| for θ̇.
     DormandPrince {
         /// Above 0.
         tolerance: f64,
     },
-    /// The implicit midpoint rule in (θ, p = Mθ̇), order 2. It is symplectic: the energy's error stays bounded. Of a
-    /// floating base it keeps the momentum, too.
+    /// The implicit midpoint rule in (θ, p = Mθ̇), order 2. It is symplectic: the energy's error stays bounded. It also
+    /// keeps the momentum of a floating base.
     Midpoint,
 }
 
-/// A method whose step is given, and whose stages follow from each other.
+/// An explicit method with fixed steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Explicit {
     /// [`Method::Euler`].
@@ -47,12 +47,13 @@ impl Method {
         }
     }
 
-    /// Are its steps found by a tolerance?
+    /// Are its steps adaptive, chosen by a tolerance?
     pub fn is_adaptive(self) -> bool {
         matches!(self, Method::DormandPrince { .. })
     }
 
-    /// The method where each step is a map of its own, such as for many robots at once, or for derivatives.
+    /// The explicit method, for uses in which each step is a map of its own, such as many robots at once, or
+    /// derivatives.
     ///
     /// # Errors
     /// [`Error::BadArgument`] for a method that is adaptive or implicit.

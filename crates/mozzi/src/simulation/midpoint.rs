@@ -27,7 +27,7 @@ const ITERATIONS: usize = 60;
 
 #[derive(Clone, Debug)]
 pub(super) struct Midpoint {
-    /// p at the end of the last step, and whose.
+    /// p at the end of the last step, and the time of that end.
     momentum: Option<(f64, DVector<f64>)>,
     workspace: Workspace,
     dM: Vec<f64>,
@@ -40,7 +40,7 @@ impl Midpoint {
         Midpoint { momentum: None, workspace: Workspace::new(model), dM: vec![0.0; n * n], ddtheta: vec![0.0; n] }
     }
 
-    /// The state was changed from outside: its p is Mθ̇.
+    /// Restarts after the state was changed from outside: p is then Mθ̇.
     pub fn restart(&mut self) {
         self.momentum = None;
     }
@@ -88,7 +88,7 @@ impl Midpoint {
                 done = true;
                 break;
             }
-            // near rounding once more, and no more
+            // one more iteration close to rounding, and no more
             done = change < 1e-14 || (change < 1e-11 && change >= last);
             last = change;
         }

@@ -3,21 +3,21 @@
 //! > q̇₁ = q₂,  q̇₂ = FD(q₁, q₂, τ, F),  with q₁ = θ and q₂ = θ̇
 //!
 //! [`Model::simulate`] takes a start, an [`Input`] (τ and the wrenches on the environment, by functions or tables) and
-//! [`Options`], and answers with a [`Trajectory`], its energies among it. {s} is at rest. Coulomb friction acts on
-//! moving joints; sticking is not modelled, see [`Friction`].
+//! [`Options`], and returns a [`Trajectory`] with its energies. {s} is at rest. Coulomb friction acts on moving joints;
+//! sticking is not modelled, see [`Friction`].
 //!
 //! | [`Method`] | order | step | for |
 //! |---|---|---|---|
-//! | `Euler`, `SemiImplicitEuler`, `RungeKutta4` | 1, 1, 4 | given | the book's loop; real time |
-//! | `DormandPrince` | 5 | found | smooth motions, to a tolerance |
-//! | `Midpoint` | 2 | given | long motions: the energy's error is bounded |
+//! | `Euler`, `SemiImplicitEuler`, `RungeKutta4` | 1, 1, 4 | fixed | the book's loop; real time |
+//! | `DormandPrince` | 5 | adaptive | smooth motions, to a tolerance |
+//! | `Midpoint` | 2 | fixed | long motions: the energy's error is bounded |
 //!
 //! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
 //!
-//! All of them integrate on SE(3) where the base floats, and all are steps of one loop, [`Simulation`]: it looks for
-//! [`Event`]s, zeros of functions of (t, θ, θ̇) on the polynomial between two steps, treats the joints' limits by a
-//! [`Policy`], and hands each row to a [`Recorder`], so that a long motion need not be kept in memory.
+//! All methods integrate on SE(3) if the base floats, and all run in one loop, [`Simulation`]. It locates [`Event`]s,
+//! zeros of functions of (t, θ, θ̇), on the polynomial between two steps, treats the joints' limits by a [`Policy`],
+//! and passes each row to a [`Recorder`], so that a long motion need not be kept in memory.
 
 mod closing;
 mod condition;
@@ -101,12 +101,12 @@ impl Model<f64> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// Limits that are [reported](Policy::Report) are reported by [`Simulation::run`]; here they are not looked at.
+    /// [`Simulation::run`] [reports](Policy::Report) limits that were exceeded; this method does not.
     ///
     /// # Errors
-    /// [`Error::WrongLength`] or [`Error::BadArgument`] for a start or options that make no sense, or an
-    /// input that is not finite; [`Error::SingularMassMatrix`]; [`Error::Diverged`] if the state becomes infinite or
-    /// NaN; [`Error::Stalled`], [`Error::NoConvergence`]; what the input answers.
+    /// [`Error::WrongLength`] or [`Error::BadArgument`] for an invalid start, invalid options, or an input that is not
+    /// finite; [`Error::SingularMassMatrix`]; [`Error::Diverged`] if the state becomes infinite or NaN;
+    /// [`Error::Stalled`], [`Error::NoConvergence`]; the input's own errors.
     pub fn simulate(
         &self,
         theta: &[f64],

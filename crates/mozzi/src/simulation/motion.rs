@@ -1,4 +1,4 @@
-//! A state that moves: steps of explicit Euler (Modern Robotics, section 8.5), semi-implicit Euler, Runge-Kutta.
+//! Integration of a state: explicit Euler (Modern Robotics, section 8.5), semi-implicit Euler, Runge-Kutta.
 
 use super::Explicit;
 use crate::kinematics::ConfigurationSpace;
@@ -6,8 +6,8 @@ use crate::scalar::{Real, Scalar};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// A state with its rates, and with integrals of K further rates (such as work, of powers). Or the states of many
-/// robots of one model, side by side.
+/// A state with its rates, and with the integrals of K further rates (such as work, the integral of power). Or the
+/// states of many robots of one model.
 #[derive(Clone, Debug)]
 pub struct Motion<S = f64, const K: usize = 0> {
     space: ConfigurationSpace,
@@ -20,7 +20,7 @@ pub struct Motion<S = f64, const K: usize = 0> {
     pub dtheta: Vec<S>,
     /// θ̈ = F(t, θ, θ̇).
     pub ddtheta: Vec<S>,
-    /// What is integrated beside the state: ẇ.
+    /// Further rates that are integrated: ẇ.
     pub rates: [S; K],
     /// w = ∫ ẇ dt, by the same method.
     pub integrals: [S; K],
@@ -60,8 +60,8 @@ fn add<S: Scalar>(x: &mut [S], k: &[S], h: S) {
 }
 
 impl<S: Real, const K: usize> Motion<S, K> {
-    /// At time t, of a robot with these configurations, with its rates by F: `F(t, θ, θ̇, θ̈)` writes the accelerations
-    /// and returns the further rates.
+    /// A motion at time t, of a robot with this configuration space, with rates from F: `F(t, θ, θ̇, θ̈)` writes the
+    /// accelerations and returns the further rates.
     ///
     /// # Errors
     /// Those of F.
@@ -75,8 +75,8 @@ impl<S: Real, const K: usize> Motion<S, K> {
         Self::start_many(space, 1, t, theta, dtheta, F)
     }
 
-    /// As [`start`](Self::start), of this many robots: θ has the positions of one after the other, θ̇ their velocities,
-    /// and F is asked of all of them at once.
+    /// As [`start`](Self::start), for this many robots: θ has the positions of one after the other, θ̇ their
+    /// velocities, and F is called once for all of them.
     ///
     /// # Errors
     /// Those of F.
@@ -111,11 +111,11 @@ impl<S: Real, const K: usize> Motion<S, K> {
         })
     }
 
-    /// One step of size h to the time `t_next` (t + h but for rounding), and the rates there. F is asked at the stages
+    /// One step of size h to the time `t_next` (t + h up to rounding), and the rates there. F is called at the stages
     /// in between (Runge-Kutta: three) and at the end; no allocation.
     ///
     /// # Errors
-    /// Those of F; then the motion is left between two states.
+    /// Those of F; the motion is then left between two states.
     pub fn step<E>(
         &mut self,
         method: Explicit,
@@ -142,7 +142,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
     /// [`step`](Self::step) without the rates at its end, which are then those of its start.
     ///
     /// # Errors
-    /// Those of F; then the motion is left between two states.
+    /// Those of F; the motion is then left between two states.
     pub fn advance<E>(
         &mut self,
         method: Explicit,
@@ -169,8 +169,7 @@ impl<S: Real, const K: usize> Motion<S, K> {
     }
 
     /// x ⊕ h/6 (k₁ + 2k₂ + 2k₃ + k₄) with x = (θ, θ̇, w) and k = (θ̇, θ̈, ẇ); k₁ is known, each further stage starts
-    /// from x again, along the k before it. The k of a ball and of a floating base is the rate of log(T₀⁻¹T)
-    /// (Munthe-Kaas).
+    /// from x again, along the k before it. For a ball and a floating base, k is the rate of log(T₀⁻¹T) (Munthe-Kaas).
     fn runge_kutta_4<E>(
         &mut self,
         h: f64,
@@ -312,7 +311,7 @@ mod tests {
         assert!(difference(&step(Explicit::RungeKutta4), &[x, v, 0.5 - x, w]) < 1e-15);
     }
 
-    /// One Runge-Kutta step on any number, with τ = u in every joint.
+    /// One Runge-Kutta step on any number type, with τ = u in every joint.
     fn one_step<S: Real + From<f64> + 'static>(model: &Model, theta: &[S], dtheta: &[S], u: S) -> Vec<S> {
         let (tau, mut workspace) = (vec![u; model.n()], Workspace::new(model));
         let mut F = |_: f64, q: &[S], dq: &[S], ddq: &mut [S]| {

@@ -5,32 +5,33 @@ use crate::linalg::Vec3;
 use crate::model::Error;
 use alloc::format;
 
-/// A state that grows beyond has diverged: squares, and so energies, would leave the numbers.
+/// A state beyond this size has diverged: squares, and so energies, would overflow.
 pub const LARGEST: f64 = 1e150;
 
 /// How a simulation runs. Start from [`new`](Self::new) or [`with_step`](Self::with_step), and change what differs:
 /// `Options { method: Method::Euler, ..Options::new(2.0, 2000) }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How a step is taken; Runge-Kutta 4.
+    /// The method of integration; default Runge-Kutta 4.
     pub method: Method,
     /// t_f in seconds, at least 0; the motion starts at t = 0.
     pub duration: f64,
-    /// N, at least 1; the step is δt = t_f / N. Of an adaptive method, whose steps are its own, the δt of the rows.
+    /// N, at least 1; the step is δt = t_f / N. An adaptive method chooses its own steps; δt is then the interval of
+    /// the rows.
     pub steps: usize,
-    /// Record the start, every k-th step, and the last; 1.
+    /// Record the start, every k-th step, and the last; default 1.
     pub record_every: usize,
     /// Gravity in {s} coordinates, m/s², in place of the model's own. (For a {s} that accelerates by a without turning:
     /// g − a.)
     pub gravity: Option<Vec3>,
     /// Coulomb friction as in the model.
     pub friction: Friction,
-    /// How to treat the joints' limits of position; they are reported. Where they are respected a joint comes to rest
-    /// there, inelastically, and is held as long as it is pressed against its stop.
+    /// How to treat position limits; by default they are reported. If they are respected, a joint comes to rest at its
+    /// limit, inelastically, and is held as long as it is pressed against its stop.
     pub joint_limits: Policy,
 }
 
-/// What is made of Coulomb friction μ. Sticking is not modelled by either: no joint is held at rest against a torque.
+/// How to model Coulomb friction μ. Neither model includes sticking: no joint is held at rest against a torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction {
     /// μ sgn θ̇ with sgn 0 = 0, as in forward dynamics. Around rest θ̇ changes its sign from step to step, by up to
@@ -58,11 +59,11 @@ impl Options {
         }
     }
 
-    /// As [`new`](Self::new) with the fewest equal steps that are not longer than `step` seconds (but for rounding).
+    /// As [`new`](Self::new) with the fewest equal steps that are not longer than `step` seconds (up to rounding).
     ///
     /// # Errors
-    /// [`Error::BadArgument`] where the step is not positive and finite, the duration not at least 0 and finite, or
-    /// their ratio above 10¹².
+    /// [`Error::BadArgument`] if the step is not positive and finite, the duration not at least 0 and finite, or their
+    /// ratio above 10¹².
     pub fn with_step(duration: f64, step: f64) -> Result<Self, Error> {
         check(step > 0.0 && step.is_finite(), "step", step, "a positive, finite number of seconds")?;
         check_duration(duration)?;
@@ -88,10 +89,10 @@ impl Options {
         k.is_multiple_of(self.record_every) || k == self.steps
     }
 
-    /// Does it make sense?
+    /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for what makes none.
+    /// [`Error::BadArgument`] for an invalid option.
     pub fn check(&self) -> Result<(), Error> {
         check_duration(self.duration)?;
         check(self.steps > 0, "steps", self.steps, "at least 1")?;

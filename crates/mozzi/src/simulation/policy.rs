@@ -1,12 +1,12 @@
-//! What is made of a limit.
+//! How to treat a limit.
 
-/// What happens where a robot would go beyond a limit; nothing of it is silent but what is to be ignored.
+/// How to treat a limit that a robot would exceed. Everything but `Ignore` is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Policy {
-    /// The limit is not looked at.
+    /// The limit is not checked.
     Ignore,
-    /// The robot goes beyond it, and that is noted.
+    /// The robot may exceed the limit, and this is reported.
     Report,
-    /// The robot is kept from it, and that is noted.
+    /// The robot is kept within the limit, and this is reported.
     Respect,
 }

@@ -1,12 +1,12 @@
-//! Where the rows of a simulation go.
+//! Recorders: they receive the rows of a simulation.
 
 use super::{Energy, Sample, Trajectory};
 use crate::model::Model;
 use core::ops::ControlFlow;
 
 /// Takes the rows of a simulation one by one, in the order of time: a [`Trajectory`] keeps them, [`Thinned`] keeps
-/// some, [`Account`] keeps what they say of the energy, and a recorder of one's own writes them to a file. A pair of
-/// recorders gets each row twice.
+/// some, [`Account`] keeps a summary of their energy, and a recorder of your own can write them to a file. A pair of
+/// recorders passes each row to both.
 pub trait Recorder {
     /// One row. `ControlFlow::Break(())` ends the simulation there, for instance because a disk is full.
     fn take(&mut self, row: &Sample) -> ControlFlow<()>;
@@ -40,15 +40,15 @@ impl Recorder for Trajectory {
     }
 }
 
-/// What the rows of a motion say of its energy: [`Trajectory::largest_drift`] and
-/// [`Trajectory::largest_kinetic_energy`] without the rows.
+/// The energy summary of a motion's rows: [`Trajectory::largest_drift`] and [`Trajectory::largest_kinetic_energy`]
+/// without the rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Account {
     /// Rows so far.
     pub rows: usize,
-    /// Those of the first row.
+    /// The energies of the first row.
     pub first: Energy,
-    /// Those of the last row.
+    /// The energies of the last row.
     pub last: Energy,
     /// max |drift|, J.
     pub largest_drift: f64,
@@ -69,8 +69,8 @@ impl Recorder for Account {
     }
 }
 
-/// s of "every s-th row, and the last", for at most so many, at least two: the first of 1, 2, 10, 20, 100, … that does,
-/// so that steps of time stay decimal.
+/// The stride s for keeping every s-th row, and the last, in at most `at_most` rows, at least two: the first of 1, 2,
+/// 10, 20, 100, … that suffices, so that time steps stay decimal.
 pub fn stride(rows: usize, at_most: usize) -> usize {
     let last = rows.saturating_sub(1);
     let (mut stride, mut factors) = (1, [2, 5].into_iter().cycle());
@@ -80,7 +80,7 @@ pub fn stride(rows: usize, at_most: usize) -> usize {
     stride
 }
 
-/// Every s-th row of a motion, and the last: at most so many, however many rows come. See [`stride`].
+/// Every s-th row of a motion, and the last: at most a given number, however long the motion is. See [`stride`].
 #[derive(Clone, Debug)]
 pub struct Thinned {
     at_most: usize,
@@ -91,17 +91,17 @@ pub struct Thinned {
 }
 
 impl Thinned {
-    /// Of this robot; at most so many rows, at least two.
+    /// For this robot, with at most `at_most` rows, at least two.
     pub fn new(model: &Model, at_most: usize) -> Self {
         Thinned { at_most, stride: 1, rows: 0, kept: Trajectory::new(model), last: Trajectory::new(model) }
     }
 
-    /// Rows that came.
+    /// The number of rows received.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Those that were kept, with the last.
+    /// The rows that were kept, with the last.
     pub fn into_trajectory(mut self) -> Trajectory {
         if self.rows > 0 && !(self.rows - 1).is_multiple_of(self.stride) {
             self.kept.record(self.last.last());

@@ -4,7 +4,7 @@ use crate::model::description::{Joint, JointKind};
 use crate::testing;
 use crate::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 
-/// About −y, so that positive angles swing what hangs along −z towards +x.
+/// A hinge about −y, so that positive angles swing a body that hangs along −z towards +x.
 fn swing() -> JointKind {
     JointKind::Screw(ScrewAxis::new([0.0, -1.0, 0.0], [0.0; 3]).expect("unit"))
 }

@@ -1,4 +1,4 @@
-//! A simulation of one robot, and what it answers.
+//! A simulation of one robot, and its results.
 
 use super::closing::Closing;
 use super::course::Course;
@@ -9,8 +9,8 @@ use crate::model::{Error, Model};
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
-/// A simulation of one robot: how it runs, what is looked for on the way, and what computes θ̈. [`Model::simulate`] is
-/// one without events, by the kernels.
+/// A simulation of one robot: its options, events, and implementation of θ̈. [`Model::simulate`] is one without events,
+/// by the kernels.
 ///
 /// ```
 /// # use mozzi::{Description, HomeFrames, SE3, ScrewAxis, Screws, Solid};
@@ -30,35 +30,35 @@ use core::ops::ControlFlow;
 pub struct Simulation<'a> {
     /// Method, duration, rows, gravity, friction, limits.
     pub options: Options,
-    /// What is looked for on the way.
+    /// The events to locate.
     pub events: Vec<Event<'a>>,
-    /// θ̈ by machine code, such as `mozzi_batch::Compiled::simulator` answers with, in place of the kernels.
+    /// θ̈ by machine code instead of the kernels, such as `mozzi_batch::Compiled::simulator` returns.
     pub forward_dynamics: Option<&'a dyn ForwardDynamics>,
 }
 
-/// A simulated motion, and what happened on the way.
+/// A simulated motion, with its events and stops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// The rows.
     pub motion: Trajectory,
     /// In the order of time.
     pub events: Vec<Occurrence>,
-    /// Joints that came to their limits; none where those are ignored.
+    /// Joints that reached their limits; none if limits are ignored.
     pub stops: Vec<Stopped>,
     /// The largest violation of the robot's constraints.
     pub closing: Closing,
 }
 
-/// How a simulation ended whose rows went elsewhere.
+/// The result of a simulation whose rows went to a recorder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ending {
     /// Steps taken.
     pub steps: usize,
-    /// Did it reach t_f? `false` where an event, the progress callback or the recorder ended it.
+    /// Did it reach t_f? `false` if an event, the progress callback or the recorder ended it.
     pub complete: bool,
     /// In the order of time.
     pub events: Vec<Occurrence>,
-    /// Joints that came to their limits; none where those are ignored.
+    /// Joints that reached their limits; none if limits are ignored.
     pub stops: Vec<Stopped>,
     /// The largest violation of the robot's constraints.
     pub closing: Closing,
@@ -79,7 +79,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// As [`run`](Self::run); after each step `progress(t)` is called. `ControlFlow::Break(())` stops the simulation:
-    /// the motion so far is the answer, not [`complete`](Trajectory::complete).
+    /// the result is then the motion so far, not [`complete`](Trajectory::complete).
     ///
     /// # Errors
     /// Those of [`Model::simulate`].
@@ -98,7 +98,7 @@ impl<'a> Simulation<'a> {
         Ok(Run { motion, events, stops, closing })
     }
 
-    /// As [`run_with_progress`](Self::run_with_progress), with rows that go to a recorder one by one: memory does not
+    /// As [`run_with_progress`](Self::run_with_progress), but passes the rows to a recorder one by one: memory does not
     /// grow with them.
     ///
     /// # Errors

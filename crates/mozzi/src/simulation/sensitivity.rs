@@ -12,8 +12,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is told in n
-/// numbers, along θ ⊕ δθ (see [`integrate`](crate::integrate)): of a floating base as a twist (ω, v) in its own
+/// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is given by n
+/// numbers, along θ ⊕ δθ (see [`integrate`](crate::integrate)); for a floating base they are a twist (ω, v) in its own
 /// coordinates, at either end of the step.
 #[derive(Clone, Debug)]
 pub struct StepSensitivity {
@@ -41,7 +41,7 @@ pub struct EndSensitivity {
 }
 
 impl EndSensitivity {
-    /// By the chain rule along the steps, from the last to the first. `None` of no steps.
+    /// By the chain rule along the steps, from the last to the first. `None` if there are no steps.
     ///
     /// # Panics
     /// When the steps are of different robots.
@@ -61,11 +61,11 @@ impl EndSensitivity {
 
 impl Model<f64> {
     /// One step of δt = t_f / N from (θ, θ̇), τ held: the state (θ, θ̇) after it. The method, friction and gravity are
-    /// those of the options, {s} is at rest, nothing is touched. The Euler methods' steps are those of
+    /// those of the options, {s} is at rest, no wrenches are applied. The Euler methods' steps are those of
     /// [`simulate`](Self::simulate).
     ///
     /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] for options that make no sense, or a method that is not
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for invalid options, or a method that is not
     /// [explicit](super::Method::explicit); [`Error::SingularMassMatrix`].
     pub fn held_step(
         &self,
@@ -86,9 +86,9 @@ impl Model<f64> {
         Ok((end.theta, end.dtheta))
     }
 
-    /// [`held_step`](Self::held_step) with its derivatives by the start, by the torque, and by each of these changes of
-    /// the robot: exact to rounding for the step as it is taken, whatever its size. At θ̇ = 0 Coulomb friction has the
-    /// derivative 0.
+    /// [`held_step`](Self::held_step) with its derivatives with respect to the start, the torque, and each of these
+    /// changes of the robot: exact to rounding for the step as it is taken, whatever its size. At θ̇ = 0 Coulomb
+    /// friction has the derivative 0.
     ///
     /// Cost: 3n steps on dual numbers, and one for each change.
     ///
@@ -175,7 +175,7 @@ where
     DVector::from_iterator(2 * model.n(), way.iter().chain(&end.dtheta).map(|x| x.derivative))
 }
 
-/// Φ: one step of any numbers, τ held. `check` is asked after each forward dynamics.
+/// Φ: one step of any number type, τ held. `check` is called after each forward dynamics.
 fn step<S: Real + From<C>, C: Scalar, E>(
     model: &Model<C>,
     theta: &[S],
@@ -223,7 +223,7 @@ mod tests {
         Options { method, friction: Friction::Smooth { slip_speed: 0.5 }, ..Options::new(0.01 * steps as f64, steps) }
     }
 
-    /// x after the steps, less x₀, in the tangent space at x₀.
+    /// x after the steps minus x₀, in the tangent space at x₀.
     fn end(
         model: &Model,
         x: (&[f64], &[f64]),

@@ -1,11 +1,11 @@
-//! Detection of a simulation that stops to advance: many steps, and hardly any time.
+//! Detection of a stalled simulation: many steps that hardly advance time.
 //!
 //! The steps of an integrator are counted in windows of a fixed number. If a window covers less time than
 //!
 //! > window / 10⁸ · t_f (adaptive: the whole motion would take 10⁸ steps),  window / 1000 · δt (steps of given length)
 //!
-//! the simulation would practically never end, and is stopped with an error. Adaptive steps around rest under Coulomb
-//! friction, where sgn θ̇ jumps from stage to stage, are stopped from a million steps on.
+//! the simulation would practically never end, and is stopped with an error. For adaptive steps around rest under
+//! Coulomb friction, where sgn θ̇ jumps from stage to stage, the bound is 10⁶ steps instead of 10⁸.
 
 use super::{Friction, Options};
 use crate::model::{Error, Model};
@@ -16,18 +16,18 @@ use alloc::vec::Vec;
 
 /// Steps of a window.
 const WINDOW: usize = 20_000;
-/// Adaptive steps of a whole motion: at most, and at most of those that chatter.
+/// Maximum numbers of adaptive steps of a whole motion: of any, and of one that chatters.
 const MOST: f64 = 1e8;
 const MOST_CHATTER: f64 = 1e6;
-/// Steps of a window, taken or rejected, in which a velocity changes its sign that are chatter.
+/// A velocity chatters if it changes its sign in this many steps of a window, taken or rejected.
 const CHATTER: usize = WINDOW / 20;
 
-/// What makes the steps of an adaptive method short.
+/// The causes of an adaptive method's short steps.
 #[derive(Clone, Debug)]
 pub(super) struct Trouble {
     /// The velocity with the largest error of the last estimate.
     pub sensitive: Option<usize>,
-    /// Velocity by velocity, the steps of this window, taken or rejected, in which it changes its sign.
+    /// For each velocity, the number of steps of this window, taken or rejected, in which it changes its sign.
     pub changes: Vec<usize>,
 }
 
@@ -63,7 +63,7 @@ impl Stall {
         Stall { least, steps: 0, start: 0.0 }
     }
 
-    /// After each step, with what an adaptive method knows.
+    /// Called after each step, with the causes that an adaptive method knows.
     pub fn check(
         &mut self,
         model: &Model,
@@ -105,12 +105,12 @@ pub(super) fn too_short(
     Error::Stalled { time, joint: velocity(model, j), cause }
 }
 
-/// Has this velocity Coulomb friction that jumps?
+/// Does this velocity have non-smooth Coulomb friction?
 fn is_dry(model: &Model, options: &Options, j: usize) -> bool {
     options.friction == Friction::Coulomb && model.friction[j] != 0.0
 }
 
-/// The name of a velocity, such as its joint's; of none where the robot has none.
+/// The name of a velocity, such as its joint's; empty if there is none.
 pub(super) fn velocity(model: &Model, j: Option<usize>) -> String {
     j.and_then(|j| model.velocity_names().nth(j)).unwrap_or_default().to_string()
 }

@@ -3,7 +3,7 @@
 use super::{Motion, Powers};
 use alloc::vec::Vec;
 
-/// A copy of what a [`Motion`] of one robot is at.
+/// A copy of the state of a [`Motion`] of one robot.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct State {
     pub t: f64,
@@ -21,7 +21,7 @@ impl State {
         State { t, theta, dtheta, ddtheta, powers: rates, works: integrals }
     }
 
-    /// Becomes the motion's, without allocation.
+    /// Copies the motion's state, without allocation.
     pub fn copy_from(&mut self, motion: &Motion<f64, 3>) {
         (self.t, self.powers, self.works) = (motion.t, motion.rates, motion.integrals);
         self.theta.copy_from_slice(&motion.theta);
@@ -29,7 +29,7 @@ impl State {
         self.ddtheta.copy_from_slice(&motion.ddtheta);
     }
 
-    /// The motion goes on from here.
+    /// Sets the motion to this state.
     pub fn copy_to(&self, motion: &mut Motion<f64, 3>) {
         (motion.t, motion.rates, motion.integrals) = (self.t, self.powers, self.works);
         motion.theta.copy_from_slice(&self.theta);

@@ -1,4 +1,4 @@
-//! The ends of the joints' ways.
+//! Stops: the joints' position limits along a motion.
 
 use super::Policy;
 use super::dense::Dense;
@@ -14,22 +14,22 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// A joint that came to the end of its way.
+/// A joint that reached a position limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stopped {
     /// The joint.
     pub joint: String,
     /// Its limit, rad or m.
     pub limit: f64,
-    /// When it first came there, s.
+    /// When it first reached the limit, s.
     pub first: f64,
-    /// How far beyond it was at most, rad or m: 0 where limits are respected.
+    /// The largest excess beyond the limit, rad or m: 0 if limits are respected.
     pub beyond: f64,
-    /// How often it came there.
+    /// How often it reached the limit.
     pub times: usize,
 }
 
-/// What is known of the joints' limits along a motion.
+/// The state of the joints' limits along a motion.
 pub(super) struct Stops {
     policy: Policy,
     bounds: Bounds,
@@ -55,7 +55,7 @@ impl Stops {
                 format!("that of `{name}`, a ball that may not turn at all"),
                 "an angle above 0, or a fixed joint",
             )?;
-            // a quaternion has the angle to rounding only
+            // a quaternion gives the angle to rounding only
             let rounding = if is_ball { 1e-12 } else { 0.0 };
             let fine = policy != Policy::Respect || (low..=high + rounding).contains(&q);
             check(
@@ -92,8 +92,8 @@ impl Stops {
         if side == 0 { low - q } else { q - high }
     }
 
-    /// As [`excess`](Self::excess), along a motion from θ₀: a ball's angle goes on beyond π, so that it does not come
-    /// within its limit on the other side.
+    /// As [`excess`](Self::excess), along a motion from θ₀: a ball's angle continues beyond π, so that it does not
+    /// re-enter its limit from the other side.
     fn excess_from(&self, from: &[f64], theta: &[f64], k: usize, side: usize) -> f64 {
         let (Place { freedom, q, .. }, excess) = (self.bounds.places[k], self.excess(theta, k, side));
         if freedom == Freedom::Ball && from[q] * theta[q] < 0.0 {
@@ -111,7 +111,7 @@ impl Stops {
         note.times += usize::from(again);
     }
 
-    /// Notes joints beyond their limits; states come in the order of time.
+    /// Records joints beyond their limits; states come in the order of time.
     pub fn report_at(&mut self, t: f64, theta: &[f64]) {
         if self.policy != Policy::Report {
             return;
@@ -127,7 +127,7 @@ impl Stops {
         }
     }
 
-    /// The first time within the step at which a joint that is not held reaches a stop, until a time.
+    /// The first time within the step, up to `until`, at which a joint that is not held reaches a stop.
     pub fn first_impact(&self, model: &Model, dense: &Dense, until: f64, held: &[Held]) -> Option<(f64, usize, usize)> {
         let from = dense.at(model, dense.t).theta;
         let free = self.sides.iter().copied().filter(|&(k, _)| !is_held(self.bounds.places[k], held));
@@ -138,7 +138,7 @@ impl Stops {
         impacts.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The time within the step, after its beginning, from which a stop would have to pull; by halves.
+    /// The time within the step, after its beginning, from which a stop would have to pull; by bisection.
     pub fn first_release(&self, dense: &Dense, until: &State, driven: &mut Driven) -> Result<Option<f64>, Error> {
         if driven.pull(until)? <= 0.0 {
             return Ok(None);
@@ -151,8 +151,8 @@ impl Stops {
         Ok(Some(b))
     }
 
-    /// Stops the joints at a limit that move towards it, or are at rest and would: those that start there, those that
-    /// came there at the same time as another, those that another stop lets go.
+    /// Stops the joints at a limit that move towards it, or are at rest and accelerate towards it: those that start
+    /// there, those that arrive there at the same time as another, those that another stop releases.
     pub fn stop_at_limits(&mut self, state: &mut State, driven: &mut Driven) -> Result<(), Error> {
         for i in 0..self.sides.len() {
             let (k, side) = self.sides[i];
@@ -166,8 +166,8 @@ impl Stops {
         Ok(())
     }
 
-    /// The joint comes to rest there, without a rebound, and all that rests against stops with it; what the impact
-    /// takes is friction's.
+    /// Brings the joint to rest at its limit, without a rebound, together with all joints held at stops; the energy
+    /// lost in the impact is counted as friction.
     pub fn stop(&mut self, state: &mut State, k: usize, side: usize, driven: &mut Driven) -> Result<(), Error> {
         let held = Held::new(&self.bounds, k, side);
         held.project(&mut state.theta);
@@ -187,7 +187,7 @@ impl Stops {
     }
 }
 
-/// A ball turns by an angle from 0 to π.
+/// The limits that can be reached; a ball's angle is from 0 to π.
 fn sides(bounds: &Bounds) -> Vec<(usize, usize)> {
     let all = (0..bounds.joints.len()).flat_map(|k| [(k, 0), (k, 1)]);
     let is_reachable = |&(k, side): &(usize, usize)| {

@@ -1,4 +1,4 @@
-//! Inputs that were sampled.
+//! Sampled inputs.
 
 use super::Input;
 use crate::model::{Error, FrameId};
@@ -6,10 +6,10 @@ use crate::spatial::Wrench;
 use alloc::format;
 use alloc::vec::Vec;
 
-/// What a table says before its first and after its last time.
+/// How to extrapolate a table outside its time range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outside {
-    /// Nothing: an error, so that no input is invented.
+    /// An error, so that no input is invented.
     #[default]
     Error,
     /// The nearest row.
@@ -28,12 +28,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// Row k holds at `times[k]` (seconds) the values `values[k w .. (k + 1) w]`, w = values / times. Outside its times
-    /// it is an error to ask.
+    /// Row k holds at `times[k]` (seconds) the values `values[k w .. (k + 1) w]`, w = values / times. It is an error to
+    /// evaluate the table outside its time range.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] where there is no row, a number is not finite, or a time does not come after the one
-    /// before; [`Error::WrongLength`] where the values do not make whole rows.
+    /// [`Error::BadArgument`] if there is no row, a number is not finite, or a time does not come after the one before;
+    /// [`Error::WrongLength`] if the values do not make whole rows.
     pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, Error> {
         let bad = |what, found, expected| Err(Error::BadArgument { what, found, expected });
         if times.is_empty() {
@@ -58,7 +58,7 @@ impl Table {
         Ok(Table { times, values, outside: Outside::Error })
     }
 
-    /// The same table, saying this before its first and after its last time.
+    /// The same table, extrapolated like this.
     pub fn outside(self, outside: Outside) -> Self {
         Table { outside, ..self }
     }
@@ -74,7 +74,7 @@ impl Table {
     }
 
     /// The row at time t is (1 − s) · (row k) + s · (row k + 1): calls `each(column, value)`. O(log rows). A time that
-    /// misses the range by rounding only (10⁻¹² of its size) is in it.
+    /// is outside the range by rounding only (10⁻¹² of its size) counts as inside.
     fn at(&self, t: f64, mut each: impl FnMut(usize, f64)) -> Result<(), Error> {
         let [first, last] = self.range();
         let slack = 1e-12 * first.abs().max(last.abs());
@@ -121,8 +121,8 @@ impl Input for TorqueTable {
     }
 }
 
-/// What one frame applies to the environment, from a table of 6 columns: (m, f), **angular first**, in the frame's
-/// coordinates.
+/// The wrenches that one frame applies to the environment, from a table of 6 columns: (m, f), **angular first**, in the
+/// frame's coordinates.
 #[derive(Clone, Debug)]
 pub struct WrenchTable(pub FrameId, pub Table);
 

@@ -1,10 +1,10 @@
-//! What a simulation found.
+//! The result of a simulation.
 
 use crate::model::Model;
 use alloc::vec::Vec;
 
-/// Where the energy is and where it went, in joules. Work counts from the start of the simulation: W = ∫ power dt is a
-/// further component of the state, integrated by the same method, and so of the same order, as the motion.
+/// Energies and works, in joules. Work counts from the start of the simulation: W = ∫ power dt is a further component
+/// of the state, integrated by the same method, and so of the same order, as the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// 𝒦 = ½ θ̇ᵀMθ̇.
@@ -25,12 +25,12 @@ impl Energy {
         self.kinetic + self.potential
     }
 
-    /// What the robot was given: motors − friction − environment.
+    /// The energy supplied to the robot: motors − friction − environment.
     pub fn supplied(&self) -> f64 {
         self.motor_work - self.friction_loss - self.applied_work
     }
 
-    /// E − E_first − (motors − friction − environment), in joules: 0 but for the error of the integration.
+    /// E − E_first − (motors − friction − environment), in joules: 0 up to the error of the integration.
     pub fn drift_since(&self, first: &Energy) -> f64 {
         self.total() - first.total() - self.supplied()
     }
@@ -57,7 +57,7 @@ pub struct Trajectory {
     pub energy: Vec<Energy>,
     /// Steps taken.
     pub steps: usize,
-    /// Did it reach t_f? `false` where the progress callback stopped it.
+    /// Did it reach t_f? `false` if the progress callback stopped it.
     pub complete: bool,
 }
 
@@ -79,7 +79,7 @@ pub struct Sample<'a> {
 }
 
 impl Trajectory {
-    /// Of this robot, without rows: a [`Recorder`](super::Recorder).
+    /// For this robot, without rows: a [`Recorder`](super::Recorder).
     pub fn new(model: &Model) -> Self {
         Trajectory {
             nq: model.nq(),
@@ -95,10 +95,10 @@ impl Trajectory {
         }
     }
 
-    /// One row more.
+    /// Adds a row.
     ///
     /// # Panics
-    /// When the row is not as long as this robot's.
+    /// When the row does not have this robot's lengths.
     pub fn record(&mut self, row: Sample) {
         assert!(row.theta.len() == self.nq, "theta has {} entries, expected {}", row.theta.len(), self.nq);
         for list in [row.dtheta, row.ddtheta, row.tau] {
@@ -112,7 +112,7 @@ impl Trajectory {
         self.energy.push(row.energy);
     }
 
-    /// Rows 0, k, 2k, … alone.
+    /// Keeps only rows 0, k, 2k, ….
     pub(super) fn keep_every(&mut self, k: usize) {
         let (n, nq) = (self.n.max(1), self.nq.max(1));
         let thin = |list: &mut Vec<f64>, width: usize| {
@@ -132,19 +132,19 @@ impl Trajectory {
         });
     }
 
-    /// No rows.
+    /// Removes all rows.
     pub(super) fn clear(&mut self) {
         let lists = [&mut self.t, &mut self.theta, &mut self.dtheta, &mut self.ddtheta, &mut self.tau];
         lists.into_iter().for_each(Vec::clear);
         self.energy.clear();
     }
 
-    /// Rows.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.t.len()
     }
 
-    /// Never of a simulation: the start is always recorded.
+    /// Never true after a simulation: the start is always recorded.
     pub fn is_empty(&self) -> bool {
         self.t.is_empty()
     }
@@ -178,8 +178,8 @@ impl Trajectory {
         self.sample(self.len() - 1)
     }
 
-    /// E(t) − E(0) − (motors − friction − environment) in row k, in joules: 0 but for the error of the integration. For
-    /// a passive robot without friction it is E(t) − E(0).
+    /// E(t) − E(0) − (motors − friction − environment) in row k, in joules: 0 up to the error of the integration. For a
+    /// passive robot without friction it is E(t) − E(0).
     ///
     /// # Panics
     /// When there is no row k.
@@ -192,7 +192,7 @@ impl Trajectory {
         (0..self.len()).map(|k| self.drift(k).abs()).fold(0.0, f64::max)
     }
 
-    /// max 𝒦 over the rows, in joules: what a drift can be compared with (𝒫 has no zero of its own).
+    /// max 𝒦 over the rows, in joules: a reference for the drift (𝒫 has no natural zero).
     pub fn largest_kinetic_energy(&self) -> f64 {
         self.energy.iter().map(|energy| energy.kinetic).fold(0.0, f64::max)
     }
@@ -277,7 +277,7 @@ mod tests {
         let robot = pendulum(0.0, 0.5);
         let end = robot.simulate(&[1.0], &[0.0], Zero, &options).expect("a motion");
         assert!(end.last().dtheta[0].abs() < 1e-3 && end.largest_drift() < 1e-6, "{:?}", end.last());
-        // what it had has become heat
+        // its energy has become heat
         let energy = |k: usize| end.energy[k].total();
         assert!((energy(0) - energy(end.len() - 1) - end.last().energy.friction_loss).abs() < 1e-6);
     }

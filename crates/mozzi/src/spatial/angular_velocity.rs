@@ -6,17 +6,17 @@ use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use core::ops::{Mul, Neg, Sub};
 
-/// (ω, 0): the twist of a body that turns about its frame's origin. Products with it cost no multiplication by its
+/// (ω, 0): the twist of a body that rotates about its frame's origin. Products with it skip the multiplications by its
 /// zeros.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AngularVelocity<S>(pub Vec3<S>);
 
-/// `[ad_V]`ᵀ of a spin.
+/// `[ad_V]`ᵀ of an angular velocity.
 #[derive(Clone, Copy)]
 pub(crate) struct SpinBracketTranspose<S>(Vec3<S>);
 
-/// `[ad_V]`ᵀP of a spin and a momentum, (m × ω, f × ω), before it is subtracted: so each product is fused with its
-/// difference.
+/// `[ad_V]`ᵀP of an angular velocity and a momentum, (m × ω, f × ω), kept as factors so that each product is fused with
+/// the subtraction that follows.
 #[derive(Clone, Copy)]
 pub(crate) struct GyroscopicWrench<S> {
     w: Vec3<S>,
@@ -43,9 +43,9 @@ impl<S: Scalar> Twist<S> {
         AngularVelocity(self.w)
     }
 
-    /// A twist V = `self` and its rate V̇, as an observer sees them who at this moment moves along with the frame's
-    /// origin, in a straight line at constant speed: (ω, 0), and (ω̇, v̇ + ω × v), the acceleration of the origin
-    /// itself.
+    /// The classical acceleration of a frame with the twist V = `self` and its rate V̇: (ω, 0), and (ω̇, v̇ + ω × v),
+    /// whose linear part is the acceleration of the origin. This is the motion in a frame that moves, at this moment,
+    /// with the origin, in a straight line at constant speed.
     #[inline(always)]
     pub(crate) fn classical_acceleration(self, dV: Self) -> (AngularVelocity<S>, Self) {
         (self.spin(), Twist { w: dV.w, v: self.w.cross_add(self.v, dV.v) })

@@ -6,8 +6,8 @@ use crate::linalg::{Mat3, Skew, Sym3, Vec3, linear_space};
 use crate::scalar::Scalar;
 use core::ops::Mul;
 
-/// `[[I, H], [Hᵀ, M]]`, 21 numbers: the wrench that a link with all that hangs from it by free joints needs for an
-/// acceleration (Featherstone 2008, chapter 7).
+/// `[[I, H], [Hᵀ, M]]`, 21 numbers: the wrench that a link needs for an acceleration while all joints beyond it are
+/// free (Featherstone 2008, chapter 7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct ArticulatedInertia<S = f64> {
@@ -38,7 +38,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     #[inline(always)]
     pub(crate) fn congruence_add(self, Ad: Adjoint<S>, to: Self) -> Self {
         let (P, Rt) = (Skew(Ad.0.p), Ad.0.R.matrix().transpose());
-        // [Ad] = [[1, 0], [P, 1]] diag(R, R): fold P, of which Pᵀ = −P, then turn
+        // [Ad] = [[1, 0], [P, 1]] diag(R, R): apply P, for which Pᵀ = −P, then rotate
         let H = Skew(-P.0).mul_add(self.M.to_mat3(), self.H);
         let I = Sym3::upper(H.mul_add_skew(P, self.H.mul_add_skew(P, self.I.to_mat3()).transpose()));
         ArticulatedInertia {

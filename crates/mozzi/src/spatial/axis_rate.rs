@@ -7,7 +7,7 @@ use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use core::ops::{Add, AddAssign, Mul};
 
-/// Its four numbers; products with it cost no multiplication by its zeros.
+/// The four nonzero components; products with it skip the multiplications by its zeros.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AxisRate<S> {
     pub w: [S; 2],
@@ -33,7 +33,7 @@ impl<S: Scalar> AxisRate<S> {
         x.mul_add(mx, y.mul_add(my, u.mul_add(fx, v * fy)))
     }
 
-    /// This times a rate, and `to`.
+    /// This times a rate, plus `to`.
     #[inline(always)]
     pub fn mul_add(self, rate: S, to: Twist<S>) -> Twist<S> {
         let ([x, y], [u, v], [a, b, c], [d, e, f]) = (self.w, self.v, to.w.0, to.v.0);
@@ -67,7 +67,7 @@ impl<S: Scalar> AddAssign for AxisRate<S> {
     }
 }
 
-/// `[ad_V]` of it.
+/// `[ad_V]` times the rate of an axis.
 impl<S: Scalar> Mul<AxisRate<S>> for LieBracket<S> {
     type Output = Twist<S>;
     #[inline(always)]
@@ -84,7 +84,7 @@ impl<S: Scalar> Mul<AxisRate<S>> for LieBracket<S> {
     }
 }
 
-/// 𝒢 of it.
+/// 𝒢 times the rate of an axis.
 impl<S: Scalar> Mul<AxisRate<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
     #[inline(always)]
@@ -101,7 +101,7 @@ impl<S: Scalar> Mul<AxisRate<S>> for SpatialInertia<S> {
     }
 }
 
-/// 𝓑 of it, by its angular part.
+/// 𝓑 times the rate of an axis, given by its angular part.
 impl<S: Scalar> Mul<[S; 2]> for CoriolisFactor<S> {
     type Output = Wrench<S>;
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! What a body's velocity adds to the change of its wrench.
+//! The velocity-dependent factor in the derivatives of a body's wrench.
 
 use super::{JointAxis, SpatialInertia, Twist, Wrench};
 use crate::lie::Adjoint;
@@ -18,7 +18,7 @@ pub(crate) struct CoriolisFactor<S> {
 linear_space!(CoriolisFactor { K, f });
 
 impl<S: Scalar> CoriolisFactor<S> {
-    /// Of a body with the momentum P = 𝒢𝒱.
+    /// 𝓑 of a body with the momentum P = 𝒢𝒱.
     #[inline(always)]
     pub fn new(G: SpatialInertia<S>, V: Twist<S>, P: Wrench<S>) -> Self {
         CoriolisFactor { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
@@ -37,7 +37,7 @@ impl<S: Scalar> CoriolisFactor<S> {
         CoriolisFactor { K: R.transpose() * about.K * R, f: R.transpose_mul(self.f) }
     }
 
-    /// 𝓑ᵀA, which has no force: Kᵀω + 2 f × v.
+    /// 𝓑ᵀA, a moment without a force: Kᵀω + 2 f × v.
     #[inline(always)]
     pub fn transpose_mul(self, A: JointAxis<S>) -> Vec3<S> {
         let ([x, y, z], [fx, fy, _], b) = (self.K.z.0, self.f.0, A.b + A.b);
@@ -51,7 +51,7 @@ impl<S: Scalar> CoriolisFactor<S> {
     }
 }
 
-/// 𝓑A, by A's angular part: the linear one meets zeros.
+/// 𝓑A, from A's angular part: the linear part meets zeros.
 impl<S: Scalar> Mul<Vec3<S>> for CoriolisFactor<S> {
     type Output = Wrench<S>;
     #[inline(always)]
@@ -88,7 +88,7 @@ mod tests {
         assert!((B.transpose_mul(A).dot(X.w) - A.twist().dot(defined(X))).abs() < 1e-13);
         assert!((B.transpose_mul_twist(A.twist()) - B.transpose_mul(A)).norm() < 1e-13);
         assert!((B.transpose_mul_twist(V).dot(X.w) - V.dot(defined(X))).abs() < 1e-13);
-        // about another point: of the body's inertia and twist there
+        // about another point: 𝓑 from the body's inertia and twist there
         let p = Vec3([0.3, -0.2, 0.5]);
         let (G, V) = (G.about(p), SE3 { p: -p, ..SE3::identity() }.Ad() * V);
         let there = CoriolisFactor::new(G, V, G * V);

@@ -94,7 +94,7 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 }
 
-/// 𝒢V: the momentum (or, of an acceleration, the wrench).
+/// 𝒢V: the momentum (or, for an acceleration, the wrench).
 impl<S: Scalar> Mul<Twist<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
     #[inline(always)]
@@ -110,7 +110,7 @@ impl<S: Scalar + PartialEq> SpatialInertia<S> {
     }
 }
 
-/// The matrix given for a spatial inertia is none.
+/// Error: the matrix is not a spatial inertia.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "not a spatial inertia: entry ({row}, {column}) is {found}, expected {expected} (the form is [[I, [mc]], [−[mc], m]])"
@@ -149,7 +149,8 @@ impl SpatialInertia<f64> {
         self.congruence(SE3 { p: self.center_of_mass(), ..SE3::identity() }.Ad()).I
     }
 
-    /// Is this the inertia of a body that can exist? The answer with its numbers; rods and point masses are legal.
+    /// Whether a body with this inertia can exist, with the numbers behind the verdict; rods and point masses are
+    /// valid.
     pub fn verdict(&self) -> InertiaVerdict {
         let principal_moments = eigenvalues(self.about_center_of_mass());
         let [a, b, c] = principal_moments;
@@ -171,7 +172,7 @@ impl SpatialInertia<f64> {
     }
 }
 
-/// What [`SpatialInertia::verdict`] found.
+/// The result of [`SpatialInertia::verdict`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InertiaVerdict {
     /// m in kg.
@@ -190,7 +191,7 @@ enum InertiaProblem {
 }
 
 impl InertiaVerdict {
-    /// A body with this inertia can exist.
+    /// True if a body with this inertia can exist.
     pub fn is_physical(&self) -> bool {
         self.problem.is_none()
     }
@@ -216,7 +217,7 @@ impl fmt::Display for InertiaVerdict {
     }
 }
 
-/// A number as people read it: six digits, with an exponent where there would be many zeros.
+/// A number for display: six digits, with an exponent if there would be many zeros.
 pub struct Rounded(pub f64);
 
 impl fmt::Display for Rounded {
@@ -290,7 +291,7 @@ mod tests {
                 .is_ok_and(|back| difference(back.to_matrix(), G.to_matrix()) < 1e-15)
         );
         let mut wrong = G.to_matrix();
-        wrong[4][4] += 1.0; // a mass that depends on the direction
+        wrong[4][4] += 1.0; // an invalid mass that depends on the direction
         let message = SpatialInertia::from_matrix(wrong).expect_err("two masses").to_string();
         assert!(message.contains("entry (4, 4)"), "{message}");
     }

@@ -17,7 +17,7 @@ impl<S: Scalar> SpatialInertia<S> {
         SpatialInertia { mass, mc: Vec3([x, y, z]), I: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
-    /// The ten inertias of which one parameter is 1 and the others 0; only the sums with weights are bodies.
+    /// The ten inertias with one parameter 1 and the others 0; only weighted sums of them are bodies.
     #[inline(always)]
     pub fn units() -> [Self; 10] {
         core::array::from_fn(|k| {

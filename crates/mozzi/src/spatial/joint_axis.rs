@@ -35,7 +35,7 @@ impl<S: Scalar> JointAxis<S> {
         (self.a * q).sin_cos()
     }
 
-    /// e^{−`[A]`q} M: turn M by −aq about z, given [`sin_cos`](Self::sin_cos), and slide it by −bq along z.
+    /// e^{−`[A]`q} M: rotate M by −aq about z, given [`sin_cos`](Self::sin_cos), and translate it by −bq along z.
     #[inline(always)]
     pub fn transform(self, (s, c): (S, S), q: S, M: SE3<S>) -> SE3<S> {
         let ([px, py, pz], R) = (M.p.0, M.R.matrix());

@@ -1,4 +1,4 @@
-//! The nouns of rigid-body mechanics: one noun, one file.
+//! The quantities of rigid-body mechanics, one per file.
 
 mod angular_velocity;
 mod articulated_inertia;

@@ -1,16 +1,16 @@
-//! The inertia of a body that can exist, nearest to one that no body can have.
+//! The physical inertia nearest to one that no body can have.
 
 use super::SpatialInertia;
 use crate::linalg::Sym3;
 use nalgebra::{Matrix3, SymmetricEigen};
 
 impl SpatialInertia<f64> {
-    /// The physical inertia nearest to this one, of the same mass and mass centre; this one where it is physical. None
-    /// where the mass is negative or a number is not finite.
+    /// The physical inertia nearest to this one, with the same mass and mass centre; this one if it is physical. None
+    /// if the mass is negative or a number is not finite.
     ///
-    /// Of the rotational inertia I about the centre of mass, Σ = ½ tr(I) 1 − I is the second moment of the mass,
-    /// ∫ r rᵀ dm. A body can have every positive semidefinite Σ and no other, so its negative eigenvalues become 0, the
-    /// nearest in the Frobenius norm (Wensing, Kim and Slotine, IEEE RA-L 3(1), 2018, for the condition).
+    /// With the rotational inertia I about the centre of mass, Σ = ½ tr(I) 1 − I is the second moment of the mass,
+    /// ∫ r rᵀ dm. A body can have every positive semidefinite Σ and no other, so negative eigenvalues of Σ are set to
+    /// zero, the nearest in the Frobenius norm (Wensing, Kim and Slotine, IEEE RA-L 3(1), 2018, for the condition).
     pub fn nearest_physical(&self) -> Option<Self> {
         if !(self.mass >= 0.0) || !self.to_matrix().as_flattened().iter().all(|x| x.is_finite()) {
             return None;

@@ -12,7 +12,7 @@ use core::ops::Mul;
 #[repr(transparent)]
 pub struct ScrewAxis<S = f64>(Twist<S>);
 
-/// The twist given for a screw axis is not unit.
+/// Error: the twist given as a screw axis is not unit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1 (use ScrewAxis::normalize \
@@ -29,7 +29,7 @@ impl ScrewAxis<f64> {
     /// From (ω, v), unit to 10⁻¹².
     ///
     /// # Errors
-    /// [`NotAScrew`] when it is not unit: the caller knows whether θ is to be rescaled, see
+    /// [`NotAScrew`] when it is not unit: only the caller knows whether to rescale θ, see
     /// [`normalize`](Self::normalize).
     pub fn new(w: [f64; 3], v: [f64; 3]) -> Result<Self, NotAScrew> {
         let twist = Twist { w: Vec3(w), v: Vec3(v) };
@@ -47,7 +47,7 @@ impl ScrewAxis<f64> {
         Self::new([a, b, c], [x, y, z])
     }
 
-    /// The turn about the line through `point` with the unit direction `axis`, sliding `pitch` metres per radian.
+    /// The rotation about the line through `point` with the unit direction `axis`, sliding `pitch` metres per radian.
     ///
     /// # Errors
     /// [`NotAScrew`] when the axis is not unit.
@@ -91,7 +91,7 @@ impl<S: Real + Into<f64>> ScrewAxis<S> {
 }
 
 impl<S: Scalar> ScrewAxis<S> {
-    /// ω = 0?
+    /// True if ω = 0.
     pub fn is_prismatic(self) -> bool
     where
         S: PartialEq,

@@ -4,8 +4,8 @@ use super::SpatialInertia;
 use crate::linalg::{Sym3, Vec3};
 use core::f64::consts::PI;
 
-/// A homogeneous solid, centred at its frame's origin. Metres. Composites are sums of solids, each seen from the
-/// whole's frame: `solid.inertia(m).transformed(T_whole_solid) + …`.
+/// A homogeneous solid, centred at its frame's origin. Metres. A composite body is a sum of solids, each seen from the
+/// composite's frame: `solid.inertia(m).transformed(T_whole_solid) + …`.
 ///
 /// ```
 /// use mozzi::{SE3, Solid};
@@ -25,7 +25,7 @@ pub enum Solid {
     Capsule {
         /// m.
         radius: f64,
-        /// Of the cylinder alone: m.
+        /// The length of the cylinder alone: m.
         length: f64,
     },
     /// A circular cylinder along z.
@@ -62,8 +62,8 @@ impl Solid {
         let [x, y, z] = match self {
             Solid::Box(edges) => edges.map(|e| e * e / 12.0),
             Solid::Capsule { radius, length } => {
-                // parts of the whole, 1 for none where both vanish; of a half ball, z has the mean 3r/8 and z² the mean
-                // r²/5
+                // volume fractions (a whole of 1 avoids 0/0 for an empty solid); for a half ball, z has the mean 3r/8
+                // and z² the mean r²/5
                 let (cylinder, ball) = (length, 4.0 / 3.0 * radius);
                 let whole = if cylinder + ball > 0.0 { cylinder + ball } else { 1.0 };
                 let half = length / 2.0;

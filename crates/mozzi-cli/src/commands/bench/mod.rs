@@ -1,4 +1,4 @@
-//! `mozzi bench`: this machine's times, of one state and of many.
+//! `mozzi bench`: timings on this machine, for one state and for many.
 
 mod page;
 mod runs;
@@ -16,7 +16,7 @@ use runs::{Data, Run, Subject};
 use std::time::Instant;
 use timing::{Report, Timing};
 
-/// Relative to the largest entry: a larger difference between one state and many is more than rounding.
+/// Relative to the largest entry: a larger difference between one state and many cannot be rounding.
 const ROUNDING: f64 = 1e-6;
 
 #[derive(Args, Debug)]
@@ -37,7 +37,7 @@ pub struct BenchArguments {
     quantity: Vec<Query<'static>>,
 }
 
-/// Does the quantity at this place of the list have a kernel on registers?
+/// Does the quantity with this index in the list have a kernel on registers?
 const HAS_REGISTERS: &[bool] = {
     macro_rules! flags {
         ($($Q:ident)*) => { &[$(<mozzi::quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
@@ -83,7 +83,7 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     Err(Failure::Stopped(text))
 }
 
-/// Compares with one state, then times all in turn; nothing, where Ctrl-C asked to end.
+/// Compares with one state, then times all in turn; nothing after Ctrl-C.
 fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<Timing>>> {
     let mut differences = Vec::new();
     let mut reference = Vec::new();
@@ -123,11 +123,11 @@ fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<T
     Ok(Some(timings.collect()))
 }
 
-/// Of the first states, as many as are in both.
+/// The difference over the first states, as many as both have.
 fn difference(reference: &[f64], found: &[f64]) -> f64 {
     let largest = reference.iter().fold(0.0_f64, |m, x| m.max(x.abs())).max(f64::MIN_POSITIVE);
     let apart = reference.iter().zip(found).map(|(a, b)| (a - b).abs());
-    // a NaN is the largest of all
+    // a NaN counts as the largest
     apart.fold(0.0_f64, |m, x| if x <= m { m } else { x }) / largest
 }
 

@@ -1,4 +1,4 @@
-//! One quantity at random states, in each way there is.
+//! One quantity at random states, computed in each available way.
 
 use super::timing::Way;
 use crate::failure::Result;
@@ -52,7 +52,7 @@ impl<T> Data<T> {
     }
 }
 
-/// A computation of all states, that can be repeated.
+/// A repeatable computation of all states.
 pub struct Run<'a> {
     pub way: Way,
     pub states: usize,
@@ -73,7 +73,7 @@ impl Run<'_> {
     }
 }
 
-/// What is computed, and the frame that applies wrenches.
+/// The quantity, and the frame that applies wrenches.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     pub model: &'a Model,

@@ -1,4 +1,4 @@
-//! What is timed, and the times.
+//! The timed computations, and their times.
 
 use mozzi_batch::InstructionSet;
 
@@ -11,7 +11,7 @@ pub struct Way {
     pub threads: usize,
 }
 
-/// Nanoseconds a state, and the largest difference from one state, relative to the largest entry.
+/// Nanoseconds per state, and the largest difference from one state, relative to the largest entry.
 pub struct Timing {
     pub name: String,
     pub way: Way,
@@ -20,7 +20,7 @@ pub struct Timing {
     pub difference: f64,
 }
 
-/// All times, and what they are of.
+/// All times, and their conditions.
 pub struct Report {
     pub processor: String,
     pub states: u32,

@@ -80,7 +80,7 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
     })
 }
 
-/// Constraints where they are needed, and a note where they are left out.
+/// Checks that there are constraints if they are needed, and prints a note if they are left out.
 fn check_constraints(query: Query, model: &Model) -> Result<()> {
     if query.declaration().is_constrained {
         needs_constraints(model)?;

@@ -26,7 +26,7 @@ pub fn object(query: Query, model: &Model) -> Map<String, Value> {
     object
 }
 
-/// " of `tool0`"; nothing of a quantity of the robot alone.
+/// " of `tool0`"; nothing for a quantity of the robot itself.
 pub fn words(query: Query, model: &Model) -> String {
     let subject = query.subject;
     let frame = subject.frame.map(|frame| format!(" of `{}`", model.frame_name(frame))).unwrap_or_default();

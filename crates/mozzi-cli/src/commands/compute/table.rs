@@ -18,8 +18,8 @@ use mozzi_batch::{Batch, BatchEnvironment, Error, InstructionSet};
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 
-/// So many states are computed first, between two looks at the clock; then twice or half as many, until a piece takes
-/// about as long.
+/// The first piece has this many states; each next piece has twice or half as many, until the time for a piece is
+/// between these bounds.
 const FIRST: usize = 256;
 const PIECE: [Duration; 2] = [Duration::from_millis(40), Duration::from_millis(160)];
 
@@ -49,7 +49,7 @@ fn instruction_set(name: &str) -> Result<InstructionSet, String> {
     all.into_iter().find(|set| set.name() == name).ok_or(format!("expected one of {names}"))
 }
 
-/// What is to be computed at all states of a file.
+/// A computation at all states of a file.
 pub struct Job<'a> {
     pub file: &'a str,
     pub query: Query<'a>,
@@ -187,13 +187,13 @@ fn compute<T: Precision>(
     Ok((results, seconds))
 }
 
-/// Some states of a table that has so many.
+/// A range of states from a table with `count` states.
 fn part<T>(table: &[T], count: usize, first: usize, these: usize) -> &[T] {
     let width = table.len() / count;
     &table[first * width..][..these * width]
 }
 
-/// The states that were computed, and the results, by names.
+/// The computed states and the results, by name.
 fn object<T: Precision>(query: Query, model: &Model, states: &States<T>, results: &[Array<T>]) -> Value {
     let count = results.first().map_or(0, |array| array.shape[0]);
     let rows = |table: &[T]| {

@@ -1,4 +1,4 @@
-//! A URDF's text: the edited text of IN, if that is a URDF, or one that is written anew.
+//! The text of a URDF: the edited text of IN, if IN is a URDF, or a newly written one.
 
 use crate::failure::{self, Failure, Result};
 use crate::robot_json;
@@ -48,7 +48,7 @@ pub fn text(
 
 const HELP: &str = ".json can express all of it, --leave-out drops gravity, rotors and constraints";
 
-/// The text of a URDF; of xacro, its expansion.
+/// The text of a URDF, or the expansion of a xacro file.
 fn source(input: &str, settings: Settings) -> Result<Option<String>> {
     if let Some(text) = embedded::text(input) {
         return Ok(Some(text.to_string()));
@@ -62,7 +62,7 @@ fn source(input: &str, settings: Settings) -> Result<Option<String>> {
     Ok(Some(text).filter(|text| !mjcf::is_mjcf(text)))
 }
 
-/// Visuals whose files are named relative to the text's folder.
+/// Notes visuals whose files are named relative to the text's folder.
 fn relative_meshes(input: &str, output: &str, text: &str) {
     let folder = |file: &str| {
         let parent = Path::new(file).parent().filter(|parent| !parent.as_os_str().is_empty());
@@ -77,7 +77,7 @@ fn relative_meshes(input: &str, output: &str, text: &str) {
     }
 }
 
-/// Without what URDF has no words for, with a note for each loss.
+/// The robot without the content that URDF cannot express, with a note for each loss.
 fn reduced(output: &str, robot: &Description, left_out: &[LeftOut]) -> Description {
     let mut robot = expressible(robot);
     let omitted = |what: String| failure::note(&format!("{output} omits {what}"));

@@ -47,7 +47,7 @@ pub fn object(terms: &Terms) -> Value {
     object
 }
 
-/// One output itself, several by their names.
+/// One output alone, several by their names.
 fn named(terms: &Terms, query: Query, outputs: &[Vec<f64>]) -> Value {
     let declared = query.declaration().outputs.iter().zip(query.shapes(terms.model)).zip(outputs);
     let mut outputs = declared.map(|((output, shape), values)| (output.name.to_string(), nested(&shape, values)));

@@ -56,7 +56,7 @@ pub fn state(terms: &Terms) -> Vec<String> {
     quantities(terms.model, &rows, false)
 }
 
-/// What surrounds the robot.
+/// Gravity and the tip's wrench.
 pub fn wrench(terms: &Terms) -> Vec<String> {
     let F = terms.F_tip;
     let mut lines = vec![format!("gravity = {} m/s²", tuple(&terms.model.gravity().0))];
@@ -70,7 +70,7 @@ pub fn wrench(terms: &Terms) -> Vec<String> {
     lines
 }
 
-/// Matrices beside each other, each an output of a quantity below a title; what is missing is left out.
+/// Matrices side by side, each an output of a quantity below a title; missing ones are left out.
 pub fn blocks(terms: &Terms, list: &[(&str, Query, usize)]) -> Vec<String> {
     let block = |&(title, query, output): &(&str, Query, usize)| {
         let lines = matrix(&terms.matrix(query, output)?);

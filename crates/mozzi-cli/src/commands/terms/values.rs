@@ -11,7 +11,7 @@ use mozzi::{
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
-/// The quantities at one state, τ being what the motion takes.
+/// The quantities at one state; τ is the torque that the motion needs.
 pub struct Terms<'m> {
     pub model: &'m Model,
     pub theta: Vec<f64>,
@@ -20,11 +20,11 @@ pub struct Terms<'m> {
     /// The tip's wrench on the environment, in the tip's frame.
     pub F_tip: Wrench,
     pub tip: Option<FrameId>,
-    /// Each quantity's outputs, in the order of the list; none of what cannot be computed, needs a task or a further
+    /// Each quantity's outputs, in the order of the list; none if it cannot be computed, or needs a task or a further
     /// vector.
     pub found: Vec<Option<Vec<Vec<f64>>>>,
     pub newton_euler: NewtonEuler,
-    /// None without end effector, and where the task is singular.
+    /// None without an end effector, and if the task is singular.
     pub task: Option<TaskSpaceDynamics>,
     pub task_rows: Vec<usize>,
     pub task_frame: TaskFrame,
@@ -32,8 +32,8 @@ pub struct Terms<'m> {
 }
 
 impl<'m> Terms<'m> {
-    /// All but the task and the closed form. Why a quantity cannot be computed, such as a singular mass matrix, is a
-    /// note.
+    /// All but the task and the closed form. If a quantity cannot be computed, such as for a singular mass matrix, a
+    /// note gives the reason.
     pub fn at(model: &'m Model, [theta, dtheta, ddtheta]: [Vec<f64>; 3], environment: &Environment) -> Result<Self> {
         let tip = end_effector(model);
         let tau = model.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], environment)?.remove(0);
@@ -49,7 +49,7 @@ impl<'m> Terms<'m> {
                 Of::Task => return None,
                 Of::Robot | Of::Point => query,
             };
-            // h is c + g here, JᵀF a term of its own
+            // here h is c + g, since JᵀF is a term of its own
             let environment = if query == BiasForces.into() { &still } else { environment };
             let outputs = model.compute(query, &inputs, environment);
             outputs.map_err(|error| missing.entry(error.to_string()).or_default().push(hyphenated(query.name()))).ok()
@@ -74,12 +74,12 @@ impl<'m> Terms<'m> {
         })
     }
 
-    /// A quantity's first output; empty where there is none.
+    /// A quantity's first output; empty if there is none.
     pub fn vector<'q>(&self, query: impl Into<Query<'q>>) -> &[f64] {
         self.found[query.into().index()].as_ref().map_or(&[], |outputs| &outputs[0])
     }
 
-    /// A quantity's output of this number, a matrix.
+    /// A quantity's output with this index, as a matrix.
     pub fn matrix<'q>(&self, query: impl Into<Query<'q>>, output: usize) -> Option<DMatrix<f64>> {
         let query = query.into();
         let values = self.found[query.index()].as_ref()?.get(output)?;
@@ -94,7 +94,7 @@ impl<'m> Terms<'m> {
         Some(self.matrix(jacobian, 0)? * DVector::from_column_slice(&self.dtheta))
     }
 
-    /// Λ and η; a singular task is a note, all else is computed.
+    /// Λ and η; a singular task gives a note, and everything else is computed.
     pub fn add_task(&mut self, arguments: &TaskArguments, environment: &Environment) -> Result<()> {
         (self.task_rows, self.task_frame) = (arguments.rows()?, arguments.coordinates());
         let is_named = arguments.task.is_some();

@@ -17,7 +17,7 @@ const CONTINUATION: [u8; 4] = [0xff; 4];
 /// The unpacked length of a buffer that is not compressed.
 const PLAIN: i64 = -1;
 
-/// Is everything inside of the file, and does it unpack to what is bearable?
+/// Are all parts inside of the file, and is the unpacked size acceptable?
 pub fn check(file: &mut File) -> Checked<()> {
     let length = file.seek(SeekFrom::End(0)).map_err(said)?;
     let start = bytes(file, 0, length.min(8))?;
@@ -40,7 +40,7 @@ pub fn check(file: &mut File) -> Checked<()> {
     blocks(file, &footer, begin, length)
 }
 
-/// Blocks do not overlap: together they are not longer than the file.
+/// Checks the blocks. They do not overlap: together they are not longer than the file.
 fn blocks(file: &mut File, footer: &Footer, end: u64, length: u64) -> Checked<()> {
     let (mut left, mut unpacked) = (end, Unpacked::of(length));
     let (dictionaries, batches) = (footer.dictionaries(), footer.recordBatches());
@@ -60,7 +60,7 @@ fn blocks(file: &mut File, footer: &Footer, end: u64, length: u64) -> Checked<()
     Ok(())
 }
 
-/// Where a block is, in bytes.
+/// The place of a block, in bytes.
 struct Place {
     at: u64,
     message: u64,
@@ -81,7 +81,7 @@ fn batch<'m>(message: &Message<'m>) -> Option<RecordBatch<'m>> {
     message.header_as_record_batch().or_else(dictionary)
 }
 
-/// Buffers do not overlap either, and lie in the body.
+/// Checks the buffers, which do not overlap either, and lie in the body.
 fn buffers(file: &mut File, batch: &RecordBatch, place: &Place, unpacked: &mut Unpacked) -> Checked<()> {
     let outside = "a buffer is outside of its block";
     let codec = batch.compression().map(|compression| compression.codec());
@@ -115,7 +115,7 @@ fn buffers(file: &mut File, batch: &RecordBatch, place: &Place, unpacked: &mut U
     }
 }
 
-/// Bytes of the file; the caller knows that they are there.
+/// Bytes of the file; the caller checks that they exist.
 fn bytes(file: &mut File, at: u64, count: u64) -> Checked<Vec<u8>> {
     let mut found = Vec::new();
     file.seek(SeekFrom::Start(at)).map_err(said)?;

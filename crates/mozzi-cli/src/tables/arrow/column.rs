@@ -5,7 +5,7 @@ use arrow_array::types::{
 };
 use arrow_array::{Array, ArrowPrimitiveType, PrimitiveArray};
 
-/// The numbers, or the row (if it is one's) and its error.
+/// The numbers, or an error and its row, if it has one.
 pub fn numbers(column: &dyn Array, to: &mut Vec<f64>) -> Result<(), (Option<usize>, String)> {
     if let Some(row) = (0..column.len()).find(|&row| column.is_null(row)) {
         return Err((Some(row), "is null, expected a number".into()));
@@ -26,7 +26,7 @@ pub fn numbers(column: &dyn Array, to: &mut Vec<f64>) -> Result<(), (Option<usiz
     }
 }
 
-/// Does the column hold this type? Then its numbers are appended.
+/// If the column has this type, appends its numbers; returns whether it has.
 fn of<T: ArrowPrimitiveType>(column: &dyn Array, to: &mut Vec<f64>, convert: impl Fn(T::Native) -> f64) -> bool {
     let found = column.as_any().downcast_ref::<PrimitiveArray<T>>();
     to.extend(found.into_iter().flat_map(|found| found.values().iter().copied()).map(convert));

@@ -35,7 +35,7 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model) -> Result<S
     })
 }
 
-/// The tables of batches that have these columns of a file alone.
+/// The tables of batches that contain only the used columns of a file.
 pub fn columns(
     file: &str,
     names: &[String],

@@ -3,13 +3,13 @@
 use super::kind::Kind;
 use std::io::Read;
 
-/// What an array holds.
+/// The contents of an array.
 #[derive(Debug, PartialEq)]
 pub struct Header {
     pub shape: Vec<usize>,
-    /// The first index runs fastest.
+    /// The first index varies fastest.
     pub by_columns: bool,
-    /// The columns of a structured array, by name; one without a name of a plain one.
+    /// The columns of a structured array, by name; one without a name for a plain array.
     pub fields: Vec<(String, Kind)>,
     pub is_structured: bool,
 }
@@ -24,7 +24,7 @@ impl Header {
         self.fields.iter().map(|(_, kind)| kind.size).sum()
     }
 
-    /// The beginning of a file, or why it is none.
+    /// Reads the beginning of a file; an error if it is not a header.
     pub fn read(from: &mut dyn Read) -> Result<Self, String> {
         let cut = |_| "it ends inside its header".to_string();
         let mut start = [0; 8];
@@ -57,7 +57,7 @@ fn no_magic() -> String {
     "it does not begin with \\x93NUMPY".to_string()
 }
 
-/// What is left of the text.
+/// The rest of the text.
 struct Scanner<'h>(&'h str);
 
 impl<'h> Scanner<'h> {
@@ -185,16 +185,16 @@ pub fn quoted(text: &str) -> String {
     format!("'{}'", text.chars().map(escape).collect::<String>())
 }
 
-/// Digits that the first number of a shape has room for, so that a header is as long whatever that number is.
+/// Digits reserved for the first number of a shape, so that the length of the header does not depend on it.
 const ROWS: usize = 20;
 
-/// What stands before the numbers, as `numpy.save` writes it, for a type and a shape as texts; numbers begin at a
+/// The bytes before the numbers, as `numpy.save` writes them, for a type and a shape as texts; numbers begin at a
 /// multiple of 64 bytes.
 pub fn write(descr: &str, rows: Option<usize>, shape: &str) -> Vec<u8> {
     let mut header = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
     let room = ROWS - rows.map_or(ROWS, |rows| rows.to_string().len());
     header.extend(std::iter::repeat_n(' ', room));
-    // version 1 counts the header in two bytes, and its text is ASCII as in 2; that of 3 is UTF-8
+    // version 1 has a header length of two bytes, and its text is ASCII as in 2; that of 3 is UTF-8
     let is_short = header.len() < usize::from(u16::MAX) - 128;
     let version = if !header.is_ascii() {
         3

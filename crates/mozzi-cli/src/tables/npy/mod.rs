@@ -19,7 +19,7 @@ pub fn header(place: &dyn Display, from: &mut dyn Read) -> Result<Header> {
     Header::read(from).map_err(|what| Failure::wrong(format!("{place} is not a .npy file: {what}")))
 }
 
-/// The numbers behind a header, by rows; nothing may follow them. `length` is what is there, where that is known.
+/// The numbers after a header, by rows; nothing may follow them. `length` is the number of bytes there, if known.
 pub fn numbers(place: &dyn Display, header: &Header, length: Option<u64>, from: &mut dyn Read) -> Result<Vec<f64>> {
     let wrong = |what: &str| Failure::wrong(format!("{place} is not a .npy file: {what}"));
     let other = |found: &dyn Display| {
@@ -65,7 +65,7 @@ pub fn numbers(place: &dyn Display, header: &Header, length: Option<u64>, from: 
     Ok(if is_turned { by_rows(&header.shape, &values) } else { values })
 }
 
-/// Numbers whose first index runs fastest, in the order in which the last does.
+/// Reorders numbers whose first index varies fastest, so that the last index varies fastest.
 fn by_rows(shape: &[usize], values: &[f64]) -> Vec<f64> {
     let at = |mut place: usize| {
         let (mut source, mut stride) = (0, values.len());
@@ -79,12 +79,12 @@ fn by_rows(shape: &[usize], values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// What stands before the numbers of a plain array.
+/// The bytes before the numbers of a plain array.
 pub fn plain_header<T: Precision>(shape: &[usize]) -> Vec<u8> {
     header::write(&format!("'<f{}'", size_of::<T>()), shape.first().copied(), &tuple(shape))
 }
 
-/// What stands before rows of float64 in named columns.
+/// The bytes before rows of float64 in named columns.
 pub fn structured_header(names: &[String], rows: usize) -> Vec<u8> {
     let fields: Vec<String> = names.iter().map(|name| format!("({}, '<f8')", header::quoted(name))).collect();
     header::write(&format!("[{}]", fields.join(", ")), Some(rows), &tuple(&[rows]))

@@ -1,11 +1,11 @@
-//! Each form against a disassembler.
+//! Compares each form with a disassembler.
 
 use super::*;
 use iced_x86::Register as Named;
 use iced_x86::{Code, Decoder, DecoderOptions, Instruction, Mnemonic, OpKind};
 
 const BYTES: usize = 1 << 16;
-/// Low, high, and with the fifth bit.
+/// Low, high, and with the fifth bit set.
 const REGISTERS: [Register; 8] = [0, 3, 7, 8, 15, 16, 23, 31];
 
 fn decoded(bytes: &[u8]) -> Vec<Instruction> {
@@ -30,8 +30,8 @@ fn named(shape: Shape, register: Register) -> Named {
     first + u32::from(register)
 }
 
-/// Places in memory near and far, those that short displacements reach and those that they do not, in arrays with every
-/// base.
+/// Places in memory near and far, within and beyond the reach of short displacements, in arrays with every base
+/// register.
 fn places(shape: Shape) -> impl Iterator<Item = (Memory, usize)> {
     let width = shape.width();
     (0..MOST_ARRAYS - 1).map(move |memory| {
@@ -206,7 +206,7 @@ fn a_function_keeps_what_is_its_callers() {
             (0..arrays).for_each(|memory| assembler.load(2, Operand::Lanes(memory, 0)));
             let code = assembler.finish();
             let found = decoded(&code);
-            // what was pushed is popped, in the other order, and each array's address is loaded from its place
+            // pushed registers are popped in reverse order, and each array's address is loaded from its place
             let of = |mnemonic| found.iter().filter(move |x| x.mnemonic() == mnemonic).map(|x| x.op0_register());
             let (pushed, mut popped): (Vec<_>, Vec<_>) = (of(Mnemonic::Push).collect(), of(Mnemonic::Pop).collect());
             popped.reverse();
@@ -228,7 +228,7 @@ fn a_function_keeps_what_is_its_callers() {
                 assert_eq!(loads.iter().filter(at).count(), 1, "array {memory}");
             }
             assert!(loads[..arrays - 1].iter().all(|x| x.op0_register() != Named::RDI), "rdi last");
-            // the frame lies within what the stack gave, whatever its alignment was
+            // the frame lies within the allocated stack, whatever its alignment was
             let given: u64 = found
                 .iter()
                 .filter(|x| x.mnemonic() == Mnemonic::Sub && x.op0_register() == Named::RSP)

@@ -9,9 +9,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// A residual below this is rounding, rad and m.
 const CLOSED: f64 = 1e-11;
-/// Steps from one start.
+/// Maximum number of steps from one start.
 const STEPS: usize = 100;
-/// Further starts around the guess if it leads nowhere.
+/// Number of further starts around the guess if it does not converge.
 const STARTS: usize = 24;
 
 impl Model<f64> {
@@ -19,8 +19,8 @@ impl Model<f64> {
     /// By Levenberg and Marquardt's method; if it does not converge from the guess, from starts around it.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] with the constraint that stays open
-    /// furthest, and by how much.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] with the constraint of the largest
+    /// residual, and the residual.
     pub fn assemble(&self, guess: &[f64], hold: &[&str]) -> Result<Vec<f64>, Error> {
         self.check_configuration(guess)?;
         let free = self.free_velocities(hold)?;
@@ -49,7 +49,7 @@ impl Model<f64> {
         Err(Error::Unreachable { constraint: self.constraint_of_row(row), residual, what })
     }
 
-    /// Closes the loops by these velocities; returns the largest residual.
+    /// Closes the loops by moving the `free` velocities; returns the largest residual.
     fn close(&self, theta: &mut Vec<f64>, free: &[usize]) -> f64 {
         let (n, at_rest) = (self.n(), alloc::vec![0.0; self.n()]);
         let (mut damping, mut last) = (1e-6, self.constraint_rows_at(theta, &at_rest));
@@ -86,7 +86,8 @@ impl Model<f64> {
     /// θ̇ nearest to a guess with A(θ)θ̇ = 0, while the joints named in `hold` keep their velocities.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] if the held joints cannot move so.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] if the constraints forbid these held
+    /// velocities.
     pub fn assemble_velocities(&self, theta: &[f64], guess: &[f64], hold: &[&str]) -> Result<Vec<f64>, Error> {
         self.check_lengths(theta, [("dtheta", guess)])?;
         let Rows { A, .. } = self.constraint_rows_at(theta, guess);
@@ -97,7 +98,8 @@ impl Model<f64> {
     /// θ̈ nearest to a guess with A(θ)θ̈ + Ȧ(θ, θ̇)θ̇ = 0, while the joints named in `hold` keep their accelerations.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] if the held joints cannot move so.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] if the constraints forbid these held
+    /// accelerations.
     pub fn assemble_accelerations(
         &self,
         theta: &[f64],
@@ -123,7 +125,7 @@ impl Model<f64> {
         let residual = |x: &[f64]| &A * DVector::from_column_slice(x) - &b;
         let mut x = guess.to_vec();
         for _ in 0..2 {
-            // once more for the rounding of the first
+            // the second pass removes the rounding error of the first
             let change = least_squares(&columns(&A, &free), &residual(&x));
             free.iter().zip(change.iter()).for_each(|(&j, change)| x[j] -= change);
         }
@@ -136,7 +138,7 @@ impl Model<f64> {
         }
     }
 
-    /// The velocities of joints that are not held, a floating base's among them.
+    /// The velocities of joints that are not held, including those of a floating base.
     fn free_velocities(&self, hold: &[&str]) -> Result<Vec<usize>, Error> {
         let held = self.velocities_of(hold)?;
         Ok((0..self.n()).filter(|j| !held.contains(j)).collect())

@@ -104,7 +104,7 @@ impl<'m> Solver<'m> {
         Solver { model, memory }
     }
 
-    /// Column by column.
+    /// Solves for each column.
     fn solve(&mut self, f: &DMatrix<f64>, a: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
         let (mut x, mut y) = (Vec::new(), Vec::new());
         for (f, a) in f.column_iter().zip(a.column_iter()) {

@@ -17,7 +17,7 @@ pub struct ConstrainedDynamics {
     pub ddtheta: DVector<f64>,
     /// τ, n.
     pub tau: DVector<f64>,
-    /// λ, m: what the robot applies through its constraints, by their rows.
+    /// λ, m: the forces and moments that the robot applies through its constraints, row by row.
     pub lambda: DVector<f64>,
     /// For each constraint between two anchors its name and the wrench that {b} applies to {a}, in the axes of {a} and
     /// about the origin of {b}; N m, N.

@@ -26,11 +26,11 @@ impl Model<f64> {
 
     /// τ of the motors, and λ, of a motion that satisfies the constraints:
     ///
-    /// > τ = Mθ̈ + h + f + Aᵀλ, with τ_j = 0 where no [motor](Self::motors) is
+    /// > τ = Mθ̈ + h + f + Aᵀλ, with τ_j = 0 for velocities without a [motor](Self::motors)
     ///
-    /// If there are more motors than degrees of freedom, τ is the one with the least Σ w_j τ_j²; weights w > 0, one
-    /// for each velocity, are 1 by default. λ is the one of least norm. The motors' τ that only stress the mechanism
-    /// are zero then.
+    /// If there are more motors than degrees of freedom, τ is the one with the least Σ w_j τ_j²; weights w > 0, one for
+    /// each velocity, are 1 by default. λ is the one of least norm. Motor torques that only stress the mechanism
+    /// internally are then zero.
     ///
     /// By singular values, O(n³).
     ///

@@ -23,7 +23,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// Singular values below this part of the largest are zero: loops are closed to rounding, not exactly.
+/// Singular values below this fraction of the largest count as zero: loops are closed only up to rounding.
 pub(crate) const SINGULAR: f64 = 1e-9;
 
 /// A, Ȧθ̇ and φ.
@@ -42,7 +42,7 @@ impl<C: Scalar> Model<C> {
 }
 
 impl Model<f64> {
-    /// At a state of the right lengths.
+    /// A, Ȧθ̇ and φ at a state whose lengths were checked.
     pub(crate) fn constraint_rows_at(&self, theta: &[f64], dtheta: &[f64]) -> Rows {
         let (m, n) = (self.constraint_rows(), self.n());
         let (mut A, mut bias, mut phi) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; m]);
@@ -50,7 +50,7 @@ impl Model<f64> {
         Rows { A: DMatrix::from_row_slice(m, n, &A), bias: DVector::from_vec(bias), phi: DVector::from_vec(phi) }
     }
 
-    /// The velocities of joints of these names.
+    /// The indices of the velocities of the joints with these names.
     fn velocities_of(&self, names: &[&str]) -> Result<Vec<usize>, Error> {
         let mut found = Vec::new();
         for &name in names {
@@ -74,7 +74,7 @@ impl Model<f64> {
     }
 }
 
-/// x of least norm with ‖Ax − b‖ least.
+/// The x of least norm that minimizes ‖Ax − b‖.
 fn least_squares(A: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     if A.nrows() == 0 || A.ncols() == 0 {
         return DVector::zeros(A.ncols());
@@ -84,7 +84,7 @@ fn least_squares(A: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     svd.solve(b, tolerance).unwrap_or_else(|_| DVector::zeros(A.ncols()))
 }
 
-/// The columns of these places.
+/// The columns with these indices.
 fn columns(A: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
     A.select_columns(places)
 }

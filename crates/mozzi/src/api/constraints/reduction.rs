@@ -74,7 +74,7 @@ impl Model<f64> {
         })
     }
 
-    /// Do the constraints determine these velocities from the others?
+    /// Checks that the constraints determine these velocities from the others.
     fn check_determined(&self, A_d: &DMatrix<f64>, dependent: &[usize]) -> Result<(), Error> {
         if dependent.is_empty() {
             return Ok(());

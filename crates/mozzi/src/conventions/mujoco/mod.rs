@@ -20,7 +20,7 @@ use turns::{back, congruent, seen, turned};
 /// | | mozzi | MuJoCo (a floating base is its `freejoint`), R = `R_sb` |
 /// |---|---|---|
 /// | configuration | (q_w, q_x, q_y, q_z, p, joints) | `qpos` = (p, q_w, q_x, q_y, q_z, joints) |
-/// | velocity | (ω, v, joints), in the base link's coordinates | `qvel` = (Rv, ω, joints): ṗ in world axes, ω in the body's |
+/// | velocity | (ω, v, joints), in base link coordinates | `qvel` = (Rv, ω, joints): ṗ in world axes, ω in the body's |
 /// | acceleration | its derivative | `qacc` = (R(v̇ + ω × v), ω̇, joints): p̈ in world axes |
 /// | force | (m, f, joints) | `qfrc_*` = (Rf, m, joints) |
 /// | mass matrix | M | XᵀMX, with θ̇ = X `qvel` |
@@ -36,8 +36,8 @@ use turns::{back, congruent, seen, turned};
 #[derive(Clone, Debug)]
 pub struct MuJoCo {
     order: JointOrder,
-    /// Of each free joint (and a floating base) by its number among the places, where MuJoCo sees its configuration
-    /// from: at 0 of it, seen from {s}.
+    /// For each free joint (and a floating base), its index among the places, and the frame at 0, in {s}, that mozzi's
+    /// configuration is relative to; MuJoCo's is relative to {s}.
     homes: Vec<(usize, SE3)>,
 }
 
@@ -200,7 +200,7 @@ impl MuJoCo {
         self.force(theta, (DVector::from_column_slice(h) + M * self.spin(dtheta)?).as_slice())
     }
 
-    /// h from `qfrc_bias` and M, this one mozzi's: X⁻ᵀ`qfrc_bias` − Mβ.
+    /// h from `qfrc_bias` and M, where M is mozzi's: X⁻ᵀ`qfrc_bias` − Mβ.
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::BadArgument`] for a matrix that is not square or an invalid quaternion.
@@ -219,13 +219,13 @@ impl MuJoCo {
         Ok(h - M * self.spin(self.from_velocity(qpos, qvel)?.as_slice())?)
     }
 
-    /// Where MuJoCo sees the configuration of this place from, unless from the same frame.
+    /// The frame from `homes` for this place; `None` if mozzi and MuJoCo use the same frame.
     fn home(&self, k: usize) -> Option<SE3> {
         let found = self.homes.binary_search_by_key(&k, |(place, _)| *place).ok()?;
         Some(self.homes[found].1).filter(|home| *home != SE3::identity())
     }
 
-    /// Of each free joint, where its linear velocity stands in `qvel`, and the rotation from its axes to MuJoCo's.
+    /// For each free joint, the index of its linear velocity in `qvel`, and the rotation from its axes to MuJoCo's.
     fn orientations(&self, theta: &[f64]) -> Result<Vec<(usize, SO3)>, Error> {
         check_length("theta", theta.len(), self.order.nq())?;
         let (mut turns, mut at) = (Vec::new(), 0);
@@ -240,7 +240,7 @@ impl MuJoCo {
         Ok(turns)
     }
 
-    /// β = Ẋ `qvel`: −ω × v in the rows of v, for the body's axes turn under the velocity.
+    /// β = Ẋ `qvel`: −ω × v in the rows of v, because the body's axes rotate.
     fn spin(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
         check_length("dtheta", dtheta.len(), self.order.n())?;
         let mut beta = DVector::zeros(self.order.n());
@@ -252,7 +252,7 @@ impl MuJoCo {
         Ok(beta)
     }
 
-    /// X `theirs`, which X⁻ᵀ is too: a rotation and a permutation.
+    /// X `theirs`; X⁻ᵀ is the same matrix: a rotation and a permutation.
     fn turned_back(&self, qpos: &[f64], what: &'static str, theirs: &[f64]) -> Result<DVector<f64>, Error> {
         let R = self.orientations(self.from_configuration(qpos)?.as_slice())?;
         check_length(what, theirs.len(), self.order.n())?;

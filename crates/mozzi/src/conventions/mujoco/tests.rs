@@ -5,7 +5,7 @@ use crate::kinematics::integrate;
 use crate::model::Environment;
 use crate::testing::{Random, floating_mixed_tree, floating_tree, mixed_tree, state, tree};
 
-/// A model, its conversion with the joints the other way round, and its state.
+/// A model, its conversion with the joints in reverse order, and its state.
 fn cases() -> impl Iterator<Item = (Model, MuJoCo, [Vec<f64>; 3])> {
     let models = [
         tree(4, 7, 0),
@@ -80,7 +80,7 @@ fn power_energy_and_the_equation_of_motion_are_the_same() {
 #[test]
 fn there_and_back() {
     for (model, mujoco, [theta, dtheta, ddtheta]) in cases() {
-        // a rotation there and one back: a few ε of the sizes of what is turned, nothing where nothing turns
+        // a round trip of rotations: a few ε of the sizes of the rotated entries; exact if nothing is rotated
         let bound = if !model.configuration_space().is_flat() { 16.0 * f64::EPSILON } else { 0.0 };
         let close = |found: DVector<f64>, given: &[f64], size: f64| {
             let error = (found - DVector::from_column_slice(given)).amax();

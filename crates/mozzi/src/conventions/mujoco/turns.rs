@@ -5,7 +5,7 @@ use crate::linalg::Vec3;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// A configuration seen from another frame, at T of it.
+/// A configuration relative to a frame at T, expressed in the frame in which T is given.
 pub(super) fn seen(pose: [f64; 7], T: Option<SE3>) -> [f64; 7] {
     T.map_or(pose, |T| (T * SE3::from_pose(pose)).to_pose())
 }
@@ -15,7 +15,7 @@ pub(super) fn back(turns: Vec<(usize, SO3)>) -> Vec<(usize, SO3)> {
     turns.into_iter().map(|(at, R)| (at, R.inverse())).collect()
 }
 
-/// R times the three entries from each place on.
+/// Multiplies the three entries from each index on by R.
 pub(super) fn turned(mut list: DVector<f64>, turns: Vec<(usize, SO3)>) -> DVector<f64> {
     turn(list.as_mut_slice(), &turns);
     list

@@ -27,7 +27,7 @@ fn everything<'a>(model: &Model, seed: u64, applied: &'a Applied) -> Environment
     Environment { base_twist, base_acceleration, applied, ..model.environment() }
 }
 
-/// The same in numbers of another kind.
+/// The same environment in another scalar type.
 fn lifted<'a, S: Scalar + From<f64>>(e: &Environment, memory: &'a mut Vec<(FrameId, Wrench<S>)>) -> Environment<'a, S> {
     memory.extend(e.applied.iter().map(|&(frame, F)| (frame, F.map(S::from))));
     Environment {
@@ -170,7 +170,7 @@ fn central_differences_agree() {
 #[test]
 fn of_the_parts_equal_those_of_the_whole() {
     for (seed, mut model) in models() {
-        model.springs.clear(); // which are in no part
+        model.springs.clear(); // the parts do not include springs
         let [theta, dtheta, x] = state(&model, seed);
         let (zero, applied) = (alloc::vec![0.0; model.n()], applied(&model, seed));
         let nothing = Environment::with_gravity(Vec3::zero());

@@ -73,7 +73,7 @@ fn the_kernels_equal_the_closed_form() {
             "g",
         );
 
-        // all at once: a base that moves, wrenches on two frames, friction and armature
+        // all at once: a moving base, wrenches on two frames, friction and armature
         let other = model.frame("link1").expect("a link");
         let applied = [(tip, wrench(seed)), (other, wrench(seed + 1) * 10.0)];
         let everything =
@@ -149,7 +149,7 @@ fn identities_of_the_coriolis_matrix() {
         kernel::mass_matrix(&dual, &moving, &mut Workspace::new(&dual), &mut M);
         close(&DMatrix::from_fn(n, n, |i, j| M[i * n + j].derivative), &dM, scale, 1000.0, "Ṁ");
         if !model.configuration_space().is_flat() {
-            continue; // a twist is no coordinates' rate
+            continue; // a twist is not a rate of coordinates
         }
         // and C against the Christoffel symbols Γ_ijk = ½(∂M_ij/∂θ_k + ∂M_ik/∂θ_j − ∂M_jk/∂θ_i), by dual numbers
         let dM_by: alloc::vec::Vec<DMatrix<f64>> = (0..n)

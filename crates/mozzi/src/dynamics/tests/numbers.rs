@@ -1,4 +1,4 @@
-//! The kernels on odd numbers and odd robots: NaN, f32, recordings, poisoned memory, singular and extreme masses.
+//! The kernels on unusual scalars and robots: NaN, f32, recordings, NaN-filled memory, singular and extreme masses.
 
 use super::{close, column};
 use crate::model::{Environment, Workspace};
@@ -96,7 +96,7 @@ fn random_states_many() {
     }
 }
 
-/// On a number without value and order, which a kernel cannot branch on: every quantity, bit for bit.
+/// Every quantity on a scalar without value and order, on which a kernel cannot branch: equal bit for bit.
 #[test]
 fn a_recording_plays_back_bit_for_bit() {
     use crate::quantities::{LIST, Memory, Of, Query};

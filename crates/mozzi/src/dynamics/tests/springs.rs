@@ -1,12 +1,12 @@
-//! Springs by hand, in every way to θ̈, and with mimic joints.
+//! Springs against hand calculation, with every algorithm for θ̈, and with mimic joints.
 
 use crate::model::description::{Joint, JointKind, Mimic};
 use crate::simulation::{GravityCompensation, Method, Options, Zero};
 use crate::spatial::{ScrewAxis, SpatialInertia};
 use crate::{Description, Model, SE3, Vec3};
 
-/// A point of 2 kg at 0.5 m that turns about z without gravity, on a spring, its joint followed by a slide of 3 kg with
-/// a spring of its own.
+/// A point mass of 2 kg at 0.5 m that turns about z without gravity, on a spring. A prismatic mimic joint carries 3 kg
+/// and has a spring of its own.
 fn springs() -> Model {
     let turn = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit"));
     let slide = JointKind::Screw(ScrewAxis::new([0.0; 3], [0.0, 0.0, 1.0]).expect("unit"));

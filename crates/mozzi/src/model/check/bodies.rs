@@ -1,12 +1,12 @@
-//! Bodies that can exist, and that can be moved.
+//! Bodies have a physical inertia and can be accelerated.
 //!
-//! What a joint moves is not one link but the rigid body of all links that are fixed to each other, so an inertia is
-//! judged by its body. A link whose inertia breaks the triangle inequality is computed as given, with a warning: the
-//! kinetic energy is still positive. A link with a negative principal moment is an error where its body has one too,
-//! for then some motion has a negative kinetic energy and forward dynamics means nothing; where the body is sound, the
-//! link is part of a sum that is right, and gets a warning. Of the published robots in `example-robot-data`, five links
-//! have a negative moment beyond rounding: two antennas of TIAGo, −4·10⁻⁸ kg m² on a base of 28 kg (loaded, with a
-//! warning), and trunk and hips of one Romeo, −2·10⁻² and −3·10⁻³ kg m² (refused).
+//! A joint moves not one link but the rigid body of all links fixed to each other, so inertias are judged body by body.
+//! A link whose inertia violates the triangle inequality is used as given, with a warning: the kinetic energy is still
+//! positive. A link with a negative principal moment is an error if its body has one too: some motion then has a
+//! negative kinetic energy, and forward dynamics is meaningless. If the body is sound, the link gets a warning. Five
+//! links of the published robots in `example-robot-data` have a negative moment beyond rounding: two antennas of TIAGo,
+//! −4·10⁻⁸ kg m² on a base of 28 kg (loaded, with a warning), and trunk and hips of one Romeo, −2·10⁻² and −3·10⁻³ kg
+//! m² (refused).
 
 use super::tree::Tree;
 use super::{Element, Report, Severity, numbers::is_finite};
@@ -20,19 +20,19 @@ use alloc::vec::Vec;
 
 /// A rigid body: links fixed to each other.
 struct Body {
-    /// Seen from the frame of its first link.
+    /// In the frame of its first link.
     inertia: SpatialInertia,
     links: usize,
-    /// Does a joint of it move another body?
+    /// Is the body moved by a joint, and does it carry no further joint?
     is_leaf: bool,
 }
 
 impl Report<'_> {
-    /// Links and bodies whose inertia cannot be, or cannot be accelerated.
+    /// Links and bodies whose inertia is unphysical, or that cannot be accelerated.
     pub(super) fn inertias(&mut self, tree: Option<&Tree>) {
         let d = self.description;
         let is_sound = |inertia: &SpatialInertia| is_finite(inertia) && inertia.mass >= 0.0;
-        // without a tree, each link is judged alone
+        // without a tree, each link is checked separately
         let (body_of, bodies) = match tree {
             Some(tree) if d.links.iter().all(|link| is_sound(&link.inertia)) => self.bodies(tree),
             _ => {
@@ -92,7 +92,7 @@ impl Report<'_> {
         (body_of, bodies)
     }
 
-    /// The last body of a branch, moved by a joint about which it has no inertia: nothing says how fast it speeds up.
+    /// The last body of a branch, without inertia about the joint that moves it: its acceleration is undefined.
     fn massless_leaves(&mut self, tree: &Tree, body_of: &[usize], bodies: &[Body]) {
         let d = self.description;
         let followed: BTreeSet<&str> =
@@ -104,7 +104,7 @@ impl Report<'_> {
             if !body.is_leaf || has_mimic_joints || joint.armature != 0.0 {
                 continue;
             }
-            // what motion about the axis weighs, against what any motion weighs
+            // the inertia about the axis, compared with that of any motion
             let (G, V) = (body.inertia, A.twist());
             if V.dot(G * V) <= 1e-14 * (G.I.trace().abs() + G.mass) {
                 let message =
@@ -115,7 +115,7 @@ impl Report<'_> {
     }
 }
 
-/// Is a principal moment negative, beyond the rounding of its numbers?
+/// Is a principal moment negative beyond rounding error?
 fn is_indefinite(verdict: &InertiaVerdict) -> bool {
     let [a, b, c] = verdict.principal_moments;
     !verdict.is_physical() && a < -1e-9 * (a.abs() + b.abs() + c.abs())

@@ -9,7 +9,7 @@ use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::ToString;
 
-/// A M⁻¹Aᵀ is a full matrix: this many rows fill 128 MiB.
+/// Maximum number of rows: the dense matrix A M⁻¹Aᵀ then fills 128 MiB.
 const MOST_ROWS: usize = 4096;
 
 impl Report<'_> {

@@ -69,10 +69,10 @@ fn is_of_several_axes(kind: JointKind) -> bool {
     matches!(kind, JointKind::Ball(_) | JointKind::Free)
 }
 
-/// Which joints lead into a circle; each joint is walked over twice at most.
+/// Which joints lead into a cycle; each joint is visited twice at most.
 fn circular(n: usize, source: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
     let (mut known, mut circular) = (vec![false; n], vec![false; n]);
-    let mut walked = vec![n; n]; // from which joint this one was last walked over
+    let mut walked = vec![n; n]; // the joint from which this one was last visited
     for start in 0..n {
         let (mut path, mut at, mut in_circle) = (Vec::new(), Some(start), false);
         while let Some(i) = at {
@@ -91,7 +91,7 @@ fn circular(n: usize, source: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
     circular
 }
 
-/// Says that no position of the source joint keeps both joints within their limits.
+/// A message if no position of the source joint keeps both joints within their limits.
 fn contradiction(joint: &Joint, mimic: &Mimic, source: &Joint) -> Option<String> {
     let ([low, high], [a, b]) = (joint.limits.position?, source.limits.position?);
     let (x, y) = (mimic.ratio * a + mimic.offset, mimic.ratio * b + mimic.offset);

@@ -6,7 +6,7 @@ use crate::spatial::SpatialInertia;
 use alloc::format;
 use alloc::string::ToString;
 
-/// Are all ten numbers finite, and those that are made of them?
+/// Are all ten numbers finite, and the numbers computed from them?
 pub(super) fn is_finite(inertia: &SpatialInertia) -> bool {
     let c = inertia.center_of_mass();
     let at_c = inertia.about_center_of_mass().to_mat3().rows();

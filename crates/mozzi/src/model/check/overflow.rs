@@ -1,4 +1,4 @@
-//! Numbers that are finite each, and whose products are not.
+//! Finite numbers whose products overflow.
 
 use super::{Element, Report};
 use crate::model::Model;
@@ -8,14 +8,14 @@ use crate::spatial::Rounded;
 use alloc::format;
 use core::cell::Cell;
 
-/// Below this, no constant of a model overflows, but for long chains of mimic joints.
+/// Below this, no constant of a model overflows, except with long chains of mimic joints.
 const LARGE: f64 = 1e30;
 /// Ratios of mimic joints multiply along their chains, and enter squared.
 const LARGE_RATIO: f64 = 1e100;
 
 impl Report<'_> {
-    /// An error at the largest number of a robot whose model is not finite. Only robots with enormous numbers are built
-    /// to see it.
+    /// Reports an error at the largest number of a robot whose model is not finite. Only robots with very large numbers
+    /// are built for this check.
     pub(super) fn overflow(&mut self) {
         let d = self.description;
         let (mut largest, mut ratios) = ((0.0, Element::Robot, ""), 1.0);
@@ -67,7 +67,7 @@ impl Report<'_> {
     }
 }
 
-/// Every constant of the model, and the lists that are made of it.
+/// Are all constants of the model finite, and all lists computed from them?
 fn is_finite(model: &Model) -> bool {
     let finite = Cell::new(true);
     model.map(|c: f64| {

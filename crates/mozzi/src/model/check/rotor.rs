@@ -1,4 +1,4 @@
-//! Every rotor has an inertia that can be, and joints of one axis that turn it.
+//! Every rotor has a physical inertia, and joints of one axis that turn it.
 
 use super::{Element, Report};
 use crate::model::description::JointKind;
@@ -8,7 +8,7 @@ use alloc::format;
 use alloc::string::ToString;
 
 impl Report<'_> {
-    /// Every rotor has an inertia that can be, and joints of one axis that turn it.
+    /// Every rotor has a physical inertia, and joints of one axis that turn it.
     pub(super) fn rotors(&mut self, joints: &BTreeMap<&str, Element>) {
         let d = self.description;
         self.unique(d.rotors.iter().enumerate().map(|(i, rotor)| (Element::Rotor(i), rotor.name.as_str())));

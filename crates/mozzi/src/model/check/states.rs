@@ -1,4 +1,4 @@
-//! Named states: of joints that there are, with as many finite numbers as each has, and unit quaternions.
+//! Named states have existing joints, the right number of finite values for each, and unit quaternions.
 
 use super::{Element, Report};
 use crate::lie::length_off_unit;
@@ -9,7 +9,7 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::format;
 
 impl Report<'_> {
-    /// Every state is one of this robot, and the start is one of them.
+    /// Every state fits this robot, and the start is one of them.
     pub(super) fn states(&mut self, joints: &BTreeMap<&str, Element>) {
         let d = self.description;
         self.unique(d.states.iter().enumerate().map(|(i, state)| (Element::State(i), state.name.as_str())));
@@ -67,7 +67,7 @@ impl Report<'_> {
         }
     }
 
-    /// As many as the freedom has, all finite, and the quaternion of unit length.
+    /// The right number of values, all finite, and a unit quaternion.
     fn numbers_of(&mut self, owner: &str, freedom: Freedom, numbers: [&[f64]; 2], element: Element) {
         let counts = [("positions", freedom.positions()), ("velocities", freedom.velocities())];
         for (found, (attribute, expected)) in numbers.into_iter().zip(counts) {

@@ -17,7 +17,7 @@ pub(super) struct Tree {
 }
 
 impl Report<'_> {
-    /// The tree, or None when there is none and it was said why.
+    /// The tree, or None after reporting why there is none.
     pub(super) fn tree(&mut self, link: impl Fn(&str) -> Option<usize>) -> Option<Tree> {
         let d = self.description;
         if d.links.is_empty() {
@@ -26,7 +26,7 @@ impl Report<'_> {
         }
         let mut parent_joint: Vec<Option<usize>> = vec![None; d.links.len()];
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); d.links.len()];
-        // with two links of one name, it is not known which is meant
+        // a name that two links share is ambiguous
         let mut complete = d.links.iter().enumerate().all(|(i, described)| link(&described.name) == Some(i));
         for (i, joint) in d.joints.iter().enumerate() {
             let (parent, child) = (link(&joint.parent), link(&joint.child));
@@ -55,7 +55,7 @@ impl Report<'_> {
         }
         let roots: Vec<usize> = (0..d.links.len()).filter(|&i| parent_joint[i].is_none()).collect();
         if !complete {
-            return None; // what follows would only be an echo
+            return None; // further errors would only repeat this one
         }
         let name = |&i: &usize| format!("`{}`", d.links[i].name);
         match roots.as_slice() {

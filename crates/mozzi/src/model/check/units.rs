@@ -1,9 +1,9 @@
 //! Numbers that suggest another unit: grams, millimetres, degrees. All are warnings; the numbers are used as given.
 //!
-//! Bounds are such that no sound robot meets them. On the 1985 links and 2075 joints of the robots in
+//! The thresholds are so wide that no sound robot exceeds them. Among the 1985 links and 2075 joints of the robots in
 //! `example-robot-data`, the heaviest link has 116 kg, the largest radius of gyration is 4 m (a placeholder), the
-//! longest way from a joint to the next 0.9 m, and the widest bounds of a revolute joint that mean something ±10 rad.
-//! Of these rules only [`massless`](Report::massless) speaks there, of the two feet of one robot, and rightly.
+//! longest distance from a joint to the next is 0.9 m, and the widest meaningful limits of a revolute joint are ±10
+//! rad. Only [`massless`](Report::massless) gives a warning there, correctly, for the two feet of one robot.
 
 use super::{Element, Report, Severity, numbers::is_finite};
 use crate::model::description::JointKind;
@@ -14,15 +14,15 @@ use alloc::string::String;
 
 /// No matter is denser than osmium: kg/m³.
 const DENSEST: f64 = 22_600.0;
-/// Lighter links are not judged by density: their moments are often rounded to nothing. kg.
+/// Lighter links are not judged by density: their moments are often rounded to zero. kg.
 const LIGHT: f64 = 5.0;
-/// A heavier point is no payload: kg.
+/// A heavier point mass is not a payload: kg.
 const HEAVY: f64 = 1000.0;
-/// From one joint to the next, or to a centre of mass: m.
+/// Distance from one joint to the next, or to a centre of mass: m.
 const FAR: f64 = 50.0;
-/// Radius of gyration: m, and in units of the robot's own longest way.
+/// Radius of gyration: m, and relative to the robot's longest distance.
 const WIDE: f64 = 10.0;
-/// Bounds in radians end here, two turns either way; what is beyond 720 is no angle in degrees but no bound.
+/// Limits in radians end here, at two turns either way; limits beyond 720 are not degrees but mean unlimited.
 const DEGREES: core::ops::RangeInclusive<f64> = 4.0 * core::f64::consts::PI..=720.0;
 
 impl Report<'_> {
@@ -38,7 +38,8 @@ impl Report<'_> {
         self.degrees();
     }
 
-    /// The longest way from a joint to the next, or to a centre of mass; said once, of the longest, with their number.
+    /// The longest distance from a joint to the next, or to a centre of mass. One warning at most: for the longest,
+    /// with the number of the others.
     fn lengths(&mut self) -> f64 {
         let d = self.description;
         let (mut far, mut longest) = (0, (0.0, Element::Robot, ""));
@@ -64,7 +65,7 @@ impl Report<'_> {
         length
     }
 
-    /// Moments without a mass, which no body has.
+    /// Moments without mass, which is not physical.
     fn massless(&mut self, i: usize) {
         let G = &self.description.links[i].inertia;
         if G.mass == 0.0 && G.I.trace() > 0.0 {
@@ -74,7 +75,7 @@ impl Report<'_> {
         }
     }
 
-    /// The radius of gyration √(tr I / 2m) against what the mass could fill, and against the robot.
+    /// Compares the radius of gyration √(tr I / 2m) with the densest body of this mass, and with the robot.
     fn gyration(&mut self, i: usize, longest: f64) {
         let G = &self.description.links[i].inertia;
         let trace = G.about_center_of_mass().trace();
@@ -85,7 +86,7 @@ impl Report<'_> {
         // of all bodies of a mass and a radius of gyration r, the ball of radius √(5/3) r is the least dense
         let ball = 9.01 * radius * radius * radius;
         let kg = G.mass;
-        // moments that are the rounding of the shift to the centre of mass are none
+        // moments that are rounding errors of the shift to the centre of mass count as zero
         let is_point = trace <= 1e-9 * G.I.trace() || trace == 0.0;
         let is_too_dense = if is_point { kg > HEAVY } else { kg > LIGHT && kg > DENSEST * ball };
         if is_too_dense {
@@ -119,7 +120,7 @@ impl Report<'_> {
     }
 }
 
-/// To tenths; of a number that is not negative.
+/// Rounds a nonnegative number to tenths.
 fn tenths(x: f64) -> f64 {
     (x * 10.0 + 0.5) as i64 as f64 / 10.0
 }
