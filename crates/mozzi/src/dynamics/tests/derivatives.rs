@@ -2,8 +2,8 @@
 
 use super::{close, models};
 use crate::kinematics::integrate;
-use crate::quantities::{ForwardDynamicsVjp, InverseDynamicsVjp};
 use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::quantities::{ForwardDynamicsVjp, InverseDynamicsVjp};
 use crate::testing::{moving, state, tree, twist, wrench};
 use crate::{Dual, Scalar, Vec3, Wrench, dynamics as kernel};
 use alloc::vec::Vec;
@@ -136,7 +136,7 @@ fn products_with_a_vector_are_those_of_the_matrices() {
             let found = model.compute(ForwardDynamicsVjp, &state, &environment).expect("regular");
             let [d_theta, d_dtheta, y] = [0, 1, 2].map(|k| DVector::from_column_slice(&found[k]));
             let scale = full.d_ddtheta.amax() * y.amax();
-            close(&product(&full.d_ddtheta, &y), &DMatrix::from_columns(&[x_.clone()]), scale, 1000.0, "M y = x");
+            close(&product(&full.d_ddtheta, &y), &DMatrix::from_column_slice(n, 1, &x), scale, 1000.0, "M y = x");
             let ddtheta = model.forward_dynamics(&theta, &dtheta, tau.as_slice(), &environment).expect("regular");
             let full = at(ddtheta.as_slice());
             for (found, X) in [(d_theta, &full.d_theta), (d_dtheta, &full.d_dtheta)] {
