@@ -12,6 +12,8 @@ __all__ = [
     "ConstraintImpulse",
     "InverseDynamicsDerivatives",
     "ForwardDynamicsDerivatives",
+    "InverseDynamicsVjp",
+    "ForwardDynamicsVjp",
     "EnergyRegressors",
 ]
 
@@ -80,6 +82,34 @@ class ForwardDynamicsDerivatives(NamedTuple):
     """Shape (..., n, n): rad/s² or m/s², each per unit of its column."""
     d_tau: Array
     """Shape (..., n, n): rad/s² or m/s², each per unit of its column."""
+
+
+class InverseDynamicsVjp(NamedTuple):
+    """xᵀ∂τ/∂θ, xᵀ∂τ/∂θ̇ and xᵀ∂τ/∂θ̈ = Mx, the gradient of xᵀτ; by θ along the velocities.
+
+    See ``Model.inverse_dynamics_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_dtheta: Array
+    """Shape (..., n): any."""
+    d_ddtheta: Array
+    """Shape (..., n): any."""
+
+
+class ForwardDynamicsVjp(NamedTuple):
+    """xᵀ∂θ̈/∂θ, xᵀ∂θ̈/∂θ̇ and xᵀ∂θ̈/∂τ = M⁻¹x, the gradient of xᵀθ̈; by θ along the velocities.
+
+    See ``Model.forward_dynamics_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_dtheta: Array
+    """Shape (..., n): any."""
+    d_tau: Array
+    """Shape (..., n): any."""
 
 
 class EnergyRegressors(NamedTuple):
