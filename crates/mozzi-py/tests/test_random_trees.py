@@ -182,6 +182,10 @@ def test_pinocchio(tree, tmp_path):
         assert_close(d_theta, matrix(data.dtau_dq), row(d_theta) + size.tau[:, None], LIMIT_OF_DERIVATIVES)
         assert_close(d_dtheta, matrix(data.dtau_dv), row(d_dtheta) + size.h[:, None], LIMIT_OF_DERIVATIVES)
         assert_close(d_ddtheta, matrix(upper(data.M)), world.M, LIMIT_OF_BOTH)  # by inertias about the world's origin
+        products = robot.inverse_dynamics_vjp(theta, dtheta, ddtheta, ddtheta)
+        terms = (row(d_theta) + size.tau[:, None], row(d_dtheta) + size.h[:, None], row(size.M))
+        for found, D, term in zip(products, (data.dtau_dq, data.dtau_dv, upper(data.M)), terms):
+            assert_close(found, ddtheta @ matrix(D), np.abs(ddtheta) @ term, LIMIT_OF_DERIVATIVES)
 
         if not tree.mimics:
             whole_tau = bridge.force(tau)

@@ -99,12 +99,13 @@ fn random_states_many() {
 /// Every quantity on a scalar without value and order, on which a kernel cannot branch: equal bit for bit.
 #[test]
 fn a_recording_plays_back_bit_for_bit() {
-    use crate::quantities::{LIST, Memory, Of, Query};
+    use crate::quantities::{LIST, MOST_INPUTS, Memory, Of, Query};
     use crate::scalar::recorded::{Recorded, play};
     use alloc::vec::Vec;
     for (seed, mimics) in [(1, 0), (2, 2)] {
         let model = tree(seed, 6, mimics);
-        let (state, n) = (state(&model, seed), model.n());
+        let ([theta, dtheta, ddtheta], [_, x, _]) = (state(&model, seed), state(&model, seed + 1));
+        let (state, n) = ([theta, dtheta, ddtheta, x], model.n());
         let frame = model.end_effector().expect("named");
         for index in 0..LIST.len() {
             let rows = &[0];
@@ -113,7 +114,7 @@ fn a_recording_plays_back_bit_for_bit() {
                 Of::Task => Query::at(index).of_task(task),
                 _ => Query::at(index).of(frame),
             };
-            let inputs: [Vec<Recorded>; 3] =
+            let inputs: [Vec<Recorded>; MOST_INPUTS] =
                 core::array::from_fn(|k| (0..n).map(|j| Recorded::input(k * n + j)).collect());
             let count = query.declaration().inputs.len();
             let given: Vec<&[Recorded]> = inputs[..count].iter().map(Vec::as_slice).collect();
