@@ -16,7 +16,7 @@ use mozzi::model::description::Gear;
 use std::collections::BTreeMap;
 
 impl<'a> Model<'a> {
-    /// Reads a tendon as a rotor, whatever its inertia for now. Joints turn only a fixed tendon at constant ratios, so
+    /// Reads a tendon as a rotor, also one without armature. Joints turn only a fixed tendon at constant ratios, so
     /// others have no gears.
     pub fn tendon(&mut self, element: Element<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
         if !vocabulary::TENDONS.many.contains(&element.name()) {

@@ -5,8 +5,8 @@ use crate::quantities as q;
 use alloc::vec::Vec;
 use nalgebra::DVector;
 
-/// A vector x times the derivatives of τ, n numbers each: the gradient of xᵀτ. Derivatives with respect to θ are along
-/// the velocities: for a floating base, along its body twist.
+/// A vector x times the derivatives of τ, n numbers each: the gradient of xᵀτ. Derivatives with respect to θ are
+/// along the velocities: for a floating base, along its body twist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InverseDynamicsVjp {
     /// xᵀ∂τ/∂θ.
@@ -17,8 +17,8 @@ pub struct InverseDynamicsVjp {
     pub d_ddtheta: DVector<f64>,
 }
 
-/// A vector x times the derivatives of θ̈, n numbers each: the gradient of xᵀθ̈. Derivatives with respect to θ are along
-/// the velocities: for a floating base, along its body twist.
+/// A vector x times the derivatives of θ̈, n numbers each: the gradient of xᵀθ̈. Derivatives with respect to θ are
+/// along the velocities: for a floating base, along its body twist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForwardDynamicsVjp {
     /// xᵀ∂θ̈/∂θ.

@@ -1,11 +1,11 @@
 //! xᵀ∂θ̈: a vector times the derivatives of forward dynamics, in O(n), without the matrices.
 //!
-//! In M θ̈ + h(θ, θ̇) = τ, a change of θ or θ̇ alone changes θ̈ by −M⁻¹ times the change of inverse dynamics at this θ̈. So,
-//! M being symmetric,
+//! In M θ̈ + h(θ, θ̇) = τ, a change of θ or θ̇ alone changes θ̈ by −M⁻¹ times the change of inverse dynamics at this
+//! θ̈. M is symmetric, so that
 //!
 //! > xᵀ∂θ̈/∂τ = M⁻¹x = y, xᵀ∂θ̈/∂θ = −yᵀ∂τ/∂θ, xᵀ∂θ̈/∂θ̇ = −yᵀ∂τ/∂θ̇
 //!
-//! Forward dynamics leaves the factors with which M y = x is solved; the rest is [one sweep](super::inverse_dynamics_vjp()).
+//! Forward dynamics leaves the factors that solve M y = x; the rest is [one sweep](super::inverse_dynamics_vjp()).
 
 use super::forward_dynamics::forward_dynamics;
 use super::inverse_dynamics_vjp::inverse_dynamics_vjp;

@@ -14,7 +14,8 @@
 //! >
 //! > xᵀ∂τ/∂θ̈_j = A_jᵀ𝓠ᶜ
 //!
-//! where X_p is the motion of the link that carries the joint. 𝓑ᵀX is a moment: 𝓡 has three numbers. One pass outward and one inward.
+//! where X_p is the motion of the link that carries the joint. 𝓑ᵀX is a moment: 𝓡 has three numbers. One pass goes
+//! outward and one inward.
 
 use super::armature::{add_rotor_forces, add_velocity_product_vjp};
 use super::derivatives::{base_rates, outward_pass};
