@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{complaint, file, folder, mozzi, text};
+use common::{complaint, file, folder, json, mozzi, text};
 use serde_json::Value;
 
 const LOOPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracles/constraints/loops.xml");
@@ -56,4 +56,22 @@ fn a_file_adds_constraints_to_any_robot() {
     let output = mozzi(&["info", &robot]);
     let notes = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && notes.contains("robot.yaml is not read; --constraints"), "{notes}");
+}
+
+#[test]
+fn a_benchmark_has_the_quantities_of_the_robot() {
+    let folder = folder("constraints-bench");
+    let at_its_end = r#""link2", "xyz": [0.7, 0, 0]"#;
+    let rod = file(&folder, "rod.json", &ROD.replace(r#""link2""#, at_its_end));
+    let size = ["--states", "8", "--rounds", "1", "--threads", "1"];
+    let timed = |arguments: &[&str]| {
+        let found = json(&[&["bench", "two_link_planar"], arguments, &size].concat());
+        let timings = found["timings"].as_array().expect("a list").clone();
+        move |name: &str| timings.iter().any(|timing| timing["quantity"] == name)
+    };
+    let (free, held) = (timed(&[]), timed(&["--constraints", &rod]));
+    assert!(free("inverse-dynamics") && free("inverse-dynamics-vjp") && !free("constraint-jacobian"));
+    assert!(held("inverse-dynamics") && held("constraint-jacobian") && held("constrained-forward-dynamics"));
+    let (code, why) = complaint(&[&["bench", "ur5", "--quantity", "constraint-jacobian"], &size[..]].concat());
+    assert!(code != 0 && why.contains("ur5 has no constraints; --constraints FILE adds some"), "{why}");
 }

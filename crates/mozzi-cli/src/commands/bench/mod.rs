@@ -4,13 +4,14 @@ mod page;
 mod runs;
 mod timing;
 
+use super::assemble::needs_constraints;
 use crate::failure::{self, Failure, Result};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::quantity::{hyphenated, is_of_a_frame, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use clap::Args;
-use mozzi::quantities::{Kernel, LIST, Of, Quantity, Query, Uses};
+use mozzi::quantities::{Declaration, Kernel, LIST, Of, Quantity, Query, Uses};
 use mozzi_batch::{Batch, InstructionSet};
 use runs::{Data, Run, Subject};
 use std::time::Instant;
@@ -51,8 +52,13 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
         return Err(Failure::wrong(format!("`{}` has no joint that moves: nothing to time", model.description().name)));
     }
     let tip = end_effector(&model);
-    let usual = (0..LIST.len()).filter(|&index| HAS_REGISTERS[index] && LIST[index].of != Of::Task).map(Query::at);
+    let is_empty = |quantity: &Declaration| quantity.is_constrained && model.constraint_rows() == 0;
+    let is_usual = |&index: &usize| HAS_REGISTERS[index] && LIST[index].of != Of::Task && !is_empty(&LIST[index]);
+    let usual = (0..LIST.len()).filter(is_usual).map(Query::at);
     let asked = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
+    if asked.iter().any(|query| is_empty(query.declaration())) {
+        needs_constraints(&model)?;
+    }
     let is_of_wrenches = |query: Query| query.declaration().uses == Uses::WRENCHES;
     let asked = asked.into_iter().filter(|&query| tip.is_some() || !(is_of_a_frame(query) || is_of_wrenches(query)));
     let queries: Vec<Query> =
