@@ -132,6 +132,16 @@ fn what_is_not_supported_is_refused_by_name() {
     }
 }
 
+/// Found by fuzzing: a loop of 10¹⁸ rounds, none of which adds anything.
+#[test]
+fn an_empty_sequence_is_repeated_at_once() {
+    for (empty, expected) in [("()", "()"), ("[]", "[]")] {
+        let file = expression(&format!("{empty} * 10**18"));
+        let found = mozzi_xacro::expand_text("empty.xacro", &file, &Arguments::default()).expect("an expansion");
+        assert!(found.text.contains(expected), "{}", found.text);
+    }
+}
+
 #[test]
 fn bombs_end_at_a_bound() {
     let double = |body: &str| format!("{}{body}{}", ROOT[0], ROOT[1]);

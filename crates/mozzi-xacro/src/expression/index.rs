@@ -98,5 +98,6 @@ fn indices(range: &Progression) -> impl Iterator<Item = usize> {
 }
 
 pub(crate) fn repeat(items: &[Value], count: usize) -> Vec<Value> {
+    let count = if items.is_empty() { 0 } else { count }; // else an empty tuple times 10¹⁸ never ends
     (0..count).flat_map(|_| items.iter().cloned()).collect()
 }
