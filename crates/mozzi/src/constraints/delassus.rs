@@ -192,7 +192,7 @@ pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut Constra
     }
 }
 
-/// x ← x − D⁻¹Yᵀλ, which L⁻¹ makes the change of an acceleration or a velocity by −Aᵀλ.
+/// x ← x − Yᵀλ, which D⁻¹ and then L⁻¹ turn into the change of an acceleration or a velocity by −Aᵀλ.
 #[cfg_attr(not(test), inline(always))]
 pub(crate) fn subtract_forces<S: Scalar, C: Scalar>(model: &Model<C>, memory: &ConstraintMemory<S>, x: &mut [S]) {
     let n = model.n();
