@@ -10,12 +10,19 @@ use std::io::Write;
 /// The columns of a group: by number, `tau_1` … `tau_n`; with a floating base by name, since the joints' numbers in θ
 /// then differ from those in θ̇.
 pub fn names(model: &Model, group: &str) -> Vec<String> {
-    let all: Vec<&str> =
-        if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() };
     let name = |(j, name): (usize, &&str)| {
         if !model.configuration_space().is_flat() { format!("{group}_{name}") } else { format!("{group}_{}", j + 1) }
     };
-    all.iter().enumerate().map(name).collect()
+    entries(model, group).iter().enumerate().map(name).collect()
+}
+
+/// The names of a group's entries.
+pub fn entries<'m>(model: &'m Model, group: &str) -> Vec<&'m str> {
+    match group {
+        "theta" => model.position_names().collect(),
+        "w" => vec!["1", "2", "3", "4", "5", "6"],
+        _ => model.velocity_names().collect(),
+    }
 }
 
 /// A table by columns.

@@ -71,6 +71,10 @@ impl InputArguments {
         let read = |&Input { name, .. }: &Input| match name {
             "theta" => Ok(theta.clone()),
             "dtheta" => Ok(dtheta.clone()),
+            "w" => match text(name) {
+                None => Ok(vec![0.0; 6]),
+                Some(text) => numbers_for("--w", text, (1..=6).map(|k| format!("w{k}"))),
+            },
             _ => velocities(&format!("--{name}"), text(name), model),
         };
         declaration.inputs.iter().map(read).collect()

@@ -1,6 +1,6 @@
 //! Assigns the columns of a table by their names.
 //!
-//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…` with the number of an entry, from
+//! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…`, `w_…` with the number of an entry, from
 //! 1, or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y m_z
 //! f_x f_y f_z` of the tip's wrench. Each group must be complete or absent; the order is free. Only the six columns of
 //! a floating base's wrench may be missing on their own, and are then 0: no motor drives it.
@@ -38,10 +38,7 @@ pub struct Places {
 impl Places {
     /// `place` is the header's: "table.csv:1".
     pub fn find(place: &str, header: &[String], model: &Model) -> Result<Self> {
-        let names = |group: &str| -> Vec<&str> {
-            if group == "theta" { model.position_names().collect() } else { model.velocity_names().collect() }
-        };
-        let names = GROUPS.map(names);
+        let names = GROUPS.map(|group| columns::entries(model, group));
         let mut groups: [Vec<Option<usize>>; GROUPS.len()] = names.each_ref().map(|names| vec![None; names.len()]);
         let (mut t, mut wrench) = ([None], [None; 6]);
         for (column, name) in header.iter().enumerate() {

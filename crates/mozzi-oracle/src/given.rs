@@ -94,6 +94,23 @@ impl<S: Entry> Given<'_, S> {
             Environment { applied: environment.applied, ..Environment::with_gravity(environment.gravity) };
         self.by_each_joint(|theta| derivatives(of(model.closed_form(theta, &still, &environment).expect("lengths"))))
     }
+    /// The gradient of a number by the k-th input, θ along the velocities.
+    pub(crate) fn gradient(&self, k: usize, of: impl Fn(&Given<Dual<S>>) -> Dual<S>) -> Vec<S> {
+        let (robot, model) = self.dual_robot();
+        let mut applied = Vec::new();
+        let environment = self.environment.map(Dual::constant, &mut applied);
+        let along = |j: usize| {
+            let mut inputs: Vec<Vec<Dual<S>>> = self.inputs.iter().map(|input| Dual::constants(input)).collect();
+            inputs[k] = match k {
+                0 => seed_direction(self.model, self.theta(), &unit(self.n(), j)),
+                _ => Dual::list(self.inputs[k], &unit(self.n(), j)),
+            };
+            let inputs: Vec<&[Dual<S>]> = inputs.iter().map(Vec::as_slice).collect();
+            let environment = &environment;
+            of(&Given { robot: &robot, model: &model, of: self.of, inputs: &inputs, environment }).derivative
+        };
+        (0..self.n()).map(along).collect()
+    }
     /// ∂τ/∂(θ, θ̇, θ̈) at θ̈ from the stacked equations, by dual numbers.
     pub(crate) fn tau_derivatives(&self, ddtheta: &[S]) -> [DMatrix<S>; 3] {
         let (n, (_, model)) = (self.n(), self.dual_robot());
@@ -227,6 +244,9 @@ impl<S: Entry> Given<'_, S> {
     }
 }
 
+pub(crate) fn dot<S: Entry>(x: &[S], y: &[S]) -> S {
+    x.iter().zip(y).fold(<S as Scalar>::zero(), |sum, (&x, &y)| sum + x * y)
+}
 pub(crate) fn rows<S: Entry>(M: &DMatrix<S>) -> Vec<S> {
     M.transpose().as_slice().to_vec()
 }

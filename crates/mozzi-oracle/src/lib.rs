@@ -4,6 +4,7 @@
 //! Not published: it depends only on `mozzi`, whose crates depend on it in tests.
 
 pub mod bodies;
+mod by_robot;
 mod constraints;
 mod given;
 mod linear;

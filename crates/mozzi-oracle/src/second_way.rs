@@ -3,7 +3,7 @@
 
 use crate::bodies::{frame, twist};
 use crate::constraints::saddle;
-use crate::given::{Given, list, rows, unit, vector, zeros};
+use crate::given::{Given, dot, list, rows, unit, vector, zeros};
 use crate::linear::inverse;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
@@ -163,6 +163,40 @@ second_ways! {
         let [d_theta, d_dtheta, M] = g.tau_derivatives(&list(&g.acceleration()));
         let y = inverse(&M).expect("regular") * vector(g.inputs[3]);
         vec![list(&-d_theta.tr_mul(&y)), list(&-d_dtheta.tr_mul(&y)), list(&y)]
+    };
+    InverseDynamicsParameterVjp: |g| {
+        g.by_robot(g.inputs[2], g.inputs[3])
+    };
+    ForwardDynamicsParameterVjp [1e-6]: |g| {
+        let y = inverse(&g.at_rest().mass_matrix()).expect("regular") * vector(g.inputs[3]);
+        g.by_robot(&list(&g.acceleration()), &list(&-y))
+    };
+    MassMatrixProductVjp: |g| {
+        let [a, x] = [g.inputs[1], g.inputs[2]].map(Dual::constants);
+        let d_theta = g.gradient(0, |g| dot(&x, &list(&(g.at_rest().mass_matrix() * vector(&a)))));
+        vec![d_theta, list(&(g.at_rest().mass_matrix() * vector(g.inputs[2])))]
+    };
+    EnergyGradients: |g| {
+        let kinetic = |k: usize| g.gradient(k, |g| g.kinetic_energy());
+        let potential = |g: &Given<Dual<S>>| PotentialEnergy::second_way(*g)[0][0];
+        vec![kinetic(0), kinetic(1), g.gradient(0, potential)]
+    };
+    FrameTwistVjp: |g| {
+        let w = Dual::constants(g.inputs[2]);
+        let of = |g: &Given<Dual<S>>| dot(&w, &twist(&g.jacobian(TaskFrame::Body), g.inputs[1]).to_array());
+        vec![g.gradient(0, of), g.gradient(1, of)]
+    };
+    FrameAccelerationVjp: |g| {
+        let w = Dual::constants(g.inputs[3]);
+        [0, 1, 2].map(|k| g.gradient(k, |g| dot(&w, &FrameAcceleration::second_way(*g)[0]))).to_vec()
+    };
+    MomentumVjp: |g| {
+        let w = Dual::constants(g.inputs[2]);
+        [0, 1].map(|k| g.gradient(k, |g| dot(&w, &Momentum::second_way(*g)[0]))).to_vec()
+    };
+    MomentumRateVjp: |g| {
+        let w = Dual::constants(g.inputs[3]);
+        [0, 1, 2].map(|k| g.gradient(k, |g| dot(&w, &MomentumRate::second_way(*g)[0]))).to_vec()
     };
     GravityForcesDerivative: |g| vec![rows(&g.by_theta(|form| list(&form.gravity_forces())))];
     TipForcesDerivative: |g| vec![rows(&g.by_theta(|form| list(&form.tip_forces())))];

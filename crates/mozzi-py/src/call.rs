@@ -17,11 +17,11 @@ use pyo3::types::PyFloat;
 /// The most axes of a result at one state.
 const MOST_AXES: usize = 3;
 
-// each input has n or nq numbers, as `Robot::length` assumes
+// each input has a length of the robot alone, as `Robot::length` assumes
 const _: () = {
     let (mut input, mut quantity) = (0, 0);
     while input < INPUTS.len() {
-        assert!(matches!(INPUTS[input].dim, Dim::N | Dim::Nq));
+        assert!(matches!(INPUTS[input].dim, Dim::N | Dim::Nq | Dim::Is(_)));
         input += 1;
     }
     while quantity < LIST.len() {
@@ -98,7 +98,11 @@ impl Robot {
     /// The length of an input at one state.
     #[inline(always)]
     fn length(&self, input: &Input) -> usize {
-        if input.dim == Dim::Nq { self.model.nq() } else { self.model.n() }
+        match input.dim {
+            Dim::Nq => self.model.nq(),
+            Dim::Is(length) => length,
+            _ => self.model.n(),
+        }
     }
 
     /// Checks the length of the last axis.
@@ -109,7 +113,7 @@ impl Robot {
     /// Like [`check_shape`](Self::check_shape), for an argument with another name but the same kind: a guess is a
     /// `theta`.
     pub fn check_shape_as(&self, numbers: &Numbers, kind: &str) -> PyResult<()> {
-        let length = if kind == "theta" { self.model.nq() } else { self.model.n() };
+        let length = INPUTS.iter().find(|input| input.name == kind).map_or(self.model.n(), |input| self.length(input));
         if numbers.shape.last() == Some(&length) {
             return Ok(());
         }
@@ -126,6 +130,7 @@ impl Robot {
             .map(|first| if joints > 1 { format!(" ({first}, …)") } else { format!(" ({first})") });
         let (robot, first) = (&model.description().name, first.unwrap_or_default());
         match (model.is_floating(), name) {
+            (_, "w") => "an angular and a linear part of three numbers".to_string(),
             (false, "theta") if !model.configuration_space().is_flat() => {
                 format!("{} positions of {joints} joints of '{robot}'{first}: see position_names", model.nq())
             }

@@ -55,8 +55,9 @@ pub mod spatial;
 pub mod testing;
 
 pub use api::{
-    BodyFrame, ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, ForwardDynamicsDerivatives,
-    ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler, Reduction, TaskSpaceDynamics,
+    BodyFrame, ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, EnergyGradients,
+    ForwardDynamicsDerivatives, ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler,
+    ParameterVjp, Reduction, TaskSpaceDynamics,
 };
 pub use constraints::*;
 pub use dynamics::*;

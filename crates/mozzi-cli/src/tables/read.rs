@@ -5,13 +5,13 @@ use super::format::Format;
 use super::npy::{self, Header};
 use super::samples::Samples;
 use super::{arrow, npz};
+use crate::columns;
 use crate::csv;
 use crate::failure::{Failure, Result};
 use crate::input::Input;
 use crate::numbers::WRENCH;
 use crate::places::{ENERGIES, GROUPS, Places};
 use mozzi::Model;
-use mozzi::quantities::{Dim, INPUTS};
 use std::cell::Cell;
 
 /// Chooses a robot by the names of columns.
@@ -80,12 +80,11 @@ pub fn structured<'m>(file: &str, header: &Header, from: Input, choose: Choose<'
 
 /// The shape of a table at one state.
 fn shape(model: &Model, table: &str) -> Vec<usize> {
-    let input = INPUTS.iter().find(|input| input.name == table);
-    match (input, table) {
-        (Some(input), _) => vec![if input.dim == Dim::Nq { model.nq() } else { model.n() }],
-        (_, "gravity") => vec![3],
-        (_, "parameters") => vec![model.parameter_count()],
-        (_, "t") => vec![],
+    match table {
+        _ if GROUPS.contains(&table) => vec![columns::entries(model, table).len()],
+        "gravity" => vec![3],
+        "parameters" => vec![model.parameter_count()],
+        "t" => vec![],
         _ if ENERGIES.contains(&table) => vec![],
         _ => vec![WRENCH.len()],
     }

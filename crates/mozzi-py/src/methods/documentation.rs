@@ -95,6 +95,7 @@ fn found(leading: Option<&str>, output: &Output) -> String {
     let size = |dim: &Dim| match dim {
         Dim::N | Dim::Nq | Dim::Rows => "6".to_string(),
         Dim::Parameters => "len(ur5.parameters)".to_string(),
+        Dim::Bodies => "6".to_string(),
         Dim::Frames => "len(ur5.frames)".to_string(),
         Dim::Constraints => "len(ur5.constraint_row_names)".to_string(),
         Dim::Is(size) => size.to_string(),

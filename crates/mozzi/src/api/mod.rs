@@ -17,7 +17,7 @@ pub use constraints::{ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives
 pub use derivatives::{ForwardDynamicsDerivatives, InverseDynamicsDerivatives};
 pub use newton_euler::{BodyFrame, NewtonEuler};
 pub use task_space::TaskSpaceDynamics;
-pub use vjp::{ForwardDynamicsVjp, InverseDynamicsVjp};
+pub use vjp::{EnergyGradients, ForwardDynamicsVjp, InverseDynamicsVjp, ParameterVjp};
 
 use crate::lie::length_off_unit;
 use crate::model::{Environment, Error, FrameId, Freedom, Model};
@@ -91,7 +91,7 @@ impl<C: Real + Into<f64>> Model<C> {
     }
 }
 
-fn check_length<C>(what: &'static str, slice: &[C], expected: usize) -> Result<(), Error> {
+pub(crate) fn check_length<C>(what: &'static str, slice: &[C], expected: usize) -> Result<(), Error> {
     let found = slice.len();
     if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
 }

@@ -1,9 +1,11 @@
-//! Gradients of xᵀτ and xᵀθ̈.
+//! Gradients of xᵀτ and xᵀθ̈, of the energies, of a frame's motion and of the momentum.
 
-use crate::model::{Environment, Error, Model};
-use crate::quantities as q;
+use crate::linalg::Vec3;
+use crate::model::{Environment, Error, FrameId, Model};
+use crate::quantities::{self as q, Query};
+use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix6xX, Vector3};
 
 /// A vector x times the derivatives of τ, n numbers each: the gradient of xᵀτ. Derivatives with respect to θ are
 /// along the velocities: for a floating base, along its body twist.
@@ -27,6 +29,31 @@ pub struct ForwardDynamicsVjp {
     pub d_dtheta: DVector<f64>,
     /// xᵀ∂θ̈/∂τ = M(θ)⁻¹x.
     pub d_tau: DVector<f64>,
+}
+
+/// The gradient of xᵀτ or xᵀθ̈ by the robot: see
+/// [`inverse_dynamics_parameter_vjp`](crate::inverse_dynamics_parameter_vjp()).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterVjp {
+    /// By the [`parameters`](Model::parameters) π, in their order.
+    pub d_parameters: DVector<f64>,
+    /// By the placement of each moving link's joint, a column (angular, linear) each, in the link's frame at θ = 0.
+    pub d_placements: Matrix6xX<f64>,
+    /// By each joint's axis, the links staying where they are at θ = 0.
+    pub d_axes: Matrix6xX<f64>,
+    /// By gravity, in {s}.
+    pub d_gravity: Vector3<f64>,
+}
+
+/// The gradients of the energies: see [`energy_gradients`](crate::energy_gradients()).
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnergyGradients {
+    /// ∂𝒦/∂θ.
+    pub kinetic_d_theta: DVector<f64>,
+    /// ∂𝒦/∂θ̇.
+    pub kinetic_d_dtheta: DVector<f64>,
+    /// ∂𝒫/∂θ.
+    pub potential_d_theta: DVector<f64>,
 }
 
 impl Model<f64> {
@@ -63,6 +90,133 @@ impl Model<f64> {
         let [d_theta, d_dtheta, d_tau] = vectors(found);
         Ok(ForwardDynamicsVjp { d_theta, d_dtheta, d_tau })
     }
+
+    /// The gradient of xᵀτ by the robot in O(n): see
+    /// [`inverse_dynamics_parameter_vjp`](crate::inverse_dynamics_parameter_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn inverse_dynamics_parameter_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        x: &[f64],
+        environment: &Environment,
+    ) -> Result<ParameterVjp, Error> {
+        self.compute(q::InverseDynamicsParameterVjp, &[theta, dtheta, ddtheta, x], environment).map(by_robot)
+    }
+
+    /// The gradient of xᵀθ̈ by the robot in O(n): see
+    /// [`forward_dynamics_parameter_vjp`](crate::forward_dynamics_parameter_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
+    pub fn forward_dynamics_parameter_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        x: &[f64],
+        environment: &Environment,
+    ) -> Result<ParameterVjp, Error> {
+        self.compute(q::ForwardDynamicsParameterVjp, &[theta, dtheta, tau, x], environment).map(by_robot)
+    }
+
+    /// `[xᵀ∂(M(θ)a)/∂θ, M(θ)x]`, the gradient of xᵀMa: see
+    /// [`mass_matrix_product_vjp`](crate::mass_matrix_product_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn mass_matrix_product_vjp(&self, theta: &[f64], a: &[f64], x: &[f64]) -> Result<[DVector<f64>; 2], Error> {
+        self.compute(q::MassMatrixProductVjp, &[theta, a, x], &self.environment()).map(vectors)
+    }
+
+    /// ∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ: see [`energy_gradients`](crate::energy_gradients()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn energy_gradients(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        environment: &Environment,
+    ) -> Result<EnergyGradients, Error> {
+        let found = self.compute(q::EnergyGradients, &[theta, dtheta], environment)?;
+        let [kinetic_d_theta, kinetic_d_dtheta, potential_d_theta] = vectors(found);
+        Ok(EnergyGradients { kinetic_d_theta, kinetic_d_dtheta, potential_d_theta })
+    }
+
+    /// `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, the gradient of wᵀ𝒱_b: see [`frame_twist_vjp`](crate::frame_twist_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::ForeignFrame`].
+    pub fn frame_twist_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        frame: FrameId,
+        w: Wrench,
+    ) -> Result<[DVector<f64>; 2], Error> {
+        let query = Query::from(q::FrameTwistVjp).of(frame);
+        self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
+    }
+
+    /// `[wᵀ∂a_b/∂θ, wᵀ∂a_b/∂θ̇, J_bᵀw]`, the gradient of wᵀa_b: see
+    /// [`frame_acceleration_vjp`](crate::frame_acceleration_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::ForeignFrame`].
+    pub fn frame_acceleration_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        frame: FrameId,
+        w: Wrench,
+    ) -> Result<[DVector<f64>; 3], Error> {
+        let query = Query::from(q::FrameAccelerationVjp).of(frame);
+        self.compute(query, &[theta, dtheta, ddtheta, &w.to_array()], &self.environment()).map(vectors)
+    }
+
+    /// `[wᵀ∂h/∂θ, wᵀ∂h/∂θ̇]`, the gradient of wᵀh, h the momentum about a point of {s}: see
+    /// [`momentum_vjp`](crate::momentum_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn momentum_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        about: Vec3,
+        w: Twist,
+    ) -> Result<[DVector<f64>; 2], Error> {
+        let query = Query::from(q::MomentumVjp).about(about);
+        self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
+    }
+
+    /// `[wᵀ∂ḣ/∂θ, wᵀ∂ḣ/∂θ̇, wᵀ∂ḣ/∂θ̈]`, the gradient of wᵀḣ: see [`momentum_rate_vjp`](crate::momentum_rate_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn momentum_rate_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        about: Vec3,
+        w: Twist,
+    ) -> Result<[DVector<f64>; 3], Error> {
+        let query = Query::from(q::MomentumRateVjp).about(about);
+        self.compute(query, &[theta, dtheta, ddtheta, &w.to_array()], &self.environment()).map(vectors)
+    }
+}
+
+fn by_robot(found: Vec<Vec<f64>>) -> ParameterVjp {
+    let [d_parameters, placements, axes, gravity] = vectors(found);
+    let six = |list: DVector<f64>| Matrix6xX::from_column_slice(list.as_slice());
+    let d_gravity = Vector3::from_column_slice(gravity.as_slice());
+    ParameterVjp { d_parameters, d_placements: six(placements), d_axes: six(axes), d_gravity }
 }
 
 fn vectors<const K: usize>(found: Vec<Vec<f64>>) -> [DVector<f64>; K] {

@@ -13,7 +13,7 @@ use crate::scalar::Scalar;
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_rotor_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], tau: &mut [S]) {
     for rotor in &model.rotors {
-        rotor.add(S::from(rotor.armature) * rotor.rate(ddtheta), tau, 1);
+        rotor.add(S::from(rotor.armature) * rotor.rate(ddtheta), tau);
     }
 }
 
@@ -27,7 +27,7 @@ pub(crate) fn set_armature<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, M: 
     }
     for rotor in &model.rotors {
         for &(j, entry) in &rotor.J {
-            rotor.add(S::from(rotor.armature) * S::from(entry), &mut M[j * n..][..n], 1);
+            rotor.add(S::from(rotor.armature) * S::from(entry), &mut M[j * n..][..n]);
         }
     }
 }

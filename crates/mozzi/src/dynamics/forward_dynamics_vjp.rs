@@ -5,10 +5,11 @@
 //!
 //! > xᵀ∂θ̈/∂τ = M⁻¹x = y, xᵀ∂θ̈/∂θ = −yᵀ∂τ/∂θ, xᵀ∂θ̈/∂θ̇ = −yᵀ∂τ/∂θ̇
 //!
-//! Forward dynamics leaves the factors that solve M y = x; the rest is [one sweep](super::inverse_dynamics_vjp()).
+//! Forward dynamics leaves the factors that solve M y = x; the rest is [xᵀ∂τ](super::inverse_dynamics_vjp()).
 
 use super::forward_dynamics::forward_dynamics;
-use super::inverse_dynamics_vjp::inverse_dynamics_vjp;
+use super::inverse_dynamics_vjp::from_transforms;
+use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
@@ -44,18 +45,35 @@ pub fn forward_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [x.len(), d_theta.len(), d_dtheta.len(), d_tau.len()]);
     let (ddtheta, rest) = memory[..3 * n].split_at_mut(n);
     let (minus_y, unused) = rest.split_at_mut(n);
-    forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
-    d_tau.copy_from_slice(x);
-    if model.has_coupled_joints() {
-        ldlt::solve(&model.structure.pattern, &workspace.matrix, d_tau);
-    } else {
-        solve(model, workspace, d_tau);
-    }
+    solved(model, theta, dtheta, tau, x, environment, workspace, [ddtheta, d_tau]);
     for j in 0..n {
         minus_y[j] = -d_tau[j];
     }
     let outputs = [d_theta, d_dtheta, unused]; // the last is −x
-    inverse_dynamics_vjp(model, theta, dtheta, ddtheta, minus_y, environment, workspace, outputs);
+    from_transforms(model, theta, dtheta, ddtheta, minus_y, environment, workspace, outputs);
+}
+
+/// θ̈, and y with M y = x; the workspace holds T_{i,i−1}(θ) afterwards.
+#[cfg_attr(not(test), inline(always))]
+#[allow(clippy::too_many_arguments)]
+pub(super) fn solved<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    tau: &[S],
+    x: &[S],
+    environment: &Environment<S>,
+    workspace: &mut Workspace<S>,
+    [ddtheta, y]: [&mut [S]; 2],
+) {
+    forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
+    y.copy_from_slice(x);
+    if model.has_coupled_joints() {
+        ldlt::solve(&model.structure.pattern, &workspace.matrix, y);
+        joint_transforms(model, theta, workspace); // M's own pass leaves others
+    } else {
+        solve(model, workspace, y);
+    }
 }
 
 /// Overwrites x with y, M y = x, by the factors that forward dynamics leaves: see

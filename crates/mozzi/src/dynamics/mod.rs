@@ -11,23 +11,29 @@ mod composite;
 mod coriolis_matrix;
 mod derivatives;
 mod energy;
+mod energy_gradients;
 mod force_derivatives;
 mod forward_dynamics;
 mod forward_dynamics_by_inverse_dynamics;
 mod forward_dynamics_derivatives;
 mod forward_dynamics_vjp;
+mod frame_vjp;
 mod inverse_dynamics;
 mod inverse_dynamics_derivatives;
 mod inverse_dynamics_vjp;
 mod joint_friction;
 mod mass_matrix;
 mod mass_matrix_inverse;
+mod mass_matrix_product_vjp;
 mod mass_matrix_solve;
 mod momentum;
+mod momentum_vjp;
+mod parameter_vjp;
 mod path;
 mod regressor;
 mod spring_forces;
 mod task_space_dynamics;
+mod vjp;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -44,6 +50,7 @@ pub use centroidal_momentum::{CentroidalMomentumBias, CentroidalMomentumMatrix};
 pub use closed_form::{ClosedForm, Entry};
 pub use coriolis_matrix::{CoriolisMatrix, MassMatrixRate, coriolis_matrix, mass_matrix_rate};
 pub use energy::{KineticEnergy, PotentialEnergy, kinetic_energy, potential_energy};
+pub use energy_gradients::{EnergyGradients, energy_gradients};
 pub use force_derivatives::{
     GravityForcesDerivative, MassMatrixProductDerivative, TipForcesDerivative, gravity_forces_derivative,
     mass_matrix_product_derivative, tip_forces_derivative,
@@ -52,6 +59,7 @@ pub use forward_dynamics::{ForwardDynamics, forward_dynamics};
 pub use forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics;
 pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynamics_derivatives};
 pub use forward_dynamics_vjp::{ForwardDynamicsVjp, forward_dynamics_vjp};
+pub use frame_vjp::{FrameAccelerationVjp, FrameTwistVjp, frame_acceleration_vjp, frame_twist_vjp};
 pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
 pub use inverse_dynamics_derivatives::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
 pub use inverse_dynamics_vjp::{InverseDynamicsVjp, inverse_dynamics_vjp};
@@ -59,8 +67,14 @@ pub use joint_friction::{JointFriction, joint_friction};
 pub(crate) use mass_matrix::composite_inertias;
 pub use mass_matrix::{MassMatrix, mass_matrix};
 pub use mass_matrix_inverse::{MassMatrixInverse, mass_matrix_inverse};
+pub use mass_matrix_product_vjp::{MassMatrixProductVjp, mass_matrix_product_vjp};
 pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};
 pub use momentum::{Momentum, MomentumRate, momentum, momentum_matrix, momentum_rate, total_inertia};
+pub use momentum_vjp::{MomentumRateVjp, MomentumVjp, momentum_rate_vjp, momentum_vjp};
+pub use parameter_vjp::{
+    ForwardDynamicsParameterVjp, InverseDynamicsParameterVjp, forward_dynamics_parameter_vjp,
+    inverse_dynamics_parameter_vjp,
+};
 pub use regressor::{EnergyRegressors, Regressor, energy_regressors, regressor};
 pub(crate) use spring_forces::add_spring_forces;
 pub use spring_forces::{SpringForces, spring_forces};

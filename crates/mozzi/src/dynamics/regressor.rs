@@ -65,29 +65,46 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
             }
         }
     }
+    joint_entries(model, theta, dtheta, ddtheta, |row, column, entry| Y[row * p + column] += entry);
+}
+
+/// The entries of Y that belong to joints and rotors: calls `add(row, column, entry)` for each.
+#[inline(always)]
+pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>,
+    theta: &[S],
+    dtheta: &[S],
+    ddtheta: &[S],
+    mut add: impl FnMut(usize, usize, S),
+) {
     for (k, place) in model.places().iter().enumerate() {
         let column = 10 * model.bodies().count() + JOINT_PARAMETERS * k;
         for j in place.velocities() {
-            Y[j * p + column..][..3].copy_from_slice(&[ddtheta[j], dtheta[j], dtheta[j].sgn()]);
+            add(j, column, ddtheta[j]);
+            add(j, column + 1, dtheta[j]);
+            add(j, column + 2, dtheta[j].sgn());
         }
         if place.freedom == Freedom::Free {
             let (w, v) = of_free_joint(dtheta, place.j);
             for (k, x) in w.cross(v).0.into_iter().enumerate() {
-                Y[(place.j + 3 + k) * p + column] += x;
+                add(place.j + 3 + k, column, x);
             }
         }
         if place.freedom != Freedom::Free {
             for (j, stretch) in place.velocities().zip(Spring::<C>::stretch(place, theta)) {
-                Y[j * p + column + 3] = stretch;
+                add(j, column + 3, stretch);
             }
         }
         if place.freedom == Freedom::One {
-            Y[place.j * p + column + 4] = -S::one();
+            add(place.j, column + 4, -S::one());
         }
     }
-    let first = p - model.rotors.len();
+    let first = model.parameter_count() - model.rotors.len();
     for (column, rotor) in (first..).zip(&model.rotors) {
-        rotor.add(rotor.rate(ddtheta), &mut Y[column..], p);
+        let rate = rotor.rate(ddtheta);
+        for &(j, entry) in &rotor.J {
+            add(j, column, S::from(entry) * rate);
+        }
     }
 }
 
@@ -127,8 +144,8 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
     for (body, slot) in model.bodies().enumerate() {
         let T_b = model.link_frame(slot).map(S::from);
         let (V_b, SE3 { R, p }) = (T_b.inverse().Ad() * V[slot], T[slot] * T_b);
-        for (k, G) in SpatialInertia::units().into_iter().enumerate() {
-            kinetic[10 * body + k] = half * V_b.dot(G * V_b);
+        for (k, entry) in SpatialInertia::by_parameters(V_b, V_b).into_iter().enumerate() {
+            kinetic[10 * body + k] = half * entry;
         }
         let down = R.inverse() * gravity;
         potential[10 * body] = -gravity.dot(p);

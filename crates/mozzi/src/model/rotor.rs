@@ -24,12 +24,11 @@ impl<C: Scalar> Rotor<C> {
         sum
     }
 
-    /// Adds x Jᵀ to a force, or to a column of numbers `stride` apart.
+    /// Adds x Jᵀ to a force.
     #[inline(always)]
-    pub fn add<S: Scalar + From<C>>(&self, x: S, tau: &mut [S], stride: usize) {
+    pub fn add<S: Scalar + From<C>>(&self, x: S, tau: &mut [S]) {
         for &(j, entry) in &self.J {
-            let tau = &mut tau[j * stride];
-            *tau = S::from(entry).mul_add(x, *tau);
+            tau[j] = S::from(entry).mul_add(x, tau[j]);
         }
     }
 

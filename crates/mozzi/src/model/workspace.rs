@@ -21,6 +21,8 @@ pub struct Workspace<S = f64> {
     pub(crate) dV: Vec<Twist<S>>,
     /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, in the frame of each of its axes.
     pub(crate) carrier: Vec<[Twist<S>; 2]>,
+    /// How a vector of rates moves each link.
+    pub(crate) X: Vec<Twist<S>>,
     pub(crate) F: Vec<Wrench<S>>,
     /// The pairs of ∂τ/∂θ.
     pub(crate) by_theta: Vec<ByTheta<S>>,
@@ -62,6 +64,7 @@ impl<S: Scalar> Workspace<S> {
             V: vec![Twist::zero(); slots],
             dV: vec![Twist::zero(); slots],
             carrier: vec![[Twist::zero(); 2]; slots],
+            X: vec![Twist::zero(); slots],
             F: vec![Wrench::zero(); slots],
             by_theta: vec![ByTheta::zero(); slots],
             by_rates: vec![ByRates::zero(); slots],
@@ -96,6 +99,7 @@ impl<S: Scalar> Workspace<S> {
         self.T.fill(T);
         self.V.fill(V);
         self.dV.fill(V);
+        self.X.fill(V);
         self.carrier.fill([V; 2]);
         self.F.fill(F);
         self.U.fill(F);

@@ -40,6 +40,8 @@ macro_rules! quantities {
             ConstrainedForwardDynamics ConstraintJacobian ConstraintBias ConstraintResidual ConstraintProjection
             ConstraintImpulse
             InverseDynamicsDerivatives ForwardDynamicsDerivatives InverseDynamicsVjp ForwardDynamicsVjp
+            InverseDynamicsParameterVjp ForwardDynamicsParameterVjp MassMatrixProductVjp EnergyGradients
+            FrameTwistVjp FrameAccelerationVjp MomentumVjp MomentumRateVjp
             GravityForcesDerivative TipForcesDerivative MassMatrixProductDerivative
             CenterOfMass CenterOfMassVelocity CenterOfMassAcceleration CenterOfMassJacobian
             Momentum MomentumRate CentroidalMomentumMatrix CentroidalMomentumBias

@@ -1,6 +1,7 @@
 //! A quantity with the frame, task or point that it refers to.
 
 use super::{LIST, place_of};
+use crate::api::check_length;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame};
 use crate::quantity::{Declaration, Dim, Of, Quantity, Subject};
@@ -132,7 +133,8 @@ impl<'a> Query<'a> {
         for (input, &slice) in declared.iter().zip(inputs) {
             match input.dim {
                 Dim::Nq => model.check_configuration(slice)?,
-                _ => model.check_velocities([(input.name, slice)])?,
+                Dim::N => model.check_velocities([(input.name, slice)])?,
+                dim => check_length(input.name, slice, dim.size(model, &self.subject))?,
             }
         }
         model.check_environment(environment)

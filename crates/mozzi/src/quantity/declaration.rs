@@ -110,6 +110,8 @@ pub enum Dim {
     Nq,
     /// [`Model::parameter_count`].
     Parameters,
+    /// The moving links, a floating base first: those with ten parameters each.
+    Bodies,
     /// The robot's frames.
     Frames,
     /// The task's rows.
@@ -127,6 +129,7 @@ impl Dim {
             Dim::N => model.n(),
             Dim::Nq => model.nq(),
             Dim::Parameters => model.parameter_count(),
+            Dim::Bodies => model.bodies().count(),
             Dim::Frames => model.frames().len(),
             Dim::Rows => of.rows.len(),
             Dim::Constraints => model.constraint_rows(),
@@ -141,6 +144,7 @@ impl core::fmt::Display for Dim {
             Dim::N => f.write_str("n"),
             Dim::Nq => f.write_str("nq"),
             Dim::Parameters => f.write_str("p"),
+            Dim::Bodies => f.write_str("b"),
             Dim::Frames => f.write_str("frames"),
             Dim::Rows => f.write_str("k"),
             Dim::Constraints => f.write_str("m"),
@@ -177,9 +181,12 @@ pub const DDTHETA: Input = input("ddtheta", "θ̈", "rad/s² or m/s²", "acceler
 pub const TAU: Input = input("tau", "τ", FORCE, "joint forces and torques");
 /// A constant vector.
 pub const CONSTANT_VECTOR: Input = input("x", "x", ANY, "a constant vector");
+/// A constant vector for something with six components, (angular, linear).
+pub const CONSTANT_SIX: Input =
+    Input { dim: Dim::Is(6), ..input("w", "w", ANY, "a constant vector for (angular, linear)") };
 
 /// All inputs that quantities have.
-pub const INPUTS: [Input; 5] = [THETA, DTHETA, DDTHETA, TAU, CONSTANT_VECTOR];
+pub const INPUTS: [Input; 6] = [THETA, DTHETA, DDTHETA, TAU, CONSTANT_VECTOR, CONSTANT_SIX];
 
 /// An output of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -90,6 +90,12 @@ pub(crate) fn sized<T: Clone>(list: &mut Vec<T>, length: usize, fill: T) -> &mut
     &mut list[..length]
 }
 
+/// The six numbers of a twist or a wrench.
+#[inline(always)]
+pub(crate) fn six<S: Copy>(x: &[S]) -> [S; 6] {
+    core::array::from_fn(|k| x[k])
+}
+
 /// A matrix of six rows from its columns.
 #[inline(always)]
 pub(crate) fn by_rows<S: Scalar>(columns: impl ExactSizeIterator<Item = [S; 6]>, output: &mut [S]) {

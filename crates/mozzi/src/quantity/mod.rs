@@ -8,7 +8,7 @@ mod subject;
 pub(crate) use declaration::*;
 pub use declaration::{Declaration, Dim, INPUTS, Input, Of, Output, Uses};
 pub use memory::Memory;
-pub(crate) use memory::{by_rows, sized};
+pub(crate) use memory::{by_rows, six, sized};
 pub use subject::Subject;
 
 use crate::linalg::Vec3;

@@ -1,6 +1,6 @@
 //! A spatial inertia as the ten numbers in which forces and energies are linear.
 
-use super::SpatialInertia;
+use super::{SpatialInertia, Twist};
 use crate::linalg::{Sym3, Vec3};
 use crate::scalar::Scalar;
 
@@ -15,6 +15,18 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     pub fn from_parameters([mass, x, y, z, xx, xy, xz, yy, yz, zz]: [S; 10]) -> Self {
         SpatialInertia { mass, mc: Vec3([x, y, z]), I: Sym3 { xx, xy, xz, yy, yz, zz } }
+    }
+
+    /// Xᵀ𝒢A = Σ y_k π_k as the ten numbers y_k of twists X and A.
+    #[inline(always)]
+    #[rustfmt::skip] // as the parameters: mass, first moments, inertia
+    pub fn by_parameters(X: Twist<S>, A: Twist<S>) -> [S; 10] {
+        let ([x, y, z], [a, b, c], mc) = (X.w.0, A.w.0, A.v.cross_add(X.w, X.v.cross(A.w)).0);
+        let mixed = |x: S, b: S, y: S, a: S| x.mul_add(b, y * a);
+        [
+            X.v.dot(A.v), mc[0], mc[1], mc[2],
+            x * a, mixed(x, b, y, a), mixed(x, c, z, a), y * b, mixed(y, c, z, b), z * c,
+        ]
     }
 
     /// The ten inertias with one parameter 1 and the others 0; only weighted sums of them are bodies.

@@ -1,7 +1,7 @@
 //! Unit screw axes.
 
 use super::{Twist, Wrench};
-use crate::lie::{Adjoint, LieBracket};
+use crate::lie::{Adjoint, LieBracket, SE3};
 use crate::linalg::Vec3;
 use crate::scalar::{Real, Scalar};
 use core::ops::Mul;
@@ -97,6 +97,11 @@ impl<S: Scalar> ScrewAxis<S> {
         S: PartialEq,
     {
         self.0.w == Vec3::zero()
+    }
+
+    /// The axis after a motion T, `[Ad_T]` A.
+    pub fn moved(self, T: SE3<S>) -> Self {
+        ScrewAxis(T.Ad() * self.0)
     }
 
     /// Each number by f, a conversion between scalars.

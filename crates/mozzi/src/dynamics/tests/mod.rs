@@ -5,6 +5,7 @@ mod numbers;
 mod regressor;
 mod rotors;
 mod springs;
+mod vjp;
 
 use crate::model::{Environment, Model, Workspace};
 use crate::testing::{chain, floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, twist, wrench};
