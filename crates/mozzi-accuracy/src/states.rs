@@ -21,12 +21,12 @@ pub enum Kind {
     Far,
 }
 
-/// θ, θ̇, θ̈ and τ of many states.
+/// θ, θ̇, θ̈, τ and w of many states.
 #[derive(Debug)]
 pub struct States {
     nq: usize,
     n: usize,
-    tables: [Vec<f64>; 4],
+    tables: [Vec<f64>; 5],
 }
 
 impl States {
@@ -70,7 +70,8 @@ impl States {
         let speed = if kind == Kind::Fast { 1e4 } else { 1.0 };
         let rates = [2.0, 5.0, 20.0].map(|size| random.vector(n * count, size * speed));
         let [dtheta, ddtheta, tau] = rates;
-        States { nq, n, tables: [theta, dtheta, ddtheta, tau] }
+        let w = random.vector(6 * count, 2.0);
+        States { nq, n, tables: [theta, dtheta, ddtheta, tau, w] }
     }
 
     /// The states rounded to `f32`.
@@ -100,6 +101,7 @@ impl States {
             "theta" => (0, self.nq),
             "dtheta" | "x" => (1, self.n),
             "ddtheta" => (2, self.n),
+            "w" => (4, 6),
             _ => (3, self.n),
         };
         let inputs = query.declaration().inputs.iter().map(|input| table(input.name));

@@ -1,6 +1,7 @@
 //! The inputs of a quantity at one state, by flags: --theta, --dtheta, …
 
 use crate::failure::Result;
+use crate::numbers::array;
 use crate::state::{start, velocities};
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
 use mozzi::Model;
@@ -73,7 +74,7 @@ impl InputArguments {
             "dtheta" => Ok(dtheta.clone()),
             "w" => match text(name) {
                 None => Ok(vec![0.0; 6]),
-                Some(text) => numbers_for("--w", text, (1..=6).map(|k| format!("w{k}"))),
+                Some(text) => Ok(array("--w", text, ["w1", "w2", "w3", "w4", "w5", "w6"])?.to_vec()),
             },
             _ => velocities(&format!("--{name}"), text(name), model),
         };

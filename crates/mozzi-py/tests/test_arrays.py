@@ -31,7 +31,9 @@ def taking(argument):
 
 def arguments(robot, names, random, *leading):
     return [
-        positions(robot, random, *leading) if name == "theta" else random.uniform(-2, 2, (*leading, robot.n))
+        positions(robot, random, *leading)
+        if name == "theta"
+        else random.uniform(-2, 2, (*leading, 6 if name == "w" else robot.n))
         for name in names
     ]
 
@@ -42,7 +44,7 @@ def parts(result):
 
 def test_methods_are_of_states():
     assert len(METHODS) >= 38 and METHODS["inverse_dynamics"] == ("theta", "dtheta", "ddtheta")
-    assert set().union(*METHODS.values()) <= {"theta", "dtheta", "ddtheta", "tau", "x"}
+    assert set().union(*METHODS.values()) <= {"theta", "dtheta", "ddtheta", "tau", "x", "w"}
 
 
 @pytest.mark.parametrize("method", METHODS)

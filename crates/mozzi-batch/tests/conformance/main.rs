@@ -65,7 +65,7 @@ struct Case<'a> {
     name: &'a str,
     model: &'a Model,
     frame: FrameId,
-    states: Vec<[Vec<f64>; 4]>,
+    states: Vec<[Vec<f64>; 5]>,
     applied: [(FrameId, Wrench); 2],
     rows: Vec<usize>,
 }
@@ -89,11 +89,12 @@ impl Case<'_> {
         }
     }
 
-    fn inputs<'s>(&self, query: Query, state: &'s [Vec<f64>; 4]) -> Vec<&'s [f64]> {
+    fn inputs<'s>(&self, query: Query, state: &'s [Vec<f64>; 5]) -> Vec<&'s [f64]> {
         let which = |name: &str| match name {
             "theta" => 0,
             "dtheta" => 1,
             "x" => 3,
+            "w" => 4,
             _ => 2,
         };
         query.declaration().inputs.iter().map(|input| &state[which(input.name)][..]).collect()
@@ -329,7 +330,7 @@ fn every_quantity_in_every_way() {
                 let frame = model.end_effector().expect("named");
                 let states = (0..5).map(|seed| {
                     let ([theta, dtheta, ddtheta], [_, x, _]) = (state(model, seed), state(model, seed + 100));
-                    [theta, dtheta, ddtheta, x]
+                    [theta, dtheta, ddtheta, x, twist(seed).to_array().to_vec()]
                 });
                 let states: Vec<_> = states.collect();
                 let rows = a_row(model, frame, &states[0][0]);

@@ -1,11 +1,23 @@
 //! Flags without effect are refused, and so are unknown names.
 
-use crate::common::{complaint, folder};
+use crate::common::{complaint, folder, text};
 use crate::files::npz;
 
 fn wrong(arguments: &[&str], expected: &str) {
     let (code, message) = complaint(&[&["compute"], arguments].concat());
     assert!(code == 1 && message.contains(expected), "{arguments:?}: {message}");
+}
+
+#[test]
+fn vjp_is_the_product_of_a_quantity() {
+    let w = "1,2,3,4,5,6";
+    let by_flag = text(&["compute", "ur5", "frame-acceleration", "--vjp", "--w", w, "--json"]);
+    assert_eq!(by_flag, text(&["compute", "ur5", "frame-acceleration-vjp", "--w", w, "--json"]));
+    wrong(
+        &["ur5", "mass-matrix", "--vjp"],
+        "--vjp: mass-matrix has no vector-Jacobian product, expected one of inverse-",
+    );
+    wrong(&["ur5", "momentum", "--vjp", "--w", "1,2"], "--w has 2 entries, expected 6");
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn at_one(model: &Model, [theta, dtheta, x, F]: [&[f64]; 4]) -> Vec<(String, Arr
         "dtheta" => dtheta,
         _ => x,
     };
-    let known = |input: &&mozzi::quantities::Input| input.name != "x";
+    let known = |input: &&mozzi::quantities::Input| !["x", "w"].contains(&input.name);
     (0..LIST.len())
         .map(Query::at)
         .filter(|query| query.declaration().inputs.iter().all(|input| known(&input)))

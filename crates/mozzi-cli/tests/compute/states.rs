@@ -38,7 +38,7 @@ impl States {
 
     pub fn npz(&self, folder: &Path, name: &str) -> String {
         let shapes = self.widths.map(|width| [self.count, width]);
-        let names = [("theta", 0), ("dtheta", 1), ("ddtheta", 2), ("tau", 2), ("x", 2), ("wrench", 3)];
+        let names = [("theta", 0), ("dtheta", 1), ("ddtheta", 2), ("tau", 2), ("x", 2), ("w", 3), ("wrench", 3)];
         npz(folder, name, &names.map(|(name, k)| (name, &shapes[k][..], &self.tables[k][..])))
     }
 }

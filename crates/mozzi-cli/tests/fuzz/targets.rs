@@ -88,6 +88,7 @@ fn is_whole(samples: &Samples) {
     for (name, numbers) in &samples.tables {
         let width = match name.as_str() {
             "theta" | "dtheta" | "ddtheta" | "tau" | "x" => ROBOT.n(),
+            "w" => 6,
             "gravity" => 3,
             "parameters" => ROBOT.parameter_count(),
             name if name.starts_with("wrench") => 6,

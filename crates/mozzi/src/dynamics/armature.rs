@@ -69,18 +69,18 @@ pub(super) fn add_velocity_product_rates<S: Scalar + From<C>, C: Scalar>(model: 
     }
 }
 
-/// Adds λᵀ∂(a ω × v)/∂θ̇.
+/// Adds xᵀ∂(a ω × v)/∂θ̇.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_velocity_product_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     dtheta: &[S],
-    lambda: &[S],
+    x: &[S],
     d_dtheta: &mut [S],
 ) {
     for &j in &model.structure.free {
-        let ((w, v), (_, lambda)) = (of_free_joint(dtheta, j), of_free_joint(lambda, j));
+        let ((w, v), (_, x)) = (of_free_joint(dtheta, j), of_free_joint(x, j));
         let a = S::from(model.armature[j]);
-        let (by_w, by_v) = (v.cross(lambda), lambda.cross(w));
+        let (by_w, by_v) = (v.cross(x), x.cross(w));
         for k in 0..3 {
             d_dtheta[j + k] = a.mul_add(by_w.0[k], d_dtheta[j + k]);
             d_dtheta[j + 3 + k] = a.mul_add(by_v.0[k], d_dtheta[j + 3 + k]);

@@ -53,16 +53,16 @@ impl<C: Scalar> Spring<C> {
         }
     }
 
-    /// Adds λᵀ∂f_s/∂θ.
+    /// Adds xᵀ∂f_s/∂θ.
     #[inline(always)]
-    pub fn add_vjp<S: Scalar + From<C>>(&self, theta: &[S], lambda: &[S], d_theta: &mut [S]) {
+    pub fn add_vjp<S: Scalar + From<C>>(&self, theta: &[S], x: &[S], d_theta: &mut [S]) {
         let (stiffness, j) = (S::from(self.stiffness), self.place.j);
         match self.place.freedom {
-            Freedom::One => d_theta[j] = stiffness.mul_add(lambda[j], d_theta[j]),
+            Freedom::One => d_theta[j] = stiffness.mul_add(x[j], d_theta[j]),
             _ => {
                 for (r, row) in of_ball(&self.place, theta).derivative().rows().into_iter().enumerate() {
                     for (c, entry) in row.into_iter().enumerate() {
-                        d_theta[j + c] += stiffness * entry * lambda[j + r];
+                        d_theta[j + c] += stiffness * entry * x[j + r];
                     }
                 }
             }

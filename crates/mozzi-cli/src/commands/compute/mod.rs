@@ -17,7 +17,7 @@ use crate::state::WrenchArguments;
 use crate::task::TaskArguments;
 use crate::text::about;
 use clap::{Arg, Args};
-use mozzi::quantities::{INPUTS, Of, Query};
+use mozzi::quantities::{INPUTS, LIST, Of, Query};
 use mozzi::{Environment, Model, Task, Vec3};
 use table::{Job, TableArguments};
 
@@ -31,6 +31,9 @@ pub struct ComputeArguments {
     /// List all quantities: names, formulas, inputs, outputs
     #[arg(long)]
     list: bool,
+    /// The vector-Jacobian product of the quantity: the gradient of xᵀ or wᵀ times it, with the vector in --x or --w
+    #[arg(long)]
+    vjp: bool,
     #[command(flatten)]
     inputs: InputArguments,
     #[command(flatten)]
@@ -51,6 +54,7 @@ pub fn model(model: Arg) -> Arg {
 
 pub fn run(arguments: &ComputeArguments) -> Result<String> {
     let query = match arguments.quantity {
+        Some(query) if !arguments.list && arguments.vjp => vjp_of(query)?,
         Some(query) if !arguments.list => query,
         _ => return Ok(list::page()),
     };
@@ -77,6 +81,19 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
     Ok(match arguments.robot.json {
         true => json::print(&one_state::object(query, &model, &slices, &environment, &outputs)),
         false => one_state::page(query, &model, &slices, &environment, &outputs),
+    })
+}
+
+/// The quantity that is the vector-Jacobian product of this one.
+fn vjp_of(query: Query<'static>) -> Result<Query<'static>> {
+    Query::named(&format!("{}_vjp", query.name())).map_err(|_| {
+        let known: Vec<String> =
+            LIST.iter().filter_map(|known| known.name.strip_suffix("_vjp")).map(hyphenated).collect();
+        Failure::wrong(format!(
+            "--vjp: {} has no vector-Jacobian product, expected one of {}",
+            hyphenated(query.name()),
+            known.join(", ")
+        ))
     })
 }
 
