@@ -122,6 +122,10 @@ impl<T: Number> Batch<T> {
         &self.threads
     }
 
+    pub(crate) fn pool(&self) -> &Pool {
+        &self.pool
+    }
+
     /// The same batch with these threads.
     pub(crate) fn on(&self, threads: Threads) -> Self {
         Batch { threads, ..self.clone() }
