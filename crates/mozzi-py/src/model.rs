@@ -62,7 +62,7 @@ impl PyModel {
     }
 
     /// The quantity of this name; if it has a frame, for this frame, by default the end effector.
-    fn query(&self, name: &str, frame: Option<&str>) -> PyResult<Query<'static>> {
+    pub fn query(&self, name: &str, frame: Option<&str>) -> PyResult<Query<'static>> {
         let query = Query::named(name).map_err(of_model)?;
         Ok(if is_of_frame(&query) { query.of(self.frame(frame)?) } else { query })
     }

@@ -4,6 +4,7 @@ mod attach;
 mod closed_form;
 mod constrained_dynamics;
 mod constraints;
+mod directional;
 mod documentation;
 mod edits;
 mod properties;
