@@ -3,6 +3,7 @@
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::results::named;
+use mozzi::Freedom;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -43,6 +44,14 @@ impl PyModel {
     #[getter]
     fn velocity_names(&self) -> Vec<&str> {
         self.robot().model.velocity_names().collect()
+    }
+
+    /// For each quaternion in θ: its index in θ, its joint's index in θ̇, and whether a position follows it.
+    #[getter]
+    fn _quaternions(&self) -> Vec<(usize, usize, bool)> {
+        let places = self.robot().model.configuration_space().places();
+        let turns = places.iter().filter(|place| place.freedom != Freedom::One);
+        turns.map(|place| (place.q, place.j, place.freedom == Freedom::Free)).collect()
     }
 
     /// The links, in the order of the file.
