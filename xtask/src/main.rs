@@ -38,6 +38,7 @@ usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
           the Python package, its wheel, some fuzzing, the no_std check, every example, the main job
+          --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
   docs    rewrite the generated pages of docs/; `test` checks that they are current
   page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` checks that it is current
@@ -60,11 +61,16 @@ usage: cargo xtask COMMAND
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
           --of-tests                                  package the build of `test`, as `test` does it";
 
+/// Options of `test`, each with what it installs.
+const EXTRAS: [(&str, &str); 1] = [("--torch", venv::TORCH)];
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let workspace = Workspace::find();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["test"] => test(&workspace),
+        ["test", ref options @ ..] if options.iter().all(|option| EXTRAS.iter().any(|(name, _)| name == option)) => {
+            test(&workspace, options)
+        }
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
         ["page"] => one("page", || page::write(&workspace)),
@@ -96,10 +102,13 @@ fn main() -> ExitCode {
     }
 }
 
-fn test(workspace: &Workspace) -> ExitCode {
+fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     let mut report = Report::default();
     let mut count = tests::Count::default();
     report.step("Python environment", || venv::prepare(workspace));
+    for (option, file) in EXTRAS.iter().filter(|(option, _)| options.contains(option)) {
+        report.step(option.trim_start_matches('-'), || venv::add(workspace, file));
+    }
     report.step("reference numbers", || oracles::make(workspace));
     report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));

@@ -6,11 +6,13 @@ use crate::command;
 use crate::report::Outcome;
 use crate::stamp::Stamp;
 use crate::workspace::Workspace;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const REQUIREMENTS: &str = "oracles/requirements.txt";
 const PACKAGE: &str = "crates/mozzi-py/tests/requirements.txt";
+/// PyTorch with its CUDA libraries: 2.5 GB to fetch, 5.5 GB on disk. `test_torch.py` is skipped without it.
+pub const TORCH: &str = "crates/mozzi-py/tests/requirements-torch.txt";
 /// Large, and needed by one test only, which is skipped without it.
 const RAY: &str = "crates/mozzi-py/tests/requirements-ray.txt";
 const MODELS: &str = "oracles/requirements-models.txt";
@@ -56,6 +58,23 @@ fn try_prepare(workspace: &Workspace) -> Result<Outcome, String> {
     }
     stamp.write()?;
     Ok(Outcome::Passed(format!("installed {REQUIREMENTS}, {PACKAGE}, {RAY} and {MODELS}")))
+}
+
+/// Installs further requirements, for tests that are skipped without them.
+pub fn add(workspace: &Workspace, file: &str) -> Outcome {
+    let add = || {
+        let text = std::fs::read_to_string(workspace.path(file)).map_err(|error| format!("{file}: {error}"))?;
+        let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        let stamp = Stamp::new(workspace.path("target/venv").join(format!("{name}.stamp")), text);
+        if stamp.is_fresh() {
+            return Ok(Outcome::Passed(format!("{file} is installed already")));
+        }
+        stamp.remove()?;
+        install(workspace, &[], file)?;
+        stamp.write()?;
+        Ok(Outcome::Passed(format!("installed {file}")))
+    };
+    add().unwrap_or_else(Outcome::Failed)
 }
 
 fn install(workspace: &Workspace, options: &[&str], file: &str) -> Result<(), String> {

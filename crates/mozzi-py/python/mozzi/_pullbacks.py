@@ -9,8 +9,6 @@ g(x, w) = wᵀ∂f/∂x; derivatives by θ are along the n velocities (see ``_ta
 - ``second(x, w, u, of_parameters)`` is ∂g/∂x u, by dual numbers. ``transposed`` turns it into the gradient of gᵀu.
 """
 
-import hashlib
-import pickle
 from collections.abc import Sequence
 from typing import Any
 
@@ -47,12 +45,15 @@ class Differentiable:
         self.quaternions = model._quaternions
         self.n, self.nq, self.p = model.n, model.nq, len(model.parameters)
         self.shape: tuple[int, ...] = (self.n,)
-        contents = hashlib.blake2b(pickle.dumps(model), digest_size=12).hexdigest()
-        self.key = ":".join([model.name, contents, self.name, frame or ""])
+        self.key = ""
 
     def lengths(self) -> tuple[int, ...]:
         """The length of each input, with that of π."""
         return (self.nq, *[self.n] * (len(self.inputs) - 1), self.p)
+
+    def gradients(self, of_parameters: bool) -> list[int]:
+        """The length of each gradient."""
+        return [*[self.n] * len(self.inputs), *[self.p] * of_parameters]
 
     def split(self, x: Arrays) -> tuple[Arrays, dict[str, Any]]:
         """The inputs without π, and π as keyword."""
@@ -243,3 +244,9 @@ class BodyJacobian(Differentiable):
 
 class SpaceJacobian(BodyJacobian):
     name = "space_jacobian"
+
+
+QUANTITIES: dict[str, type[Differentiable]] = {
+    kind.name: kind
+    for kind in (InverseDynamics, ForwardDynamics, MassMatrix, ForwardKinematics, BodyJacobian, SpaceJacobian)
+}

@@ -32,13 +32,17 @@ def _rotated(xp: Any, w: Any, r: Any, two: Any, u: Any) -> Any:
     return u + two * (w * turned + cross(xp, r, turned))
 
 
-def to_velocities(xp: Any, quaternions: Quaternions, theta: Any, rate: Any) -> Any:
-    """The rate (..., nq) of θ as velocities (..., n)."""
+def to_velocities(xp: Any, quaternions: Quaternions, theta: Any, rate: Any, is_gradient: bool = False) -> Any:
+    """The rate (..., nq) of θ as velocities (..., n).
+
+    A gradient (..., nq) by θ as gradient along the velocities, by the transpose of q̇ = ½ q (0, ω), ṗ = Rv.
+    """
     parts, last = [], 0
     for q, _, is_free in quaternions:
         w, r, two = _parts(theta, q)
         dw, dr = rate[..., q : q + 1], rate[..., q + 1 : q + 4]
-        parts += [rate[..., last:q], two * (w * dr - dw * r - cross(xp, r, dr))]
+        factor = 0.5 if is_gradient else two
+        parts += [rate[..., last:q], factor * (w * dr - dw * r - cross(xp, r, dr))]
         last = q + 4
         if is_free:
             parts.append(_rotated(xp, -w, r, two, rate[..., q + 4 : q + 7]))

@@ -1,0 +1,403 @@
+"""Dynamics of a robot in PyTorch, differentiable by states and by inertial parameters.
+
+>>> import mozzi, mozzi.torch, torch                                    # doctest: +SKIP
+>>> robot = mozzi.torch.Model(mozzi.models.ur5())                       # doctest: +SKIP
+>>> theta = torch.zeros(6, dtype=torch.float64, requires_grad=True)     # doctest: +SKIP
+>>> robot.mass_matrix(theta).trace().backward()                         # doctest: +SKIP
+
+Tensors are on the CPU, float64 or float32, all of one dtype; memory is shared with them, not copied. Leading axes are
+states and are broadcast. All of `torch.autograd` and `torch.func` works, to second order; `torch.compile` and
+`torch.export` call the same functions as custom operators, to first order in reverse.
+
+θ has nq numbers. A gradient by a quaternion is that of a function of q/‖q‖: tangent to the sphere.
+"""
+
+# mypy: ignore-errors
+# pyright: reportMissingImports=false
+
+import functools
+import hashlib
+import math
+import pickle
+
+import torch
+from torch import Tensor
+from torch._C import _are_functorch_transforms_active as _is_transformed
+from torch._C._functorch import is_legacy_batchedtensor
+from torch.autograd import forward_ad
+
+from . import _mozzi, _pullbacks, _tangent
+from ._torch_rollout import rollout, steps
+from ._torch_tensors import DTYPES, MODELS, arrays, batched, check, check_lengths, model_of
+from ._torch_tensors import tensors as as_tensors
+
+__all__ = ["Model"]
+
+_PLAIN = (Tensor, torch.nn.Parameter)
+_PARAMETERS = "parameters"
+
+
+@functools.cache
+def _known(key):
+    """The quantity of this key: `model:quantity:frame`."""
+    contents, name, frame = key.split(":", 2)
+    quantity = _pullbacks.QUANTITIES[name](model_of(contents), frame or None)
+    quantity.key = key
+    return quantity
+
+
+def _broadcast(x):
+    """The same leading axes for all, by torch, so that gradients are summed over them."""
+    leading = x[0].shape[:-1]
+    for t in x:
+        if t.ndim != 1 and t.shape[:-1] != leading or t.ndim == 1 and leading:
+            break
+    else:
+        return x
+    leading = torch.broadcast_shapes(*[t.shape[:-1] for t in x])
+    return [t if t.shape[:-1] == leading else t.expand(*leading, t.shape[-1]) for t in x]
+
+
+def _to_positions(quantity, theta, gradient):
+    return _tangent.to_positions(torch, quantity.quaternions, theta, gradient) if quantity.quaternions else gradient
+
+
+def _to_velocities(quantity, theta, rate):
+    return _tangent.to_velocities(torch, quantity.quaternions, theta, rate) if quantity.quaternions else rate
+
+
+def _run(quantity, method, count, of_parameters, arrays):
+    """A derivative on NumPy's arrays, which are w, but for `jvp`, then `count` inputs x, then u."""
+    if method == "jvp":
+        return [quantity.jvp(arrays[:count], arrays[count:])]
+    w, x, u = arrays[0], arrays[1 : count + 1], arrays[count + 1 :]
+    if method == "vjp":
+        return quantity.vjp(x, w, of_parameters)
+    return getattr(quantity, method)(x, w, u, of_parameters)
+
+
+def _derived(quantity, method, count, of_parameters, tensors):
+    """The same on tensors."""
+    if any(map(is_legacy_batchedtensor, tensors)):
+        # of torch.autograd.grad(is_grads_batched=True): torch calls an operator of one tensor for each of them
+        leading = tensors[-1].shape[:-1]
+        packed = torch.cat([t.reshape(*leading, -1) for t in tensors], dim=-1)
+        found = _packed_op(packed, quantity.key, method, count, of_parameters)
+        shapes = [quantity.shape] if method == "jvp" else [(n,) for n in quantity.gradients(of_parameters)]
+        parts = found.split([math.prod(shape) for shape in shapes], dim=-1)
+        return [part.reshape(*leading, *shape) for part, shape in zip(parts, shapes)]
+    return as_tensors(_run(quantity, method, count, of_parameters, arrays(tensors)))
+
+
+@torch.library.custom_op("mozzi::packed", mutates_args=(), device_types="cpu")
+def _packed_op(packed: Tensor, key: str, method: str, count: int, of_parameters: bool) -> Tensor:
+    quantity, leading = _known(key), packed.shape[:-1]
+    shapes = [] if method == "jvp" else [quantity.shape]
+    shapes += [(n,) for n in quantity.lengths()[:count]]
+    left = packed.shape[-1] - sum(map(math.prod, shapes))
+    shapes += [(n,) for n in quantity.gradients(left > quantity.n * len(quantity.inputs))] if left else []
+    parts = packed.detach().split([math.prod(shape) for shape in shapes], dim=-1)
+    arrays = [part.reshape(*leading, *shape).numpy() for part, shape in zip(parts, shapes)]
+    found = as_tensors(_run(quantity, method, count, of_parameters, arrays))
+    return torch.cat([t.reshape(*leading, -1) for t in found], dim=-1)
+
+
+# torch.autograd.Function: value f(x), pullback g(x, w), derivative ∂f/∂x u, and ∂g/∂x u. See `_pullbacks`.
+
+
+class _Value(torch.autograd.Function):
+    @staticmethod
+    def forward(quantity, *x):
+        return torch.from_numpy(quantity.value(arrays(x)))
+
+    @staticmethod
+    def setup_context(ctx, inputs, output):
+        ctx.quantity, *x = inputs
+        ctx.save_for_backward(*x)
+        ctx.save_for_forward(*x)
+
+    @staticmethod
+    def backward(ctx, w):
+        x, k = ctx.saved_tensors, len(ctx.quantity.inputs)
+        of_parameters = len(x) > k and ctx.needs_input_grad[-1]
+        if torch.is_grad_enabled() or _is_transformed():
+            first, *others = _Vjp.apply(ctx.quantity, of_parameters, w, *x)
+        else:
+            first, *others = _derived(ctx.quantity, "vjp", len(x), of_parameters, (w, *x))
+        others += [None] * (len(x) - 1 - len(others))
+        return (None, _to_positions(ctx.quantity, x[0], first), *others)
+
+    @staticmethod
+    def jvp(ctx, _, *rates):
+        return _Jvp.apply(ctx.quantity, len(rates), *ctx.saved_tensors, *_directions(ctx, rates))
+
+    @staticmethod
+    def vmap(info, in_dims, quantity, *x):
+        return _Value.apply(quantity, *batched(info, in_dims[1:], x)), 0
+
+
+class _Eager(torch.autograd.Function):
+    """`_Value` without forward mode and transforms: torch calls it in half the time."""
+
+    @staticmethod
+    def forward(ctx, quantity, *x):
+        ctx.quantity = quantity
+        ctx.save_for_backward(*x)
+        return torch.from_numpy(quantity.value(arrays(x)))
+
+    backward = _Value.backward
+
+
+def _directions(ctx, rates):
+    """The tangents of x along the velocities; missing ones are zero, and that of π is left out."""
+    x, quantity = ctx.saved_tensors[-len(rates) :], ctx.quantity
+    rates = [torch.zeros_like(t) if rate is None else rate for t, rate in zip(x, rates)]
+    return [_to_velocities(quantity, x[0], rates[0]), *rates[1:]]
+
+
+class _Vjp(torch.autograd.Function):
+    @staticmethod
+    def forward(quantity, of_parameters, w, *x):
+        return tuple(_derived(quantity, "vjp", len(x), of_parameters, (w, *x)))
+
+    @staticmethod
+    def setup_context(ctx, inputs, output):
+        ctx.quantity, ctx.of_parameters, *tensors = inputs
+        ctx.save_for_backward(*tensors)
+        ctx.save_for_forward(*tensors)
+
+    @staticmethod
+    def backward(ctx, *u):
+        (w, *x), quantity = ctx.saved_tensors, ctx.quantity
+        of_parameters = len(x) > len(quantity.inputs) and ctx.needs_input_grad[-1]
+        first, *others = _Second.apply(quantity, True, of_parameters, len(x), w, *x, *u)
+        others += [None] * (len(x) - 1 - len(others))
+        return (None, None, _Jvp.apply(quantity, len(x), *x, *u), _to_positions(quantity, x[0], first), *others)
+
+    @staticmethod
+    def jvp(ctx, _, __, rate_of_w, *rates):
+        (w, *x), quantity = ctx.saved_tensors, ctx.quantity
+        found = _Second.apply(quantity, False, ctx.of_parameters, len(x), w, *x, *_directions(ctx, rates))
+        if rate_of_w is not None:
+            found = tuple(map(torch.add, found, _Vjp.apply(quantity, ctx.of_parameters, rate_of_w, *x)))
+        return found
+
+    @staticmethod
+    def vmap(info, in_dims, quantity, of_parameters, *tensors):
+        found = _Vjp.apply(quantity, of_parameters, *batched(info, in_dims[2:], tensors))
+        return found, (0,) * len(found)
+
+
+class _Jvp(torch.autograd.Function):
+    @staticmethod
+    def forward(quantity, count, *tensors):
+        return _derived(quantity, "jvp", count, False, tensors)[0]
+
+    @staticmethod
+    def setup_context(ctx, inputs, output):
+        ctx.quantity, ctx.count, *tensors = inputs
+        ctx.save_for_backward(*tensors)
+
+    @staticmethod
+    def backward(ctx, w):
+        tensors, quantity, k = ctx.saved_tensors, ctx.quantity, ctx.count
+        x, u = tensors[:k], tensors[k:]
+        of_parameters = k > len(quantity.inputs) and ctx.needs_input_grad[k + 1]
+        first, *others = _Second.apply(quantity, True, of_parameters, k, w, *x, *u)
+        others += [None] * (k - 1 - len(others))
+        of_u = _Vjp.apply(quantity, len(u) > len(quantity.inputs), w, *x)
+        return (None, None, _to_positions(quantity, x[0], first), *others, *of_u)
+
+    @staticmethod
+    def jvp(ctx, *rates):
+        raise NotImplementedError(
+            f"forward over forward mode of {ctx.quantity.name}: use reverse mode inside, as torch.func.hessian does"
+        )
+
+    @staticmethod
+    def vmap(info, in_dims, quantity, count, *tensors):
+        return _Jvp.apply(quantity, count, *batched(info, in_dims[2:], tensors)), 0
+
+
+class _Second(torch.autograd.Function):
+    @staticmethod
+    def forward(quantity, transposed, of_parameters, count, *tensors):
+        return tuple(_derived(quantity, "transposed" if transposed else "second", count, of_parameters, tensors))
+
+    @staticmethod
+    def setup_context(ctx, inputs, output):
+        ctx.quantity = inputs[0]
+
+    @staticmethod
+    def backward(ctx, *gradients):
+        raise NotImplementedError(f"third derivatives of {ctx.quantity.name}")
+
+    @staticmethod
+    def jvp(ctx, *rates):
+        raise NotImplementedError(f"third derivatives of {ctx.quantity.name}")
+
+    @staticmethod
+    def vmap(info, in_dims, quantity, transposed, of_parameters, count, *tensors):
+        found = _Second.apply(quantity, transposed, of_parameters, count, *batched(info, in_dims[4:], tensors))
+        return found, (0,) * len(found)
+
+
+# custom operators, for graphs: value and pullback. Their pullback is the end: second derivatives are not in graphs.
+
+
+def _refuse_forward_mode(tensors):
+    """A custom operator would drop a tangent in silence."""
+    for t in tensors:
+        if forward_ad.unpack_dual(t, level=0).tangent is not None:
+            raise NotImplementedError("forward mode inside torch.compile: call torch.func.jvp on the compiled function's outside")
+
+
+@torch.library.custom_op("mozzi::value", mutates_args=(), device_types="cpu")
+def _value_op(x: list[Tensor], key: str) -> Tensor:
+    return torch.from_numpy(_known(key).value(arrays(x)))
+
+
+@_value_op.register_fake
+def _(x, key):
+    quantity = _known(key)
+    check_lengths((*quantity.inputs, _PARAMETERS), x, quantity.lengths())
+    return x[0].new_empty(*x[0].shape[:-1], *quantity.shape)
+
+
+@torch.library.custom_op("mozzi::vjp", mutates_args=(), device_types="cpu")
+def _vjp_op(x: list[Tensor], w: Tensor, key: str, of_parameters: bool) -> list[Tensor]:
+    return list(as_tensors(_known(key).vjp(arrays(x), w.detach().numpy(), of_parameters)))
+
+
+@_vjp_op.register_fake
+def _(x, w, key, of_parameters):
+    quantity = _known(key)
+    return [x[0].new_empty(*x[0].shape[:-1], length) for length in quantity.gradients(of_parameters)]
+
+
+def _save(ctx, inputs, output):
+    x, ctx.key = inputs
+    ctx.save_for_backward(*x)
+
+
+def _pull_back(ctx, w):
+    x, quantity = ctx.saved_tensors, _known(ctx.key)
+    first, *others = _vjp_op(list(x), w, ctx.key, len(x) > len(quantity.inputs))
+    return [_to_positions(quantity, x[0], first), *others], None
+
+
+_value_op.register_autograd(_pull_back, setup_context=_save)
+
+
+# the robot
+
+
+def _call(robot, name, x, frame=None):
+    key = f"{robot._contents}:{name}:{frame or ''}"
+    if torch.compiler.is_compiling():
+        return _value_op(list(_broadcast(x)), key)
+    quantity = _known(key)
+    dtype, is_plain, has_gradient = getattr(x[0], "dtype", None), True, False
+    for t in x:
+        if type(t) not in _PLAIN or t.dtype is not dtype or not t.is_cpu:
+            is_plain = False
+            break
+        has_gradient = has_gradient or t.requires_grad
+    if not is_plain or dtype not in DTYPES:
+        check((*quantity.inputs, _PARAMETERS), x)
+    if _is_transformed() or forward_ad._current_level >= 0:
+        return _Value.apply(quantity, *_broadcast(x))
+    if not is_plain:
+        return _value_op(list(_broadcast(x)), key)  # fake tensors
+    if has_gradient and torch.is_grad_enabled():
+        return _Eager.apply(quantity, *_broadcast(x))
+    return torch.from_numpy(quantity.value(arrays(x)))
+
+
+def _and_parameters(x, parameters):
+    return x if parameters is None else (*x, parameters)
+
+
+class Model:
+    """A robot, for tensors: quantities of a `mozzi.Model`, differentiable.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot, with its gravity (`mozzi.Model.with_gravity`); its base is at rest, and it touches nothing.
+    """
+
+    def __init__(self, model: _mozzi.Model) -> None:
+        self.model = model
+        self._contents = hashlib.blake2b(pickle.dumps(model), digest_size=12).hexdigest()
+        MODELS[self._contents] = model
+
+    def __reduce__(self):
+        return Model, (self.model,)
+
+    def __repr__(self) -> str:
+        return f"mozzi.torch.Model({self.model!r})"
+
+    def inverse_dynamics(
+        self, theta: Tensor, dtheta: Tensor, ddtheta: Tensor, *, parameters: Tensor | None = None
+    ) -> Tensor:
+        """τ (..., n) of θ (..., nq), θ̇ and θ̈ (..., n), and of inertial parameters π (..., p), by default the model's."""
+        return _call(self, "inverse_dynamics", _and_parameters((theta, dtheta, ddtheta), parameters))
+
+    def forward_dynamics(
+        self, theta: Tensor, dtheta: Tensor, tau: Tensor, *, parameters: Tensor | None = None
+    ) -> Tensor:
+        """θ̈ (..., n) of θ (..., nq), θ̇ and τ (..., n), and of inertial parameters π (..., p), by default the model's."""
+        return _call(self, "forward_dynamics", _and_parameters((theta, dtheta, tau), parameters))
+
+    def mass_matrix(self, theta: Tensor, *, parameters: Tensor | None = None) -> Tensor:
+        """M (..., n, n) of θ (..., nq), and of inertial parameters π (..., p), by default the model's."""
+        return _call(self, "mass_matrix", _and_parameters((theta,), parameters))
+
+    def forward_kinematics(self, theta: Tensor, frame: str | None = None) -> Tensor:
+        """T (..., 4, 4) of a frame in {s}, by default the end effector's, of θ (..., nq)."""
+        return _call(self, "forward_kinematics", (theta,), frame)
+
+    def body_jacobian(self, theta: Tensor, frame: str | None = None) -> Tensor:
+        """J_b (..., 6, n) of a frame, by default the end effector, angular rows first, of θ (..., nq)."""
+        return _call(self, "body_jacobian", (theta,), frame)
+
+    def space_jacobian(self, theta: Tensor, frame: str | None = None) -> Tensor:
+        """J_s (..., 6, n) of a frame, by default the end effector, angular rows first, of θ (..., nq)."""
+        return _call(self, "space_jacobian", (theta,), frame)
+
+    def rollout(
+        self,
+        theta: Tensor,
+        dtheta: Tensor,
+        tau: Tensor,
+        step: float,
+        method: str = "rk4",
+        *,
+        parameters: Tensor | None = None,
+        by_steps: bool = False,
+    ) -> tuple[Tensor, Tensor]:
+        """The states of N steps under given torques: θ (..., N + 1, nq) and θ̇ (..., N + 1, n), from the start on.
+
+        Parameters
+        ----------
+        theta, dtheta : Tensor, shapes (..., nq) and (..., n)
+            The start.
+        tau : Tensor, shape (..., N, n)
+            The torques of each step.
+        step : float
+            The length of a step, s.
+        method : {'rk4', 'semi-implicit-euler', 'euler'}
+            As in `mozzi.Model.rollout`.
+        parameters : Tensor, shape (..., p), optional
+            Inertial parameters π. Default: the model's. They take the steps as `by_steps` does.
+        by_steps : bool
+            Whether each step is an operation of torch: slower, and needed for forward mode and second derivatives.
+        """
+        if parameters is None and not by_steps:
+            return rollout(self.model, self._contents, float(step), method, theta, dtheta, tau)
+
+        def dynamics(theta: Tensor, dtheta: Tensor, tau: Tensor) -> Tensor:
+            return self.forward_dynamics(theta, dtheta, tau, parameters=parameters)
+
+        return steps(self.model._quaternions, dynamics, float(step), method, theta, dtheta, tau)
