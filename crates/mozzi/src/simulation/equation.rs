@@ -39,8 +39,8 @@ pub trait ForwardDynamics {
 pub struct Equation<'m, I> {
     model: &'m Model,
     pub(super) options: Options,
-    input: I,
-    gravity: Vec3,
+    pub(super) input: I,
+    pub(super) gravity: Vec3,
     /// Neither damping nor Coulomb friction at any joint.
     is_frictionless: bool,
     /// δt and the step that is being taken, for errors.
@@ -49,9 +49,9 @@ pub struct Equation<'m, I> {
     /// In place of the kernels.
     other: Option<&'m dyn ForwardDynamics>,
     /// The motors' τ of the last evaluation.
-    tau: Vec<f64>,
+    pub(super) tau: Vec<f64>,
     /// τ as passed to forward dynamics.
-    force: Vec<f64>,
+    pub(super) force: Vec<f64>,
     /// λ of the last evaluation.
     lambda: Vec<f64>,
     wrenches: Vec<(FrameId, Wrench)>,
@@ -199,7 +199,7 @@ impl<'m, I: Input> Equation<'m, I> {
 
     /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ plus
     /// the difference of the two laws. Returns the power of friction.
-    fn friction(&mut self, dtheta: &[f64]) -> f64 {
+    pub(super) fn friction(&mut self, dtheta: &[f64]) -> f64 {
         if self.is_frictionless {
             self.force.copy_from_slice(&self.tau);
             return 0.0;
@@ -227,7 +227,7 @@ impl<'m, I: Input> Equation<'m, I> {
         self.wrenches.iter().map(power).sum()
     }
 
-    fn bounded(&self, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
+    pub(super) fn bounded(&self, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
         if are_below(values, LARGEST) {
             return Ok(());
         }

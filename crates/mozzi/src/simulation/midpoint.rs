@@ -11,6 +11,7 @@
 //! > p_b[k+1] = `[Ad_e^{hv}]`ᵀP
 
 use super::driven::Driven;
+use super::rollout::series;
 use super::stall::velocity;
 use super::state::State;
 use crate::dynamics::mass_matrix_rate;
@@ -142,18 +143,4 @@ fn on_the_group(p: [f64; 6], rate: [f64; 6], Mv: [f64; 6], v: [f64; 6], h: f64) 
         middle: (series(way, P) - series(way * -0.5, F) * (0.5 * h)).to_array(),
         end: (SE3::exp(way).Ad().transpose() * P).to_array(),
     }
-}
-
-/// Σ (`[ad_X]`ᵀ)ʲF/(j+1)!, to rounding.
-fn series(X: Twist, F: Wrench) -> Wrench {
-    let (mut sum, mut term) = (F, F);
-    for j in 1..40 {
-        term = X.ad().transpose() * term * (1.0 / (j as f64 + 1.0));
-        let next = sum + term;
-        if next == sum {
-            break;
-        }
-        sum = next;
-    }
-    sum
 }

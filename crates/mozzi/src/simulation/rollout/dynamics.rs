@@ -1,0 +1,166 @@
+//! What the steps of a rollout evaluate: θ̈ and its vector-Jacobian products.
+
+use super::super::{Equation, Friction, Input, Method, Options};
+use crate::fast;
+use crate::linalg::Vec3;
+use crate::model::{Environment, Error, JOINT_PARAMETERS, Model};
+use crate::quantities::{ForwardDynamicsVjp, Query, Regressor};
+use crate::scalar::Scalar;
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// A stage of a step, of one robot, or of many robots of one model: one after the other in each slice.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// The step, from 0.
+    pub step: usize,
+    /// s.
+    pub t: f64,
+    /// θ.
+    pub theta: &'a [f64],
+    /// θ̇.
+    pub dtheta: &'a [f64],
+    /// τ, held over the step.
+    pub tau: &'a [f64],
+}
+
+/// Forward dynamics and its gradients at the stages of a [rollout](super::Steps): of one robot, or of many at once.
+pub trait StageDynamics {
+    /// The reason why a state fails.
+    type Error;
+
+    /// θ̈.
+    ///
+    /// # Errors
+    /// A state that is infinite or NaN, or has a singular mass matrix.
+    fn accelerations(&mut self, stage: Stage<'_>, ddtheta: &mut [f64]) -> Result<(), Self::Error>;
+
+    /// xᵀ∂θ̈/∂θ (along the velocities), xᵀ∂θ̈/∂θ̇ and xᵀ∂θ̈/∂τ = M⁻¹x.
+    ///
+    /// # Errors
+    /// As for [`accelerations`](Self::accelerations).
+    fn vjp(&mut self, stage: Stage<'_>, x: &[f64], outputs: [&mut [f64]; 3]) -> Result<(), Self::Error>;
+
+    /// Adds xᵀ∂θ̈/∂π to the parameters' gradient, where y = M⁻¹x.
+    ///
+    /// # Errors
+    /// As for [`accelerations`](Self::accelerations).
+    fn add_parameter_vjp(
+        &mut self,
+        stage: Stage<'_>,
+        ddtheta: &[f64],
+        y: &[f64],
+        gradient: &mut [f64],
+    ) -> Result<(), Self::Error>;
+}
+
+/// Torques held over a step.
+#[derive(Clone, Debug)]
+pub struct HeldTorque(pub Vec<f64>);
+
+impl Input for HeldTorque {
+    fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), Error> {
+        tau.copy_from_slice(&self.0);
+        Ok(())
+    }
+}
+
+/// The equation of motion of one robot, as a simulation evaluates it.
+pub struct OneRobot<'m> {
+    equation: Equation<'m, HeldTorque>,
+    step_size: f64,
+    workspace: fast::Workspace,
+    /// Y, n × p.
+    regressor: Vec<f64>,
+}
+
+impl<'m> OneRobot<'m> {
+    pub fn new(model: &'m Model, method: Method, step_size: f64) -> Self {
+        let options = Options { method, ..Options::new(step_size, 1) };
+        OneRobot {
+            equation: Equation::new(model, HeldTorque(vec![0.0; model.n()]), &options),
+            step_size,
+            workspace: fast::Workspace::new(model),
+            regressor: Vec::new(),
+        }
+    }
+
+    pub fn set_gravity(&mut self, gravity: Vec3) {
+        self.equation.gravity = gravity;
+    }
+
+    pub fn set_friction(&mut self, friction: Friction) {
+        self.equation.options.friction = friction;
+    }
+
+    pub fn options(&self) -> &Options {
+        &self.equation.options
+    }
+
+    /// Checks that the last state is finite.
+    pub fn check_end(&mut self, steps: usize, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
+        let t = steps as f64 * self.step_size;
+        self.equation.at_step(steps, self.step_size);
+        self.equation.bounded("theta", t, theta)?;
+        self.equation.bounded("dtheta", t, dtheta)
+    }
+}
+
+impl StageDynamics for OneRobot<'_> {
+    type Error = Error;
+
+    fn accelerations(&mut self, stage: Stage<'_>, ddtheta: &mut [f64]) -> Result<(), Error> {
+        self.equation.input.0.copy_from_slice(stage.tau);
+        self.equation.at_step(stage.step + 1, self.step_size);
+        self.equation.evaluate(stage.t, stage.theta, stage.dtheta, ddtheta)?;
+        Ok(())
+    }
+
+    fn vjp(&mut self, stage: Stage<'_>, x: &[f64], [d_theta, d_dtheta, d_tau]: [&mut [f64]; 3]) -> Result<(), Error> {
+        let Stage { theta, dtheta, tau, .. } = stage;
+        let (equation, workspace) = (&mut self.equation, &mut self.workspace);
+        equation.tau.copy_from_slice(tau);
+        equation.friction(dtheta);
+        let environment = Environment::with_gravity(equation.gravity);
+        let (query, model) = (Query::from(ForwardDynamicsVjp), equation.model());
+        let inputs = [theta, dtheta, &equation.force, x];
+        fast::evaluate(&query, model, &inputs, &environment, workspace, &mut [d_theta, d_dtheta, d_tau]);
+        if let Friction::Smooth { slip_speed } = equation.options.friction {
+            // the force has −μ tanh(θ̇/v_s)
+            for (j, &mu) in model.friction.iter().enumerate().filter(|(_, mu)| **mu != 0.0) {
+                let law = Scalar::tanh(dtheta[j] / slip_speed);
+                d_dtheta[j] -= d_tau[j] * (mu * (1.0 - law * law) / slip_speed);
+            }
+        }
+        Ok(())
+    }
+
+    /// −yᵀY.
+    fn add_parameter_vjp(
+        &mut self,
+        stage: Stage<'_>,
+        ddtheta: &[f64],
+        y: &[f64],
+        gradient: &mut [f64],
+    ) -> Result<(), Error> {
+        let Stage { theta, dtheta, .. } = stage;
+        let (equation, p) = (&self.equation, gradient.len());
+        let environment = Environment::with_gravity(equation.gravity);
+        let (query, model) = (Query::from(Regressor), equation.model());
+        self.regressor.resize(y.len() * p, 0.0);
+        let outputs = &mut [&mut self.regressor[..]];
+        fast::evaluate(&query, model, &[theta, dtheta, ddtheta], &environment, &mut self.workspace, outputs);
+        for (row, &y) in self.regressor.chunks_exact(p.max(1)).zip(y) {
+            gradient.iter_mut().zip(row).for_each(|(sum, Y)| *sum -= y * Y);
+        }
+        if let Friction::Smooth { slip_speed } = equation.options.friction {
+            // the regressor has sgn θ̇ in place of tanh(θ̇/v_s)
+            let first = 10 * model.bodies().count() + 2;
+            for (k, place) in model.places().iter().enumerate() {
+                let law = |j: usize| Scalar::tanh(dtheta[j] / slip_speed) - Scalar::sgn(dtheta[j]);
+                gradient[first + JOINT_PARAMETERS * k] -= place.velocities().map(|j| y[j] * law(j)).sum::<f64>();
+            }
+        }
+        Ok(())
+    }
+}

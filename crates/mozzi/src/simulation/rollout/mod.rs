@@ -1,0 +1,338 @@
+//! Rollouts: N steps of one size under torques held over each step, and gradients through them.
+//!
+//! > x\[k+1\] = Φ(x\[k\], τ\[k\], π), x = (θ, θ̇);  L(x\[0\], …, x\[N\])
+//!
+//! A [`Rollout`] takes the steps of [`simulate`](Model::simulate) and propagates cotangents x̄ backward through them,
+//!
+//! > x̄\[k\] = ∂L/∂x\[k\] + (∂Φ/∂x)ᵀx̄\[k+1\],  τ̄\[k\] = (∂Φ/∂τ)ᵀx̄\[k+1\],  π̄ = Σ (∂Φ/∂π)ᵀx̄\[k+1\]
+//!
+//! It is the adjoint of the discrete step itself, and so exact to rounding for any step size: each stage takes one
+//! [vector-Jacobian product of forward dynamics](crate::forward_dynamics_vjp()), O(n), and no matrix is formed. The
+//! derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`.
+//!
+//! A cotangent of θ has n numbers, along θ ⊕ δθ: for a floating base, a ball or a free joint along the body twist in
+//! its own coordinates, not along the entries of the quaternion.
+
+mod adjoint;
+mod dynamics;
+mod retraction;
+mod steps;
+mod tape;
+#[cfg(test)]
+mod tests;
+
+pub use dynamics::{Stage, StageDynamics};
+pub(super) use retraction::series;
+pub use steps::{StartGradient, Steps, Tables};
+
+use super::options::check;
+use super::{Friction, Method};
+use crate::linalg::Vec3;
+use crate::model::{Error, Model};
+use alloc::format;
+use alloc::string::ToString;
+use alloc::vec;
+use alloc::vec::Vec;
+use dynamics::OneRobot;
+
+/// The states of a rollout of N steps, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RolloutStates {
+    /// θ\[0\] … θ\[N\], (N + 1) × nq.
+    pub theta: Vec<f64>,
+    /// θ̇\[0\] … θ̇\[N\], (N + 1) × n.
+    pub dtheta: Vec<f64>,
+}
+
+/// The gradient of a loss of a rollout's states.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RolloutGradient {
+    /// By θ\[0\], n numbers along the velocities.
+    pub theta: Vec<f64>,
+    /// By θ̇\[0\], n numbers.
+    pub dtheta: Vec<f64>,
+    /// By τ\[0\] … τ\[N − 1\], N × n.
+    pub tau: Vec<f64>,
+    /// By the [`parameters`](Model::parameters) π, p numbers; empty unless
+    /// [wanted](Rollout::with_parameter_gradient).
+    pub parameters: Vec<f64>,
+}
+
+/// N steps of h seconds of one robot, τ\[k\] held over step k, and gradients through them. {s} is at rest, no wrenches
+/// are applied, joint limits are ignored. N is the number of rows of τ.
+///
+/// ```
+/// use mozzi::simulation::{Method, Rollout};
+/// # fn example(model: &mozzi::Model, goal: &[f64]) -> Result<(), mozzi::Error> {
+/// let (n, steps) = (model.n(), 200);
+/// let (theta, dtheta, tau) = (vec![0.0; model.nq()], vec![0.0; n], vec![0.0; steps * n]);
+/// let mut rollout = Rollout::new(model, 0.01, Method::RungeKutta4)?;
+/// // the loss ½‖θ[N] − goal‖²: its gradient by θ[N]
+/// let gradient = rollout.gradient(&theta, &dtheta, &tau, |k, theta, _dtheta, theta_bar, _dtheta_bar| {
+///     if k == steps {
+///         (0..n).for_each(|j| theta_bar[j] += theta[j] - goal[j]);
+///     }
+/// })?;
+/// assert_eq!(gradient.tau.len(), steps * n);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Rollout<'m> {
+    model: &'m Model,
+    h: f64,
+    segment: Option<usize>,
+    wants_parameters: bool,
+    steps: Steps<OneRobot<'m>>,
+}
+
+impl<'m> Rollout<'m> {
+    /// Steps of h seconds by a method; gravity and Coulomb friction are the robot's. Allocates all memory.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for a step that is not positive and finite, a method that is not
+    /// [explicit](Method::explicit), or a robot with constraints.
+    pub fn new(model: &'m Model, h: f64, method: Method) -> Result<Self, Error> {
+        check(h.is_finite() && h > 0.0, "the step", format!("{h} s"), "a positive, finite number of seconds")?;
+        check_unconstrained(model)?;
+        let steps = Steps::new(model, 1, method.explicit()?, h, OneRobot::new(model, method, h));
+        Ok(Rollout { model, h, segment: None, wants_parameters: false, steps })
+    }
+
+    /// Gravity in {s} coordinates, m/s², in place of the robot's.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] unless it is finite.
+    pub fn with_gravity(mut self, gravity: Vec3) -> Result<Self, Error> {
+        check(gravity.0.iter().all(|x| x.is_finite()), "gravity", format!("{:?}", gravity.0), "finite numbers")?;
+        self.steps.dynamics.set_gravity(gravity);
+        Ok(self)
+    }
+
+    /// Another model of Coulomb friction. Where it is smooth, so is the loss.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for a slip speed that is not positive and finite.
+    pub fn with_friction(mut self, friction: Friction) -> Result<Self, Error> {
+        self.steps.dynamics.set_friction(friction);
+        self.steps.dynamics.options().check()?;
+        Ok(self)
+    }
+
+    /// The number of steps between checkpoints, at least 1: memory is that of N / `steps` states and of the stages of
+    /// `steps` steps. By default √N, or more if the stages fit into 1 MB. With N or more, no step is computed twice.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for 0.
+    pub fn with_checkpoints_every(mut self, steps: usize) -> Result<Self, Error> {
+        check(steps > 0, "the number of steps between checkpoints", steps, "at least 1")?;
+        self.segment = Some(steps);
+        Ok(self)
+    }
+
+    /// Gradients by the parameters, too.
+    pub fn with_parameter_gradient(mut self) -> Self {
+        self.wants_parameters = true;
+        self
+    }
+
+    /// The states from (θ\[0\], θ̇\[0\]) under τ, N × n. Each step costs as many forward dynamics as the method has
+    /// stages.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::BadArgument`] for numbers that are not finite, [`Error::SingularMassMatrix`],
+    /// [`Error::Diverged`].
+    pub fn states(&mut self, theta: &[f64], dtheta: &[f64], tau: &[f64]) -> Result<RolloutStates, Error> {
+        let N = self.check(theta, dtheta, tau)?;
+        let (nq, n) = (self.model.nq(), self.model.n());
+        let mut found = RolloutStates { theta: vec![0.0; (N + 1) * nq], dtheta: vec![0.0; (N + 1) * n] };
+        self.write_states(theta, dtheta, tau, &mut found.theta, &mut found.dtheta)?;
+        Ok(found)
+    }
+
+    /// [`states`](Self::states) into slices of (N + 1) nq and (N + 1) n numbers, without allocation.
+    ///
+    /// # Errors
+    /// As [`states`](Self::states).
+    pub fn write_states(
+        &mut self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        theta_table: &mut [f64],
+        dtheta_table: &mut [f64],
+    ) -> Result<(), Error> {
+        let (N, n, nq) = (self.check(theta, dtheta, tau)?, self.model.n(), self.model.nq());
+        length("theta_table", theta_table.len(), (N + 1) * nq)?;
+        length("dtheta_table", dtheta_table.len(), (N + 1) * n)?;
+        let [theta, dtheta] = self.steps.run([theta, dtheta], N, &mut Record { n, tau, theta_table, dtheta_table })?;
+        let (theta, dtheta) = (theta.to_vec(), dtheta.to_vec());
+        self.steps.dynamics.check_end(N, &theta, &dtheta)
+    }
+
+    /// The gradient of a loss, given by its own gradient at each state: `loss(k, θ, θ̇, θ̄, θ̇̄)` *adds* ∂L/∂θ\[k\], n
+    /// numbers along the velocities, and ∂L/∂θ̇\[k\]. It is called once for each state, from k = N to 0.
+    ///
+    /// A step costs, for each stage, one forward dynamics (two with checkpoints) and one vector-Jacobian product.
+    ///
+    /// # Errors
+    /// As [`states`](Self::states).
+    pub fn gradient(
+        &mut self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        loss: impl FnMut(usize, &[f64], &[f64], &mut [f64], &mut [f64]),
+    ) -> Result<RolloutGradient, Error> {
+        let N = self.check(theta, dtheta, tau)?;
+        self.gradient_by([theta, dtheta], N, tau, None, loss)
+    }
+
+    /// The vector-Jacobian product of [`states`](Self::states): the gradient of Σ θ̄\[k\]ᵀδθ\[k\] + θ̇̄\[k\]ᵀδθ̇\[k\] for
+    /// cotangents θ̄ and θ̇̄, both (N + 1) × n. θ̄ is along the velocities.
+    ///
+    /// # Errors
+    /// As [`states`](Self::states).
+    pub fn vjp(
+        &mut self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        theta_bar: &[f64],
+        dtheta_bar: &[f64],
+    ) -> Result<RolloutGradient, Error> {
+        let n = self.model.n();
+        let N = self.check(theta, dtheta, tau)?;
+        length("theta_bar", theta_bar.len(), (N + 1) * n)?;
+        length("dtheta_bar", dtheta_bar.len(), (N + 1) * n)?;
+        self.gradient_by([theta, dtheta], N, tau, None, |k, _, _, to_theta, to_dtheta| {
+            add(to_theta, &theta_bar[k * n..]);
+            add(to_dtheta, &dtheta_bar[k * n..]);
+        })
+    }
+
+    /// [`gradient`](Self::gradient) where all states are there already: nothing is computed twice but the inner stages
+    /// of each step, and no memory but one step's is needed.
+    ///
+    /// # Errors
+    /// As [`states`](Self::states).
+    pub fn gradient_of_states(
+        &mut self,
+        states: &RolloutStates,
+        tau: &[f64],
+        loss: impl FnMut(usize, &[f64], &[f64], &mut [f64], &mut [f64]),
+    ) -> Result<RolloutGradient, Error> {
+        let (nq, n) = (self.model.nq(), self.model.n());
+        let start = [&states.theta[..nq.min(states.theta.len())], &states.dtheta[..n.min(states.dtheta.len())]];
+        let N = self.check(start[0], start[1], tau)?;
+        length("theta_table", states.theta.len(), (N + 1) * nq)?;
+        length("dtheta_table", states.dtheta.len(), (N + 1) * n)?;
+        self.gradient_by(start, N, tau, Some(states), loss)
+    }
+
+    fn gradient_by(
+        &mut self,
+        start: [&[f64]; 2],
+        N: usize,
+        tau: &[f64],
+        states: Option<&RolloutStates>,
+        loss: impl FnMut(usize, &[f64], &[f64], &mut [f64], &mut [f64]),
+    ) -> Result<RolloutGradient, Error> {
+        let mut tau_bar = vec![0.0; tau.len()];
+        let mut tables = Gradient { n: self.model.n(), tau, tau_bar: &mut tau_bar, states, loss };
+        let found = self.steps.gradient(start, N, self.segment, self.wants_parameters, &mut tables)?;
+        let StartGradient { theta, dtheta, parameters } = found;
+        Ok(RolloutGradient {
+            theta: theta.to_vec(),
+            dtheta: dtheta.to_vec(),
+            parameters: parameters.to_vec(),
+            tau: tau_bar,
+        })
+    }
+
+    /// Checks the start and the torques; N.
+    fn check(&self, theta: &[f64], dtheta: &[f64], tau: &[f64]) -> Result<usize, Error> {
+        self.model.check_lengths(theta, [("dtheta", dtheta)])?;
+        for (what, values) in [("theta", theta), ("dtheta", dtheta)] {
+            check(values.iter().all(|x| x.is_finite()), what, format!("{values:?}"), "finite numbers")?;
+        }
+        let n = self.model.n().max(1);
+        check(tau.len().is_multiple_of(n), "tau", format!("{} numbers", tau.len()), "N × n, a row for each step")?;
+        Ok(tau.len() / n)
+    }
+
+    /// h, s.
+    pub fn step(&self) -> f64 {
+        self.h
+    }
+}
+
+/// Refuses a robot with constraints.
+pub(crate) fn check_unconstrained(model: &Model) -> Result<(), Error> {
+    let m = model.constraint_rows();
+    let found = format!("`{}` with {m} constraint rows", model.description().name);
+    check(m == 0, "the robot of a rollout", found.to_string(), "a robot without constraints")
+}
+
+fn length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {
+    if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
+}
+
+fn add(x: &mut [f64], y: &[f64]) {
+    x.iter_mut().zip(y).for_each(|(x, y)| *x += y);
+}
+
+/// Torques read, states written.
+struct Record<'a> {
+    n: usize,
+    tau: &'a [f64],
+    theta_table: &'a mut [f64],
+    dtheta_table: &'a mut [f64],
+}
+
+impl Tables for Record<'_> {
+    fn torque(&mut self, k: usize, tau: &mut [f64]) {
+        tau.copy_from_slice(&self.tau[k * self.n..][..self.n]);
+    }
+
+    fn record(&mut self, k: usize, theta: &[f64], dtheta: &[f64]) {
+        self.theta_table[k * theta.len()..][..theta.len()].copy_from_slice(theta);
+        self.dtheta_table[k * dtheta.len()..][..dtheta.len()].copy_from_slice(dtheta);
+    }
+
+    fn cotangent(&mut self, _: usize, _: &[f64], _: &[f64], _: &mut [f64], _: &mut [f64]) {}
+
+    fn take(&mut self, _: usize, _: &[f64]) {}
+}
+
+/// Torques read, their gradient written.
+struct Gradient<'a, F> {
+    n: usize,
+    tau: &'a [f64],
+    tau_bar: &'a mut [f64],
+    states: Option<&'a RolloutStates>,
+    loss: F,
+}
+
+impl<F: FnMut(usize, &[f64], &[f64], &mut [f64], &mut [f64])> Tables for Gradient<'_, F> {
+    fn torque(&mut self, k: usize, tau: &mut [f64]) {
+        tau.copy_from_slice(&self.tau[k * self.n..][..self.n]);
+    }
+
+    fn record(&mut self, _: usize, _: &[f64], _: &[f64]) {}
+
+    fn cotangent(&mut self, k: usize, theta: &[f64], dtheta: &[f64], theta_bar: &mut [f64], dtheta_bar: &mut [f64]) {
+        (self.loss)(k, theta, dtheta, theta_bar, dtheta_bar);
+    }
+
+    fn take(&mut self, k: usize, tau_bar: &[f64]) {
+        self.tau_bar[k * self.n..][..self.n].copy_from_slice(tau_bar);
+    }
+
+    fn state(&self, k: usize, theta: &mut [f64], dtheta: &mut [f64]) -> bool {
+        if let Some(states) = self.states {
+            theta.copy_from_slice(&states.theta[k * theta.len()..][..theta.len()]);
+            dtheta.copy_from_slice(&states.dtheta[k * dtheta.len()..][..dtheta.len()]);
+        }
+        self.states.is_some()
+    }
+}
