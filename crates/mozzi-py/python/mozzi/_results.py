@@ -165,6 +165,15 @@ def _columns(motion: "Trajectory | Trajectories") -> dict[str, Array]:
     return columns
 
 
+class Rollout(NamedTuple):
+    """The states of N steps under given torques, from the start on: the starts' axes come first, then N + 1 rows."""
+
+    theta: Array
+    """Shape (..., N + 1, nq)."""
+    dtheta: Array
+    """Shape (..., N + 1, n)."""
+
+
 class Trajectories(NamedTuple):
     """Simulated motions from many starts, at the same times: the starts' axes come first, then the rows, one for each time."""
 

@@ -2,6 +2,7 @@
 
 mod many;
 mod one;
+mod rollout;
 mod watched;
 
 use crate::arguments::Given;

@@ -65,7 +65,10 @@ pub use motion::Motion;
 pub use options::{Friction, LARGEST, Options};
 pub use policy::Policy;
 pub use recorder::{Account, Recorder, Thinned, stride};
-pub use rollout::{Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics, StartGradient, Steps, Tables};
+pub use rollout::{
+    ParameterVjp, Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics, StartGradient, Steps, Tables,
+    check_rollout,
+};
 pub use run::{Ending, Run, Simulation};
 pub use sensitivity::{EndSensitivity, StepSensitivity};
 pub use stops::Stopped;

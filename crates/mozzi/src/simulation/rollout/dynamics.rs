@@ -1,10 +1,11 @@
 //! What the steps of a rollout evaluate: θ̈ and its vector-Jacobian products.
 
 use super::super::{Equation, Friction, Input, Method, Options};
+use super::ParameterVjp;
 use crate::fast;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, JOINT_PARAMETERS, Model};
-use crate::quantities::{ForwardDynamicsVjp, Query, Regressor};
+use crate::quantities::{ForwardDynamicsVjp, Query};
 use crate::scalar::Scalar;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -70,8 +71,7 @@ pub struct OneRobot<'m> {
     equation: Equation<'m, HeldTorque>,
     step_size: f64,
     workspace: fast::Workspace,
-    /// Y, n × p.
-    regressor: Vec<f64>,
+    parameters: ParameterVjp,
 }
 
 impl<'m> OneRobot<'m> {
@@ -81,7 +81,7 @@ impl<'m> OneRobot<'m> {
             equation: Equation::new(model, HeldTorque(vec![0.0; model.n()]), &options),
             step_size,
             workspace: fast::Workspace::new(model),
-            regressor: Vec::new(),
+            parameters: ParameterVjp::new(model),
         }
     }
 
@@ -135,7 +135,6 @@ impl StageDynamics for OneRobot<'_> {
         Ok(())
     }
 
-    /// −yᵀY.
     fn add_parameter_vjp(
         &mut self,
         stage: Stage<'_>,
@@ -144,20 +143,13 @@ impl StageDynamics for OneRobot<'_> {
         gradient: &mut [f64],
     ) -> Result<(), Error> {
         let Stage { theta, dtheta, .. } = stage;
-        let (equation, p) = (&self.equation, gradient.len());
-        let environment = Environment::with_gravity(equation.gravity);
-        let (query, model) = (Query::from(Regressor), equation.model());
-        self.regressor.resize(y.len() * p, 0.0);
-        let outputs = &mut [&mut self.regressor[..]];
-        fast::evaluate(&query, model, &[theta, dtheta, ddtheta], &environment, &mut self.workspace, outputs);
-        for (row, &y) in self.regressor.chunks_exact(p.max(1)).zip(y) {
-            gradient.iter_mut().zip(row).for_each(|(sum, Y)| *sum -= y * Y);
-        }
-        if let Friction::Smooth { slip_speed } = equation.options.friction {
-            // the regressor has sgn θ̇ in place of tanh(θ̇/v_s)
+        let (model, environment) = (self.equation.model(), Environment::with_gravity(self.equation.gravity));
+        self.parameters.add(model, [theta, dtheta, ddtheta], y, &environment, gradient);
+        if let Friction::Smooth { slip_speed } = self.equation.options.friction {
+            // M θ̈ has μ tanh(θ̇/v_s) in place of μ sgn θ̇
             let first = 10 * model.bodies().count() + 2;
             for (k, place) in model.places().iter().enumerate() {
-                let law = |j: usize| Scalar::tanh(dtheta[j] / slip_speed) - Scalar::sgn(dtheta[j]);
+                let law = |j: usize| Scalar::tanh(dtheta[j] / slip_speed) - dtheta[j].sgn();
                 gradient[first + JOINT_PARAMETERS * k] -= place.velocities().map(|j| y[j] * law(j)).sum::<f64>();
             }
         }

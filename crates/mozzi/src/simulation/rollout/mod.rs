@@ -15,6 +15,7 @@
 
 mod adjoint;
 mod dynamics;
+mod parameters;
 mod retraction;
 mod steps;
 mod tape;
@@ -22,6 +23,7 @@ mod tape;
 mod tests;
 
 pub use dynamics::{Stage, StageDynamics};
+pub use parameters::ParameterVjp;
 pub(super) use retraction::series;
 pub use steps::{StartGradient, Steps, Tables};
 
@@ -30,7 +32,6 @@ use super::{Friction, Method};
 use crate::linalg::Vec3;
 use crate::model::{Error, Model};
 use alloc::format;
-use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
 use dynamics::OneRobot;
@@ -92,8 +93,7 @@ impl<'m> Rollout<'m> {
     /// [`Error::BadArgument`] for a step that is not positive and finite, a method that is not
     /// [explicit](Method::explicit), or a robot with constraints.
     pub fn new(model: &'m Model, h: f64, method: Method) -> Result<Self, Error> {
-        check(h.is_finite() && h > 0.0, "the step", format!("{h} s"), "a positive, finite number of seconds")?;
-        check_unconstrained(model)?;
+        check_rollout(model, h)?;
         let steps = Steps::new(model, 1, method.explicit()?, h, OneRobot::new(model, method, h));
         Ok(Rollout { model, h, segment: None, wants_parameters: false, steps })
     }
@@ -266,11 +266,15 @@ impl<'m> Rollout<'m> {
     }
 }
 
-/// Refuses a robot with constraints.
-pub(crate) fn check_unconstrained(model: &Model) -> Result<(), Error> {
+/// Checks the robot and the step's size in seconds.
+///
+/// # Errors
+/// [`Error::BadArgument`] for a step that is not positive and finite, or a robot with constraints.
+pub fn check_rollout(model: &Model, h: f64) -> Result<(), Error> {
+    check(h.is_finite() && h > 0.0, "the step", format!("{h} s"), "a positive, finite number of seconds")?;
     let m = model.constraint_rows();
     let found = format!("`{}` with {m} constraint rows", model.description().name);
-    check(m == 0, "the robot of a rollout", found.to_string(), "a robot without constraints")
+    check(m == 0, "the robot of a rollout", found, "a robot without constraints")
 }
 
 fn length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {
