@@ -1,7 +1,9 @@
 //! Derivatives along a direction against full derivative matrices and the regressor.
 
 use mozzi::model::description::{Joint, JointKind};
-use mozzi::quantities::{ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, Query};
+use mozzi::quantities::{
+    ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, Query,
+};
 use mozzi::{Description, Model, SE3, SpatialInertia, Vec3};
 use mozzi_batch::{Batch, BatchEnvironment, Direction, Layout};
 
@@ -88,7 +90,9 @@ fn rates_of_parameters_are_the_regressors() {
         let (mut values, mut found) = (vec![0.0; states * n], vec![0.0; states * n]);
         let direction = Direction { inputs: &[None, None, None], parameters: Some(&rate) };
         let (values_out, found_out) = (&mut [&mut values[..]], &mut [&mut found[..]]);
-        batch.directional_derivative(InverseDynamics, &inputs, direction, &around, values_out, found_out).expect("lengths");
+        batch
+            .directional_derivative(InverseDynamics, &inputs, direction, &around, values_out, found_out)
+            .expect("lengths");
         for k in 0..states {
             let pi = given.map_or_else(|| model.parameters(), |pi| pi[k * p..][..p].to_vec());
             for (row, i) in Y(k).row_iter().zip(0..n) {
@@ -107,7 +111,13 @@ fn errors_name_the_table_and_the_state() {
     let model = Description::new("massless")
         .link("base", SpatialInertia::zero())
         .link("arm", SpatialInertia::point_mass(1.0, Vec3([0.0; 3])))
-        .joint(Joint::new("turn", "base", "arm", SE3::identity(), JointKind::Screw(mozzi::ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit"))))
+        .joint(Joint::new(
+            "turn",
+            "base",
+            "arm",
+            SE3::identity(),
+            JointKind::Screw(mozzi::ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3]).expect("unit")),
+        ))
         .build()
         .expect("a robot");
     let (batch, environment) = (Batch::new(&model), model.environment().into());

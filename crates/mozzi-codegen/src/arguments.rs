@@ -2,6 +2,7 @@
 
 use crate::estimate::is_deep;
 use crate::program::Program;
+use crate::rates::with_rates;
 use crate::record::record;
 use crate::traced::Traced;
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsByMassMatrix, Memory, Of, Query};
@@ -25,6 +26,10 @@ pub struct Arguments<'a> {
     /// `wrench`, or `wrench_FRAME` for several frames: six numbers (m, f), the wrench that this frame applies to the
     /// environment in its own coordinates.
     pub wrenches: &'a [FrameId],
+    /// The directional derivative, too: after all other inputs a rate of each, such as `theta_rate`, and after the
+    /// outputs the rate of each, such as `tau_rate`. A rate of θ has n numbers, along the velocities. See
+    /// [`Dual`](mozzi::Dual).
+    pub rates: bool,
 }
 
 impl Arguments<'_> {
@@ -62,7 +67,10 @@ pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments
     let query = query.into();
     query.check_subject(model)?;
     arguments.wrenches.iter().try_for_each(|&frame| model.check_frame(frame))?;
-    let by = |kernel: Query| recorded(model, query, kernel, arguments);
+    let by = |kernel: Query| {
+        let program = recorded(model, query, kernel, arguments);
+        if arguments.rates { with_rates(&program, model) } else { program }
+    };
     if query == ForwardDynamics.into() && !model.has_coupled_joints() {
         let bodies = by(query);
         if is_deep(model) {

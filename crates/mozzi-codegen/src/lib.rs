@@ -32,6 +32,7 @@ mod estimate;
 mod function;
 mod jit;
 mod program;
+mod rates;
 mod record;
 mod tape;
 mod text;

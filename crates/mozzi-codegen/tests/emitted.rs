@@ -36,6 +36,8 @@ fn states(model: &Model, program: &Program, angle: usize, precision: Precision) 
             "theta" => theta.clone(),
             "dtheta" => dtheta.clone(),
             "ddtheta" | "tau" | "x" => x.clone(),
+            "theta_rate" | "tau_rate" => dtheta.clone(),
+            "dtheta_rate" | "ddtheta_rate" => x.clone(),
             "parameters" => model.parameters(),
             "gravity" => vec![1.0, 2.0, -9.0],
             "about" => vec![0.3, -0.2, 0.1],
@@ -103,6 +105,12 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
         (anymal, vec![InverseDynamics.into(), ForwardDynamics.into()], fixed, 9),
         (rubbing, vec![InverseDynamics.into(), JointFriction.into(), SpringForces.into()], fixed, turning),
         (named(&ur5, "moved"), moved, carried, 3),
+        (
+            named(&ur5, "along"),
+            vec![InverseDynamics.into(), ForwardDynamics.into()],
+            Arguments { rates: true, ..fixed },
+            3,
+        ),
         (ur5, vec![InverseDynamics.into()], open, 3),
     ];
     if precision == Precision::F64 {
@@ -121,7 +129,7 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
             let program = record_quantity(&model, query, open).expect("its own frames");
             let frame = query.subject.frame.map(|frame| format!("_{}", model.frame_name(frame)));
             let states = states(&model, &program, angle, precision);
-            Call { function: format!("{}{}", query.name(), frame.unwrap_or_default()), program, states }
+            Call { function: format!("{}{}", program.name(), frame.unwrap_or_default()), program, states }
         };
         let files = emit(&model, &queries, open, language, precision).expect("text");
         Module { files, calls: queries.iter().map(call).collect() }
@@ -132,7 +140,7 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
 /// The tolerance in units of the precision's ε relative to the largest entry: a few for sums, more for solves.
 fn tolerance(function: &str) -> f64 {
     match function {
-        "forward_dynamics" => 100.0,
+        "forward_dynamics" | "forward_dynamics_jvp" => 100.0,
         "basics" => 2.0,
         _ => 20.0,
     }

@@ -103,6 +103,49 @@ fn what_is_left_open_is_an_input() {
 }
 
 #[test]
+fn rates_are_those_of_dual_numbers() {
+    for (name, model) in robots() {
+        let ([theta, dtheta, x], [_, u, v]) = (state(&model, 1), state(&model, 2));
+        let arguments = Arguments { rates: true, gravity: true, ..Arguments::default() };
+        for query in quantities(&model) {
+            let program = record_quantity(&model, query, arguments).expect("its own frames");
+            let plain =
+                record_quantity(&model, query, Arguments { rates: false, ..arguments }).expect("its own frames");
+            let (own, of) = (plain.inputs().len(), [theta.clone(), dtheta.clone(), x.clone()]);
+            let gravity = [0.5, 1.0, -9.0];
+            let values = [inputs(query, &of), vec![&gravity[..]]].concat();
+            let along = [u.clone(), v.clone(), u.iter().zip(&v).map(|(u, v)| u - v).collect()];
+            let rates = [inputs(query, &along), vec![&[0.1, 0.2, 0.3][..]]].concat();
+            assert_eq!(program.inputs()[own].name, format!("{}_rate", plain.inputs()[0].name));
+            let found = program.evaluate(&[&values[..], &rates].concat());
+
+            let seeded = plain.inputs().iter().zip(values.iter().zip(&rates)).map(|(array, (x, rate))| {
+                if array.name == "theta" { mozzi::seed_direction(&model, x, rate) } else { Dual::list(x, rate) }
+            });
+            let seeded: Vec<Vec<Dual>> = seeded.collect();
+            let expected = plain.evaluate(&seeded.iter().map(Vec::as_slice).collect::<Vec<_>>());
+            let outputs = query.declaration().outputs.len();
+            assert_eq!(found.len(), plain.outputs().len() + outputs);
+            for (k, expected) in expected.iter().enumerate() {
+                let part = |of: fn(&Dual) -> f64| expected.iter().map(of).collect::<Vec<f64>>();
+                assert!(error(&found[k], &part(|x| x.value)) < tolerance(query), "{name}, {}", query.name());
+                if k < outputs {
+                    let error = error(&found[plain.outputs().len() + k], &part(|x| x.derivative));
+                    assert!(error < 1e3 * tolerance(query), "{name}, {}: {error:e}", query.name());
+                }
+            }
+        }
+        // τ along (θ, θ̇, θ̈) by the full matrices
+        let tau = record_quantity(&model, InverseDynamics, Arguments { rates: true, ..Arguments::default() });
+        let found = tau.expect("no frame").evaluate(&[&theta, &dtheta, &x, &u, &v, &u].map(|x| &x[..])).remove(1);
+        let full = model.inverse_dynamics_derivatives(&theta, &dtheta, &x, &model.environment()).expect("lengths");
+        let [u, v] = [u, v].map(mozzi::nalgebra::DVector::from_vec);
+        let expected = full.d_theta * &u + full.d_dtheta * v + full.d_ddtheta * u;
+        assert!(error(&found, expected.as_slice()) < 1e-12, "{name}");
+    }
+}
+
+#[test]
 fn programs_run_on_any_scalar() {
     // the derivative of τ along θ̈ is M's product
     let model = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");

@@ -40,6 +40,10 @@ pub struct CodegenArguments {
     /// effector) or wrench=FRAME; may be repeated
     #[arg(long, value_name = "WHAT", value_parser = argument)]
     argument: Vec<Argument>,
+    /// Generate the directional derivative, too: a rate of each input is a further argument, that of each output a
+    /// further result (forward mode)
+    #[arg(long)]
+    jvp: bool,
     /// Allow programs of more than 150000 operations
     #[arg(long)]
     allow_large: bool,
@@ -112,6 +116,7 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         base_acceleration: is_argument(Argument::BaseAcceleration),
         about: is_argument(Argument::About),
         wrenches: &frames,
+        rates: arguments.jvp,
     };
     let mut queries = arguments.quantity.clone();
     if queries.is_empty() {

@@ -96,6 +96,10 @@ pub(super) fn quantity(model: &Model, query: Query, program: &Program) -> Vec<St
 
 /// Shape, meaning and unit of an array.
 pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &str) -> String {
+    if let Some(of) = name.strip_suffix("_rate").filter(|_| arguments.rates) {
+        let along = if of == "theta" { ", along the velocities" } else { "" };
+        return format!("the rate of {of} in the direction of the inputs' rates{along}");
+    }
     let declaration = query.declaration();
     let base = if model.is_floating() { "base and " } else { "" };
     if let Some(input) = declaration.inputs.iter().find(|input| input.name == name) {

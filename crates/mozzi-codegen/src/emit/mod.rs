@@ -153,7 +153,7 @@ pub fn emit(
     let mut taken = BTreeSet::new();
     for (quantity, program) in quantities.iter().zip(&programs) {
         let frame = quantity.subject.frame.map(|frame| format!("_{}", model.frame_name(frame))).unwrap_or_default();
-        let mut function = written(&format!("{}{frame}", quantity.name()), program, &mut taken);
+        let mut function = written(&format!("{}{frame}", program.name()), program, &mut taken);
         function.about = describe::quantity(model, *quantity, program);
         for argument in function.inputs.iter_mut().chain(&mut function.outputs) {
             argument.about = describe::array(model, *quantity, arguments, &argument.name);

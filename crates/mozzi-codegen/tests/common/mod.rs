@@ -114,11 +114,12 @@ pub fn quantities(model: &Model) -> Vec<Query<'static>> {
 /// The entries of a [`state`] that a quantity takes.
 pub fn inputs<'s>(query: Query, state: &'s [Vec<f64>; 3]) -> Vec<&'s [f64]> {
     let array = |name| match name {
-        "theta" => &state[0],
+        "theta" => &state[0][..],
         "dtheta" | "x" => &state[1],
+        "w" => &[0.3, -0.7, 1.1, 2.0, -1.5, 0.4],
         _ => &state[2],
     };
-    query.declaration().inputs.iter().map(|input| &array(input.name)[..]).collect()
+    query.declaration().inputs.iter().map(|input| array(input.name)).collect()
 }
 
 /// Computed by the kernels, in the robot's own environment.
