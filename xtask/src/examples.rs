@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::Command;
 
+/// Python examples that take minutes: tests run a short version.
+const SHORT: [&str; 1] = ["31_torch_policy.py"];
+
 /// The Rust examples' programs, by name.
 pub type Programs = BTreeMap<String, PathBuf>;
 
@@ -80,7 +83,11 @@ impl Example {
                 }
                 None => Outcome::Failed(format!("cargo build made no program of examples/{name}.rs")),
             },
-            Self::Python(file) => command::outcome(package::python(workspace).arg(file).current_dir(folder)),
+            Self::Python(file) => {
+                let mut python = package::python(workspace);
+                let options = SHORT.iter().filter(|name| file.ends_with(name)).map(|_| "--short");
+                command::outcome(python.arg(file).args(options).current_dir(folder))
+            }
         }
     }
 }

@@ -333,3 +333,69 @@ def test_copies(ur5):
     theta = state(ur5, 17)[0]
     for other in [copy.deepcopy(robot), pickle.loads(pickle.dumps(robot))]:
         assert torch.equal(other.mass_matrix(theta), robot.mass_matrix(theta))
+
+
+def rollouts(model, seed, *leading, steps=4):
+    theta, dtheta, _ = state(model, seed, *leading)
+    tau = torch.tensor(np.random.default_rng(seed).uniform(-1, 1, (*leading, steps, model.n)), requires_grad=True)
+    return theta, dtheta, tau
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("method", ["rk4", "semi-implicit-euler", "euler"])
+def test_rollouts_and_their_gradients_are_those_of_steps_in_tensors(models, name, method):
+    model = models(name)
+    robot = mozzi.torch.Model(model)
+    for leading in [(), (3,)]:
+        x = rollouts(model, 18, *leading)
+        w = [torch.tensor(np.random.default_rng(k).normal(size=(*leading, 5, m))) for k, m in [(1, model.nq), (2, model.n)]]
+        found = robot.rollout(*x, 0.05, method)
+        expected = robot.rollout(*x, 0.05, method, by_steps=True)
+        for a, b in zip(found, expected):
+            assert_close(a.detach().numpy(), b.detach().numpy(), tolerance=1e-11)
+        losses = [sum((a * b).sum() for a, b in zip(w, tables)) for tables in (found, expected)]
+        for a, b in zip(*(torch.autograd.grad(loss, x) for loss in losses)):
+            assert_close(a.numpy(), b.numpy(), tolerance=1e-9)
+
+
+def test_rollouts_by_torchs_checks(models):
+    for name in ["furuta_pendulum", "two_link_adrift"]:
+        robot, x = mozzi.torch.Model(models(name)), rollouts(models(name), 19, steps=2)
+        assert gradcheck(lambda *x: robot.rollout(*x, 0.1), x)
+        pi = parameters(models(name))
+        steps = lambda *x: robot.rollout(*x[:3], 0.1, parameters=x[3])  # noqa: E731
+        assert gradcheck(steps, (*x, pi), check_forward_ad=True, fast_mode=True)
+        assert gradgradcheck(steps, (*x, pi), fast_mode=True)
+
+
+def test_rollouts_under_transforms(models):
+    model = models("furuta_pendulum")
+    robot, x = mozzi.torch.Model(model), [t.detach() for t in rollouts(model, 20, 3)]
+    loss = lambda *x: robot.rollout(*x, 0.1)[0].square().sum()  # noqa: E731
+    together = vmap(grad(loss, argnums=(0, 1, 2)))(*x)
+    compiled = torch.compile(grad_of(loss), fullgraph=True, backend="aot_eager")(*x)
+    for k in range(3):
+        for a, b in zip(together, grad(loss, argnums=(0, 1, 2))(*(t[k] for t in x))):
+            assert_close(a[k].numpy(), b.numpy(), tolerance=1e-11)
+    for a, b in zip(together, compiled):
+        assert_close(b.numpy(), a.numpy(), tolerance=1e-11)
+    with pytest.raises(NotImplementedError, match="forward mode through a rollout"):
+        jvp(loss, tuple(x), tuple(x))
+    with pytest.raises((NotImplementedError, RuntimeError), match="second derivatives of a rollout"):
+        jacrev(jacrev(loss, argnums=1), argnums=1)(*x)
+    single = [t.float().requires_grad_() for t in x]
+    found = robot.rollout(*single, 0.1)
+    found[0].sum().backward()
+    assert found[0].dtype == single[2].grad.dtype == torch.float32
+    with pytest.raises(ValueError, match=r"tau has shape \(2,\), expected \(..., N, 2\)"):
+        robot.rollout(x[0][0], x[1][0], x[2][0, 0], 0.1)
+
+
+def grad_of(loss):
+    """Gradients by torch.autograd: a graph has these, but no transforms of torch.func."""
+
+    def found(*x):
+        x = [t.clone().requires_grad_() for t in x]
+        return torch.autograd.grad(loss(*x), x)
+
+    return found

@@ -15,7 +15,6 @@ states and are broadcast. All of `torch.autograd` and `torch.func` works, to sec
 # mypy: ignore-errors
 # pyright: reportMissingImports=false
 
-import functools
 import hashlib
 import math
 import pickle
@@ -26,24 +25,15 @@ from torch._C import _are_functorch_transforms_active as _is_transformed
 from torch._C._functorch import is_legacy_batchedtensor
 from torch.autograd import forward_ad
 
-from . import _mozzi, _pullbacks, _tangent
+from . import _mozzi, _tangent
+from ._torch_operators import known, packed_op, run, to_positions, value_op
 from ._torch_rollout import rollout, steps
-from ._torch_tensors import DTYPES, MODELS, arrays, batched, check, check_lengths, model_of
+from ._torch_tensors import DTYPES, MODELS, arrays, batched, check
 from ._torch_tensors import tensors as as_tensors
 
 __all__ = ["Model"]
 
 _PLAIN = (Tensor, torch.nn.Parameter)
-_PARAMETERS = "parameters"
-
-
-@functools.cache
-def _known(key):
-    """The quantity of this key: `model:quantity:frame`."""
-    contents, name, frame = key.split(":", 2)
-    quantity = _pullbacks.QUANTITIES[name](model_of(contents), frame or None)
-    quantity.key = key
-    return quantity
 
 
 def _broadcast(x):
@@ -58,22 +48,8 @@ def _broadcast(x):
     return [t if t.shape[:-1] == leading else t.expand(*leading, t.shape[-1]) for t in x]
 
 
-def _to_positions(quantity, theta, gradient):
-    return _tangent.to_positions(torch, quantity.quaternions, theta, gradient) if quantity.quaternions else gradient
-
-
 def _to_velocities(quantity, theta, rate):
     return _tangent.to_velocities(torch, quantity.quaternions, theta, rate) if quantity.quaternions else rate
-
-
-def _run(quantity, method, count, of_parameters, arrays):
-    """A derivative on NumPy's arrays, which are w, but for `jvp`, then `count` inputs x, then u."""
-    if method == "jvp":
-        return [quantity.jvp(arrays[:count], arrays[count:])]
-    w, x, u = arrays[0], arrays[1 : count + 1], arrays[count + 1 :]
-    if method == "vjp":
-        return quantity.vjp(x, w, of_parameters)
-    return getattr(quantity, method)(x, w, u, of_parameters)
 
 
 def _derived(quantity, method, count, of_parameters, tensors):
@@ -82,24 +58,11 @@ def _derived(quantity, method, count, of_parameters, tensors):
         # of torch.autograd.grad(is_grads_batched=True): torch calls an operator of one tensor for each of them
         leading = tensors[-1].shape[:-1]
         packed = torch.cat([t.reshape(*leading, -1) for t in tensors], dim=-1)
-        found = _packed_op(packed, quantity.key, method, count, of_parameters)
+        found = packed_op(packed, quantity.key, method, count, of_parameters)
         shapes = [quantity.shape] if method == "jvp" else [(n,) for n in quantity.gradients(of_parameters)]
         parts = found.split([math.prod(shape) for shape in shapes], dim=-1)
         return [part.reshape(*leading, *shape) for part, shape in zip(parts, shapes)]
-    return as_tensors(_run(quantity, method, count, of_parameters, arrays(tensors)))
-
-
-@torch.library.custom_op("mozzi::packed", mutates_args=(), device_types="cpu")
-def _packed_op(packed: Tensor, key: str, method: str, count: int, of_parameters: bool) -> Tensor:
-    quantity, leading = _known(key), packed.shape[:-1]
-    shapes = [] if method == "jvp" else [quantity.shape]
-    shapes += [(n,) for n in quantity.lengths()[:count]]
-    left = packed.shape[-1] - sum(map(math.prod, shapes))
-    shapes += [(n,) for n in quantity.gradients(left > quantity.n * len(quantity.inputs))] if left else []
-    parts = packed.detach().split([math.prod(shape) for shape in shapes], dim=-1)
-    arrays = [part.reshape(*leading, *shape).numpy() for part, shape in zip(parts, shapes)]
-    found = as_tensors(_run(quantity, method, count, of_parameters, arrays))
-    return torch.cat([t.reshape(*leading, -1) for t in found], dim=-1)
+    return as_tensors(run(quantity, method, count, of_parameters, arrays(tensors)))
 
 
 # torch.autograd.Function: value f(x), pullback g(x, w), derivative ∂f/∂x u, and ∂g/∂x u. See `_pullbacks`.
@@ -125,7 +88,7 @@ class _Value(torch.autograd.Function):
         else:
             first, *others = _derived(ctx.quantity, "vjp", len(x), of_parameters, (w, *x))
         others += [None] * (len(x) - 1 - len(others))
-        return (None, _to_positions(ctx.quantity, x[0], first), *others)
+        return (None, to_positions(ctx.quantity, x[0], first), *others)
 
     @staticmethod
     def jvp(ctx, _, *rates):
@@ -172,7 +135,7 @@ class _Vjp(torch.autograd.Function):
         of_parameters = len(x) > len(quantity.inputs) and ctx.needs_input_grad[-1]
         first, *others = _Second.apply(quantity, True, of_parameters, len(x), w, *x, *u)
         others += [None] * (len(x) - 1 - len(others))
-        return (None, None, _Jvp.apply(quantity, len(x), *x, *u), _to_positions(quantity, x[0], first), *others)
+        return (None, None, _Jvp.apply(quantity, len(x), *x, *u), to_positions(quantity, x[0], first), *others)
 
     @staticmethod
     def jvp(ctx, _, __, rate_of_w, *rates):
@@ -206,7 +169,7 @@ class _Jvp(torch.autograd.Function):
         first, *others = _Second.apply(quantity, True, of_parameters, k, w, *x, *u)
         others += [None] * (k - 1 - len(others))
         of_u = _Vjp.apply(quantity, len(u) > len(quantity.inputs), w, *x)
-        return (None, None, _to_positions(quantity, x[0], first), *others, *of_u)
+        return (None, None, to_positions(quantity, x[0], first), *others, *of_u)
 
     @staticmethod
     def jvp(ctx, *rates):
@@ -242,61 +205,14 @@ class _Second(torch.autograd.Function):
         return found, (0,) * len(found)
 
 
-# custom operators, for graphs: value and pullback. Their pullback is the end: second derivatives are not in graphs.
-
-
-def _refuse_forward_mode(tensors):
-    """A custom operator would drop a tangent in silence."""
-    for t in tensors:
-        if forward_ad.unpack_dual(t, level=0).tangent is not None:
-            raise NotImplementedError("forward mode inside torch.compile: call torch.func.jvp on the compiled function's outside")
-
-
-@torch.library.custom_op("mozzi::value", mutates_args=(), device_types="cpu")
-def _value_op(x: list[Tensor], key: str) -> Tensor:
-    return torch.from_numpy(_known(key).value(arrays(x)))
-
-
-@_value_op.register_fake
-def _(x, key):
-    quantity = _known(key)
-    check_lengths((*quantity.inputs, _PARAMETERS), x, quantity.lengths())
-    return x[0].new_empty(*x[0].shape[:-1], *quantity.shape)
-
-
-@torch.library.custom_op("mozzi::vjp", mutates_args=(), device_types="cpu")
-def _vjp_op(x: list[Tensor], w: Tensor, key: str, of_parameters: bool) -> list[Tensor]:
-    return list(as_tensors(_known(key).vjp(arrays(x), w.detach().numpy(), of_parameters)))
-
-
-@_vjp_op.register_fake
-def _(x, w, key, of_parameters):
-    quantity = _known(key)
-    return [x[0].new_empty(*x[0].shape[:-1], length) for length in quantity.gradients(of_parameters)]
-
-
-def _save(ctx, inputs, output):
-    x, ctx.key = inputs
-    ctx.save_for_backward(*x)
-
-
-def _pull_back(ctx, w):
-    x, quantity = ctx.saved_tensors, _known(ctx.key)
-    first, *others = _vjp_op(list(x), w, ctx.key, len(x) > len(quantity.inputs))
-    return [_to_positions(quantity, x[0], first), *others], None
-
-
-_value_op.register_autograd(_pull_back, setup_context=_save)
-
-
 # the robot
 
 
 def _call(robot, name, x, frame=None):
     key = f"{robot._contents}:{name}:{frame or ''}"
     if torch.compiler.is_compiling():
-        return _value_op(list(_broadcast(x)), key)
-    quantity = _known(key)
+        return value_op(list(_broadcast(x)), key)
+    quantity = known(key)
     dtype, is_plain, has_gradient = getattr(x[0], "dtype", None), True, False
     for t in x:
         if type(t) not in _PLAIN or t.dtype is not dtype or not t.is_cpu:
@@ -304,11 +220,11 @@ def _call(robot, name, x, frame=None):
             break
         has_gradient = has_gradient or t.requires_grad
     if not is_plain or dtype not in DTYPES:
-        check((*quantity.inputs, _PARAMETERS), x)
+        check((*quantity.inputs, "parameters"), x)
     if _is_transformed() or forward_ad._current_level >= 0:
         return _Value.apply(quantity, *_broadcast(x))
     if not is_plain:
-        return _value_op(list(_broadcast(x)), key)  # fake tensors
+        return value_op(list(_broadcast(x)), key)  # fake tensors
     if has_gradient and torch.is_grad_enabled():
         return _Eager.apply(quantity, *_broadcast(x))
     return torch.from_numpy(quantity.value(arrays(x)))
