@@ -12,9 +12,9 @@ use alloc::vec::Vec;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// A robot, its input, and the joints that are held at a stop, which do not accelerate beyond it.
-pub(super) struct Driven<'m> {
+pub(super) struct Driven<'m, I = &'m mut (dyn Input + 'm)> {
     pub model: &'m Model,
-    equation: Equation<'m, &'m mut (dyn Input + 'm)>,
+    pub equation: Equation<'m, I>,
     pub held: Vec<Held>,
     /// The stops' forces at the last evaluation, one for each held joint.
     pub reactions: Vec<f64>,
@@ -25,8 +25,8 @@ pub(super) struct Driven<'m> {
     A: DMatrix<f64>,
 }
 
-impl<'m> Driven<'m> {
-    pub fn new(equation: Equation<'m, &'m mut (dyn Input + 'm)>) -> Self {
+impl<'m, I: Input> Driven<'m, I> {
+    pub fn new(equation: Equation<'m, I>) -> Self {
         let model = equation.model();
         let n = model.n();
         Driven {

@@ -10,6 +10,7 @@
 //! > P = p_b[k] + h`[Ad_e^{−½hv}]`ᵀF,  p_b(θ_m, v) = Σ (`[ad_hv]`ᵀ)ʲP/(j+1)! − ½h Σ (−½`[ad_hv]`ᵀ)ʲF/(j+1)!,
 //! > p_b[k+1] = `[Ad_e^{hv}]`ᵀP
 
+use super::Input;
 use super::driven::Driven;
 use super::rollout::series;
 use super::stall::velocity;
@@ -18,6 +19,7 @@ use crate::dynamics::mass_matrix_rate;
 use crate::kinematics::integrate;
 use crate::lie::SE3;
 use crate::model::{Error, Freedom, Model, Place, Workspace};
+use crate::scalar::{Real, Scalar};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -30,6 +32,8 @@ const ITERATIONS: usize = 60;
 pub(super) struct Midpoint {
     /// p at the end of the last step, and the time of that end.
     momentum: Option<(f64, DVector<f64>)>,
+    /// v of the last step.
+    pub velocity: Vec<f64>,
     workspace: Workspace,
     dM: Vec<f64>,
     ddtheta: Vec<f64>,
@@ -38,7 +42,8 @@ pub(super) struct Midpoint {
 impl Midpoint {
     pub fn new(model: &Model) -> Self {
         let n = model.n();
-        Midpoint { momentum: None, workspace: Workspace::new(model), dM: vec![0.0; n * n], ddtheta: vec![0.0; n] }
+        let (velocity, workspace) = (vec![0.0; n], Workspace::new(model));
+        Midpoint { momentum: None, velocity, workspace, dM: vec![0.0; n * n], ddtheta: vec![0.0; n] }
     }
 
     /// Restarts after the state was changed from outside: p is then Mθ̇.
@@ -47,7 +52,13 @@ impl Midpoint {
     }
 
     /// A step of h seconds, which ends at a time.
-    pub fn step(&mut self, from: &State, h: f64, end: f64, driven: &mut Driven) -> Result<State, Error> {
+    pub fn step<I: Input>(
+        &mut self,
+        from: &State,
+        h: f64,
+        end: f64,
+        driven: &mut Driven<'_, I>,
+    ) -> Result<State, Error> {
         let (model, n) = (driven.model, from.dtheta.len());
         let (middle, half) = (from.t + 0.5 * h, 0.5 * h);
         let p = match self.momentum.take() {
@@ -71,7 +82,7 @@ impl Midpoint {
             let mut momentum = &p + &rate * half;
             let Mv = &M * &v;
             for place in curved() {
-                let of_place = |x: &DVector<f64>| padded(x, place);
+                let of_place = |x: &DVector<f64>| padded(x.as_slice(), place);
                 let found = on_the_group(of_place(&p), of_place(&rate), of_place(&Mv), of_place(&v), h);
                 let k = place.velocities().len();
                 momentum.rows_mut(place.j, k).copy_from_slice(&found.middle[..k]);
@@ -101,6 +112,7 @@ impl Midpoint {
                 iterations: ITERATIONS,
             });
         }
+        self.velocity.copy_from_slice(v.as_slice());
         let mut p = M * &v * 2.0 - p;
         for place in curved() {
             p.as_mut_slice()[place.velocities()].copy_from_slice(&after.as_slice()[place.velocities()]);
@@ -122,25 +134,25 @@ impl Midpoint {
 }
 
 /// The rows of a place as (ω, v) or (m, f): a ball's are followed by zeros.
-fn padded(x: &DVector<f64>, place: &Place) -> [f64; 6] {
-    core::array::from_fn(|k| if k < place.velocities().len() { x[place.j + k] } else { 0.0 })
+pub(super) fn padded<S: Scalar>(x: &[S], place: &Place) -> [S; 6] {
+    core::array::from_fn(|k| if k < place.velocities().len() { x[place.j + k] } else { S::zero() })
 }
 
 /// The momentum of a floating base, a free joint or a ball at the midpoint and at the end of a step.
-struct GroupMomentum {
-    middle: [f64; 6],
-    end: [f64; 6],
+pub(super) struct GroupMomentum<S> {
+    pub middle: [S; 6],
+    pub end: [S; 6],
 }
 
 /// From p at the step's start, ṗ and Mv at its middle.
-fn on_the_group(p: [f64; 6], rate: [f64; 6], Mv: [f64; 6], v: [f64; 6], h: f64) -> GroupMomentum {
-    let V = Twist::from_array(v);
+pub(super) fn on_the_group<S: Real>(p: [S; 6], rate: [S; 6], Mv: [S; 6], v: [S; 6], h: S) -> GroupMomentum<S> {
+    let (V, half) = (Twist::from_array(v), S::from_f64(0.5));
     let F = Wrench::from_array(rate) - V.ad().transpose() * Wrench::from_array(Mv);
     let way = V * h;
-    let half_way_back = SE3::exp(way * -0.5).Ad().transpose();
+    let half_way_back = SE3::exp(way * -half).Ad().transpose();
     let P = Wrench::from_array(p) + half_way_back * F * h;
     GroupMomentum {
-        middle: (series(way, P) - series(way * -0.5, F) * (0.5 * h)).to_array(),
+        middle: (series(way, P) - series(way * -half, F) * (half * h)).to_array(),
         end: (SE3::exp(way).Ad().transpose() * P).to_array(),
     }
 }

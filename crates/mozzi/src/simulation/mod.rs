@@ -15,6 +15,8 @@
 //! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
 //!
+//! Gradients of a loss through N steps, by start, torques and parameters: [`Rollout`].
+//!
 //! All methods integrate on SE(3) if the base floats, and all run in one loop, [`Simulation`]. It locates [`Event`]s,
 //! zeros of functions of (t, θ, θ̇), on the polynomial between two steps, treats the joints' limits by a [`Policy`],
 //! and passes each row to a [`Recorder`], so that a long motion need not be kept in memory.
@@ -27,6 +29,7 @@ mod dormand_prince;
 mod driven;
 mod equation;
 mod events;
+mod friction;
 mod held;
 mod input;
 mod method;
@@ -66,8 +69,8 @@ pub use options::{Friction, LARGEST, Options};
 pub use policy::Policy;
 pub use recorder::{Account, Recorder, Thinned, stride};
 pub use rollout::{
-    ParameterVjp, Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics, StartGradient, Steps, Tables,
-    check_rollout,
+    Cotangents, ExplicitSteps, ParameterVjp, Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics,
+    StartGradient, Stepper, Steps, Tables, check_rollout,
 };
 pub use run::{Ending, Run, Simulation};
 pub use sensitivity::{EndSensitivity, StepSensitivity};

@@ -2,7 +2,7 @@
 //! map, by dual numbers (forward mode).
 
 use super::options::check;
-use super::{Explicit, Friction, Motion, Options};
+use super::{Explicit, Motion, Options};
 use crate::dynamics::forward_dynamics;
 use crate::kinematics::{difference, seed_direction};
 use crate::model::{Environment, Error, Model, Pivots, Variation, Workspace};
@@ -189,13 +189,7 @@ fn step<S: Real + From<C>, C: Scalar, E>(
     let environment = Environment::with_gravity(gravity);
     let mut force = tau.to_vec();
     let mut F = |_: f64, theta: &[S], dtheta: &[S], ddtheta: &mut [S]| {
-        if let Friction::Smooth { slip_speed } = options.friction {
-            // forward dynamics subtracts μ sgn θ̇ itself
-            for (j, &rate) in dtheta.iter().enumerate() {
-                let law = (rate / S::from_f64(slip_speed)).tanh();
-                force[j] = tau[j] + S::from(model.friction[j]) * (rate.sgn() - law);
-            }
-        }
+        options.friction.force(model, tau, dtheta, &mut force);
         forward_dynamics(model, theta, dtheta, &force, &environment, workspace, ddtheta);
         check(theta, workspace)?;
         Ok([])
@@ -210,7 +204,7 @@ fn step<S: Real + From<C>, C: Scalar, E>(
 mod tests {
     use super::*;
     use crate::kinematics::integrate;
-    use crate::simulation::{Method, torque};
+    use crate::simulation::{Friction, Method, torque};
     use crate::testing::{Random, floating_tree, mixed_tree, state, tree};
 
     const METHODS: [Method; 3] = [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4];

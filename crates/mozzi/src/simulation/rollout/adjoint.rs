@@ -11,6 +11,7 @@
 
 use super::dynamics::{Stage, StageDynamics};
 use super::retraction::{advance_vjp, rate_vjp};
+use super::stepper::Cotangents;
 use super::tape::Tape;
 use crate::kinematics::ConfigurationSpace;
 use crate::simulation::Explicit;
@@ -22,21 +23,13 @@ pub fn stages(method: Explicit) -> usize {
     if method == Explicit::RungeKutta4 { 4 } else { 1 }
 }
 
-/// The running cotangents of a state, and memory for one step. Of many robots, their numbers are one after the other.
+/// Memory for the adjoint of one step. Of many robots, their numbers are one after the other.
 #[derive(Clone, Debug)]
 pub struct Adjoint {
     space: ConfigurationSpace,
     is_flat: bool,
     /// Of one robot.
     n: usize,
-    /// The cotangent of θ, along the velocities.
-    pub theta: Vec<f64>,
-    /// The cotangent of θ̇.
-    pub dtheta: Vec<f64>,
-    /// The gradient by τ of the last step.
-    pub tau: Vec<f64>,
-    /// The gradient by the parameters so far; empty if not wanted.
-    pub parameters: Vec<f64>,
     /// wᵢ, stage after stage, and the cotangents of wᵢ and aᵢ.
     w: [Vec<f64>; 4],
     w_bar: [Vec<f64>; 4],
@@ -55,10 +48,6 @@ impl Adjoint {
             space: space.clone(),
             is_flat: space.is_flat(),
             n,
-            theta: zeros(),
-            dtheta: zeros(),
-            tau: zeros(),
-            parameters: Vec::new(),
             w: four(),
             w_bar: four(),
             a_bar: four(),
@@ -75,8 +64,9 @@ impl Adjoint {
         (step, t, tau): (usize, f64, &[f64]),
         (tape, first): (&Tape, usize),
         dynamics: &mut D,
+        to: &mut Cotangents,
     ) -> Result<(), D::Error> {
-        self.tau.fill(0.0);
+        to.tau.fill(0.0);
         let stage = |i: usize| {
             let [theta, dtheta, ddtheta] = tape.stage(first + i);
             (Stage { step, t, theta, dtheta, tau }, ddtheta)
@@ -84,27 +74,25 @@ impl Adjoint {
         match method {
             Explicit::Euler => {
                 let (start, ddtheta) = stage(0);
-                scale(&mut self.a_bar[0], &self.dtheta, h);
-                self.advance(start.dtheta, h);
-                add(&mut self.dtheta, &self.u_bar[0], h);
-                self.accelerations(start, ddtheta, 0, dynamics)?;
-                add(&mut self.theta, &self.products[0], 1.0);
-                add(&mut self.dtheta, &self.products[1], 1.0);
+                scale(&mut self.a_bar[0], &to.dtheta, h);
+                self.advance(start.dtheta, h, &mut to.theta);
+                add(&mut to.dtheta, &self.u_bar[0], h);
+                self.accelerations(start, ddtheta, 0, dynamics, to)?;
+                self.add_products(to);
             }
             Explicit::SemiImplicitEuler => {
                 let (start, ddtheta) = stage(0);
                 self.w[0].copy_from_slice(start.dtheta);
                 add(&mut self.w[0], ddtheta, h);
                 let end = core::mem::take(&mut self.w[0]);
-                self.advance(&end, h);
+                self.advance(&end, h, &mut to.theta);
                 self.w[0] = end;
-                add(&mut self.dtheta, &self.u_bar[0], h);
-                scale(&mut self.a_bar[0], &self.dtheta, h);
-                self.accelerations(start, ddtheta, 0, dynamics)?;
-                add(&mut self.theta, &self.products[0], 1.0);
-                add(&mut self.dtheta, &self.products[1], 1.0);
+                add(&mut to.dtheta, &self.u_bar[0], h);
+                scale(&mut self.a_bar[0], &to.dtheta, h);
+                self.accelerations(start, ddtheta, 0, dynamics, to)?;
+                self.add_products(to);
             }
-            Explicit::RungeKutta4 => self.runge_kutta_4(h, stage, dynamics)?,
+            Explicit::RungeKutta4 => self.runge_kutta_4(h, stage, dynamics, to)?,
         }
         Ok(())
     }
@@ -114,6 +102,7 @@ impl Adjoint {
         h: f64,
         stage: impl Fn(usize) -> (Stage<'a>, &'a [f64]),
         dynamics: &mut D,
+        to: &mut Cotangents,
     ) -> Result<(), D::Error> {
         let along = [0.0, 0.5 * h, 0.5 * h, h];
         let weights = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
@@ -131,27 +120,26 @@ impl Adjoint {
             }
             add(&mut mean, &self.w[i], weights[i]);
         }
-        self.advance(&mean, h);
+        self.advance(&mean, h, &mut to.theta);
         self.u = mean;
         for i in 0..4 {
             scale(&mut self.w_bar[i], &self.u_bar[0], weights[i] * h);
-            scale(&mut self.a_bar[i], &self.dtheta, weights[i] * h);
+            scale(&mut self.a_bar[i], &to.dtheta, weights[i] * h);
         }
         for i in (0..4).rev() {
             let (at, ddtheta) = stage(i);
-            self.accelerations(at, ddtheta, i, dynamics)?;
-            if i == 0 {
-                add(&mut self.theta, &self.products[0], 1.0);
-                add(&mut self.dtheta, &self.products[1], 1.0);
-                add(&mut self.dtheta, &self.w_bar[0], 1.0);
-                break;
+            self.accelerations(at, ddtheta, i, dynamics, to)?;
+            if i > 0 {
+                self.stage_start(i, along[i], at.dtheta);
+            } else {
+                add(&mut to.dtheta, &self.w_bar[0], 1.0);
             }
-            self.stage_start(i, along[i], at.dtheta);
+            self.add_products(to);
         }
         Ok(())
     }
 
-    /// The cotangents of θᵢ and θ̇ᵢ, in the products, given to θ, θ̇, wᵢ₋₁ and aᵢ₋₁.
+    /// From the cotangents of θᵢ and θ̇ᵢ, in the products, those of θ and θ̇, in their place, and of wᵢ₋₁ and aᵢ₋₁.
     fn stage_start(&mut self, i: usize, along: f64, dtheta: &[f64]) {
         let Adjoint { space, n, w, w_bar, a_bar, u, u_bar, products: [d_theta, d_dtheta, _], .. } = self;
         let [by_advance, by_rate] = u_bar;
@@ -173,19 +161,22 @@ impl Adjoint {
         }
         add(&mut w_bar[i - 1], by_advance, along);
         add(&mut a_bar[i - 1], d_dtheta, along);
-        add(&mut self.theta, d_theta, 1.0);
-        add(&mut self.dtheta, d_dtheta, 1.0);
+    }
+
+    fn add_products(&self, to: &mut Cotangents) {
+        add(&mut to.theta, &self.products[0], 1.0);
+        add(&mut to.dtheta, &self.products[1], 1.0);
     }
 
     /// Replaces the cotangent of θ ⊕ wh by that of θ; that of wh goes to `u_bar[0]`.
-    fn advance(&mut self, w: &[f64], h: f64) {
+    fn advance(&mut self, w: &[f64], h: f64, theta_bar: &mut [f64]) {
         let (by_u, n) = (&mut self.u_bar[0], self.n);
         if self.is_flat {
-            by_u.copy_from_slice(&self.theta);
+            by_u.copy_from_slice(theta_bar);
             return;
         }
         scale(&mut self.products[0], w, h);
-        let each = self.products[0].chunks_exact(n).zip(self.theta.chunks_exact_mut(n)).zip(by_u.chunks_exact_mut(n));
+        let each = self.products[0].chunks_exact(n).zip(theta_bar.chunks_exact_mut(n)).zip(by_u.chunks_exact_mut(n));
         for ((u, bar), by_u) in each {
             advance_vjp(&self.space, u, bar, by_u);
         }
@@ -198,12 +189,13 @@ impl Adjoint {
         ddtheta: &[f64],
         i: usize,
         dynamics: &mut D,
+        to: &mut Cotangents,
     ) -> Result<(), D::Error> {
         let [d_theta, d_dtheta, d_tau] = &mut self.products;
         dynamics.vjp(stage, &self.a_bar[i], [d_theta, d_dtheta, d_tau])?;
-        add(&mut self.tau, d_tau, 1.0);
-        if !self.parameters.is_empty() {
-            dynamics.add_parameter_vjp(stage, ddtheta, d_tau, &mut self.parameters)?;
+        add(&mut to.tau, d_tau, 1.0);
+        if !to.parameters.is_empty() {
+            dynamics.add_parameter_vjp(stage, ddtheta, d_tau, &mut to.parameters)?;
         }
         Ok(())
     }

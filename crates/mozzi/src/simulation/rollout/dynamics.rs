@@ -1,9 +1,8 @@
 //! What the steps of a rollout evaluate: θ̈ and its vector-Jacobian products.
 
-use super::super::{Equation, Friction, Input, Method, Options};
+use super::super::{Equation, Friction, Input, Options};
 use super::ParameterVjp;
 use crate::fast;
-use crate::linalg::Vec3;
 use crate::model::{Environment, Error, JOINT_PARAMETERS, Model};
 use crate::quantities::{ForwardDynamicsVjp, Query};
 use crate::scalar::Scalar;
@@ -68,41 +67,20 @@ impl Input for HeldTorque {
 
 /// The equation of motion of one robot, as a simulation evaluates it.
 pub struct OneRobot<'m> {
-    equation: Equation<'m, HeldTorque>,
+    pub equation: Equation<'m, HeldTorque>,
     step_size: f64,
     workspace: fast::Workspace,
     parameters: ParameterVjp,
 }
 
 impl<'m> OneRobot<'m> {
-    pub fn new(model: &'m Model, method: Method, step_size: f64) -> Self {
-        let options = Options { method, ..Options::new(step_size, 1) };
+    pub fn new(model: &'m Model, options: &Options) -> Self {
         OneRobot {
-            equation: Equation::new(model, HeldTorque(vec![0.0; model.n()]), &options),
-            step_size,
+            equation: Equation::new(model, HeldTorque(vec![0.0; model.n()]), options),
+            step_size: options.step(),
             workspace: fast::Workspace::new(model),
             parameters: ParameterVjp::new(model),
         }
-    }
-
-    pub fn set_gravity(&mut self, gravity: Vec3) {
-        self.equation.gravity = gravity;
-    }
-
-    pub fn set_friction(&mut self, friction: Friction) {
-        self.equation.options.friction = friction;
-    }
-
-    pub fn options(&self) -> &Options {
-        &self.equation.options
-    }
-
-    /// Checks that the last state is finite.
-    pub fn check_end(&mut self, steps: usize, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
-        let t = steps as f64 * self.step_size;
-        self.equation.at_step(steps, self.step_size);
-        self.equation.bounded("theta", t, theta)?;
-        self.equation.bounded("dtheta", t, dtheta)
     }
 }
 

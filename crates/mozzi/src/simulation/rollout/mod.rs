@@ -8,33 +8,43 @@
 //!
 //! It is the adjoint of the discrete step itself, and so exact to rounding for any step size: each stage takes one
 //! [vector-Jacobian product of forward dynamics](crate::forward_dynamics_vjp()), O(n), and no matrix is formed. The
-//! derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`.
+//! derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`. The implicit midpoint rule takes the
+//! implicit function theorem and dual numbers, O(n³) a step: `midpoint.rs`.
 //!
 //! A cotangent of θ has n numbers, along θ ⊕ δθ: for a floating base, a ball or a free joint along the body twist in
 //! its own coordinates, not along the entries of the quaternion.
 
 mod adjoint;
 mod dynamics;
+mod explicit;
+mod midpoint;
+#[cfg(test)]
+mod midpoint_tests;
 mod parameters;
 mod retraction;
+mod stepper;
 mod steps;
 mod tape;
 #[cfg(test)]
 mod tests;
 
 pub use dynamics::{Stage, StageDynamics};
+pub use explicit::ExplicitSteps;
 pub use parameters::ParameterVjp;
 pub(super) use retraction::series;
+pub use stepper::{Cotangents, Stepper};
 pub use steps::{StartGradient, Steps, Tables};
 
 use super::options::check;
-use super::{Friction, Method};
+use super::{Equation, Friction, Method, Options};
 use crate::linalg::Vec3;
 use crate::model::{Error, Model};
+use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
-use dynamics::OneRobot;
+use dynamics::{HeldTorque, OneRobot};
+use midpoint::MidpointSteps;
 
 /// The states of a rollout of N steps, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,41 +91,79 @@ pub struct RolloutGradient {
 pub struct Rollout<'m> {
     model: &'m Model,
     h: f64,
+    options: Options,
     segment: Option<usize>,
     wants_parameters: bool,
-    steps: Steps<OneRobot<'m>>,
+    steps: Kind<'m>,
+}
+
+/// What takes the steps.
+enum Kind<'m> {
+    Explicit(Box<Steps<ExplicitSteps<OneRobot<'m>>>>),
+    Midpoint(Box<Steps<MidpointSteps<'m>>>),
+}
+
+/// The same with either kind of steps.
+macro_rules! with_steps {
+    ($rollout:ident, |$steps:ident| $value:expr) => {
+        match &mut $rollout.steps {
+            Kind::Explicit($steps) => $value,
+            Kind::Midpoint($steps) => $value,
+        }
+    };
 }
 
 impl<'m> Rollout<'m> {
     /// Steps of h seconds by a method; gravity and Coulomb friction are the robot's. Allocates all memory.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for a step that is not positive and finite, a method that is not
-    /// [explicit](Method::explicit), or a robot with constraints.
+    /// [`Error::BadArgument`] for a step that is not positive and finite, an [adaptive](Method::is_adaptive) method, or
+    /// a robot with constraints.
     pub fn new(model: &'m Model, h: f64, method: Method) -> Result<Self, Error> {
         check_rollout(model, h)?;
-        let steps = Steps::new(model, 1, method.explicit()?, h, OneRobot::new(model, method, h));
-        Ok(Rollout { model, h, segment: None, wants_parameters: false, steps })
+        let options = Options { method, ..Options::new(h, 1) };
+        let (n, p) = (model.n(), model.parameter_count());
+        let steps = if method == Method::Midpoint {
+            Kind::Midpoint(Box::new(Steps::new(MidpointSteps::new(model, &options), n, p)))
+        } else {
+            let steps = ExplicitSteps::new(model, 1, method.explicit()?, h, OneRobot::new(model, &options));
+            Kind::Explicit(Box::new(Steps::new(steps, n, p)))
+        };
+        Ok(Rollout { model, h, options, segment: None, wants_parameters: false, steps })
     }
 
     /// Gravity in {s} coordinates, m/s², in place of the robot's.
     ///
     /// # Errors
     /// [`Error::BadArgument`] unless it is finite.
-    pub fn with_gravity(mut self, gravity: Vec3) -> Result<Self, Error> {
-        check(gravity.0.iter().all(|x| x.is_finite()), "gravity", format!("{:?}", gravity.0), "finite numbers")?;
-        self.steps.dynamics.set_gravity(gravity);
-        Ok(self)
+    pub fn with_gravity(self, gravity: Vec3) -> Result<Self, Error> {
+        let options = Options { gravity: Some(gravity), ..self.options };
+        self.with_options(options)
     }
 
     /// Another model of Coulomb friction. Where it is smooth, so is the loss.
     ///
     /// # Errors
     /// [`Error::BadArgument`] for a slip speed that is not positive and finite.
-    pub fn with_friction(mut self, friction: Friction) -> Result<Self, Error> {
-        self.steps.dynamics.set_friction(friction);
-        self.steps.dynamics.options().check()?;
+    pub fn with_friction(self, friction: Friction) -> Result<Self, Error> {
+        let options = Options { friction, ..self.options };
+        self.with_options(options)
+    }
+
+    fn with_options(mut self, options: Options) -> Result<Self, Error> {
+        options.check()?;
+        self.options = options;
+        let gravity = options.gravity.unwrap_or(self.model.gravity());
+        let equation = self.equation();
+        (equation.gravity, equation.options) = (gravity, options);
         Ok(self)
+    }
+
+    fn equation(&mut self) -> &mut Equation<'m, HeldTorque> {
+        match &mut self.steps {
+            Kind::Explicit(steps) => &mut steps.stepper.dynamics.equation,
+            Kind::Midpoint(steps) => &mut steps.stepper.driven.equation,
+        }
     }
 
     /// The number of steps between checkpoints, at least 1: memory is that of N / `steps` states and of the stages of
@@ -164,9 +212,13 @@ impl<'m> Rollout<'m> {
         let (N, n, nq) = (self.check(theta, dtheta, tau)?, self.model.n(), self.model.nq());
         length("theta_table", theta_table.len(), (N + 1) * nq)?;
         length("dtheta_table", dtheta_table.len(), (N + 1) * n)?;
-        let [theta, dtheta] = self.steps.run([theta, dtheta], N, &mut Record { n, tau, theta_table, dtheta_table })?;
-        let (theta, dtheta) = (theta.to_vec(), dtheta.to_vec());
-        self.steps.dynamics.check_end(N, &theta, &dtheta)
+        let mut tables = Record { n, tau, theta_table: &mut *theta_table, dtheta_table: &mut *dtheta_table };
+        with_steps!(self, |steps| steps.run([theta, dtheta], N, &mut tables).map(|_| ()))?;
+        let (h, end) = (self.h, N as f64 * self.h);
+        let equation = self.equation();
+        equation.at_step(N, h);
+        equation.bounded("theta", end, &theta_table[N * nq..])?;
+        equation.bounded("dtheta", end, &dtheta_table[N * n..])
     }
 
     /// The gradient of a loss, given by its own gradient at each state: `loss(k, θ, θ̇, θ̄, θ̇̄)` *adds* ∂L/∂θ\[k\], n
@@ -239,7 +291,8 @@ impl<'m> Rollout<'m> {
     ) -> Result<RolloutGradient, Error> {
         let mut tau_bar = vec![0.0; tau.len()];
         let mut tables = Gradient { n: self.model.n(), tau, tau_bar: &mut tau_bar, states, loss };
-        let found = self.steps.gradient(start, N, self.segment, self.wants_parameters, &mut tables)?;
+        let (segment, wanted) = (self.segment, self.wants_parameters);
+        let found = with_steps!(self, |steps| steps.gradient(start, N, segment, wanted, &mut tables))?;
         let StartGradient { theta, dtheta, parameters } = found;
         Ok(RolloutGradient {
             theta: theta.to_vec(),
@@ -332,11 +385,9 @@ impl<F: FnMut(usize, &[f64], &[f64], &mut [f64], &mut [f64])> Tables for Gradien
         self.tau_bar[k * self.n..][..self.n].copy_from_slice(tau_bar);
     }
 
-    fn state(&self, k: usize, theta: &mut [f64], dtheta: &mut [f64]) -> bool {
-        if let Some(states) = self.states {
-            theta.copy_from_slice(&states.theta[k * theta.len()..][..theta.len()]);
-            dtheta.copy_from_slice(&states.dtheta[k * dtheta.len()..][..dtheta.len()]);
-        }
-        self.states.is_some()
+    fn state(&self, k: usize) -> Option<[&[f64]; 2]> {
+        let RolloutStates { theta, dtheta } = self.states?;
+        let nq = theta.len() / (dtheta.len() / self.n.max(1)).max(1);
+        Some([&theta[k * nq..][..nq], &dtheta[k * self.n..][..self.n]])
     }
 }

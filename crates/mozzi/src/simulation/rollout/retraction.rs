@@ -15,6 +15,7 @@
 use crate::kinematics::ConfigurationSpace;
 use crate::lie::SE3;
 use crate::model::{Freedom, Place};
+use crate::scalar::Real;
 use crate::spatial::{Twist, Wrench};
 
 /// Replaces the cotangent of θ ⊕ u by that of θ, and writes that of u.
@@ -42,17 +43,18 @@ pub fn rate_vjp(space: &ConfigurationSpace, u: &[f64], V: &[f64], bar: &mut [f64
 }
 
 /// Σ (`[ad_X]`ᵀ)ʲF/(j+1)!, to rounding. With φ(A) = Σ Aʲ/(j+1)!, φ(2A) = ½(e^A + 1)φ(A): rotations above 1 rad are
-/// halved, so that no terms cancel.
-pub fn series(X: Twist, F: Wrench) -> Wrench {
-    if X.w.dot(X.w) > 1.0 {
-        let (half, once) = (X * 0.5, series(X * 0.5, F));
-        return (SE3::exp(half).Ad().transpose() * once + once) * 0.5;
+/// halved, so that no terms cancel. Dual numbers' derivatives converge, too.
+pub fn series<S: Real>(X: Twist<S>, F: Wrench<S>) -> Wrench<S> {
+    if X.w.dot(X.w) > S::one() {
+        let half = S::from_f64(0.5);
+        let once = series(X * half, F);
+        return (SE3::exp(X * half).Ad().transpose() * once + once) * half;
     }
     let (mut sum, mut term) = (F, F);
     for j in 1..40 {
-        term = X.ad().transpose() * term * (1.0 / (j as f64 + 1.0));
+        term = X.ad().transpose() * term * S::from_f64(1.0 / (j as f64 + 1.0));
         let next = sum + term;
-        if next == sum {
+        if (next - sum).to_array().into_iter().all(S::is_identically_zero) {
             break;
         }
         sum = next;

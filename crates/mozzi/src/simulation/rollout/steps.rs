@@ -4,11 +4,7 @@
 //! stages of one segment: they are computed anew when the segment's turn comes. With √N steps to a segment the memory
 //! is O(√N), for one more forward pass. Stages that fit into [`TAPE`] numbers are all kept.
 
-use super::adjoint::{Adjoint, stages};
-use super::dynamics::{Stage, StageDynamics};
-use super::tape::Tape;
-use crate::model::Model;
-use crate::simulation::{Explicit, Motion};
+use super::stepper::{Cotangents, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -29,25 +25,21 @@ pub trait Tables {
     /// Takes the gradient by τ of step k.
     fn take(&mut self, k: usize, tau_bar: &[f64]);
 
-    /// Are all states here already? Writes state k then.
-    fn state(&self, k: usize, theta: &mut [f64], dtheta: &mut [f64]) -> bool {
-        let _ = (k, theta, dtheta);
-        false
+    /// θ and θ̇ of state k if all states are there already.
+    fn state(&self, k: usize) -> Option<[&[f64]; 2]> {
+        let _ = k;
+        None
     }
 }
 
-/// N explicit steps of h seconds, τ held over each, of one robot or of many of one model.
+/// N steps of one robot or of many of one model, τ held over each.
 #[derive(Debug)]
-pub struct Steps<D> {
-    /// The equation of motion.
-    pub dynamics: D,
-    method: Explicit,
-    h: f64,
-    motion: Motion,
+pub struct Steps<S> {
+    /// What takes the steps.
+    pub stepper: S,
     tau: Vec<f64>,
-    tape: Tape,
     checkpoints: Vec<[Vec<f64>; 2]>,
-    adjoint: Adjoint,
+    cotangents: Cotangents,
     /// The parameters' number, of all robots.
     parameters: usize,
 }
@@ -63,38 +55,31 @@ pub struct StartGradient<'a> {
     pub parameters: &'a [f64],
 }
 
-impl<D: StageDynamics> Steps<D> {
-    /// Memory for this many robots.
-    pub fn new(model: &Model, robots: usize, method: Explicit, h: f64, dynamics: D) -> Self {
-        let (nq, n, space) = (model.nq() * robots, model.n() * robots, model.configuration_space());
-        let start = Motion::start_many(space, robots, 0.0, &vec![0.0; nq], &vec![0.0; n], |_, _, _, _| Ok([]));
-        let Ok(motion) = start.map_err(|never: core::convert::Infallible| match never {});
-        Steps {
-            dynamics,
-            method,
-            h,
-            motion,
-            tau: vec![0.0; n],
-            tape: Tape::new(nq, n),
-            checkpoints: Vec::new(),
-            adjoint: Adjoint::new(space, model.n(), robots),
-            parameters: model.parameter_count() * robots,
-        }
+impl<S: Stepper> Steps<S> {
+    /// For n velocities and p parameters, of all robots together.
+    pub fn new(stepper: S, n: usize, p: usize) -> Self {
+        let (tau, cotangents) = (vec![0.0; n], Cotangents::new(n));
+        Steps { stepper, tau, checkpoints: Vec::new(), cotangents, parameters: p }
     }
 
     /// The states of N steps.
     ///
     /// # Errors
     /// Those of the dynamics.
-    pub fn run(&mut self, start: [&[f64]; 2], N: usize, tables: &mut impl Tables) -> Result<[&[f64]; 2], D::Error> {
-        self.set(start);
+    pub fn run(&mut self, start: [&[f64]; 2], N: usize, tables: &mut impl Tables) -> Result<[&[f64]; 2], S::Error> {
+        self.stepper.set(start[0], start[1]);
         for k in 0..N {
-            tables.record(k, &self.motion.theta, &self.motion.dtheta);
+            self.record(k, tables);
             tables.torque(k, &mut self.tau);
-            self.step(k, false, usize::MAX)?;
+            self.stepper.step(k, &self.tau, false, true)?;
         }
-        tables.record(N, &self.motion.theta, &self.motion.dtheta);
-        Ok([&self.motion.theta, &self.motion.dtheta])
+        self.record(N, tables);
+        Ok(self.stepper.state())
+    }
+
+    fn record(&self, k: usize, tables: &mut impl Tables) {
+        let [theta, dtheta] = self.stepper.state();
+        tables.record(k, theta, dtheta);
     }
 
     /// The gradient of a loss of the states, by the torques into the tables, by the start and the parameters here.
@@ -108,30 +93,33 @@ impl<D: StageDynamics> Steps<D> {
         segment: Option<usize>,
         wants_parameters: bool,
         tables: &mut impl Tables,
-    ) -> Result<StartGradient<'_>, D::Error> {
+    ) -> Result<StartGradient<'_>, S::Error> {
         let count = if wants_parameters { self.parameters } else { 0 };
-        self.adjoint.parameters.clear();
-        self.adjoint.parameters.resize(count, 0.0);
-        self.adjoint.theta.fill(0.0);
-        self.adjoint.dtheta.fill(0.0);
-        if tables.state(N, &mut self.motion.theta, &mut self.motion.dtheta) {
+        self.cotangents.parameters.clear();
+        self.cotangents.parameters.resize(count, 0.0);
+        self.cotangents.theta.fill(0.0);
+        self.cotangents.dtheta.fill(0.0);
+        if tables.state(N).is_some() {
             self.through_states(N, tables)?;
         } else {
             self.through_segments(start, N, segment, tables)?;
         }
-        let Adjoint { theta, dtheta, parameters, .. } = &self.adjoint;
+        let Cotangents { theta, dtheta, parameters, .. } = &self.cotangents;
         Ok(StartGradient { theta, dtheta, parameters })
     }
 
-    /// Backward through states that are there: each step's stages are computed once more.
-    fn through_states(&mut self, N: usize, tables: &mut impl Tables) -> Result<(), D::Error> {
+    /// Backward through states that are there: each step is taken once more.
+    fn through_states(&mut self, N: usize, tables: &mut impl Tables) -> Result<(), S::Error> {
+        let Some([theta, dtheta]) = tables.state(N) else { return Ok(()) };
+        self.stepper.set(theta, dtheta);
         self.loss(N, tables);
         for k in (0..N).rev() {
-            tables.state(k, &mut self.motion.theta, &mut self.motion.dtheta);
-            self.tape.clear();
+            let Some([theta, dtheta]) = tables.state(k) else { return Ok(()) };
+            self.stepper.set(theta, dtheta);
+            self.stepper.clear();
             tables.torque(k, &mut self.tau);
-            let needed = if self.adjoint.parameters.is_empty() { stages(self.method) - 1 } else { usize::MAX };
-            self.step(k, true, needed)?;
+            let needs_end = !self.cotangents.parameters.is_empty();
+            self.stepper.step(k, &self.tau, true, needs_end)?;
             self.step_back(k, 0, tables)?;
         }
         Ok(())
@@ -144,83 +132,55 @@ impl<D: StageDynamics> Steps<D> {
         N: usize,
         segment: Option<usize>,
         tables: &mut impl Tables,
-    ) -> Result<(), D::Error> {
-        let stages = stages(self.method);
-        let row = stages * (self.motion.theta.len() + 2 * self.motion.dtheta.len()).max(1);
-        let length = segment.unwrap_or(N.isqrt().max(TAPE / row)).max(1);
+    ) -> Result<(), S::Error> {
+        let length = segment.unwrap_or(N.isqrt().max(TAPE / self.stepper.taped().max(1))).max(1);
         self.checkpoints.resize_with(N.div_ceil(length), Default::default);
-        self.set(start);
+        self.stepper.set(start[0], start[1]);
         for k in 0..N {
             if k % length == 0 {
-                let Motion { theta, dtheta, .. } = &self.motion;
-                for (kept, now) in self.checkpoints[k / length].iter_mut().zip([theta, dtheta]) {
-                    kept.clone_from(now);
+                for (kept, now) in self.checkpoints[k / length].iter_mut().zip(self.stepper.state()) {
+                    kept.clear();
+                    kept.extend_from_slice(now);
                 }
-                self.tape.clear();
+                self.stepper.clear();
             }
             tables.torque(k, &mut self.tau);
-            self.step(k, true, usize::MAX)?;
+            self.stepper.step(k, &self.tau, true, true)?;
         }
         self.loss(N, tables);
         for s in (0..self.checkpoints.len()).rev() {
             let steps = s * length..N.min((s + 1) * length);
             if steps.end < N {
                 let [theta, dtheta] = &self.checkpoints[s];
-                self.motion.theta.copy_from_slice(theta);
-                self.motion.dtheta.copy_from_slice(dtheta);
-                self.tape.clear();
+                self.stepper.set(theta, dtheta);
+                self.stepper.clear();
                 for k in steps.clone() {
                     tables.torque(k, &mut self.tau);
-                    self.step(k, true, usize::MAX)?;
+                    let needs_end = k + 1 < steps.end || !self.cotangents.parameters.is_empty();
+                    self.stepper.step(k, &self.tau, true, needs_end)?;
                 }
             }
             for k in steps.clone().rev() {
                 tables.torque(k, &mut self.tau);
-                self.step_back(k, stages * (k - steps.start), tables)?;
+                self.step_back(k, k - steps.start, tables)?;
             }
         }
         Ok(())
     }
 
-    fn set(&mut self, [theta, dtheta]: [&[f64]; 2]) {
-        self.motion.theta.copy_from_slice(theta);
-        self.motion.dtheta.copy_from_slice(dtheta);
-    }
-
-    /// Adds the loss's gradient by the state in which the motion is.
+    /// Adds the loss's gradient by the state in which the robot is.
     fn loss(&mut self, k: usize, tables: &mut impl Tables) {
-        let (Motion { theta, dtheta, .. }, bars) = (&self.motion, &mut self.adjoint);
-        tables.cotangent(k, theta, dtheta, &mut bars.theta, &mut bars.dtheta);
+        let ([theta, dtheta], to) = (self.stepper.state(), &mut self.cotangents);
+        tables.cotangent(k, theta, dtheta, &mut to.theta, &mut to.dtheta);
     }
 
-    /// Step k, its stages on the tape; those from `needed` on without their θ̈, which only its end would need.
-    fn step(&mut self, k: usize, is_taped: bool, needed: usize) -> Result<(), D::Error> {
-        let Steps { dynamics, motion, tape, tau, h, method, .. } = self;
-        let mut stage = 0;
-        let needed = if *method == Explicit::SemiImplicitEuler { usize::MAX } else { needed };
-        let mut F = |t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]| {
-            if stage < needed {
-                dynamics.accelerations(Stage { step: k, t, theta, dtheta, tau }, ddtheta)?;
-            }
-            stage += 1;
-            if is_taped {
-                tape.push(theta, dtheta, ddtheta);
-            }
-            Ok([])
-        };
-        motion.t = k as f64 * *h;
-        motion.find_rates(&mut F)?;
-        motion.advance(*method, *h, (k + 1) as f64 * *h, &mut F)
-    }
-
-    /// Back through step k, whose stages are on the tape from `first` on.
-    fn step_back(&mut self, k: usize, first: usize, tables: &mut impl Tables) -> Result<(), D::Error> {
-        let Steps { dynamics, adjoint, tape, tau, h, method, .. } = self;
-        let t = k as f64 * *h;
-        adjoint.step((*method, *h), (k, t, tau), (tape, first), dynamics)?;
-        tables.take(k, &adjoint.tau);
-        let [theta, dtheta, _] = tape.stage(first);
-        tables.cotangent(k, theta, dtheta, &mut adjoint.theta, &mut adjoint.dtheta);
+    /// Back through step k, the tape's step `at`.
+    fn step_back(&mut self, k: usize, at: usize, tables: &mut impl Tables) -> Result<(), S::Error> {
+        let to = &mut self.cotangents;
+        self.stepper.step_back(k, at, &self.tau, to)?;
+        tables.take(k, &to.tau);
+        let [theta, dtheta] = self.stepper.start(at);
+        tables.cotangent(k, theta, dtheta, &mut to.theta, &mut to.dtheta);
         Ok(())
     }
 }

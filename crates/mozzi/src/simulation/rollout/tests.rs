@@ -11,10 +11,10 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 const METHODS: [Method; 3] = [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4];
-const SMOOTH: Friction = Friction::Smooth { slip_speed: 0.5 };
+pub const SMOOTH: Friction = Friction::Smooth { slip_speed: 0.5 };
 
 /// Chains, branches, mimic joints, floating bases, balls and free joints.
-fn models() -> Vec<Model> {
+pub fn models() -> Vec<Model> {
     vec![
         tree(3, 6, 0),
         tree(5, 7, 2),
@@ -27,14 +27,15 @@ fn models() -> Vec<Model> {
 }
 
 /// A start, torques and cotangents of N steps.
-struct Case {
-    theta: Vec<f64>,
-    dtheta: Vec<f64>,
-    tau: Vec<f64>,
-    bars: [Vec<f64>; 2],
+#[derive(Clone)]
+pub struct Case {
+    pub theta: Vec<f64>,
+    pub dtheta: Vec<f64>,
+    pub tau: Vec<f64>,
+    pub bars: [Vec<f64>; 2],
 }
 
-fn case(model: &Model, N: usize, seed: u64) -> Case {
+pub fn case(model: &Model, N: usize, seed: u64) -> Case {
     let [theta, dtheta, _] = state(model, seed);
     let (n, mut random) = (model.n(), Random(seed + 17));
     let mut table = |rows| random.vector(rows * n, 1.0);
@@ -42,7 +43,7 @@ fn case(model: &Model, N: usize, seed: u64) -> Case {
 }
 
 impl Case {
-    fn vjp(&self, rollout: &mut Rollout<'_>) -> RolloutGradient {
+    pub fn vjp(&self, rollout: &mut Rollout<'_>) -> RolloutGradient {
         rollout.vjp(&self.theta, &self.dtheta, &self.tau, &self.bars[0], &self.bars[1]).expect("regular")
     }
 }
@@ -119,7 +120,7 @@ fn gradients_are_those_of_dual_numbers_to_rounding() {
 #[test]
 fn states_are_those_of_a_simulation() {
     for model in models() {
-        for method in METHODS {
+        for method in METHODS.into_iter().chain([Method::Midpoint]) {
             let (N, h) = (7, 0.01);
             let case = Case { tau: vec![0.3; 7 * model.n()], ..case(&model, N, 3) };
             let states =
@@ -196,7 +197,7 @@ fn gradients_are_slopes_of_the_loss() {
     }
 }
 
-fn dot(x: &[f64], y: &[f64]) -> f64 {
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
