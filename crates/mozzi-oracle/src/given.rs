@@ -143,6 +143,9 @@ impl<S: Entry> Given<'_, S> {
         let (p, inputs) = (self.model.parameter_count(), &self.inputs[..query.declaration().inputs.len()]);
         let of = |pi: &[S]| vector(&by_kernel(query, &self.model.with_parameters(pi), inputs, environment));
         let constant = of(&zeros(p)); // the springs' energy at θ = 0
+        if p == 0 {
+            return DMatrix::zeros(constant.len(), 0);
+        }
         DMatrix::from_columns(&(0..p).map(|k| of(&unit(p, k)) - &constant).collect::<Vec<DVector<S>>>())
     }
     /// For each joint: the index of its source joint, and the joint's ratio and offset.
