@@ -7,7 +7,7 @@ import sys
 import mozzi
 import numpy as np
 import pytest
-from conftest import assert_close, load_mjcf, positions, robots, tip
+from conftest import assert_close, load_mjcf, robots
 
 torch = pytest.importorskip("torch", reason="cargo xtask test --torch installs PyTorch")
 import mozzi.torch  # noqa: E402
@@ -30,7 +30,8 @@ KINEMATICS = ["forward_kinematics", "body_jacobian", "space_jacobian"]
 @functools.cache
 def _model(name):
     if name == "two_link_adrift":  # a floating base with joints
-        return mozzi.models.furuta_pendulum().with_floating_base()
+        locked = dict.fromkeys(mozzi.models.ur5().joint_names[2:], 0.3)
+        return mozzi.models.ur5().with_locked_joints(locked).with_floating_base()
     return robots()[name]
 
 

@@ -6,13 +6,18 @@ A quaternion q = (w, r) and the position p of a free joint or a floating base mo
 
 Rates of θ are mapped by this matrix, gradients by its transpose: a gradient by q is tangent to the sphere, as that of
 a function of q/‖q‖. All other numbers are themselves. The functions work on arrays of any library: `xp` is its module,
-with `stack` and `concatenate` (numpy, jax.numpy, torch).
+numpy, jax.numpy or torch.
 """
 
 from typing import Any
 
 Quaternions = list[tuple[int, int, bool]]
 """For each quaternion in θ: its index in θ, its joint's index in θ̇, and whether a position follows it."""
+
+
+def _joined(xp: Any, parts: list[Any]) -> Any:
+    # torch's `concatenate` has no rule for torch.autograd.grad(is_grads_batched=True), its `cat` has
+    return xp.cat(parts, dim=-1) if hasattr(xp, "cat") else xp.concatenate(parts, axis=-1)
 
 
 def cross(xp: Any, a: Any, b: Any) -> Any:
@@ -47,7 +52,7 @@ def to_velocities(xp: Any, quaternions: Quaternions, theta: Any, rate: Any, is_g
         if is_free:
             parts.append(_rotated(xp, -w, r, two, rate[..., q + 4 : q + 7]))
             last = q + 7
-    return xp.concatenate([*parts, rate[..., last:]], axis=-1) if quaternions else rate
+    return _joined(xp, [*parts, rate[..., last:]]) if quaternions else rate
 
 
 def to_positions(xp: Any, quaternions: Quaternions, theta: Any, gradient: Any) -> Any:
@@ -61,7 +66,7 @@ def to_positions(xp: Any, quaternions: Quaternions, theta: Any, gradient: Any) -
         if is_free:
             parts.append(_rotated(xp, w, r, two, gradient[..., j + 3 : j + 6]))
             last = j + 6
-    return xp.concatenate([*parts, gradient[..., last:]], axis=-1) if quaternions else gradient
+    return _joined(xp, [*parts, gradient[..., last:]]) if quaternions else gradient
 
 
 def bracket(xp: Any, quaternions: Quaternions, along: Any, gradient: Any) -> Any:
@@ -82,4 +87,4 @@ def bracket(xp: Any, quaternions: Quaternions, along: Any, gradient: Any) -> Any
             last = j + 6
         else:
             parts.append(cross(xp, omega, m))
-    return xp.concatenate([*parts, 0 * gradient[..., last:]], axis=-1)
+    return _joined(xp, [*parts, 0 * gradient[..., last:]])
