@@ -119,10 +119,22 @@ pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
 
 /// A tree in which each link is the child of the one before, so that it is deep.
 pub fn chain(of: &Model) -> Model {
+    limbs(of, usize::MAX)
+}
+
+/// A tree in which each link is the child of the one before, except that every `length` links a new limb branches off
+/// from the middle of the first limb and from the base in turn.
+pub fn limbs(of: &Model, length: usize) -> Model {
     let mut robot = of.description().clone();
     for joint in &mut robot.joints {
         if let Some(number) = joint.child.strip_prefix("link").and_then(|number| number.parse::<usize>().ok()) {
-            joint.parent = format!("link{}", number - 1);
+            let before = number - 1;
+            let parent = match (before / length, before % length) {
+                (1.., 0) if (before / length) % 2 == 1 => length / 2,
+                (1.., 0) => 0,
+                _ => before,
+            };
+            joint.parent = format!("link{parent}");
         }
     }
     robot.build().expect("a sound robot")

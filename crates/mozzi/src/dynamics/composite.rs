@@ -43,7 +43,7 @@ pub(super) struct BaseRates<S> {
 impl<S: Scalar> BaseRates<S> {
     /// (r_e, s_e).
     #[inline(always)]
-    fn of(&self, e: Twist<S>) -> (Twist<S>, Vec3<S>) {
+    pub(super) fn of(&self, e: Twist<S>) -> (Twist<S>, Vec3<S>) {
         let (r, s) = (self.X.ad() * e, e.w * self.sigma);
         match self.Y {
             None => (r, s),
@@ -273,7 +273,7 @@ pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
 /// wrench at axis i does not move past them.
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip]
-fn carried_together<S: Scalar + From<C>, C: Scalar>(
+pub(super) fn carried_together<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, i: usize, T: &[SE3<S>], W: Wrench<S>, d_theta: &mut [S],
 ) {
     let (n, j, mut above, mut W) = (model.n(), model.links[i - 1].j, i, W);
@@ -289,7 +289,7 @@ fn carried_together<S: Scalar + From<C>, C: Scalar>(
 
 #[inline(always)]
 #[track_caller]
-fn check_size<S: Scalar, C: Scalar>(model: &Model<C>, X: &[S]) {
+pub(super) fn check_size<S: Scalar, C: Scalar>(model: &Model<C>, X: &[S]) {
     let n = model.n();
     assert!(X.len() == n * n, "a matrix has {} entries, expected n² = {}", X.len(), n * n);
 }

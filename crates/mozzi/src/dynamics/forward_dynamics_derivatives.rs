@@ -2,10 +2,10 @@
 //! 2018).
 
 use super::armature::{add_velocity_product_rates, add_velocity_products};
-use super::articulated_solve::solve_columns;
+use super::articulated_derivatives::articulated_derivatives;
 use super::bias_forces::take_zeros;
 use super::composite::{Does, Filled, Matrices, composite_pass};
-use super::derivatives::{add_accelerations, add_damping, base_rates, derivatives, joint_forces, outward_pass};
+use super::derivatives::{add_accelerations, add_damping, base_rates, joint_forces, outward_pass};
 use super::forward_dynamics::forward_dynamics;
 use super::joint_friction::joint_friction;
 use super::spring_forces::{add_spring_forces, add_stiffness};
@@ -22,7 +22,7 @@ use crate::scalar::Scalar;
 /// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
 ///
 /// θ̈ is computed from M, which the derivatives need as well; for robots with long limbs by articulated bodies, whose
-/// factors then solve for all columns. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
+/// factors then give all columns without ∂τ. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:
 ///
 /// > ∂θ̈/∂θ = −M⁻¹ ∂τ/∂θ, ∂θ̈/∂θ̇ = −M⁻¹ ∂τ/∂θ̇, ∂θ̈/∂τ = M⁻¹, all at this θ̈
 ///
@@ -44,10 +44,7 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     if S::IS_ONE && model.structure.solves_by_bodies {
         forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
-        derivatives(model, theta, dtheta, ddtheta, environment, workspace, d_theta, Some(&mut *d_dtheta), None);
-        add_stiffness(model, theta, d_theta);
-        add_velocity_product_rates(model, dtheta, d_dtheta);
-        solve_columns(model, workspace, [d_theta, d_dtheta, d_tau]);
+        articulated_derivatives(model, theta, dtheta, ddtheta, environment, workspace, [d_theta, d_dtheta, d_tau]);
         return;
     }
     joint_transforms(model, theta, workspace);

@@ -76,8 +76,10 @@ pub(super) fn solved<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Overwrites x with y, M y = x, by the factors that forward dynamics leaves: see
-/// [`articulated_solve.rs`](super::articulated_solve).
+/// Overwrites x with y, M y = x, by the factors U = ĜA/d and d that forward dynamics leaves (Featherstone 2008, section
+/// 7.3). Wrenches P go inward, accelerations a outward:
+///
+/// > u = x − AᵀP, P_p += P + U u, then y = u/d − Uᵀa, with a = a_p from the parent, a += A y
 #[inline(always)]
 #[rustfmt::skip] // one equation a line
 fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, x: &mut [S]) {

@@ -1,7 +1,8 @@
 //! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇).
 
 mod armature;
-mod articulated_solve;
+mod articulated_columns;
+mod articulated_derivatives;
 mod base_parameters;
 mod bias_forces;
 mod center_of_mass;

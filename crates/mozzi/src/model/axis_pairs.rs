@@ -2,7 +2,6 @@
 //! angular part of s is kept, because its linear part is multiplied by 0. The axis is along z; its rate has no
 //! component along z.
 
-use super::TOGETHER as W;
 use crate::lie::SO3;
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
@@ -71,8 +70,6 @@ pub(crate) struct Turned<S> {
     /// From the link's origin to the parent's.
     pub p: Vec3<S>,
     pub A: Twist<S>,
-    /// ĜA/d, if the articulated-body equations are solved.
-    pub U: Wrench<S>,
     /// (r, s).
     pub by_theta: (Twist<S>, Vec3<S>),
     pub by_rates: (Twist<S>, Vec3<S>),
@@ -82,29 +79,6 @@ impl<S: Scalar> Turned<S> {
     #[inline(always)]
     pub fn zero() -> Self {
         let none = (Twist::zero(), Vec3::zero());
-        Turned {
-            R: SO3::identity(),
-            p: Vec3::zero(),
-            A: Twist::zero(),
-            U: Wrench::zero(),
-            by_theta: none,
-            by_rates: none,
-        }
-    }
-}
-
-/// W columns of a right-hand side in `dynamics/articulated_solve.rs`, at one link: the joint's row, and the wrench P or
-/// the acceleration a, angular first. Each step depends on the one before it, so several columns take no longer than
-/// one.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AtLink<S> {
-    pub x: [S; W],
-    pub six: [[S; W]; 6],
-}
-
-impl<S: Scalar> AtLink<S> {
-    #[inline(always)]
-    pub fn zero() -> Self {
-        AtLink { x: [S::zero(); W], six: [[S::zero(); W]; 6] }
+        Turned { R: SO3::identity(), p: Vec3::zero(), A: Twist::zero(), by_theta: none, by_rates: none }
     }
 }

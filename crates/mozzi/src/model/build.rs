@@ -141,6 +141,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
             free: joint_places.iter().filter(|place| place.freedom == Freedom::Free).map(|place| place.j).collect(),
             is_deep,
             solves_by_bodies: coupled_free && mean_depth_exceeds(VERY_DEEP, &links),
+            forks: forks(&links),
             runs: if is_deep { Runs::new(&links) } else { Runs::default() },
             of_one_axis: joint_places.iter().all(|place| place.freedom == Freedom::One),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
@@ -232,6 +233,15 @@ fn several<C: Real>(links: &mut Vec<Link<C>>, parent: usize, motion: Motion, M: 
         };
         links.push(Link { is_last: k + 1 == axes.len(), ..link });
     }
+}
+
+/// For each slot, whether a link is carried by it but does not come next.
+fn forks<C>(links: &[Link<C>]) -> Vec<bool> {
+    let mut forks = vec![false; links.len() + 1];
+    for (k, link) in links.iter().enumerate() {
+        forks[link.parent] |= link.parent != k;
+    }
+    forks
 }
 
 /// Is the mean number of links between a link and the base above `mean`?

@@ -5,6 +5,7 @@ mod base;
 mod bounds;
 mod build;
 mod check;
+mod columns;
 mod constraint;
 mod couples;
 pub mod description;
@@ -37,10 +38,11 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-pub(crate) use axis_pairs::{AtLink, ByRates, ByTheta, Turned};
+pub(crate) use axis_pairs::{ByRates, ByTheta, Turned};
 pub use base::Base;
 pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
+pub(crate) use columns::{Columns, Passed, Source};
 pub use description::Description;
 pub use environment::Environment;
 pub use error::Error;
@@ -120,6 +122,8 @@ pub(crate) struct Structure {
     pub is_deep: bool,
     /// Are the joints uncoupled, and so deep that ∂θ̈ uses articulated bodies?
     pub solves_by_bodies: bool,
+    /// Does another limb branch off from the link of a slot?
+    pub forks: Vec<bool>,
     /// For a deep robot, the links that are then processed together.
     pub runs: Runs,
     /// No joint is a ball or free.

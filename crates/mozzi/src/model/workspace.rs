@@ -1,6 +1,6 @@
 //! Memory for one evaluation.
 
-use super::{AtLink, ByRates, ByTheta, Model, Row, Turned};
+use super::{ByRates, ByTheta, Columns, Model, Passed, Row, Source, Turned};
 use crate::lie::SE3;
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
@@ -40,8 +40,13 @@ pub struct Workspace<S = f64> {
     pub(crate) G_hat: Vec<ArticulatedInertia<S>>,
     /// ĜA.
     pub(crate) U: Vec<Wrench<S>>,
-    /// Several columns of three matrices at each link.
-    pub(crate) columns: [Vec<AtLink<S>>; 3],
+    /// Of ∂θ̈ by articulated bodies, else empty: the links as columns pass them, and as their sources.
+    pub(crate) passed: Vec<Passed<S>>,
+    pub(crate) sources: Vec<Source<S>>,
+    /// Several columns at each link that another limb branches off from; empty if there is none.
+    pub(crate) at_forks: Vec<Columns<S>>,
+    /// Rows of the blocks of balls and free joints, by θ and by θ̇; empty if there are none.
+    pub(crate) blocks: Vec<[[S; 6]; 2]>,
     /// One number for each joint.
     pub(crate) u: Vec<S>,
     /// The pivots of the last solve, for the caller that can compare numbers.
@@ -57,6 +62,8 @@ impl<S: Scalar> Workspace<S> {
     pub fn new<C: Scalar>(model: &Model<C>) -> Self {
         let (slots, n) = (model.links.len() + 1, model.n());
         let o = S::zero();
+        let structure = &model.structure;
+        let solves = |count: usize, needed: bool| if structure.solves_by_bodies && needed { count } else { 0 };
         Workspace {
             sin_cos: vec![(o, o); slots],
             T: vec![SE3::identity(); slots],
@@ -74,9 +81,10 @@ impl<S: Scalar> Workspace<S> {
             B: vec![CoriolisFactor { K: Mat3::zero(), f: Vec3::zero() }; slots],
             G_hat: vec![SpatialInertia::zero().into(); slots],
             U: vec![Wrench::zero(); slots],
-            columns: core::array::from_fn(|_| {
-                vec![AtLink::zero(); if model.structure.solves_by_bodies { slots } else { 0 }]
-            }),
+            passed: vec![Passed::zero(); solves(slots, true)],
+            sources: vec![Source::zero(); solves(slots, true)],
+            at_forks: vec![Columns::zero(); solves(slots, structure.forks.contains(&true))],
+            blocks: vec![[[o; 6]; 2]; solves(n, !structure.of_one_axis)],
             u: vec![o; slots],
             pivots: vec![o; n],
             vector: vec![o; n],

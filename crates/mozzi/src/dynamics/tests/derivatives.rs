@@ -4,7 +4,9 @@ use super::{close, models};
 use crate::kinematics::integrate;
 use crate::model::{Environment, FrameId, Model, Workspace};
 use crate::quantities::{ForwardDynamicsVjp, InverseDynamicsVjp};
-use crate::testing::{moving, state, tree, twist, wrench};
+use crate::testing::{
+    chain, floating_mixed_tree, floating_tree, limbs, mixed_tree, moving, state, tree, twist, wrench,
+};
 use crate::{Dual, Scalar, Vec3, Wrench, dynamics as kernel};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
@@ -81,9 +83,29 @@ fn of_inverse_dynamics_equal_dual_numbers() {
     }
 }
 
+/// Robots whose ∂θ̈ is computed by articulated bodies: chains with every remainder of eight columns, and several limbs.
+fn deep() -> Vec<(u64, Model)> {
+    let makes = [tree, floating_tree, mixed_tree, floating_mixed_tree];
+    let chains = (0..16).map(|k| (80 + k, chain(&makes[k as usize % 4](80 + k, 20 + k as usize / 2, 0))));
+    let limbs = (0..4).map(|k| (96 + k, limbs(&makes[k as usize](96 + k, 63, 0), 21)));
+    chains.chain(limbs).collect()
+}
+
+#[test]
+fn deep_robots_have_every_remainder_and_every_kind_of_branch() {
+    let deep = deep();
+    assert!(deep.iter().all(|(_, model)| model.structure.solves_by_bodies));
+    for remainder in 0..8 {
+        assert!(deep.iter().any(|(_, model)| model.links.len() % 8 == remainder), "{remainder} columns are left");
+    }
+    let branching = deep.iter().filter(|(_, model)| model.structure.forks.iter().filter(|&&fork| fork).count() >= 2);
+    assert!(branching.clone().all(|(_, model)| model.structure.forks[0]));
+    assert!([true, false].map(|is| branching.clone().any(|(_, model)| model.is_floating() == is)) == [true; 2]);
+}
+
 #[test]
 fn of_forward_dynamics_equal_dual_numbers() {
-    for (seed, model) in models() {
+    for (seed, model) in models().chain(deep()) {
         let [theta, dtheta, _] = state(&model, seed);
         let applied = applied(&model, seed);
         let environment = everything(&model, seed, &applied);
