@@ -1,12 +1,13 @@
 //! ∂θ̈ by articulated bodies, for robots with long limbs: O(n²), and ∂τ is not computed.
 //!
-//! Column j of M⁻¹∂τ/∂θ is the response of the joints to wrenches. Each link k beyond joint j feels 𝒢_k r_j + 𝓑_k s_j,
-//! and j's parent −`[ad_A_j]`ᵀ𝓕ᶜ_j, for the wrench at the joint moves past the axes before it (`derivatives.rs`). By θ̇
-//! it is the same with another pair (r, s) and without 𝓕ᶜ. Column j of M⁻¹ is the response to a unit force at joint j.
+//! Column j of M⁻¹∂τ/∂θ is the response of the joints to wrenches. Each link k beyond joint j feels 𝒢_k r_j + 𝓑_k
+//! s_j, and j's parent −`[ad_A_j]`ᵀ𝓕ᶜ_j, for the wrench at the joint moves past the axes before it
+//! (`derivatives.rs`). By θ̇ it is the same with another pair (r, s) and without 𝓕ᶜ. Column j of M⁻¹ is the response
+//! to a unit force at joint j.
 //!
-//! **Inward, once for all columns.** While the joints beyond link i are free, the wrenches of (r, s) on all links from i
-//! on have the effect of Ĝ_i r + 𝓑̂_i s on link i alone. Ĝ is the articulated inertia (Featherstone 2008, section 7.3),
-//! because a rigid acceleration r is an acceleration of link i; 𝓑̂ follows the rule of a bias wrench:
+//! **Inward, once for all columns.** While the joints beyond link i are free, the wrenches of (r, s) on all links
+//! from i on have the effect of Ĝ_i r + 𝓑̂_i s on link i alone. Ĝ is the articulated inertia (Featherstone 2008,
+//! section 7.3), because a rigid acceleration r is an acceleration of link i; 𝓑̂ follows the rule of a bias wrench:
 //!
 //! > d = AᵀĜA + armature, U = ĜA/d, y = 𝓑̂ᵀA/d, 𝓑̂_p = 𝓑_p + Σ (𝓑̂ − d U yᵀ)
 //!
@@ -15,8 +16,8 @@
 //!
 //! > Φ = (1 − A Uᵀ) Φ_p (1 − U Aᵀ) + A Aᵀ/d; at a fixed base 0, at a floating base Ĝ⁻¹
 //!
-//! For the joints from the base up to j, column j is the wrench Q_j = Ĝr + 𝓑̂s − `[ad_A]`ᵀ𝓕ᶜ on link j, whose acceleration
-//! is therefore −ΦQ.
+//! For the joints from the base up to j, column j is the wrench Q_j = Ĝr + 𝓑̂s − `[ad_A]`ᵀ𝓕ᶜ on link j, whose
+//! acceleration is therefore −ΦQ.
 //!
 //! **Columns go outward** from link j (`articulated_columns.rs`), with a + r as one variable. They need not go inward:
 //! joint i responds to a wrench on link j as link j does to a force at joint i, which is column i of M⁻¹. So
@@ -29,8 +30,8 @@
 //! A joint's own stiffness and damping, and between the axes of one ball or free joint the terms in which they differ
 //! from axes of several joints, are a block on the diagonal of ∂τ, which multiplies M⁻¹.
 //!
-//! Inertias are in link frames, where a slender link keeps its digits. All else is in the base's axes, about each link's
-//! own origin, so that a step to a parent or a child is a shift.
+//! Inertias are in link frames, where a slender link keeps its digits. All else is in the base's axes, about each
+//! link's own origin, so that a step to a parent or a child is a shift.
 
 use super::armature::add_velocity_product_rates;
 use super::articulated_columns::{add, columns_of_base, columns_of_joints, product, shift_rows, times};
@@ -97,7 +98,8 @@ fn inward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Work
         sources[i].B_hat = columns(B[i], turned[i].R.matrix());
     }
     for (i, link) in model.inward::<S>() {
-        let (p, j, Turned { R, p: to_parent, A, by_theta: (_, s), by_rates: (_, s_rates) }) = (link.parent, link.j, turned[i]);
+        let (p, j) = (link.parent, link.j);
+        let Turned { R, p: to_parent, A, by_theta: (_, s), by_rates: (_, s_rates) } = turned[i];
         let turned = |F: Wrench<S>| Wrench { m: R * F.m, f: R * F.f };
         let (U_i, B_hat) = (turned(U[i]), sources[i].B_hat);
         let dy = [A.dot(B_hat[0]), A.dot(B_hat[1]), A.dot(B_hat[2])];
