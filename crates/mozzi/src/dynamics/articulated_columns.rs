@@ -241,9 +241,7 @@ fn set_row<S: Scalar>(X: &mut [S], x: &[S; W], width: usize) {
     if width == W {
         X[..W].copy_from_slice(x);
     } else {
-        for w in 0..width {
-            X[w] = x[w];
-        }
+        X[..width].copy_from_slice(&x[..width]);
     }
 }
 
