@@ -5,15 +5,16 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, NumPy's arrays, and Python's
-/// methods. Each entry is a path prefix.
-const UNSAFE_ALLOWED: [&str; 6] = [
+/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, NumPy's arrays, Python's
+/// methods, and XLA's calls. Each entry is a path prefix.
+const UNSAFE_ALLOWED: [&str; 7] = [
     "crates/mozzi/src/fast",
     "crates/mozzi-batch/src/number",
     "crates/mozzi-batch/src/lanes/",
     "crates/mozzi-codegen/src/jit/executable",
     "crates/mozzi-py/src/numpy",
     "crates/mozzi-py/src/methods/attach",
+    "crates/mozzi-py/src/jax/interface",
 ];
 
 /// The most characters in a line.

@@ -9,6 +9,7 @@ mod describe;
 mod environment;
 mod failure;
 mod html;
+mod jax;
 mod load;
 mod methods;
 mod model;
@@ -34,6 +35,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;
+    jax::add_to(module)?;
     motion::add_to(module)?;
     modern_robotics::add_to(module)?;
     module.add("LoadError", py.get_type::<failure::LoadError>())?;

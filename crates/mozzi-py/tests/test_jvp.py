@@ -27,7 +27,7 @@ def flat(found):
 
 def moved(robot, theta, along, h):
     """θ ⊕ δθ h, to first order."""
-    rows = [_tangent.to_velocities(np, robot._quaternions, theta, c, is_gradient=True) for c in np.eye(robot.nq)]
+    rows = [_tangent.velocity_gradient(np, robot._quaternions, theta, c) for c in np.eye(robot.nq)]
     return theta + h * np.stack(rows) @ along
 
 

@@ -145,8 +145,8 @@ def embedding(model, theta):
     from mozzi import _tangent
 
     columns = np.eye(model.nq)
-    rows = np.stack([_tangent.to_velocities(np, model._quaternions, theta, c, is_gradient=True) for c in columns])
-    inverse = np.stack([_tangent.to_velocities(np, model._quaternions, theta, c) for c in columns], axis=1)
+    rows = np.stack([_tangent.velocity_gradient(np, model._quaternions, theta, c) for c in columns])
+    inverse = np.stack([_tangent.velocities(np, model._quaternions, theta, c) for c in columns], axis=1)
     assert_close(inverse @ rows, np.eye(model.n))
     return rows
 

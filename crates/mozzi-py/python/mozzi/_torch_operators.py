@@ -27,7 +27,7 @@ def known(key):
 
 
 def to_positions(quantity, theta, gradient):
-    return _tangent.to_positions(torch, quantity.quaternions, theta, gradient) if quantity.quaternions else gradient
+    return _tangent.position_gradient(torch, quantity.quaternions, theta, gradient) if quantity.quaternions else gradient
 
 
 def run(quantity, method, count, of_parameters, arrays):

@@ -7,8 +7,6 @@ differentiable by parameters, in forward mode, and twice.
 # mypy: ignore-errors
 # pyright: reportMissingImports=false
 
-import math
-
 import torch
 from torch import Tensor
 
@@ -25,13 +23,13 @@ def run(model, step, method, theta, dtheta, tau):
 def pull_back(model, step, method, theta, dtheta, tau, table, theta_bar, dtheta_bar):
     """Gradients by θ, θ̇ and τ. The first row of the table is θ itself; later rows depend on q/‖q‖."""
     quaternions, theta_bar = model._quaternions, torch.cat([torch.zeros_like(theta_bar[..., :1, :]), theta_bar[..., 1:, :]], -2)
-    along = _tangent.to_velocities(torch, quaternions, table, theta_bar, is_gradient=True)
+    along = _tangent.velocity_gradient(torch, quaternions, table, theta_bar)
     found = model.rollout_vjp(*arrays((theta, dtheta, tau)), step, *arrays((along, dtheta_bar)), method)
     return [torch.from_numpy(gradient).to(theta.dtype) for gradient in found]
 
 
 def to_theta(model, theta, along, theta_bar):
-    return _tangent.to_positions(torch, model._quaternions, theta, along) + theta_bar[..., 0, :]
+    return _tangent.position_gradient(torch, model._quaternions, theta, along) + theta_bar[..., 0, :]
 
 
 class Rollout(torch.autograd.Function):
@@ -146,67 +144,6 @@ def rollout(model, contents, step, method, theta, dtheta, tau):
 # the same steps in tensors
 
 
-def _series(square):
-    """cos φ, sin φ/φ, (1 − cos φ)/φ² and (φ − sin φ)/φ³ for φ², with derivatives at 0."""
-    small = square < 0.25
-    near, far = torch.where(small, square, 0.0), torch.where(small, 1.0, square)
-    phi = far.sqrt()
-    closed = [phi.cos(), phi.sin() / phi, (1 - phi.cos()) / far, (phi - phi.sin()) / (far * phi)]
-    found = []
-    for first, large in enumerate(closed):
-        total = torch.zeros_like(square)
-        for k in range(8, -1, -1):  # Σ (−φ²)ᵏ/(2k + first)!
-            total = 1 / math.factorial(2 * k + first) - near * total
-        found.append(torch.where(small, total, large))
-    return found
-
-
-def _cross(a, b):
-    return _tangent.cross(torch, a, b)
-
-
-def advance(quaternions, theta, u):
-    """θ ⊕ u: q e^(ω/2) and p + R V(ω) v for quaternions and positions, else θ + u."""
-    parts, last, at = [], 0, 0
-    for q, j, is_free in quaternions:
-        parts.append(theta[..., last:q] + u[..., at:j])
-        w, r, omega = theta[..., q : q + 1], theta[..., q + 1 : q + 4], u[..., j : j + 3]
-        c, s, _, _ = _series((omega * omega).sum(-1, keepdim=True) / 4)
-        half = 0.5 * s * omega
-        moved = torch.cat([w * c - (r * half).sum(-1, keepdim=True), w * half + c * r + _cross(r, half)], -1)
-        parts.append(moved / moved.norm(dim=-1, keepdim=True))
-        last, at = q + 4, j + 3
-        if is_free:
-            _, _, b, d = _series((omega * omega).sum(-1, keepdim=True))
-            v = u[..., j + 3 : j + 6]
-            turned = _cross(omega, v)
-            _, r, two = _tangent._parts(theta, q)
-            parts.append(theta[..., q + 4 : q + 7] + _tangent._rotated(torch, w, r, two, v + b * turned + d * _cross(omega, turned)))
-            last, at = q + 7, j + 6
-    return torch.cat([*parts, theta[..., last:] + u[..., at:]], -1)
-
-
-def rate(quaternions, u, V):
-    """u̇ for θ ⊕ u moving with V: V + ½[ad_u]V + ¹⁄₁₂[ad_u]²V for twists (Munthe-Kaas 1999)."""
-
-    def ad(w, v, a, b):
-        return _cross(w, a), _cross(v, a) + _cross(w, b)
-
-    parts, at = [], 0
-    for _, j, is_free in quaternions:
-        end = j + (6 if is_free else 3)
-        twist, along = V[..., j:end], u[..., j:end]
-        if is_free:
-            once = torch.cat(ad(along[..., :3], along[..., 3:], twist[..., :3], twist[..., 3:]), -1)
-            twice = torch.cat(ad(along[..., :3], along[..., 3:], once[..., :3], once[..., 3:]), -1)
-        else:
-            once = _cross(along, twist)
-            twice = _cross(along, once)
-        parts += [V[..., at:j], twist + 0.5 * once + twice / 12]
-        at = end
-    return torch.cat([*parts, V[..., at:]], -1)
-
-
 def steps(quaternions, dynamics, step, method, theta, dtheta, tau):
     """The table of a rollout by torch's operations, with θ̈ = dynamics(θ, θ̇, τ)."""
     states = [(theta, dtheta)]
@@ -218,11 +155,13 @@ def steps(quaternions, dynamics, step, method, theta, dtheta, tau):
                 sums = (weight * w, weight * a) if sums is None else (sums[0] + weight * w, sums[1] + weight * a)
                 if c is not None:
                     u, V = c * step * w, dtheta + c * step * a
-                    w, a = rate(quaternions, u, V), dynamics(advance(quaternions, theta, u), V, force)
-            end = advance(quaternions, theta, step / 6 * sums[0]), dtheta + step / 6 * sums[1]
+                    w = _tangent.logarithm_rate(torch, quaternions, u, V)
+                    a = dynamics(_tangent.advance(torch, quaternions, theta, u), V, force)
+            end = _tangent.advance(torch, quaternions, theta, step / 6 * sums[0]), dtheta + step / 6 * sums[1]
         elif method in ("euler", "semi-implicit-euler"):
             faster = dtheta + step * dynamics(theta, dtheta, force)
-            end = advance(quaternions, theta, step * (dtheta if method == "euler" else faster)), faster
+            moved = step * (dtheta if method == "euler" else faster)
+            end = _tangent.advance(torch, quaternions, theta, moved), faster
         else:
             raise ValueError(f"method is {method!r}, expected 'rk4', 'semi-implicit-euler' or 'euler'")
         states.append(end)

@@ -49,7 +49,7 @@ def _broadcast(x):
 
 
 def _to_velocities(quantity, theta, rate):
-    return _tangent.to_velocities(torch, quantity.quaternions, theta, rate) if quantity.quaternions else rate
+    return _tangent.velocities(torch, quantity.quaternions, theta, rate) if quantity.quaternions else rate
 
 
 def _derived(quantity, method, count, of_parameters, tensors):

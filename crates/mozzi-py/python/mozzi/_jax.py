@@ -1,0 +1,221 @@
+"""The primitive of `mozzi.jax`: a quantity at many states, or a derivative of it.
+
+XLA calls one handler of the package's library, whose attributes choose what is computed of a quantity y = f(x), x its
+inputs and, if given, the inertial parameters:
+
+    along    wanted
+    ()       0         f(x)
+    (U,)     0         ∂f u              linear in u, its transpose is the next
+    ()       X         wᵀ∂f              linear in w, its transpose is the one above
+    (U, V)   0         ∂²f(u, v)         linear in u and in v
+    (U,)     X         wᵀ∂²f u           linear in w and in u
+
+U, V and X are bits, one for each entry of x: those that a direction changes, and those whose gradient is wanted. The
+derivative of a row by x has one direction more, and the transpose of a row is another row, because second derivatives
+are symmetric. So one rule for derivatives and one for transposes serve forward and reverse mode, in any order up to
+two, and no matrix is formed.
+
+All operands have the same leading axes. Directions and gradients are those of the arrays' numbers: of a quaternion all
+four, where the length of the quaternion has no effect.
+"""
+
+import functools
+import importlib
+from typing import Any, NamedTuple
+
+try:
+    import jax
+except ImportError as error:
+    raise ImportError("mozzi.jax needs JAX, which is not installed: pip install jax") from error
+
+import jax.extend.core
+import jax.interpreters.ad
+import jax.interpreters.batching
+import jax.interpreters.mlir
+import jax.numpy as jnp
+import numpy as np
+
+from . import _mozzi
+
+# these parts of JAX have no types
+ad: Any = jax.interpreters.ad
+mlir: Any = jax.interpreters.mlir
+Primitive: Any = jax.extend.core.Primitive
+try:
+    ffi: Any = importlib.import_module("jax.ffi")
+except ImportError:  # jax 0.4
+    ffi = importlib.import_module("jax.extend.ffi")
+
+TARGET = "mozzi_quantity"
+MOST_DIRECTIONS = 2
+
+
+class Quantity(NamedTuple):
+    """What is computed, of which robot; a constant of a compiled program."""
+
+    model: int
+    """The robot's number: a hash of its content, the same in every process."""
+    name: str
+    frame: str
+    """Empty if the quantity has none."""
+    inputs: tuple[tuple[str, int], ...]
+    outputs: tuple[tuple[int, ...], ...]
+    parameters: bool
+    """Are the inertial parameters the last input?"""
+    threads: int
+    """0 for all cores."""
+
+
+@functools.cache
+def register() -> None:
+    """Tells XLA of the handler. JAX's backends have to be there: a handler that a runtime refuses would take them along."""
+    jax.devices()
+    ffi.register_ffi_target(TARGET, _mozzi._jax_handler(), platform="cpu")
+
+
+def quantity(model: _mozzi.Model, name: str, frame: str | None, parameters: bool, threads: int | None) -> Quantity:
+    """The quantity of this name, of the robot, which is made known to the handler."""
+    register()
+    frame, inputs, outputs = model._jax_shapes(name, frame)
+    widths = [(argument, shape[0]) for argument, shape in inputs]
+    if parameters:
+        widths.append(("parameters", len(model.parameters)))
+    shapes = tuple(tuple(shape) for _, shape in outputs)
+    return Quantity(model._jax_handle(), name, frame, tuple(widths), shapes, parameters, threads or 0)
+
+
+def bits(mask: int) -> list[int]:
+    return [k for k in range(mask.bit_length()) if mask >> k & 1]
+
+
+def mask_of(places: Any) -> int:
+    return sum(1 << k for k in places)
+
+
+class Operands(NamedTuple):
+    """The operands of the primitive, or their tangents, by their parts."""
+
+    x: list[Any]
+    along: list[list[Any]]
+    w: list[Any]
+
+    @classmethod
+    def split(cls, operands: Any, of: Quantity, along: tuple[int, ...]) -> "Operands":
+        rest = list(operands)
+        cut = [len(of.inputs), *(len(bits(mask)) for mask in along)]
+        parts = []
+        for length in cut:
+            parts.append(rest[:length])
+            rest = rest[length:]
+        return cls(parts[0], parts[1:], rest)
+
+    def flat(self) -> list[Any]:
+        return [*self.x, *(u for direction in self.along for u in direction), *self.w]
+
+
+quantity_p = Primitive("mozzi_quantity")
+quantity_p.multiple_results = True
+
+
+def bind(operands: Operands, of: Quantity, along: tuple[int, ...], wanted: int) -> list[Any]:
+    if len(along) + (wanted != 0) > MOST_DIRECTIONS:
+        raise NotImplementedError(f"mozzi.jax has no third derivatives of {of.name}")
+    found: list[Any] = quantity_p.bind(*operands.flat(), of=of, along=along, wanted=wanted)
+    return found
+
+
+@functools.partial(jax.jit, static_argnames=("of", "along", "wanted"))
+def evaluate(*operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> list[Any]:
+    """The primitive outside of `jit`: compiled once for each set of constants and shapes."""
+    found: list[Any] = quantity_p.bind(*operands, of=of, along=along, wanted=wanted)
+    return found
+
+
+def abstract(*operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> list[Any]:
+    leading, dtype = operands[0].shape[:-1], operands[0].dtype
+    shapes: Any = [(of.inputs[k][1],) for k in bits(wanted)] if wanted else of.outputs
+    return [jax.core.ShapedArray((*leading, *shape), dtype) for shape in shapes]
+
+
+def lower(ctx: Any, *operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> Any:
+    first, second = (*along, 0, 0)[:2]
+    return ffi.ffi_lowering(TARGET)(
+        ctx,
+        *operands,
+        model=np.int64(of.model),
+        quantity=of.name,
+        frame=of.frame,
+        parameters=np.int64(of.parameters),
+        along=np.int64(first),
+        along_too=np.int64(second),
+        wanted=np.int64(wanted),
+        threads=np.int64(of.threads),
+    )
+
+
+def is_zero(tangent: Any) -> bool:
+    return type(tangent) is ad.Zero
+
+
+def jvp(primals: Any, tangents: Any, *, of: Quantity, along: tuple[int, ...], wanted: int) -> Any:
+    x, d = Operands.split(primals, of, along), Operands.split(tangents, of, along)
+    terms = []
+    changed = [k for k, tangent in enumerate(d.x) if not is_zero(tangent)]
+    if changed:
+        operands = x._replace(along=[*x.along, [d.x[k] for k in changed]])
+        terms.append(bind(operands, of, (*along, mask_of(changed)), wanted))
+    for place, (mask, direction) in enumerate(zip(along, d.along)):
+        changed = [k for k, tangent in zip(bits(mask), direction) if not is_zero(tangent)]
+        if changed:
+            own = [tangent for tangent in direction if not is_zero(tangent)]
+            operands = x._replace(along=[*x.along[:place], own, *x.along[place + 1 :]])
+            terms.append(bind(operands, of, (*along[:place], mask_of(changed), *along[place + 1 :]), wanted))
+    if any(not is_zero(tangent) for tangent in d.w):
+        terms.append(bind(x._replace(w=[ad.instantiate_zeros(tangent) for tangent in d.w]), of, along, wanted))
+    return bind(x, of, along, wanted), [functools.reduce(jnp.add, parts) for parts in zip(*terms)]
+
+
+def transpose(cotangents: Any, *operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> list[Any]:
+    if all(is_zero(cotangent) for cotangent in cotangents):
+        return [None] * len(operands)
+    x = Operands.split(operands, of, along)
+    back = Operands([None] * len(x.x), [[None] * len(direction) for direction in x.along], [None] * len(x.w))
+    given = [k for k, cotangent in enumerate(cotangents) if not is_zero(cotangent)]  # of the wanted gradients
+    if any(ad.is_undefined_primal(w) for w in x.w):
+        # wᵀ∂f(…, x̄) is linear in w with the coefficients ∂f(…, x̄)
+        ends = [cotangents[k] for k in given]
+        also = mask_of(bits(wanted)[k] for k in given)
+        back = back._replace(w=bind(Operands(x.x, [*x.along, ends], []), of, (*along, also), 0))
+    for place, (mask, direction) in enumerate(zip(along, x.along)):
+        if not any(ad.is_undefined_primal(u) for u in direction):
+            continue
+        others, masks = [*x.along[:place], *x.along[place + 1 :]], (*along[:place], *along[place + 1 :])
+        if wanted:
+            # wᵀ∂²f is symmetric
+            ends = [cotangents[k] for k in given]
+            also = mask_of(bits(wanted)[k] for k in given)
+            found = bind(Operands(x.x, [*others, ends], x.w), of, (*masks, also), mask)
+        else:
+            w = [ad.instantiate_zeros(cotangent) for cotangent in cotangents]
+            found = bind(Operands(x.x, others, w), of, masks, mask)
+        back.along[place][:] = [g if ad.is_undefined_primal(u) else None for u, g in zip(direction, found)]
+    return back.flat()
+
+
+def batch(operands: Any, axes: Any, *, of: Quantity, along: tuple[int, ...], wanted: int) -> Any:
+    """One call for all: every operand gets the new axis."""
+    size = next(x.shape[axis] for x, axis in zip(operands, axes) if axis is not None)
+    moved = [
+        jnp.broadcast_to(x, (size, *x.shape)) if axis is None else jnp.moveaxis(x, axis, 0)
+        for x, axis in zip(operands, axes)
+    ]
+    found = quantity_p.bind(*moved, of=of, along=along, wanted=wanted)
+    return found, [0] * len(found)
+
+
+quantity_p.def_impl(evaluate)
+quantity_p.def_abstract_eval(abstract)
+mlir.register_lowering(quantity_p, lower, platform="cpu")
+ad.primitive_jvps[quantity_p] = jvp
+ad.primitive_transposes[quantity_p] = transpose
+jax.interpreters.batching.primitive_batchers[quantity_p] = batch

@@ -1,0 +1,311 @@
+"""`mozzi.jax`: values, derivatives in both modes up to the second order, vmap, scan, and errors."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import mozzi
+import numpy as np
+import pytest
+from conftest import assert_close, load_mjcf, positions
+from test_joints import ROBOT
+
+jax = pytest.importorskip("jax", reason="JAX is not installed")
+jax.config.update("jax_enable_x64", True)
+import jax.numpy as jnp  # noqa: E402, with jax
+import mozzi.jax as mj  # noqa: E402
+from jax.test_util import check_grads  # noqa: E402
+from mozzi import _mozzi, _tangent  # noqa: E402
+
+FORWARD, REVERSE = jax.jacfwd, jax.jacrev
+ROBOTS = ["ur5", "panda", "anymal", "balls"]  # an arm, a mimic joint, a floating base, a ball and a free joint
+
+
+@pytest.fixture(params=ROBOTS)
+def robot(request, tmp_path):
+    if request.param == "balls":
+        return load_mjcf(tmp_path, ROBOT)
+    return getattr(mozzi.models, request.param)(**({"floating": True} if request.param == "anymal" else {}))
+
+
+@pytest.fixture
+def balls(tmp_path):
+    return load_mjcf(tmp_path, ROBOT)
+
+
+def state(robot, random, *leading):
+    """θ, θ̇, θ̈; τ takes the place of the last."""
+    theta = positions(robot, random, *leading)
+    for q, _, _ in robot._quaternions:
+        theta[..., q : q + 4] /= np.linalg.norm(theta[..., q : q + 4], axis=-1, keepdims=True)
+    return [theta, *(random.uniform(-2, 2, (*leading, robot.n)) for _ in range(2))]
+
+
+def frame(robot):
+    return robot.end_effector or {"panda": "panda_leftfinger", "anymal": "LF_FOOT"}.get(robot.name, "hand")
+
+
+def quantities(robot):
+    """Each function with its number of arguments and the package's method."""
+    of_frame = frame(robot)
+    at = lambda name: (lambda theta: getattr(mj, name)(robot, theta, of_frame), 1, lambda theta: getattr(robot, name)(theta, of_frame))
+    plain = lambda name, count: (lambda *x: getattr(mj, name)(robot, *x), count, getattr(robot, name))
+    return {
+        "inverse_dynamics": plain("inverse_dynamics", 3),
+        "forward_dynamics": plain("forward_dynamics", 3),
+        "mass_matrix": plain("mass_matrix", 1),
+        "gravity_forces": plain("gravity_forces", 1),
+        "velocity_product": plain("velocity_product", 2),
+        "bias_forces": plain("bias_forces", 2),
+        "forward_kinematics": at("forward_kinematics"),
+        "space_jacobian": at("space_jacobian"),
+        "body_jacobian": at("body_jacobian"),
+    }
+
+
+@pytest.mark.parametrize("name", quantities(mozzi.models.ur5()))
+def test_values_are_the_packages(robot, random, name):
+    f, count, method = quantities(robot)[name]
+    x = state(robot, random, 5)[:count]
+    found = jax.jit(f)(*x)
+    assert found.dtype == jnp.float64 and np.array_equal(found, method(*x)), name
+    assert np.array_equal(f(*x), found)  # without jit
+    assert_close(f(*(a[0] for a in x)), method(*(a[0] for a in x)), np.abs(method(*x)).max())
+    assert f(*(a[:0] for a in x)).shape == (0, *found.shape[1:])  # no states
+    with jax.enable_x64(False) if hasattr(jax, "enable_x64") else jax.experimental.enable_x64(False):
+        single = [a.astype(np.float32) for a in x]
+        assert np.array_equal(f(*single), method(*single)) and f(*single).dtype == jnp.float32
+
+
+@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics"])
+def test_jacobians_are_the_packages(robot, random, name):
+    f, count, _ = quantities(robot)[name]
+    x = state(robot, random)
+    expected = getattr(robot, name + "_derivatives")(*x)
+    V = _tangent.velocities(np, robot._quaternions, x[0], np.eye(robot.nq))  # row k of the k-th number of θ
+    for mode in (FORWARD, REVERSE):
+        by_theta, *others = jax.jit(mode(f, (0, 1, 2)))(*x)
+        assert_close(by_theta, expected[0] @ V.T, np.abs(expected[0]).max(), 1e-11)
+        for found, matrix in zip(others, expected[1:]):
+            assert_close(found, matrix, np.abs(matrix).max(), 1e-11)
+    # along θ ⊕ δ they are the package's own
+    along = jax.jacrev(lambda d: f(mj.integrate(robot, x[0], d), *x[1:]))(np.zeros(robot.n))
+    assert_close(along, expected[0], np.abs(expected[0]).max(), 1e-11)
+
+
+@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics", "mass_matrix", "forward_kinematics", "space_jacobian", "body_jacobian"])
+def test_first_and_second_derivatives_equal_differences(robot, random, name):
+    f, count, _ = quantities(robot)[name]
+    x = state(robot, random)[:count]
+    size = float(jnp.abs(f(*x)).max())
+    check_grads(lambda *x: f(*x) / size, x, order=2, modes=["fwd", "rev"], atol=2e-3, rtol=2e-3, eps=1e-5)
+
+
+@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics", "mass_matrix", "forward_kinematics"])
+def test_four_ways_to_a_hessian(balls, random, name):
+    f, count, _ = quantities(balls)[name]
+    theta, *rest = state(balls, random)[:count]
+    weight = random.normal(size=f(theta, *rest).shape)
+    g = lambda theta: (weight * f(theta, *rest)).sum()
+    expected = jax.hessian(g)(theta)
+    for outer in (FORWARD, REVERSE):
+        for inner in (FORWARD, REVERSE):
+            assert_close(jax.jit(outer(inner(g)))(theta), expected, float(jnp.abs(expected).max()), 1e-10)
+    assert_close(expected, expected.T, float(jnp.abs(expected).max()), 1e-10)
+    with pytest.raises(NotImplementedError, match=f"no third derivatives of {name}"):
+        jax.jacfwd(jax.hessian(g))(theta)
+
+
+def test_a_gradient_is_tangent_to_the_sphere(balls, random):
+    theta, dtheta, ddtheta = state(balls, random)
+    gradient = jax.grad(lambda theta: (mj.inverse_dynamics(balls, theta, dtheta, ddtheta) ** 2).sum())(theta)
+    for q, _, _ in balls._quaternions:
+        assert abs(gradient[q : q + 4] @ theta[q : q + 4]) < 1e-12 * np.abs(gradient).max()
+    tau = balls.inverse_dynamics(theta, dtheta, ddtheta)
+    expected = balls.inverse_dynamics_vjp(theta, dtheta, ddtheta, 2.0 * tau).d_theta
+    assert_close(mj.tangent_gradient(balls, theta, gradient), expected)
+    assert_close(_tangent.position_gradient(np, balls._quaternions, theta, expected), gradient)
+
+
+def test_maps_of_the_tangent_are_transposes_and_inverses(balls, random):
+    places, (theta, u, _) = balls._quaternions, state(balls, random, 3)
+    rates = _tangent.rates(np, places, theta, u)
+    assert_close(_tangent.velocities(np, places, theta, rates), u)
+    moved = lambda h: _tangent.advance(np, places, theta, h * u)
+    assert_close((moved(1e-5) - moved(-1e-5)) / 2e-5, rates, tolerance=1e-9)
+    g, p = random.normal(size=u.shape), random.normal(size=theta.shape)
+    assert_close((_tangent.position_gradient(np, places, theta, g) * p).sum(), (g * _tangent.velocities(np, places, theta, p)).sum())
+    assert_close((_tangent.velocity_gradient(np, places, theta, p) * u).sum(), (p * rates).sum())
+
+
+def test_vmap(robot, random):
+    theta, dtheta, tau = state(robot, random, 4, 3)
+    f = lambda *x: mj.forward_dynamics(robot, *x)
+    expected = robot.forward_dynamics(theta, dtheta, tau)
+    twice = jax.jit(jax.vmap(jax.vmap(f)))
+    assert_close(twice(theta, dtheta, tau), expected)
+    assert str(jax.make_jaxpr(jax.vmap(jax.vmap(f)))(theta, dtheta, tau)).count("mozzi_quantity") == 1  # one call
+    middle = jax.vmap(f, in_axes=(1, 1, 1), out_axes=1)(theta, dtheta, tau)
+    assert_close(middle, expected)
+    some = jax.vmap(f, in_axes=(0, None, 0))(theta[:, 0], dtheta[0, 0], tau[:, 0])
+    assert_close(some, robot.forward_dynamics(theta[:, 0], dtheta[0, 0], tau[:, 0]))
+    one = jax.vmap(jax.grad(lambda *x: f(*x).sum(), (0, 2)), in_axes=(None, None, 0))(theta[0, 0], dtheta[0, 0], tau[0])
+    many = jax.grad(lambda *x: f(*x).sum(), (0, 2))(np.broadcast_to(theta[0, 0], theta[0].shape), dtheta[0, 0], tau[0])
+    for found, wanted in zip(one, many):
+        assert_close(found, wanted)
+
+
+def test_leading_axes_are_broadcast(ur5, random):
+    theta, dtheta, ddtheta = state(ur5, random, 4, 1)[0], *state(ur5, random, 3)[1:]
+    f = lambda *x: mj.inverse_dynamics(ur5, *x)
+    assert np.array_equal(f(theta, dtheta, ddtheta), ur5.inverse_dynamics(theta, dtheta, ddtheta))
+    gradient = jax.grad(lambda *x: f(*x).sum(), 1)(theta, dtheta, ddtheta)
+    alone = [jax.grad(lambda d: f(theta[:, 0], d, a).sum())(d) for d, a in zip(dtheta, ddtheta)]
+    assert_close(gradient, alone)
+    assert_close(f(list(theta[0, 0]), [0.0] * 6, [0] * 6), ur5.gravity_forces(theta[0, 0]))
+
+
+@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics", "mass_matrix", "bias_forces"])
+def test_parameters(robot, random, name):
+    f = lambda pi, *x: getattr(mj, name)(robot, *x, parameters=pi)
+    count = quantities(robot)[name][1]
+    x, own = state(robot, random, 3)[:count], robot.parameters
+    scale = 1.0 + 0.1 * random.uniform(size=(3, len(own)))
+    method = getattr(robot, name)
+    assert_close(f(scale * own, *x), method(*x, parameters=scale * own))
+    assert_close(f(own, *x), method(*x), np.abs(method(*x)).max(), 1e-10)
+    one = [a[0] for a in x]
+    J = jax.jacrev(f)(own, *one)
+    assert_close(J, jax.jacfwd(f)(own, *one), np.abs(J).max(), 1e-10)
+    if name == "inverse_dynamics":
+        Y = robot.regressor(*one)
+        assert_close(J, Y, np.abs(Y).max(), 1e-11)
+    size = float(jnp.abs(f(own, *one)).max())
+    # along a direction in which the robot stays a robot
+    g = lambda s, *x: f(own * (1.0 + 0.1 * s * scale[0]), *x) / size
+    check_grads(g, (0.0, *one), order=2, modes=["fwd", "rev"], atol=2e-3, rtol=2e-3, eps=1e-5)
+
+
+def test_scan_and_fori_loop(ur5, random):
+    theta, dtheta, _ = state(ur5, random)
+    body = lambda carry, tau: ((carry[0] + 0.01 * carry[1], carry[1] + 0.01 * mj.forward_dynamics(ur5, *carry, tau)), carry[1])
+    taus = random.uniform(-1, 1, (20, 6))
+    (found, _), _ = jax.jit(lambda *x: jax.lax.scan(body, x[:2], x[2]))(theta, dtheta, taus)
+    q, v = theta, dtheta
+    for tau in taus:
+        q, v = q + 0.01 * v, v + 0.01 * ur5.forward_dynamics(q, v, tau)
+    assert_close(found, q)
+    looped = jax.jit(lambda x: jax.lax.fori_loop(0, 5, lambda k, x: x + mj.gravity_forces(ur5, x), x))(theta)
+    for _ in range(5):
+        theta = theta + ur5.gravity_forces(theta)
+    assert_close(looped, theta, tolerance=1e-9)
+
+
+@pytest.mark.parametrize("method", ["rk4", "euler", "semi-implicit-euler"])
+def test_rollout(robot, random, method):
+    theta, dtheta, _ = state(robot, random)
+    tau = random.uniform(-1, 1, robot.n)
+    taus = np.broadcast_to(tau, (10, robot.n))
+    found = mj.rollout(robot, theta, dtheta, taus, 0.01, method)
+    expected = robot.simulate(theta, dtheta, 0.1, 10, torque=tau, method=method, joint_limits="ignore")
+    assert_close(found.theta, expected.theta, tolerance=1e-9)
+    assert_close(found.dtheta, expected.dtheta, tolerance=1e-9)
+    batch = mj.rollout(robot, np.stack([theta, theta]), dtheta, taus, 0.01, method)
+    assert batch.theta.shape == (2, 11, robot.nq)
+    assert_close(batch.dtheta[1], found.dtheta, tolerance=1e-9)
+    loss = lambda theta, dtheta, tau: (mj.rollout(robot, theta, dtheta, tau, 0.01, method).theta[-1] ** 2).sum()
+    if robot.n < 12:
+        check_grads(loss, (theta, dtheta, taus[:3]), order=1, modes=["fwd", "rev"], atol=1e-3, rtol=1e-3, eps=1e-5)
+
+
+def test_robots_are_constants_by_content(ur5):
+    again = mozzi.models.ur5()
+    assert ur5._jax_handle() == again._jax_handle() != mozzi.models.panda()._jax_handle()
+    code = "import mozzi; print(mozzi.models.ur5()._jax_handle())"
+    other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert int(other.stdout) == ur5._jax_handle()
+    f = jax.jit(mj.gravity_forces, static_argnums=0)
+    f(ur5, np.ones(6))
+    f(again, np.ones(6))
+    assert f._cache_size() == 1
+    del again
+    assert_close(f(ur5, np.ones(6)), ur5.gravity_forces(np.ones(6)))
+
+
+def test_errors_name_the_argument(ur5, balls, random):
+    theta = np.zeros(6)
+    for given, error, text in [
+        ((np.zeros(7), theta, theta), ValueError, r"theta has shape \(7,\), expected \(..., 6\)"),
+        ((np.zeros((5, 12)), theta, theta), ValueError, r"theta has shape \(5, 12\), expected \(..., 6\)"),
+        ((theta, 0.0, theta), ValueError, r"dtheta has shape \(\), expected \(..., 6\)"),
+        ((np.zeros((2, 6)), np.zeros((3, 6)), theta), ValueError, r"dtheta has leading axes \(3,\), which do not go with \(2,\)"),
+        ((theta.astype(np.float16),) * 3, TypeError, "float16, expected float32 or float64"),
+    ]:
+        with pytest.raises(error, match=text):
+            mj.inverse_dynamics(ur5, *given)
+    with pytest.raises(ValueError, match=r"parameters has shape \(3,\), expected \(..., 90\)"):
+        mj.mass_matrix(ur5, theta, parameters=np.zeros(3))
+    with pytest.raises(ValueError, match="there is no frame `nowhere`"):
+        mj.forward_kinematics(ur5, theta, "nowhere")
+    with pytest.raises(TypeError, match="model is a str, expected a mozzi.Model"):
+        mj.mass_matrix("ur5", theta)
+    with pytest.raises(ValueError, match="threads is 0"):
+        mj.mass_matrix(ur5, theta, threads=0)
+    with pytest.raises(ValueError, match="method is 'rk5', expected 'rk4'"):
+        mj.rollout(ur5, theta, theta, np.zeros((3, 6)), 0.1, "rk5")
+    with pytest.raises(ValueError, match=r"tau has shape \(6,\), expected \(..., N, 6\)"):
+        mj.rollout(ur5, theta, theta, theta, 0.1)
+    # found when it runs: text of the library, with the state's index
+    configuration = state(balls, random, 2)[0]
+    configuration[1, :4] *= 1.1
+    with pytest.raises(Exception, match=r"state \[1\]"):
+        mj.mass_matrix(balls, configuration).block_until_ready()
+    with pytest.raises(Exception, match=r"state \[1\]"):
+        jax.jacfwd(lambda theta: mj.mass_matrix(balls, theta))(configuration).block_until_ready()
+
+
+def test_the_handler_checks_what_xla_does_not(ur5):
+    from mozzi import _jax
+
+    of = _jax.quantity(ur5, "gravity_forces", None, False, None)
+    for changed, x, text in [
+        ({"model": 5}, np.zeros(6), "no robot in this process has the hash"),
+        ({"name": "nothing"}, np.zeros(6), "nothing"),
+        ({}, np.zeros((5, 12)), r"theta has shape \(5, 12\), expected \(..., 6\)"),
+        ({}, np.zeros(6, np.int64), "XLA's type"),
+    ]:
+        with pytest.raises(Exception, match=text):
+            _jax.evaluate(jnp.asarray(x), of=of._replace(**changed), along=(), wanted=0)[0].block_until_ready()
+
+
+def test_threads_do_not_change_results(robot, random):
+    theta, dtheta, tau = state(robot, random, 40)
+    f = lambda threads: lambda d: mj.forward_dynamics(robot, theta, d, tau, threads=threads)
+    values = [jax.jvp(f(threads), (dtheta,), (tau,)) for threads in (None, 1, 2)]
+    for value, derivative in values:
+        assert np.array_equal(value, values[0][0]) and np.array_equal(derivative, values[0][1])
+
+
+def test_structs_are_those_of_the_header(tmp_path):
+    compiler = shutil.which("cc") or pytest.skip("there is no C compiler")
+    try:
+        from jax.ffi import include_dir
+    except ImportError:
+        from jax.extend.ffi import include_dir
+    layout = _mozzi._jax_layout()
+    lines = "".join(f'  printf("%zu\\n", (size_t)({expression}));\n' for expression in layout)
+    source = tmp_path / "layout.c"
+    source.write_text(f'#include <stdio.h>\n#include "xla/ffi/api/c_api.h"\nint main(void) {{\n{lines}}}\n')
+    program = tmp_path / "layout"
+    subprocess.run([compiler, f"-I{include_dir()}", str(source), "-o", str(program)], check=True, timeout=60)
+    found = subprocess.run([str(program)], capture_output=True, text=True, check=True, timeout=60).stdout.split()
+    assert dict(zip(layout, map(int, found))) == layout
+
+
+def test_the_package_does_not_import_jax(tmp_path):
+    code = "import sys, mozzi; assert 'jax' not in sys.modules\ntry: import mozzi.jax\nexcept ImportError as e: print(e)"
+    (tmp_path / "jax.py").write_text("raise ImportError('hidden')")
+    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+    found = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, timeout=60)
+    assert found.stdout.strip() == "mozzi.jax needs JAX, which is not installed: pip install jax", found.stderr
