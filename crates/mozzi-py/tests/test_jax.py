@@ -82,7 +82,7 @@ def test_values_are_the_packages(robot, random, name):
 def test_jacobians_are_the_packages(robot, random, name):
     f, count, _ = quantities(robot)[name]
     x = state(robot, random)
-    expected = getattr(robot, name + "_derivatives")(*x)
+    expected = getattr(robot, name + "_derivatives")(*x)[-3:]
     V = _tangent.velocities(np, robot._quaternions, x[0], np.eye(robot.nq))  # row k of the k-th number of θ
     for mode in (FORWARD, REVERSE):
         by_theta, *others = jax.jit(mode(f, (0, 1, 2)))(*x)
@@ -215,8 +215,8 @@ def test_rollout(robot, random, method):
     assert batch.theta.shape == (2, 11, robot.nq)
     assert_close(batch.dtheta[1], found.dtheta, tolerance=1e-9)
     loss = lambda theta, dtheta, tau: (mj.rollout(robot, theta, dtheta, tau, 0.01, method).theta[-1] ** 2).sum()
-    if robot.n < 12:
-        check_grads(loss, (theta, dtheta, taus[:3]), order=1, modes=["fwd", "rev"], atol=1e-3, rtol=1e-3, eps=1e-5)
+    if robot.n < 12 and method == "rk4":
+        check_grads(jax.jit(loss), (theta, dtheta, taus[:3]), order=1, modes=["fwd", "rev"], atol=1e-3, rtol=1e-3, eps=1e-5)
 
 
 def test_robots_are_constants_by_content(ur5):

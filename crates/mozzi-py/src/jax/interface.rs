@@ -196,6 +196,10 @@ unsafe extern "C" fn handler(frame: *mut CallFrame) -> *mut c_void {
 }
 
 fn answer(frame: &CallFrame) -> Result<(), String> {
+    let (found, expected) = (frame.struct_size, size_of::<CallFrame>());
+    if found < expected {
+        return Err(format!("XLA's call has {found} bytes, expected at least {expected}: jaxlib is too old"));
+    }
     let attributes = Attributes {
         model: frame.attributes.integer("model")?,
         quantity: frame.attributes.text("quantity")?,
@@ -280,8 +284,9 @@ impl AttributeList {
 
     fn integer(&self, name: &str) -> Result<i64, String> {
         let value = self.find(name, SCALAR)?.cast::<ScalarAttribute>();
-        // SAFETY: a scalar attribute points to this struct, and one of type 5 to an i64.
+        // SAFETY: a scalar attribute points to this struct.
         match unsafe { &*value } {
+            // SAFETY: one of type 5 points to an i64.
             ScalarAttribute { dtype: INT64, value } => Ok(unsafe { value.cast::<i64>().read_unaligned() }),
             other => Err(format!("attribute {name} has XLA's type {}, expected int64", other.dtype)),
         }

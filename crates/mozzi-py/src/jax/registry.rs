@@ -45,7 +45,8 @@ impl Entry {
             return Ok(batch.clone());
         }
         let batch = Batch::<T>::of(&self.model);
-        let batch = if threads == 0 { batch } else { batch.with_threads(threads).map_err(|error| error.to_string())? };
+        let batch =
+            if threads == 0 { batch } else { batch.with_threads(threads).map_err(|error| error.to_string())? };
         made.push((threads, batch.clone()));
         Ok(batch)
     }
@@ -53,7 +54,8 @@ impl Entry {
 
 /// FNV-1a of 64 bits: defined once for all, unlike the hash of Rust's library.
 fn hash(text: &str) -> i64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)) as i64
+    text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+        as i64
 }
 
 /// Registers the robot. Returns its number, which depends on its description alone.
@@ -74,7 +76,11 @@ pub fn register(model: &Model) -> Result<i64, String> {
     });
     match entry.model.description() == model.description() {
         true => Ok(handle),
-        false => Err(format!("robots `{}` and `{}` have the same hash", entry.model.description().name, model.description().name)),
+        false => Err(format!(
+            "robots `{}` and `{}` have the same hash",
+            entry.model.description().name,
+            model.description().name
+        )),
     }
 }
 
@@ -85,6 +91,8 @@ pub fn register(model: &Model) -> Result<i64, String> {
 pub fn find(handle: i64) -> Result<Arc<Entry>, String> {
     let robots = ROBOTS.read().unwrap_or_else(PoisonError::into_inner);
     robots.get(&handle).cloned().ok_or_else(|| {
-        format!("no robot in this process has the hash {handle:#018x}; call a function of mozzi.jax with its model first")
+        format!(
+            "no robot in this process has the hash {handle:#018x}; call a function of mozzi.jax with its model first"
+        )
     })
 }
