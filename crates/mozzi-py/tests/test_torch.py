@@ -374,7 +374,8 @@ def test_rollouts_under_transforms(models):
     robot, x = mozzi.torch.Model(model), [t.detach() for t in rollouts(model, 20, 3)]
     loss = lambda *x: robot.rollout(*x, 0.1)[0].square().sum()  # noqa: E731
     together = vmap(grad(loss, argnums=(0, 1, 2)))(*x)
-    compiled = torch.compile(grad_of(loss), fullgraph=True, backend="aot_eager")(*x)
+    start = [t.clone().requires_grad_() for t in x]
+    compiled = torch.autograd.grad(torch.compile(loss, fullgraph=True, backend="aot_eager")(*start), start)
     for k in range(3):
         for a, b in zip(together, grad(loss, argnums=(0, 1, 2))(*(t[k] for t in x))):
             assert_close(a[k].numpy(), b.numpy(), tolerance=1e-11)
@@ -390,13 +391,3 @@ def test_rollouts_under_transforms(models):
     assert found[0].dtype == single[2].grad.dtype == torch.float32
     with pytest.raises(ValueError, match=r"tau has shape \(2,\), expected \(..., N, 2\)"):
         robot.rollout(x[0][0], x[1][0], x[2][0, 0], 0.1)
-
-
-def grad_of(loss):
-    """Gradients by torch.autograd: a graph has these, but no transforms of torch.func."""
-
-    def found(*x):
-        x = [t.clone().requires_grad_() for t in x]
-        return torch.autograd.grad(loss(*x), x)
-
-    return found
