@@ -3,7 +3,7 @@
 use crate::program::Program;
 use crate::record::record;
 use crate::traced::Traced;
-use mozzi::{Dual, Freedom, Model, SO3, Scalar, Vec3};
+use mozzi::{Dual, Freedom, Model, SO3, Vec3};
 
 /// The name of an array's rate.
 pub fn rate_of(name: &str) -> String {
