@@ -3,7 +3,9 @@
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsVjp};
-use mozzi::simulation::{LARGEST, Method, ParameterVjp, Stage, StageDynamics, Steps, Tables, check_rollout};
+use mozzi::simulation::{
+    ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables, check_rollout,
+};
 use mozzi::{Model, Vec3};
 use std::convert::identity;
 
@@ -141,19 +143,20 @@ impl Batch<f64> {
         options: &BatchRollout,
         robots: usize,
         pieces: Vec<I>,
-        f: impl Fn(&mut Steps<Together>, usize, usize, I) -> Result<(), Error> + Sync,
+        f: impl Fn(&mut Steps<ExplicitSteps<Together>>, usize, usize, I) -> Result<(), Error> + Sync,
     ) -> Result<(), Error> {
         let (method, alone) = (options.method.explicit()?, self.on(Threads::One).with_layout(Layout::Rows));
         let pieces: Vec<_> = pieces.into_iter().enumerate().collect();
         let results = self.workers().map(
             pieces,
-            || None::<(usize, Steps<Together>)>,
+            || None::<(usize, Steps<ExplicitSteps<Together>>)>,
             |memory, (k, piece)| {
                 let (first, count) = (k * TOGETHER, TOGETHER.min(robots - k * TOGETHER));
                 let kept = memory.take().filter(|(robots, _)| *robots == count);
                 let (_, steps) = memory.insert(kept.unwrap_or_else(|| {
-                    let dynamics = Together::new(&alone, options.gravity, count);
-                    (count, Steps::new(alone.model(), count, method, options.step, dynamics))
+                    let (model, dynamics) = (alone.model(), Together::new(&alone, options.gravity, count));
+                    let stepper = ExplicitSteps::new(model, count, method, options.step, dynamics);
+                    (count, Steps::new(stepper, model.n() * count, model.parameter_count() * count))
                 }));
                 f(steps, first, count, piece).map_err(|error| error.after(first))
             },
@@ -175,7 +178,7 @@ impl Batch<f64> {
 struct Together<'b> {
     batch: &'b Batch<f64>,
     environment: BatchEnvironment<'b, f64>,
-    parameters: ParameterVjp,
+    parameters: ParameterGradient,
     robots: usize,
 }
 
@@ -183,7 +186,7 @@ impl<'b> Together<'b> {
     fn new(batch: &'b Batch<f64>, gravity: Option<Vec3>, robots: usize) -> Self {
         let mut environment = batch.model().environment();
         environment.gravity = gravity.unwrap_or(environment.gravity);
-        let parameters = ParameterVjp::new(batch.model());
+        let parameters = ParameterGradient::new(batch.model());
         Together { batch, environment: environment.into(), parameters, robots }
     }
 

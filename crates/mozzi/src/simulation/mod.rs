@@ -69,7 +69,7 @@ pub use options::{Friction, LARGEST, Options};
 pub use policy::Policy;
 pub use recorder::{Account, Recorder, Thinned, stride};
 pub use rollout::{
-    Cotangents, ExplicitSteps, ParameterVjp, Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics,
+    Cotangents, ExplicitSteps, ParameterGradient, Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics,
     StartGradient, Stepper, Steps, Tables, check_rollout,
 };
 pub use run::{Ending, Run, Simulation};

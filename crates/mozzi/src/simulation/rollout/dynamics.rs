@@ -1,7 +1,7 @@
 //! What the steps of a rollout evaluate: θ̈ and its vector-Jacobian products.
 
 use super::super::{Equation, Friction, Input, Options};
-use super::ParameterVjp;
+use super::ParameterGradient;
 use crate::fast;
 use crate::model::{Environment, Error, JOINT_PARAMETERS, Model};
 use crate::quantities::{ForwardDynamicsVjp, Query};
@@ -70,7 +70,7 @@ pub struct OneRobot<'m> {
     pub equation: Equation<'m, HeldTorque>,
     step_size: f64,
     workspace: fast::Workspace,
-    parameters: ParameterVjp,
+    parameters: ParameterGradient,
 }
 
 impl<'m> OneRobot<'m> {
@@ -79,7 +79,7 @@ impl<'m> OneRobot<'m> {
             equation: Equation::new(model, HeldTorque(vec![0.0; model.n()]), options),
             step_size: options.step(),
             workspace: fast::Workspace::new(model),
-            parameters: ParameterVjp::new(model),
+            parameters: ParameterGradient::new(model),
         }
     }
 }

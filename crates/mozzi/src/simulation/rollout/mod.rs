@@ -30,7 +30,7 @@ mod tests;
 
 pub use dynamics::{Stage, StageDynamics};
 pub use explicit::ExplicitSteps;
-pub use parameters::ParameterVjp;
+pub use parameters::ParameterGradient;
 pub(super) use retraction::series;
 pub use stepper::{Cotangents, Stepper};
 pub use steps::{StartGradient, Steps, Tables};

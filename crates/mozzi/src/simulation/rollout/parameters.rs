@@ -1,5 +1,10 @@
-//! xᵀ∂θ̈/∂π of the stages of a step: −yᵀ∂τ/∂π at this θ̈, y = M⁻¹x being known from xᵀ∂θ̈/∂τ. See
-//! [`forward_dynamics_parameter_vjp`](crate::forward_dynamics_parameter_vjp()).
+//! xᵀ∂θ̈/∂π.
+//!
+//! In M θ̈ + h = τ with forces Y π that are linear in π, a change of π alone changes θ̈ by −M⁻¹Y δπ at this θ̈, so that
+//!
+//! > xᵀ∂θ̈/∂π = −yᵀY(θ, θ̇, θ̈), y = M⁻¹x
+//!
+//! which is [`inverse_dynamics_parameter_vjp`](crate::inverse_dynamics_parameter_vjp()) of y. A stage knows θ̈ and y.
 
 use crate::fast;
 use crate::model::{Environment, Model};
@@ -9,21 +14,19 @@ use alloc::vec::Vec;
 
 /// Memory for the vector-Jacobian products of forward dynamics by the [`parameters`](Model::parameters) π.
 #[derive(Clone, Debug)]
-pub struct ParameterVjp {
+pub struct ParameterGradient {
     workspace: fast::Workspace,
-    minus_y: Vec<f64>,
-    /// By π, placements, axes and gravity; empty before the first use.
-    found: [Vec<f64>; 4],
+    /// The products by π, placements, axes and gravity; empty before the first use.
+    products: [Vec<f64>; 4],
 }
 
-impl ParameterVjp {
+impl ParameterGradient {
     /// For robots like this one.
     pub fn new(model: &Model) -> Self {
-        let found = core::array::from_fn(|_| Vec::new());
-        ParameterVjp { workspace: fast::Workspace::new(model), minus_y: vec![0.0; model.n()], found }
+        ParameterGradient { workspace: fast::Workspace::new(model), products: Default::default() }
     }
 
-    /// Adds −yᵀ∂τ/∂π at (θ, θ̇, θ̈) to the gradient, p numbers. Cost O(n).
+    /// Adds −yᵀY at (θ, θ̇, θ̈) to the gradient, p numbers. Cost O(n).
     ///
     /// # Panics
     /// When θ is not nq long, θ̇, θ̈ or y not n, or the gradient not p.
@@ -35,16 +38,15 @@ impl ParameterVjp {
         environment: &Environment,
         gradient: &mut [f64],
     ) {
-        let (n, p) = (model.n(), model.parameter_count());
-        assert!(y.len() == n && gradient.len() == p, "expected y with {n} entries and a gradient with {p}");
         let query = Query::from(InverseDynamicsParameterVjp);
-        for (found, length) in self.found.iter_mut().zip(query.output_lengths(model)) {
-            found.resize(length, 0.0);
+        assert!(gradient.len() == model.parameter_count(), "expected {} entries", model.parameter_count());
+        if self.products[3].is_empty() {
+            let mut lengths = query.output_lengths(model);
+            self.products = core::array::from_fn(|_| vec![0.0; lengths.next().unwrap_or(0)]);
         }
-        self.minus_y.iter_mut().zip(y).for_each(|(minus_y, y)| *minus_y = -y);
-        let inputs = [theta, dtheta, ddtheta, &self.minus_y];
-        let mut outputs = self.found.each_mut().map(Vec::as_mut_slice);
-        fast::evaluate(&query, model, &inputs, environment, &mut self.workspace, &mut outputs);
-        gradient.iter_mut().zip(&self.found[0]).for_each(|(sum, entry)| *sum += entry);
+        let [a, b, c, d] = &mut self.products;
+        let (inputs, outputs) = ([theta, dtheta, ddtheta, y], &mut [&mut a[..], &mut b[..], &mut c[..], &mut d[..]]);
+        fast::evaluate(&query, model, &inputs, environment, &mut self.workspace, outputs);
+        gradient.iter_mut().zip(&self.products[0]).for_each(|(sum, product)| *sum -= product);
     }
 }
