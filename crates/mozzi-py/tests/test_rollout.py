@@ -15,7 +15,7 @@ def case(robot, random, *leading, steps=8):
     return theta, 0.3 * dtheta, tau, *bars
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [*METHODS, "midpoint"])
 def test_states_are_those_of_simulate(robot, method, random):
     theta, dtheta, tau, *_ = case(robot, random)
     tau[:] = tau[0]
@@ -44,15 +44,17 @@ def test_each_start_by_itself(robot, method, random):
     assert len(without) == 3 and all(np.array_equal(a, b) for a, b in zip(without, gradients))
 
 
-def test_gradients_are_slopes_of_the_loss(robot, random):
+@pytest.mark.parametrize("method", ["rk4", "midpoint"])
+def test_gradients_are_slopes_of_the_loss(robot, method, random):
     theta, dtheta, tau, *bars = case(robot, random)
-    tau[:, :] *= 0.1
-    by_theta, by_dtheta, by_tau = robot.rollout_vjp(theta, dtheta, tau, 0.01, *bars)
-    here = robot.rollout(theta, dtheta, tau, 0.01)
+    tau *= 0.1
+    by_theta, by_dtheta, by_tau = robot.rollout_vjp(theta, dtheta, tau, 0.01, *bars, method=method)
+    here = robot.rollout(theta, dtheta, tau, 0.01, method)
     along = [random.normal(size=x.shape) for x in (by_theta, by_dtheta, by_tau)]
 
     def loss(e):
-        there = robot.rollout(robot.integrate(theta, along[0], e), dtheta + e * along[1], tau + e * along[2], 0.01)
+        start = robot.integrate(theta, along[0], e), dtheta + e * along[1]
+        there = robot.rollout(*start, tau + e * along[2], 0.01, method)
         way = robot.difference(here.theta, there.theta)
         return np.sum(way * bars[0]) + np.sum((there.dtheta - here.dtheta) * bars[1])
 
@@ -92,7 +94,9 @@ def test_what_is_refused(ur5, random):
             with pytest.raises(ValueError, match="the step"):
                 ur5.rollout(start, dtheta[0], tau[0], step)
     with pytest.raises(ValueError, match="the method"):
-        ur5.rollout(theta, dtheta, tau, 0.01, "dopri")
+        ur5.rollout(theta, dtheta, tau, 0.01, "midpoint")
+    with pytest.raises(ValueError, match="the method"):
+        ur5.rollout(theta[0], dtheta[0], tau[0], 0.01, "dopri")
     with pytest.raises(ValueError, match="expected 'rk4'"):
         ur5.rollout(theta, dtheta, tau, 0.01, "heun")
     tau[1, 3, 2] = 1e300

@@ -95,8 +95,8 @@ impl PyModel {
     ///     The torques of each step: N m or N.
     /// step : float
     ///     The length of a step, s.
-    /// method : {'rk4', 'semi-implicit-euler', 'euler'}
-    ///     How a step is taken, as in `simulate`.
+    /// method : {'rk4', 'semi-implicit-euler', 'euler', 'midpoint'}
+    ///     How a step is taken, as in `simulate`. 'midpoint' takes one start.
     /// gravity : array_like, shape (3,), optional
     ///     In place of the model's own: m/s².
     /// threads : int, optional
@@ -174,8 +174,8 @@ impl PyModel {
     ///     ∂L/∂θ[k], along the velocities.
     /// dtheta_bar : array_like, shape (..., N + 1, n)
     ///     ∂L/∂θ̇[k].
-    /// method : {'rk4', 'semi-implicit-euler', 'euler'}
-    ///     How a step is taken, as in `simulate`.
+    /// method : {'rk4', 'semi-implicit-euler', 'euler', 'midpoint'}
+    ///     How a step is taken, as in `simulate`. 'midpoint' takes one start.
     /// parameters : bool
     ///     Whether to return the gradient by the parameters, too.
     /// gravity : array_like, shape (3,), optional
