@@ -32,7 +32,7 @@ impl Task<'_> {
         let [w, w_v, r] = WEIGHTS;
         let (model, hand, n) = (self.model, self.hand, self.model.n());
         let (mut loss, mut failed) = (0.0, None);
-        let at_end = |theta: &[f64], dtheta: &[f64], theta_bar: &mut [f64], dtheta_bar: &mut [f64]| {
+        let mut at_end = |theta: &[f64], dtheta: &[f64], theta_bar: &mut [f64], dtheta_bar: &mut [f64]| {
             let (T, J_b) = (model.forward_kinematics(theta, hand)?, model.body_jacobian(theta, hand)?);
             let off = T.p - mozzi::Vec3(GOAL);
             for j in 0..n {
@@ -42,10 +42,9 @@ impl Task<'_> {
             loss = 0.5 * w * off.dot(off) + 0.5 * w_v * dtheta.iter().map(|v| v * v).sum::<f64>();
             Ok::<_, Error>(())
         };
-        let mut at_end = Some(at_end);
-        let found = self.rollout.gradient(&START, &vec![0.0; n], tau, |_, theta, dtheta, theta_bar, dtheta_bar| {
-            if let Some(at_end) = at_end.take() {
-                failed = at_end(theta, dtheta, theta_bar, dtheta_bar).err(); // the first call is of the last state
+        let found = self.rollout.gradient(&START, &vec![0.0; n], tau, |k, theta, dtheta, theta_bar, dtheta_bar| {
+            if k == STEPS {
+                failed = at_end(theta, dtheta, theta_bar, dtheta_bar).err();
             }
         })?;
         if let Some(error) = failed {
@@ -125,7 +124,7 @@ fn check_slope(task: &mut Task<'_>, tau: &[f64], gradient: &[f64]) -> Result<(),
 /// −H∂L/∂τ, with the inverse Hessian H of the last steps s and changes y of the gradient.
 fn descent(memory: &VecDeque<(Vec<f64>, Vec<f64>)>, gradient: &[f64]) -> Vec<f64> {
     let mut way: Vec<f64> = gradient.iter().map(|x| -x).collect();
-    let mut add = |way: &mut Vec<f64>, by: f64, x: &[f64]| way.iter_mut().zip(x).for_each(|(a, b)| *a += by * b);
+    let add = |way: &mut Vec<f64>, by: f64, x: &[f64]| way.iter_mut().zip(x).for_each(|(a, b)| *a += by * b);
     let mut alphas = Vec::new();
     for (s, y) in memory {
         let alpha = dot(s, &way) / dot(s, y);
