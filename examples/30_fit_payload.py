@@ -34,21 +34,29 @@ clean = mozzi.jax.inverse_dynamics(ur5, theta, dtheta, ddtheta, parameters=with_
 measured = clean + 0.05 * random.normal(size=clean.shape)
 
 
-def loss(payload: jax.Array) -> jax.Array:
+def errors(payload: jax.Array) -> jax.Array:
     tau = mozzi.jax.inverse_dynamics(ur5, theta, dtheta, ddtheta, parameters=with_payload(payload))
-    return ((tau - measured) ** 2).sum()
+    return (tau - measured).ravel()
 
 
-# Newton's method with JAX's derivatives: ∂τ/∂π = Y, and π is not linear in the place of the mass
-value_and_gradient, hessian = jax.jit(jax.value_and_grad(loss)), jax.jit(jax.hessian(loss))
-payload = jnp.array([1.0, 0.0, 0.0, 0.05])
-for iteration in range(20):
-    value, gradient = value_and_gradient(payload)
-    print(f"{iteration:2}: squares {float(value):10.4f}  m = {float(payload[0]):.4f} kg, c =", np.round(payload[1:], 4), "m")
-    H = hessian(payload)
-    smallest = jnp.linalg.eigvalsh(H)[0]
-    step = jnp.linalg.solve(H + jnp.maximum(0.0, 1e-3 - smallest) * jnp.eye(4), gradient)
-    payload = payload - step
+def loss(payload: jax.Array) -> jax.Array:
+    return 0.5 * (errors(payload) ** 2).sum()
+
+
+# Levenberg and Marquardt's method: the gradient in reverse mode, by wᵀY; the Jacobian along four directions, forward
+value_and_gradient, jacobian = jax.jit(jax.value_and_grad(loss)), jax.jit(jax.jacfwd(errors))
+payload, damping = jnp.array([1.0, 0.0, 0.0, 0.05]), 1e-3
+value, gradient = value_and_gradient(payload)
+for iteration in range(50):
+    print(f"{iteration:2}: loss {float(value):10.4f}  m = {float(payload[0]):.4f} kg, c =", np.round(payload[1:], 4), "m")
+    J = jacobian(payload)
+    H = J.T @ J
+    step = jnp.linalg.solve(H + damping * jnp.diag(jnp.diag(H)), gradient)
+    lower, next_gradient = value_and_gradient(payload - step)
+    if lower < value:
+        payload, value, gradient, damping = payload - step, lower, next_gradient, damping / 10.0
+    else:
+        damping *= 10.0
     if float(jnp.abs(step).max()) < 1e-9:
         break
 

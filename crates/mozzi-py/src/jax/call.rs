@@ -263,14 +263,14 @@ fn each_state<T: Element + Batched>(
         let w: Vec<Vec<f64>> = (next..arguments.len()).map(at).collect();
         derivative.at(&x, along, &w, scratch).map_err(|error| of_state(state, leading, error))
     };
-    let found: Vec<Vec<Vec<f64>>> = if attributes.threads == 1 || states < FEW {
+    let found: Vec<Result<Vec<Vec<f64>>, String>> = if attributes.threads == 1 || states < FEW {
         let mut scratch = Scratch::default();
-        (0..states).map(|state| one(&mut scratch, state)).collect::<Result<_, _>>()?
+        (0..states).map(|state| one(&mut scratch, state)).collect()
     } else {
-        (0..states).into_par_iter().map_init(Scratch::default, one).collect::<Result<_, _>>()?
+        (0..states).into_par_iter().map_init(Scratch::default, one).collect()
     };
     for (state, found) in found.into_iter().enumerate() {
-        for (result, found) in results.iter_mut().zip(found) {
+        for (result, found) in results.iter_mut().zip(found?) {
             let length = found.len();
             let numbers = result[state * length..][..length].iter_mut().zip(found);
             numbers.for_each(|(place, x)| *place = T::from_f64(x));
