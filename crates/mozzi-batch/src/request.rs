@@ -64,6 +64,7 @@ impl<'a, T: Number> Request<'a, T> {
             base_acceleration: differs(Uses::BASE_ACCELERATION, environment.base_acceleration != own.base_acceleration),
             about: self.query.subject.point != Vec3([0.0; 3]),
             wrenches: frames,
+            rates: false,
         }
     }
 
