@@ -11,7 +11,7 @@ use crate::run::Run;
 use crate::threads::Threads;
 use crate::{BatchEnvironment, Error, InstructionSet, Number};
 use mozzi::quantities::Query;
-use mozzi::{Environment, FrameId, Model};
+use mozzi::{Environment, FrameId, Freedom, Model};
 use mozzi_codegen::{Arguments, Refusal, is_too_long};
 use std::sync::Arc;
 
@@ -198,7 +198,7 @@ impl<T: Number> Batch<T> {
         all.clone().try_for_each(|(what, found, width)| wrong(what, found, width))?;
         frames.into_iter().try_for_each(|frame| model.check_frame(frame))?;
         model.check_environment(environment)?;
-        if model.is_floating() && inputs[0].name == "theta" {
+        if inputs[0].name == "theta" {
             self.check_quaternions(&inputs[0], states)?;
         }
         Ok(states)
@@ -338,14 +338,20 @@ impl<T: Number> Batch<T> {
         chunks
     }
 
+    /// Checks the length of each quaternion, of a floating base, balls and free joints.
     fn check_quaternions(&self, theta: &Table<T>, states: usize) -> Result<(), Error> {
         let (near, one) = (T::from_f64(1e-4), T::one());
+        let joints = self.model.configuration_space().places().iter().filter(|joint| joint.freedom != Freedom::One);
+        let first: Vec<usize> = joints.map(|joint| joint.q).collect();
         for index in 0..states {
-            let square = (0..4).fold(T::zero(), |sum, k| {
-                let x = theta.numbers[place(index, k, theta.width, self.block())];
-                sum + x * x
-            });
-            if !((square - one) <= near && (one - square) <= near) {
+            let square = |first: usize| {
+                (first..first + 4).fold(T::zero(), |sum, k| {
+                    let x = theta.numbers[place(index, k, theta.width, self.block())];
+                    sum + x * x
+                })
+            };
+            let is_unit = |square: T| (square - one) <= near && (one - square) <= near;
+            if !first.iter().all(|&first| is_unit(square(first))) {
                 let source = self.model.check_configuration(&self.at(theta, index));
                 source.map_err(|source| Error::State { index, source })?;
             }

@@ -2,8 +2,8 @@
 
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::quantities::{ForwardDynamics, ForwardKinematics, InverseDynamics, MassMatrix, Query};
-use mozzi::testing::{floating_tree, tree};
-use mozzi::{Description, SE3, ScrewAxis, Solid, SpatialInertia};
+use mozzi::testing::{floating_tree, mixed_tree, tree};
+use mozzi::{Description, Freedom, SE3, ScrewAxis, Solid, SpatialInertia};
 use mozzi_batch::{Batch, Error, InstructionSet, Layout};
 
 fn text(result: Result<(), Error>) -> String {
@@ -44,6 +44,17 @@ fn a_state_by_its_number() {
     assert!(found.starts_with("state 17 (counted from 0): the base's orientation in theta is [0.9, "), "{found}");
     theta[17 * model.nq()] = f64::NAN; // NaN gives no error, as at one state
     M_of(&theta).unwrap();
+}
+
+#[test]
+fn a_balls_orientation() {
+    let model = mixed_tree(2, 8, 0);
+    let ball = model.places().iter().find(|place| place.freedom != Freedom::One).expect("a ball or a free joint").q;
+    let mut theta: Vec<f64> = model.neutral_configuration().repeat(9);
+    theta[5 * model.nq() + ball] = 1.1;
+    let mut M = vec![0.0; 9 * model.n() * model.n()];
+    let found = text(Batch::new(&model).compute(MassMatrix, &[&theta], &model.environment().into(), &mut [&mut M]));
+    assert!(found.starts_with("state 5 (counted from 0): a joint's orientation in theta is [1.1, "), "{found}");
 }
 
 #[test]

@@ -64,6 +64,7 @@ fn what_is_left_open_is_an_input() {
             base_acceleration: true,
             about: true,
             wrenches: &frames,
+            rates: false,
         };
         let [tip, middle] = frames.map(|frame| format!("wrench_{}", model.frame_name(frame)));
         let names = ["parameters", "gravity", "base_twist", "base_acceleration", "about", &tip, &middle];
