@@ -156,8 +156,9 @@ impl PyModel {
     /// each step and the parameters, from the loss's own gradient by each state. It is the adjoint of the discrete
     /// steps, exact to rounding for any step size, and takes about four times the rollout's time.
     ///
-    /// Gradients by θ have n entries, along the velocities: for joints of one axis they are ∂L/∂θ; for a floating base, a ball or a free joint they are along the body twist (ω, v) in its own coordinates,
-    /// not along the entries of the quaternion.
+    /// Gradients by θ have n entries, along the velocities: for joints of one axis they are ∂L/∂θ; for a floating base,
+    /// a ball or a free joint they are along the body twist (ω, v) in its own coordinates, not along the entries of the
+    /// quaternion.
     ///
     /// Parameters
     /// ----------
@@ -185,8 +186,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// tuple of ndarray, float64
-    ///     ∂L/∂θ[0], shape (..., n), along the velocities; ∂L/∂θ̇[0], shape (..., n); ∂L/∂τ, shape (..., N, n); and with
-    ///     `parameters=True` ∂L/∂π, shape (..., p), by `model.parameters` of each start.
+    ///     ∂L/∂θ[0], shape (..., n), along the velocities; ∂L/∂θ̇[0], shape (..., n); ∂L/∂τ, shape (..., N, n); and
+    ///     with `parameters=True` ∂L/∂π, shape (..., p), by `model.parameters` of each start.
     ///
     /// Raises
     /// ------

@@ -4,8 +4,8 @@
 //!
 //! > θᵢ = θ ⊕ uᵢ, uᵢ = cᵢ wᵢ₋₁; θ̇ᵢ = θ̇ + cᵢ aᵢ₋₁; θ' = θ ⊕ hΣ bᵢwᵢ; θ̇' = θ̇ + hΣ bᵢaᵢ
 //!
-//! with c = (0, h/2, h/2, h), b = (1/6, 1/3, 1/3, 1/6). The transposed derivatives run through these lines from the last
-//! to the first; each θ̈ᵢ takes one vector-Jacobian product of forward dynamics, each ⊕ those of
+//! with c = (0, h/2, h/2, h), b = (1/6, 1/3, 1/3, 1/6). The transposed derivatives run through these lines from the
+//! last to the first; each θ̈ᵢ takes one vector-Jacobian product of forward dynamics, each ⊕ those of
 //! [`retraction.rs`](super::retraction). Euler's step is θ' = θ ⊕ hθ̇, θ̇' = θ̇ + hθ̈; the semi-implicit one has θ̇' in
 //! the first.
 

@@ -5,8 +5,8 @@
 //! > G₁ = M(θ_m)v − p_m,  G₂ = M(θ')θ̇' − p';  θ_m = θ ⊕ ½hv,  θ' = θ ⊕ hv
 //!
 //! where the momenta p_m and p' follow from p = M(θ)θ̇ and ṗ(θ_m, v, τ): see [`midpoint.rs`](crate::simulation). A
-//! cotangent z̄ gives λ with (∂G/∂z)ᵀλ = z̄, and then x̄ = −(∂G/∂x)ᵀλ, τ̄ = −(∂G/∂τ)ᵀλ, π̄ = −(∂G/∂π)ᵀλ. The derivatives
-//! of G are those of dual numbers, 5n evaluations in O(n²), and one for each parameter.
+//! cotangent z̄ gives λ with (∂G/∂z)ᵀλ = z̄, and then x̄ = −(∂G/∂x)ᵀλ, τ̄ = −(∂G/∂τ)ᵀλ, π̄ = −(∂G/∂π)ᵀλ. The
+//! derivatives of G are those of dual numbers, 5n evaluations in O(n²), and one for each parameter.
 
 use super::dynamics::HeldTorque;
 use super::retraction::advance_vjp;

@@ -8,8 +8,8 @@
 //!
 //! It is the adjoint of the discrete step itself, and so exact to rounding for any step size: each stage takes one
 //! [vector-Jacobian product of forward dynamics](crate::forward_dynamics_vjp()), O(n), and no matrix is formed. The
-//! derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`. The implicit midpoint rule takes the
-//! implicit function theorem and dual numbers, O(n³) a step: `midpoint.rs`.
+//! derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`. The implicit midpoint
+//! rule takes the implicit function theorem and dual numbers, O(n³) a step: `midpoint.rs`.
 //!
 //! A cotangent of θ has n numbers, along θ ⊕ δθ: for a floating base, a ball or a free joint along the body twist in
 //! its own coordinates, not along the entries of the quaternion.
@@ -239,8 +239,8 @@ impl<'m> Rollout<'m> {
         self.gradient_by([theta, dtheta], N, tau, None, loss)
     }
 
-    /// The vector-Jacobian product of [`states`](Self::states): the gradient of Σ θ̄\[k\]ᵀδθ\[k\] + θ̇̄\[k\]ᵀδθ̇\[k\] for
-    /// cotangents θ̄ and θ̇̄, both (N + 1) × n. θ̄ is along the velocities.
+    /// The vector-Jacobian product of [`states`](Self::states): the gradient of Σ θ̄\[k\]ᵀδθ\[k\] +
+    /// θ̇̄\[k\]ᵀδθ̇\[k\] for cotangents θ̄ and θ̇̄, both (N + 1) × n. θ̄ is along the velocities.
     ///
     /// # Errors
     /// As [`states`](Self::states).
