@@ -14,6 +14,14 @@ __all__ = [
     "ForwardDynamicsDerivatives",
     "InverseDynamicsVjp",
     "ForwardDynamicsVjp",
+    "InverseDynamicsParameterVjp",
+    "ForwardDynamicsParameterVjp",
+    "MassMatrixProductVjp",
+    "EnergyGradients",
+    "FrameTwistVjp",
+    "FrameAccelerationVjp",
+    "MomentumVjp",
+    "MomentumRateVjp",
     "EnergyRegressors",
 ]
 
@@ -109,6 +117,116 @@ class ForwardDynamicsVjp(NamedTuple):
     d_dtheta: Array
     """Shape (..., n): any."""
     d_tau: Array
+    """Shape (..., n): any."""
+
+
+class InverseDynamicsParameterVjp(NamedTuple):
+    """xᵀ∂τ/∂π = xᵀY, and xᵀ∂τ by the joints' placements and axes and by gravity: the gradient of xᵀτ by the robot.
+
+    See ``Model.inverse_dynamics_parameter_vjp``.
+    """
+
+    d_parameters: Array
+    """Shape (..., p): any."""
+    d_placements: Array
+    """Shape (..., b, 6): any."""
+    d_axes: Array
+    """Shape (..., b, 6): any."""
+    d_gravity: Array
+    """Shape (..., 3): any."""
+
+
+class ForwardDynamicsParameterVjp(NamedTuple):
+    """xᵀ∂θ̈/∂π, and xᵀ∂θ̈ by the joints' placements and axes and by gravity: the gradient of xᵀθ̈ by the robot.
+
+    See ``Model.forward_dynamics_parameter_vjp``.
+    """
+
+    d_parameters: Array
+    """Shape (..., p): any."""
+    d_placements: Array
+    """Shape (..., b, 6): any."""
+    d_axes: Array
+    """Shape (..., b, 6): any."""
+    d_gravity: Array
+    """Shape (..., 3): any."""
+
+
+class MassMatrixProductVjp(NamedTuple):
+    """xᵀ∂(M(θ)θ̈)/∂θ along the velocities, and Mx: the gradient of xᵀMθ̈.
+
+    See ``Model.mass_matrix_product_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_ddtheta: Array
+    """Shape (..., n): any."""
+
+
+class EnergyGradients(NamedTuple):
+    """∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ of the kinetic and potential energy; by θ along the velocities.
+
+    See ``Model.energy_gradients``.
+    """
+
+    kinetic_d_theta: Array
+    """Shape (..., n): N m or N."""
+    kinetic_d_dtheta: Array
+    """Shape (..., n): N m s or N s."""
+    potential_d_theta: Array
+    """Shape (..., n): N m or N."""
+
+
+class FrameTwistVjp(NamedTuple):
+    """wᵀ∂𝒱_b/∂θ along the velocities, and J_bᵀw: the gradient of wᵀ𝒱_b, the twist of a frame in its own coordinates.
+
+    See ``Model.frame_twist_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_dtheta: Array
+    """Shape (..., n): any."""
+
+
+class FrameAccelerationVjp(NamedTuple):
+    """wᵀ∂a_b/∂θ along the velocities, wᵀ∂a_b/∂θ̇ and J_bᵀw: the gradient of wᵀa_b, a_b the acceleration of a frame.
+
+    See ``Model.frame_acceleration_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_dtheta: Array
+    """Shape (..., n): any."""
+    d_ddtheta: Array
+    """Shape (..., n): any."""
+
+
+class MomentumVjp(NamedTuple):
+    """wᵀ∂h/∂θ along the velocities, and wᵀ∂h/∂θ̇: the gradient of wᵀh, h the momentum about a point of {s}.
+
+    See ``Model.momentum_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_dtheta: Array
+    """Shape (..., n): any."""
+
+
+class MomentumRateVjp(NamedTuple):
+    """wᵀ∂ḣ/∂θ along the velocities, wᵀ∂ḣ/∂θ̇ and wᵀ∂ḣ/∂θ̈: the gradient of wᵀḣ, ḣ the rate of the momentum.
+
+    See ``Model.momentum_rate_vjp``.
+    """
+
+    d_theta: Array
+    """Shape (..., n): any."""
+    d_dtheta: Array
+    """Shape (..., n): any."""
+    d_ddtheta: Array
     """Shape (..., n): any."""
 
 
