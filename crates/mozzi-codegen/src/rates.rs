@@ -10,8 +10,8 @@ pub fn rate_of(name: &str) -> String {
     format!("{name}_rate")
 }
 
-/// The program and its derivative along a direction, with a rate for each input and for each output but pivots. The rate
-/// of `theta` is along the velocities.
+/// The program and its derivative along a direction, with a rate for each input and for each output but pivots. The
+/// rate of `theta` is along the velocities.
 pub fn with_rates(program: &Program, model: &Model) -> Program {
     let is_theta = |name: &str| name == "theta";
     let own = program.inputs().iter().map(|array| (array.name.clone(), array.length));

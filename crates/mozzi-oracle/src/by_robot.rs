@@ -1,5 +1,5 @@
-//! The gradient of xᵀτ by the robot: the description's joints and axes moved in dual numbers, and the bodies' power summed
-//! link by link.
+//! The gradient of xᵀτ by the robot: the description's joints and axes moved in dual numbers, and the bodies' power
+//! summed link by link.
 
 use crate::bodies::{bodies, twist};
 use crate::given::{Given, dot, list, unit, zeros};
@@ -57,8 +57,8 @@ impl<S: Entry> Given<'_, S> {
         links.skip(usize::from(floats)).collect()
     }
 
-    /// The derivative of xᵀτ, less the joints' own forces: Σ (Jx)ᵀ(𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + F) over the links of a robot in dual
-    /// numbers.
+    /// The derivative of xᵀτ, less the joints' own forces: Σ (Jx)ᵀ(𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + F) over the links of a robot in
+    /// dual numbers.
     fn power(&self, robot: &Description<Dual<S>>, model: &Model<Dual<S>>, x: &[S]) -> S {
         type D<S> = Dual<Dual<S>>;
         let lift = |x: Dual<S>| D::<S>::constant(x);

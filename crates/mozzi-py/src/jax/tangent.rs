@@ -1,7 +1,7 @@
 //! Gradients with respect to θ as nq numbers.
 //!
-//! A quantity depends on the rotation R of a quaternion q = (w, v), not on its length, and a change δq turns the body by
-//! ω = 2 (q* δq)_vec / |q|² in its own axes, or
+//! A quantity depends on the rotation R of a quaternion q = (w, v), not on its length, and a change δq turns the body
+//! by ω = 2 (q* δq)_vec / |q|² in its own axes, or
 //!
 //! > ω = 2 (w δv − v δw − v × δv) / |q|²
 //!

@@ -4,8 +4,8 @@
 //!
 //! > ∂a = ∂𝒱̇ + (0, ∂ω × v + ω × ∂v) = Ä + (−ω × ∂ω, 2 ∂ω × v)
 //!
-//! with ∂𝒱̇ = Ä − `[ad_𝒱]`Ȧ and ∂𝒱 = Ȧ (see [`vjp.rs`](super::vjp)), all seen from the frame. So for w = (m, f), Q = w and
-//! R = ω × m + 2 v × f.
+//! with ∂𝒱̇ = Ä − `[ad_𝒱]`Ȧ and ∂𝒱 = Ȧ (see [`vjp.rs`](super::vjp)), all seen from the frame. So for w = (m, f), Q = w
+//! and R = ω × m + 2 v × f.
 
 use super::bias_forces::take_zeros;
 use super::vjp::{add_products_of, from_rest};

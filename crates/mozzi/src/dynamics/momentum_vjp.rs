@@ -1,7 +1,7 @@
 //! wᵀ∂h and wᵀ∂ḣ: a covector times the derivatives of the momentum and its rate, in O(n).
 //!
-//! wᵀh = Σ X_bᵀ𝓟_b, where all links move like one rigid body, with {s}, by the twist X_s that w means about the origin of
-//! {s}. So it is [`vjp.rs`](super::vjp) with x = 0 and X_0 = X_s.
+//! wᵀh = Σ X_bᵀ𝓟_b, where all links move like one rigid body, with {s}, by the twist X_s that w means about the origin
+//! of {s}. So it is [`vjp.rs`](super::vjp) with x = 0 and X_0 = X_s.
 
 use super::bias_forces::take_zeros;
 use super::derivatives::outward_pass;

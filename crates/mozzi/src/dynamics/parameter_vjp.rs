@@ -1,12 +1,13 @@
 //! xᵀ∂τ and xᵀ∂θ̈ by the robot itself: inertias, friction, armature, springs, placements, axes and gravity, in O(n).
 //!
-//! τ = Yπ + JᵀF, so xᵀ∂τ/∂π = xᵀY. For the ten parameters of a link it is the bilinear form of its motion 𝒱, 𝒱̇ and of X,
-//! how x moves it, for each unit inertia:
+//! τ = Yπ + JᵀF, so xᵀ∂τ/∂π = xᵀY. For the ten parameters of a link it is the bilinear form of its motion 𝒱, 𝒱̇ and of
+//! X, how x moves it, for each unit inertia:
 //!
 //! > xᵀY_k = Xᵀ𝒢_k𝒱̇ − (`[ad_𝒱]`X)ᵀ𝒢_k𝒱
 //!
-//! **Placements and axes.** A small motion ξ of all links beyond a joint is that of a joint at rest there: its axis ξ moves
-//! with the link c that carries it, Ȧ = `[ad_𝒱_c]`ξ and Ä = `[ad_𝒱̇_c]`ξ + `[ad_𝒱_c]`Ȧ, and by [`vjp.rs`](super::vjp)
+//! **Placements and axes.** A small motion ξ of all links beyond a joint is that of a joint at rest there: its axis ξ
+//! moves with the link c that carries it, Ȧ = `[ad_𝒱_c]`ξ and Ä = `[ad_𝒱̇_c]`ξ + `[ad_𝒱_c]`Ȧ, and by
+//! [`vjp.rs`](super::vjp)
 //!
 //! > xᵀ∂τ = ξᵀ(`[ad_𝒱̇_c]`ᵀ𝓠ᶜ + `[ad_𝒱_c]`ᵀ(`[ad_𝒱_c]`ᵀ𝓠ᶜ + (𝓡ᶜ, 0)) + `[ad_X_c]`ᵀ𝓕ᶜ)
 //!
@@ -30,8 +31,8 @@ use crate::spatial::{SpatialInertia, Twist, Wrench};
 /// The gradient of xᵀτ by the robot, for a constant x: `[by π, by placements, by axes, by gravity]`.
 ///
 /// - xᵀ∂τ/∂π = xᵀY, p numbers: by the [`parameters`](Model::parameters), with Y the [`regressor`](super::regressor()).
-/// - By placements, six numbers (angular, linear) for each moving link, in the order of π: by ξ when the link's joint is
-///   placed at T e^{`[ξ]`}, in the frame of the link at θ = 0. A floating base comes first: by its body twist.
+/// - By placements, six numbers (angular, linear) for each moving link, in the order of π: by ξ when the link's joint
+///   is placed at T e^{`[ξ]`}, in the frame of the link at θ = 0. A floating base comes first: by its body twist.
 /// - By axes, the same of e^{`[ξ]`}, which moves the joint's axis while the links stay where they are at θ = 0; 0 for
 ///   balls, free joints and a floating base, which have no axis of their own.
 /// - By gravity g, three numbers.

@@ -17,8 +17,8 @@
 //! where X_p is the motion of the link that carries the joint. Other quantities differ in where Q and R come from: a
 //! frame's acceleration has them at one link, the momentum has the same X_0 for all links and x = 0.
 //!
-//! **Velocities are accelerations at rest.** At θ̇ = 0, 𝒱̇ is linear in θ̈ as 𝒱 is in θ̇. So what is linear in velocities,
-//! a twist, a momentum, is computed [`from_rest`].
+//! **Velocities are accelerations at rest.** At θ̇ = 0, 𝒱̇ is linear in θ̈ as 𝒱 is in θ̇. So what is linear in
+//! velocities, a twist, a momentum, is computed [`from_rest`].
 
 use super::derivatives::{base_rates, outward_pass};
 use crate::kinematics::base_pose;
@@ -27,8 +27,8 @@ use crate::model::{Environment, Model, Workspace};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 
-/// An environment without gravity and wrenches, in which the acceleration of {s} is `V_s`: the motion at θ̇ = 0 with θ̇ in
-/// place of θ̈ has 𝒱 in place of 𝒱̇ and the momentum 𝒢𝒱 in place of 𝓕.
+/// An environment without gravity and wrenches, in which the acceleration of {s} is `V_s`: the motion at θ̇ = 0 with θ̇
+/// in place of θ̈ has 𝒱 in place of 𝒱̇ and the momentum 𝒢𝒱 in place of 𝓕.
 #[inline(always)]
 pub(super) fn from_rest<'a, S: Scalar>(V_s: Twist<S>) -> Environment<'a, S> {
     Environment { base_acceleration: V_s, ..Environment::with_gravity(Vec3::zero()) }
@@ -86,8 +86,8 @@ fn outward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward passes leave: T_{i,i−1}, the
-/// rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
+/// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward passes leave: T_{i,i−1},
+/// the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -140,8 +140,8 @@ fn inward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Adds the products of a number with the derivative Q_bᵀ∂𝒱̇_b + R_bᵀ∂ω_b at the links of a motion, which `sources` sets
-/// from the outward pass.
+/// Adds the products of a number with the derivative Q_bᵀ∂𝒱̇_b + R_bᵀ∂ω_b at the links of a motion, which `sources`
+/// sets from the outward pass.
 #[cfg_attr(not(test), inline(always))]
 #[allow(clippy::too_many_arguments)] // the quantity's, where it acts, and the products
 pub(super) fn add_products_of<S: Scalar + From<C>, C: Scalar>(
