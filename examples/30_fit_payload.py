@@ -48,7 +48,9 @@ value_and_gradient, jacobian = jax.jit(jax.value_and_grad(loss)), jax.jit(jax.ja
 payload, damping = jnp.array([1.0, 0.0, 0.0, 0.05]), 1e-3
 value, gradient = value_and_gradient(payload)
 for iteration in range(50):
-    print(f"{iteration:2}: loss {float(value):10.4f}  m = {float(payload[0]):.4f} kg, c =", np.round(payload[1:], 4), "m")
+    print(
+        f"{iteration:2}: loss {float(value):10.4f}  m = {float(payload[0]):.4f} kg, c =", np.round(payload[1:], 4), "m"
+    )
     J = jacobian(payload)
     H = J.T @ J
     step = jnp.linalg.solve(H + damping * jnp.diag(jnp.diag(H)), gradient)

@@ -45,7 +45,9 @@ def states(count, dtype):
 
 
 def calls(dtype):
-    print(f"| {jnp.dtype(dtype).name}, µs a call | jit of a + b | package | jit | gradient | in a loop |\n|---|---|---|---|---|---|")
+    print(
+        f"| {jnp.dtype(dtype).name}, µs a call | jit of a + b | package | jit | gradient | in a loop |\n|---|---|---|---|---|---|"
+    )
     for name in ("inverse_dynamics", "forward_dynamics"):
         f = lambda *x: getattr(mozzi.jax, name)(ur5, *x)  # noqa: B023, used in this round alone
         for count in (1, 10, 4096):
@@ -56,7 +58,15 @@ def calls(dtype):
             turns = 1000 if count < 100 else 10
             loop = jax.jit(lambda a, b, c: jax.lax.fori_loop(0, turns, lambda _, y: f(a, b, y) * 1e-3, c))  # noqa: B023
             assert np.abs(value(*x) - method(*as_numpy)).max() < 1e-4 * np.abs(method(*as_numpy)).max()
-            times = race([lambda: add(x[0], x[1]), lambda: method(*as_numpy), lambda: value(*x), lambda: gradient(*x), lambda: loop(*x)])
+            times = race(
+                [
+                    lambda: add(x[0], x[1]),
+                    lambda: method(*as_numpy),
+                    lambda: value(*x),
+                    lambda: gradient(*x),
+                    lambda: loop(*x),
+                ]
+            )
             times[-1] /= turns
             print(f"| {name}, N = {count} |", " | ".join(f"{1e6 * t:.1f}" for t in times), "|")
     print()
@@ -74,7 +84,9 @@ def beside_mjx(count=4096):
     x = states(count, jnp.float32)
     inverse = jax.vmap(lambda q, v, a: mjx.inverse(on_mjx, data.replace(qpos=q, qvel=v, qacc=a)).qfrc_inverse)
     forward = jax.vmap(lambda q, v, tau: mjx.forward(on_mjx, data.replace(qpos=q, qvel=v, qfrc_applied=tau)).qacc)
-    print(f"| float32, {count} states, ns a state | MJX {mujoco.__version__} | mozzi.jax | MJX's time over mozzi's |\n|---|---|---|---|")
+    print(
+        f"| float32, {count} states, ns a state | MJX {mujoco.__version__} | mozzi.jax | MJX's time over mozzi's |\n|---|---|---|---|"
+    )
     for name, theirs in (("inverse_dynamics", inverse), ("forward_dynamics", forward)):
         ours = lambda *x: getattr(mozzi.jax, name)(ur5, *x)  # noqa: B023
         for kind in ("value", "gradient"):
@@ -89,8 +101,12 @@ def beside_mjx(count=4096):
             print(f"| {name}, {kind} | {1e9 * a / count:.0f} | {1e9 * b / count:.0f} | **{a / b:.0f}** |", flush=True)
 
 
-print(f"# JAX\n\n`python benches/jax/compare.py`, {time.strftime('%Y-%m-%d')}, {platform.processor() or platform.machine()},")
-print(f"jax {jax.__version__}, mozzi {mozzi.__version__}, a UR5 of {jax.device_count()} CPU device. Least of all rounds.\n")
+print(
+    f"# JAX\n\n`python benches/jax/compare.py`, {time.strftime('%Y-%m-%d')}, {platform.processor() or platform.machine()},"
+)
+print(
+    f"jax {jax.__version__}, mozzi {mozzi.__version__}, a UR5 of {jax.device_count()} CPU device. Least of all rounds.\n"
+)
 beside_mjx()
 print("\nMJX does more than Newton-Euler, and is made for accelerators. Contacts and constraints are off.\n")
 calls(jnp.float32)

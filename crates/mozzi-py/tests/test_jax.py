@@ -49,7 +49,11 @@ def frame(robot):
 def quantities(robot):
     """Each function with its number of arguments and the package's method."""
     of_frame = frame(robot)
-    at = lambda name: (lambda theta: getattr(mj, name)(robot, theta, of_frame), 1, lambda theta: getattr(robot, name)(theta, of_frame))
+    at = lambda name: (
+        lambda theta: getattr(mj, name)(robot, theta, of_frame),
+        1,
+        lambda theta: getattr(robot, name)(theta, of_frame),
+    )
     plain = lambda name, count: (lambda *x: getattr(mj, name)(robot, *x), count, getattr(robot, name))
     return {
         "inverse_dynamics": plain("inverse_dynamics", 3),
@@ -94,7 +98,10 @@ def test_jacobians_are_the_packages(robot, random, name):
     assert_close(along, expected[0], np.abs(expected[0]).max(), 1e-11)
 
 
-@pytest.mark.parametrize("name", ["inverse_dynamics", "forward_dynamics", "mass_matrix", "forward_kinematics", "space_jacobian", "body_jacobian"])
+@pytest.mark.parametrize(
+    "name",
+    ["inverse_dynamics", "forward_dynamics", "mass_matrix", "forward_kinematics", "space_jacobian", "body_jacobian"],
+)
 def test_first_and_second_derivatives_equal_differences(robot, random, name):
     f, count, _ = quantities(robot)[name]
     x = state(robot, random)[:count]
@@ -135,7 +142,10 @@ def test_maps_of_the_tangent_are_transposes_and_inverses(balls, random):
     moved = lambda h: _tangent.advance(np, places, theta, h * u)
     assert_close((moved(1e-5) - moved(-1e-5)) / 2e-5, rates, tolerance=1e-9)
     g, p = random.normal(size=u.shape), random.normal(size=theta.shape)
-    assert_close((_tangent.position_gradient(np, places, theta, g) * p).sum(), (g * _tangent.velocities(np, places, theta, p)).sum())
+    assert_close(
+        (_tangent.position_gradient(np, places, theta, g) * p).sum(),
+        (g * _tangent.velocities(np, places, theta, p)).sum(),
+    )
     assert_close((_tangent.velocity_gradient(np, places, theta, p) * u).sum(), (p * rates).sum())
 
 
@@ -189,7 +199,10 @@ def test_parameters(robot, random, name):
 
 def test_scan_and_fori_loop(ur5, random):
     theta, dtheta, _ = state(ur5, random)
-    body = lambda carry, tau: ((carry[0] + 0.01 * carry[1], carry[1] + 0.01 * mj.forward_dynamics(ur5, *carry, tau)), carry[1])
+    body = lambda carry, tau: (
+        (carry[0] + 0.01 * carry[1], carry[1] + 0.01 * mj.forward_dynamics(ur5, *carry, tau)),
+        carry[1],
+    )
     taus = random.uniform(-1, 1, (20, 6))
     (found, _), _ = jax.jit(lambda *x: jax.lax.scan(body, x[:2], x[2]))(theta, dtheta, taus)
     q, v = theta, dtheta
@@ -216,7 +229,9 @@ def test_rollout(robot, random, method):
     assert_close(batch.dtheta[1], found.dtheta, tolerance=1e-9)
     loss = lambda theta, dtheta, tau: (mj.rollout(robot, theta, dtheta, tau, 0.01, method).theta[-1] ** 2).sum()
     if robot.n < 12 and method == "rk4":
-        check_grads(jax.jit(loss), (theta, dtheta, taus[:3]), order=1, modes=["fwd", "rev"], atol=1e-3, rtol=1e-3, eps=1e-5)
+        check_grads(
+            jax.jit(loss), (theta, dtheta, taus[:3]), order=1, modes=["fwd", "rev"], atol=1e-3, rtol=1e-3, eps=1e-5
+        )
 
 
 def test_robots_are_constants_by_content(ur5):
@@ -239,7 +254,11 @@ def test_errors_name_the_argument(ur5, random):
         ((np.zeros(7), theta, theta), ValueError, r"theta has shape \(7,\), expected \(..., 6\)"),
         ((np.zeros((5, 12)), theta, theta), ValueError, r"theta has shape \(5, 12\), expected \(..., 6\)"),
         ((theta, 0.0, theta), ValueError, r"dtheta has shape \(\), expected \(..., 6\)"),
-        ((np.zeros((2, 6)), np.zeros((3, 6)), theta), ValueError, r"dtheta has leading axes \(3,\), which do not go with \(2,\)"),
+        (
+            (np.zeros((2, 6)), np.zeros((3, 6)), theta),
+            ValueError,
+            r"dtheta has leading axes \(3,\), which do not go with \(2,\)",
+        ),
         ((theta.astype(np.float16),) * 3, TypeError, "float16, expected float32 or float64"),
     ]:
         with pytest.raises(error, match=text):
@@ -263,7 +282,9 @@ def test_errors_name_the_argument(ur5, random):
     with pytest.raises(Exception, match=r"state \[1\].*unit quaternion"):
         mj.gravity_forces(anymal, configuration).block_until_ready()
     with pytest.raises(Exception, match=r"state \[1\].*unit quaternion"):
-        jax.jvp(lambda theta: mj.gravity_forces(anymal, theta), (configuration,), (configuration,))[1].block_until_ready()
+        jax.jvp(lambda theta: mj.gravity_forces(anymal, theta), (configuration,), (configuration,))[
+            1
+        ].block_until_ready()
 
 
 def test_the_handler_checks_what_xla_does_not(ur5):
@@ -289,7 +310,9 @@ def test_threads_do_not_change_results(robot, random):
 
 
 def test_structs_are_those_of_the_header(tmp_path):
-    compiler = shutil.which("c++") or pytest.skip("there is no C++ compiler")  # C does not know the types of old headers
+    compiler = shutil.which("c++") or pytest.skip(
+        "there is no C++ compiler"
+    )  # C does not know the types of old headers
     try:
         from jax.ffi import include_dir
     except ImportError:
@@ -305,8 +328,12 @@ def test_structs_are_those_of_the_header(tmp_path):
 
 
 def test_the_package_does_not_import_jax(tmp_path):
-    code = "import sys, mozzi; assert 'jax' not in sys.modules\ntry: import mozzi.jax\nexcept ImportError as e: print(e)"
+    code = (
+        "import sys, mozzi; assert 'jax' not in sys.modules\ntry: import mozzi.jax\nexcept ImportError as e: print(e)"
+    )
     (tmp_path / "jax.py").write_text("raise ImportError('hidden')")
     path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    found = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, timeout=60)
+    found = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, timeout=60
+    )
     assert found.stdout.strip() == "mozzi.jax needs JAX, which is not installed: pip install jax", found.stderr

@@ -8,7 +8,9 @@ import pytest
 from conftest import assert_close, state, tip
 from mozzi import _quantities, _tangent
 
-NAMES = [name for name in dir(mozzi.Model) if "threads" in str(getattr(getattr(mozzi.Model, name), "__text_signature__", ""))]
+NAMES = [
+    name for name in dir(mozzi.Model) if "threads" in str(getattr(getattr(mozzi.Model, name), "__text_signature__", ""))
+]
 
 
 def quantities(robot):
@@ -61,7 +63,9 @@ def test_columns_of_the_derivatives(robot, random):
         value, found = robot.jvp(name, x, rates)
         assert_close(found, expected)
         assert_close(value, getattr(robot, name)(*x))
-        assert_close(robot.jvp(name, x, [None, rates[1], None])[1], np.einsum("...ij,...j->...i", matrices[1], rates[1]))
+        assert_close(
+            robot.jvp(name, x, [None, rates[1], None])[1], np.einsum("...ij,...j->...i", matrices[1], rates[1])
+        )
         assert not robot.jvp(name, x, [None] * 3)[1].any()
 
 
@@ -80,7 +84,8 @@ def test_parameters_and_environment(robot, random):
 def test_second_derivatives_are_symmetric(ur5, random):
     (theta, dtheta, ddtheta), x = state(ur5, random), random.normal(size=6)
     columns = [
-        ur5.jvp("inverse_dynamics_vjp", [theta, dtheta, ddtheta, x], [e, None, None, None])[1].d_theta for e in np.eye(6)
+        ur5.jvp("inverse_dynamics_vjp", [theta, dtheta, ddtheta, x], [e, None, None, None])[1].d_theta
+        for e in np.eye(6)
     ]
     assert_close(np.array(columns), np.array(columns).T)
 
@@ -96,9 +101,15 @@ def test_shapes_dtypes_and_errors(ur5, random):
     assert isinstance(found, _quantities.InverseDynamicsVjp)
     for message, call in [
         ("there is no quantity `momentums`", lambda: ur5.jvp("momentums", [theta], [theta])),
-        ("inputs has 2 entries, expected 1 for mass_matrix: theta", lambda: ur5.jvp("mass_matrix", [theta] * 2, [theta])),
+        (
+            "inputs has 2 entries, expected 1 for mass_matrix: theta",
+            lambda: ur5.jvp("mass_matrix", [theta] * 2, [theta]),
+        ),
         ("tangents has 0 entries, expected 1", lambda: ur5.jvp("mass_matrix", [theta], [])),
-        (r"the tangent of theta has shape \(5,\), expected \(..., 6\)", lambda: ur5.jvp("mass_matrix", [theta], [[0.0] * 5])),
+        (
+            r"the tangent of theta has shape \(5,\), expected \(..., 6\)",
+            lambda: ur5.jvp("mass_matrix", [theta], [[0.0] * 5]),
+        ),
         ("parameters_tangent has shape", lambda: ur5.jvp("mass_matrix", [theta], [None], parameters_tangent=[1.0])),
     ]:
         with pytest.raises(ValueError, match=message):

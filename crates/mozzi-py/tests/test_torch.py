@@ -121,7 +121,9 @@ def test_first_derivatives(models, name, quantity):
 @pytest.mark.parametrize("quantity", [*CALLS, *PARAMETRIC])
 def test_second_derivatives(models, name, quantity):
     function, x = calls(models(name), 4)[quantity]
-    assert gradgradcheck(function, x, fast_mode=quantity in PARAMETRIC, check_fwd_over_rev=True, check_rev_over_rev=True)
+    assert gradgradcheck(
+        function, x, fast_mode=quantity in PARAMETRIC, check_fwd_over_rev=True, check_rev_over_rev=True
+    )
 
 
 @pytest.mark.parametrize("name", ["ur5", "two_link_adrift"])
@@ -223,7 +225,9 @@ def test_compiled_graphs(models, name):
 
     def loss(theta, dtheta, tau, pi):
         ddtheta = robot.forward_dynamics(theta, dtheta, torch.tanh(tau), parameters=pi)
-        return (robot.mass_matrix(theta) @ ddtheta[..., None]).sum() + robot.forward_kinematics(theta, frame(model)).sum()
+        return (robot.mass_matrix(theta) @ ddtheta[..., None]).sum() + robot.forward_kinematics(
+            theta, frame(model)
+        ).sum()
 
     compiled = torch.compile(loss, fullgraph=True, backend="aot_eager")
     expected = torch.autograd.grad(loss(*x, pi), (*x, pi))
@@ -232,7 +236,9 @@ def test_compiled_graphs(models, name):
     for found, expected in zip(found, expected):
         assert_close(found.numpy(), expected.numpy(), tolerance=1e-11)
     with pytest.raises(Exception, match="theta has shape"):
-        torch.compile(robot.mass_matrix, fullgraph=True, backend="aot_eager")(torch.zeros(2, model.nq + 1, dtype=torch.float64))
+        torch.compile(robot.mass_matrix, fullgraph=True, backend="aot_eager")(
+            torch.zeros(2, model.nq + 1, dtype=torch.float64)
+        )
 
 
 def test_forward_mode_in_a_graph_is_not_silently_zero(ur5):
@@ -305,7 +311,9 @@ def test_gradients_in_float32(ur5):
 def test_errors_name_the_argument(ur5):
     robot = mozzi.torch.Model(ur5)
     theta, dtheta, ddtheta = state(ur5, 16, requires_grad=False)
-    with pytest.raises(TypeError, match=r"theta is torch.bfloat16, expected a tensor of torch.float64 or torch.float32"):
+    with pytest.raises(
+        TypeError, match=r"theta is torch.bfloat16, expected a tensor of torch.float64 or torch.float32"
+    ):
         robot.mass_matrix(theta.bfloat16())
     with pytest.raises(TypeError, match=r"ddtheta is torch.float32, but theta is torch.float64: expected one dtype"):
         robot.inverse_dynamics(theta, dtheta, ddtheta.float())
@@ -349,7 +357,10 @@ def test_rollouts_and_their_gradients_are_those_of_steps_in_tensors(models, name
     robot = mozzi.torch.Model(model)
     for leading in [(), (3,)]:
         x = rollouts(model, 18, *leading)
-        w = [torch.tensor(np.random.default_rng(k).normal(size=(*leading, 5, m))) for k, m in [(1, model.nq), (2, model.n)]]
+        w = [
+            torch.tensor(np.random.default_rng(k).normal(size=(*leading, 5, m)))
+            for k, m in [(1, model.nq), (2, model.n)]
+        ]
         found = robot.rollout(*x, 0.05, method)
         expected = robot.rollout(*x, 0.05, method, by_steps=True)
         for a, b in zip(found, expected):

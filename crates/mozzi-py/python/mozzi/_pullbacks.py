@@ -183,7 +183,9 @@ class MassMatrix(Differentiable):
         along = [u[0][..., None, :], None, None]
         rate = {"parameters_tangent": u[1][..., None, :]} if len(u) > 1 else {}
         at = [*x, w]
-        rates = _directional(self.model, "inverse_dynamics_vjp", at, [*along, None], gravity=[0.0] * 3, **keywords, **rate)[1]
+        rates = _directional(
+            self.model, "inverse_dynamics_vjp", at, [*along, None], gravity=[0.0] * 3, **keywords, **rate
+        )[1]
         found = [rates.d_theta.sum(-2)]
         if of_parameters:
             dY = _directional(self.model, "regressor", x, along, gravity=[0.0] * 3)[1]

@@ -27,7 +27,9 @@ def known(key):
 
 
 def to_positions(quantity, theta, gradient):
-    return _tangent.position_gradient(torch, quantity.quaternions, theta, gradient) if quantity.quaternions else gradient
+    return (
+        _tangent.position_gradient(torch, quantity.quaternions, theta, gradient) if quantity.quaternions else gradient
+    )
 
 
 def run(quantity, method, count, of_parameters, arrays):
@@ -45,7 +47,9 @@ def refuse_forward_mode(x):
     if forward_ad._current_level >= 0:
         for t in x:
             if forward_ad.unpack_dual(t, level=0).tangent is not None:
-                raise NotImplementedError("forward mode in torch.compile: call torch.func.jvp outside, or without compile")
+                raise NotImplementedError(
+                    "forward mode in torch.compile: call torch.func.jvp outside, or without compile"
+                )
 
 
 @torch.library.custom_op("mozzi::value", mutates_args=(), device_types="cpu")

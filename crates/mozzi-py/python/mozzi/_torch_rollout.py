@@ -22,7 +22,9 @@ def run(model, step, method, theta, dtheta, tau):
 
 def pull_back(model, step, method, theta, dtheta, tau, table, theta_bar, dtheta_bar):
     """Gradients by θ, θ̇ and τ. The first row of the table is θ itself; later rows depend on q/‖q‖."""
-    quaternions, theta_bar = model._quaternions, torch.cat([torch.zeros_like(theta_bar[..., :1, :]), theta_bar[..., 1:, :]], -2)
+    quaternions, theta_bar = model._quaternions, torch.cat(
+        [torch.zeros_like(theta_bar[..., :1, :]), theta_bar[..., 1:, :]], -2
+    )
     along = _tangent.velocity_gradient(torch, quaternions, table, theta_bar)
     found = model.rollout_vjp(*arrays((theta, dtheta, tau)), step, *arrays((along, dtheta_bar)), method)
     return [torch.from_numpy(gradient).to(theta.dtype) for gradient in found]
@@ -50,7 +52,9 @@ class Rollout(torch.autograd.Function):
 
     @staticmethod
     def jvp(ctx, *rates):
-        raise NotImplementedError("forward mode through a rollout: mozzi.torch.Model.rollout(..., by_steps=True) has it")
+        raise NotImplementedError(
+            "forward mode through a rollout: mozzi.torch.Model.rollout(..., by_steps=True) has it"
+        )
 
     @staticmethod
     def vmap(info, in_dims, model, step, method, *tensors):
@@ -68,7 +72,9 @@ class RolloutVjp(torch.autograd.Function):
 
     @staticmethod
     def backward(ctx, *gradients):
-        raise NotImplementedError("second derivatives of a rollout: mozzi.torch.Model.rollout(..., by_steps=True) has them")
+        raise NotImplementedError(
+            "second derivatives of a rollout: mozzi.torch.Model.rollout(..., by_steps=True) has them"
+        )
 
     @staticmethod
     def vmap(info, in_dims, model, step, method, *tensors):
@@ -110,7 +116,11 @@ def rollout_vjp_op(
 
 @rollout_vjp_op.register_fake
 def _(theta, dtheta, tau, table, theta_bar, dtheta_bar, step, method, contents):
-    return torch.empty_like(dtheta).contiguous(), torch.empty_like(dtheta).contiguous(), torch.empty_like(tau).contiguous()
+    return (
+        torch.empty_like(dtheta).contiguous(),
+        torch.empty_like(dtheta).contiguous(),
+        torch.empty_like(tau).contiguous(),
+    )
 
 
 def _save(ctx, inputs, output):

@@ -241,7 +241,9 @@ def rollout(
         raise ValueError(f"tau has shape {tau.shape}, expected (..., N, {model.n}): the torques of N steps")
     torques = jnp.moveaxis(tau, -2, 0)
     lengths = (model.nq, model.n, model.n)
-    theta, dtheta, _ = _broadcast(names, [theta, dtheta, jnp.zeros((*tau.shape[:-2], model.n), tau.dtype)], lengths, model)
+    theta, dtheta, _ = _broadcast(
+        names, [theta, dtheta, jnp.zeros((*tau.shape[:-2], model.n), tau.dtype)], lengths, model
+    )
     places = model._quaternions
 
     def advance(theta: Array, u: Array) -> Array:
