@@ -20,7 +20,7 @@ own = jnp.asarray(ur5.parameters)
 
 
 def with_payload(payload: jax.Array) -> jax.Array:
-    """π with a point mass m at c in the last link's frame: (m, mc, −m[c]²) more, which is I_xx, I_xy, I_xz, I_yy, I_yz, I_zz."""
+    """π with a point mass m at c in the last link's frame: (m, mc, −m[c]²) more; −m[c]² is I_xx, I_xy, …."""
     m, (x, y, z) = payload[0], payload[1:]
     I = jnp.stack([y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y])
     return own.at[first : first + 10].add(m * jnp.concatenate([jnp.stack([jnp.ones(()), x, y, z]), I]))

@@ -1,7 +1,7 @@
 """A small torque policy, trained on 4096 Furuta pendulums by the gradient of their motion (needs torch, matplotlib).
 
-The arm's motor (joint 1) is to swing the rod (joint 2) up and to keep it up; no motor turns the rod. The policy is a network
-of 32 × 32 units, u = 100 N m tanh(network(sin θ₁, cos θ₁, sin θ₂, cos θ₂, θ̇/5)). The loss is the mean over N pendulums
+The arm's motor (joint 1) is to swing the rod (joint 2) up and to keep it up; no motor turns the rod. The policy is a
+network of 32 × 32 units, u = 100 N m tanh(network(sin θ₁, cos θ₁, sin θ₂, cos θ₂, θ̇/5)). The loss is the mean over N pendulums
 and T steps of
 
     1 − cos θ₂ + 0.05 (1 − cos θ₁) + 0.005 θ̇² + 0.02 (u/100)²

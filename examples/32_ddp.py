@@ -1,12 +1,12 @@
-"""Differential dynamic programming on the UR5, with exact second derivatives; iLQR, which leaves them out, for comparison.
+"""Differential dynamic programming on the UR5, with exact second derivatives, and iLQR, which leaves them out.
 
-Each iteration (Mayne 1966; Tassa, Mansard and Todorov 2014) needs the derivatives of every step of the motion. They come
-from two calls for all steps at once: ∂θ̈ by `forward_dynamics_derivatives`, and the second derivatives of vᵀθ̈, v the
+Each iteration (Mayne 1966; Tassa, Mansard and Todorov 2014) needs the derivatives of every step of the motion. They
+come from two calls for all steps at once: ∂θ̈ by `forward_dynamics_derivatives`, and the second derivatives of vᵀθ̈, v the
 slope of the cost-to-go, by `jvp` of `forward_dynamics_vjp`, one Hessian-vector product for each of the 18 directions of
 (θ, θ̇, τ).
 
-Semi-implicit Euler steps, θ̇' = θ̇ + hθ̈, θ' = θ + hθ̇'. The cost: ½R‖τ − g‖² along the way, g the torque that holds the
-start, and the distance from a pose at rest at the end.
+Semi-implicit Euler steps, θ̇' = θ̇ + hθ̈, θ' = θ + hθ̇'. The cost: ½R‖τ − g‖² along the way, g the torque that holds
+the start, and the distance from a pose at rest at the end.
 """
 
 import sys
@@ -64,7 +64,7 @@ def hessians(x, tau, v):
 
 
 def improve(x, tau, second, damping):
-    """The change of each torque, its feedback, and the gradient of the cost by the torques; None if damping is too small."""
+    """The change of each torque, its feedback, and the gradient by the torques; None if damping is too small."""
     A, B = steps(x, tau)
     slope = [END * (x[-1] - goal)]  # of the cost by the state: the adjoint, backwards
     for k in reversed(range(N)):

@@ -1,9 +1,10 @@
 """Times of `mozzi.jax` on a UR5, next to an empty `jit`, to the package's own calls, and to MJX on the CPU.
 
-    pip install jax mujoco-mjx, and a release wheel of mozzi; then: python benches/jax/compare.py > benches/jax/RESULTS.md
+    pip install jax mujoco-mjx, and a release wheel of mozzi; then:
+    python benches/jax/compare.py > benches/jax/RESULTS.md
 
-Everything is compared with mozzi's result before it is timed, and the runners take turns; each figure is the least of all
-rounds.
+Everything is compared with mozzi's result before it is timed, and the runners take turns; each figure is the least
+of all rounds.
 """
 
 import platform

@@ -68,7 +68,7 @@ class Quantity(NamedTuple):
 
 @functools.cache
 def register() -> None:
-    """Tells XLA of the handler. JAX's backends have to be there: a handler that a runtime refuses would take them along."""
+    """Registers the handler in XLA, after JAX's backends: a handler that the runtime refuses would take them along."""
     jax.devices()
     ffi.register_ffi_target(TARGET, _mozzi._jax_handler(), platform="cpu")
 

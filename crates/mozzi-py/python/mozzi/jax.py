@@ -10,8 +10,8 @@ leading axes are many states, broadcast by NumPy's rule and computed by one call
 computes on the CPU, by the package's own library.
 
 Derivatives up to the second order are exact, in both modes. With respect to θ they are derivatives by its nq numbers: a
-quaternion's length has no effect, so that its gradient is tangent to the unit sphere. `tangent_gradient` converts such a
-gradient to n numbers along the velocities, in which the package's own derivatives are; `integrate` is θ ⊕ δ.
+quaternion's length has no effect, so that its gradient is tangent to the unit sphere. `tangent_gradient` converts such
+a gradient to n numbers along the velocities, in which the package's own derivatives are; `integrate` is θ ⊕ δ.
 
 `parameters=` replaces the robot's inertial parameters by an array in the order of `Model.parameters`, with respect to
 which results are differentiable: ∂τ/∂π = Y.
@@ -123,7 +123,7 @@ def forward_dynamics(
     parameters: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Array:
-    """θ̈ = M⁻¹(τ − c − g − f), shape (..., n). Its gradient takes one solution of Mλ = x and one pass over the links."""
+    """θ̈ = M⁻¹(τ − c − g − f), shape (..., n). Its gradient takes a solution of Mλ = x and a pass over the links."""
     return _compute(model, "forward_dynamics", [theta, dtheta, tau], None, parameters, threads)
 
 

@@ -257,13 +257,13 @@ class Model:
     def inverse_dynamics(
         self, theta: Tensor, dtheta: Tensor, ddtheta: Tensor, *, parameters: Tensor | None = None
     ) -> Tensor:
-        """τ (..., n) of θ (..., nq), θ̇ and θ̈ (..., n), and of inertial parameters π (..., p), by default the model's."""
+        """τ (..., n) of θ (..., nq), θ̇ and θ̈ (..., n), and of inertial parameters π (..., p), or the model's."""
         return _call(self, "inverse_dynamics", _and_parameters((theta, dtheta, ddtheta), parameters))
 
     def forward_dynamics(
         self, theta: Tensor, dtheta: Tensor, tau: Tensor, *, parameters: Tensor | None = None
     ) -> Tensor:
-        """θ̈ (..., n) of θ (..., nq), θ̇ and τ (..., n), and of inertial parameters π (..., p), by default the model's."""
+        """θ̈ (..., n) of θ (..., nq), θ̇ and τ (..., n), and of inertial parameters π (..., p), or the model's."""
         return _call(self, "forward_dynamics", _and_parameters((theta, dtheta, tau), parameters))
 
     def mass_matrix(self, theta: Tensor, *, parameters: Tensor | None = None) -> Tensor:
