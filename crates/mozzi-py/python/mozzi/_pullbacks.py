@@ -20,6 +20,8 @@ from ._quantities import Array
 
 Arrays = Sequence[Array]
 
+OF_PARAMETERS = "inverse_dynamics_parameter_vjp"
+
 
 def _directional(
     model: Model, quantity: str, inputs: Arrays, tangents: Sequence[Array | None], **environment: Any
@@ -90,7 +92,7 @@ class Differentiable:
 
 
 class InverseDynamics(Differentiable):
-    """τ, linear in π: wᵀ∂τ/∂π = wᵀY with the regressor Y."""
+    """τ, linear in π: wᵀ∂τ/∂π depends on the motion alone."""
 
     inputs = ("theta", "dtheta", "ddtheta")
     name = "inverse_dynamics"
@@ -103,18 +105,18 @@ class InverseDynamics(Differentiable):
     def vjp(self, x: Arrays, w: Array, of_parameters: bool) -> list[Array]:
         x, keywords = self.split(x)
         found = list(self.model.inverse_dynamics_vjp(*x, w, **keywords))
-        return [*found, _row(w, self.model.regressor(*x))] if of_parameters else found
+        return [*found, self.model.inverse_dynamics_parameter_vjp(*x, w).d_parameters] if of_parameters else found
 
     def second(self, x: Arrays, w: Array, u: Arrays, of_parameters: bool) -> list[Array]:
         x, u, keywords = self.along(x, u)
         found = list(_directional(self.model, "inverse_dynamics_vjp", [*x, w], [*u, None], **keywords)[1])
         if of_parameters:
-            found.append(_row(w, _directional(self.model, "regressor", x, u)[1]))
+            found.append(_directional(self.model, OF_PARAMETERS, [*x, w], [*u, None])[1].d_parameters)
         return found
 
 
 class ForwardDynamics(Differentiable):
-    """θ̈ = M⁻¹(τ − h): wᵀ∂θ̈/∂π = −(M⁻¹w)ᵀY(θ, θ̇, θ̈)."""
+    """θ̈ = M⁻¹(τ − h): wᵀ∂θ̈/∂π = −(M⁻¹w)ᵀ∂τ/∂π at this θ̈."""
 
     inputs = ("theta", "dtheta", "tau")
     name = "forward_dynamics"
@@ -129,7 +131,8 @@ class ForwardDynamics(Differentiable):
         found = list(self.model.forward_dynamics_vjp(theta, dtheta, tau, w, **keywords))
         if of_parameters:
             ddtheta = self.model.forward_dynamics(theta, dtheta, tau, **keywords)
-            found.append(-_row(found[2], self.model.regressor(theta, dtheta, ddtheta)))
+            motion = (theta, dtheta, ddtheta, -found[2])
+            found.append(self.model.inverse_dynamics_parameter_vjp(*motion).d_parameters)
         return found
 
     def second(self, x: Arrays, w: Array, u: Arrays, of_parameters: bool) -> list[Array]:
@@ -139,8 +142,8 @@ class ForwardDynamics(Differentiable):
         if of_parameters:
             (theta, dtheta, _), (dq, ddq, _) = x, u
             ddtheta, rate = _directional(self.model, "forward_dynamics", x, u, **keywords)
-            Y, dY = _directional(self.model, "regressor", [theta, dtheta, ddtheta], [dq, ddq, rate])
-            found.append(-_row(rates.d_tau, Y) - _row(values.d_tau, dY))
+            motion, rates_of = [theta, dtheta, ddtheta, -values.d_tau], [dq, ddq, rate, -rates.d_tau]
+            found.append(_directional(self.model, OF_PARAMETERS, motion, rates_of)[1].d_parameters)
         return found
 
 
@@ -175,7 +178,8 @@ class MassMatrix(Differentiable):
         x, w, keywords = self._columns(x, w)
         found = [self.model.inverse_dynamics_vjp(*x, w, gravity=[0.0] * 3, **keywords).d_theta.sum(-2)]
         if of_parameters:
-            found.append(_row(w, self.model.regressor(*x, gravity=[0.0] * 3)).sum(-2))
+            products = self.model.inverse_dynamics_parameter_vjp(*x, w, gravity=[0.0] * 3)
+            found.append(products.d_parameters.sum(-2))
         return found
 
     def second(self, x: Arrays, w: Array, u: Arrays, of_parameters: bool) -> list[Array]:
@@ -188,8 +192,8 @@ class MassMatrix(Differentiable):
         )[1]
         found = [rates.d_theta.sum(-2)]
         if of_parameters:
-            dY = _directional(self.model, "regressor", x, along, gravity=[0.0] * 3)[1]
-            found.append(_row(w, dY).sum(-2))
+            rates = _directional(self.model, OF_PARAMETERS, at, [*along, None], gravity=[0.0] * 3)[1]
+            found.append(rates.d_parameters.sum(-2))
         return found
 
 
