@@ -170,3 +170,18 @@ def test_parallel_robots(name, random):
     A = robot.constraint_jacobian(theta)
     left = robot.inverse_dynamics(theta, dtheta, ddtheta) + A.T @ multipliers
     assert abs(left).max() < 1e-6 * (1 + abs(A.T @ multipliers).max())
+
+
+def test_rollouts_stay_closed_and_have_gradients(four_bar, state):
+    (theta, dtheta), random = state, np.random.default_rng(3)
+    tau = random.uniform(-1, 1, (5, 3))
+    bars = random.normal(size=(2, 6, 3))
+    found = four_bar.rollout(theta, dtheta, tau, 0.01)
+    assert max(np.abs(four_bar.constraint_residual(x)).max() for x in found.theta) < 1e-12
+    along = random.normal(size=tau.shape)
+    loss = lambda e: sum((x * bar).sum() for x, bar in zip(four_bar.rollout(theta, dtheta, tau + e * along, 0.01), bars))
+    *_, by_tau = four_bar.rollout_vjp(theta, dtheta, tau, 0.01, *bars)
+    slope = (8 * (loss(1e-4) - loss(-1e-4)) - (loss(2e-4) - loss(-2e-4))) / 12e-4
+    assert abs(slope - (by_tau * along).sum()) < 1e-8 * max(1, abs(slope))
+    with pytest.raises(ValueError, match="constraint rows"):
+        four_bar.rollout([theta] * 2, [dtheta] * 2, [tau] * 2, 0.01)

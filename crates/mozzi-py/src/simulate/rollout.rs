@@ -83,7 +83,8 @@ fn of_one<'m>(options: &BatchRollout, model: &'m Model) -> Result<Rollout<'m>, E
 #[pymethods]
 impl PyModel {
     /// The states of N steps under torques that are held over each step, from one start or from many at once, on all
-    /// cores: x[k + 1] = Φ(x[k], τ[k]) with x = (θ, θ̇). Joint limits are ignored; a robot with constraints is refused.
+    /// cores: x[k + 1] = Φ(x[k], τ[k]) with x = (θ, θ̇). Joint limits are ignored. A robot with constraints
+    /// is brought back onto them after each step; it takes one start, and an explicit method.
     ///
     /// Parameters
     /// ----------

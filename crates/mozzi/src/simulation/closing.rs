@@ -3,7 +3,7 @@
 use crate::constraints::{ConstraintMemory, change, constraint_jacobian, delassus};
 use crate::kinematics::integrate;
 use crate::model::{Error, Model, Workspace};
-use crate::scalar::Float;
+use crate::scalar::{Float, Real, Scalar};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -30,6 +30,15 @@ pub struct Closing {
     pub residual: f64,
 }
 
+/// What a closing has done, to do the same to a state of another number type.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Corrections {
+    /// Of positions, with each factorization.
+    positions: [usize; FACTORIZATIONS],
+    factorizations: usize,
+    velocities: usize,
+}
+
 /// Brings states of a robot with constraints back onto them.
 #[derive(Clone, Debug)]
 pub struct Closer<S = f64> {
@@ -40,6 +49,7 @@ pub struct Closer<S = f64> {
     at_rest: Vec<S>,
     /// The largest violation so far.
     pub account: Closing,
+    pub(super) corrections: Corrections,
 }
 
 impl<S: Float + Into<f64>> Closer<S> {
@@ -53,6 +63,7 @@ impl<S: Float + Into<f64>> Closer<S> {
             change: vec![S::zero(); n],
             at_rest: vec![S::zero(); n],
             account: Closing::default(),
+            corrections: Corrections::default(),
         })
     }
 
@@ -92,13 +103,13 @@ impl<S: Float + Into<f64>> Closer<S> {
         let (closed, open) = (closed::<S>(), open::<S>());
         let mut residual = self.rows(model, theta);
         self.account.corrected = self.account.corrected.max(residual);
-        let mut is_factored = false;
-        for _ in 0..FACTORIZATIONS {
-            if is_factored && residual <= open {
+        self.corrections = Corrections::default();
+        for round in 0..FACTORIZATIONS {
+            if round > 0 && residual <= open {
                 break;
             }
             delassus::factor(model, &mut self.workspace, &mut self.memory);
-            is_factored = true;
+            self.corrections.factorizations += 1;
             for _ in 0..CORRECTIONS {
                 if residual <= closed {
                     break;
@@ -106,6 +117,7 @@ impl<S: Float + Into<f64>> Closer<S> {
                 self.memory.right.copy_from_slice(&self.phi);
                 change(model, &mut self.memory, &mut self.change);
                 integrate(model, theta, &self.change, S::one());
+                self.corrections.positions[round] += 1;
                 let next = self.rows(model, theta);
                 let improves = next < 0.5 * residual;
                 residual = next;
@@ -128,6 +140,7 @@ impl<S: Float + Into<f64>> Closer<S> {
                 break;
             }
             change(model, &mut self.memory, &mut self.change);
+            self.corrections.velocities += 1;
             dtheta.iter_mut().zip(&self.change).for_each(|(rate, &change)| *rate += change);
         }
         Ok(())
@@ -145,6 +158,38 @@ impl<S: Float + Into<f64>> Closer<S> {
         let ConstraintMemory { A, right, .. } = &mut self.memory;
         right.fill(S::zero());
         delassus::add_products(model, A, dtheta, right);
+    }
+}
+
+impl Corrections {
+    /// The same corrections of a state of any number type.
+    pub(super) fn repeat<S: Real + From<C>, C: Scalar>(
+        self,
+        model: &Model<C>,
+        theta: &mut [S],
+        dtheta: &mut [S],
+        workspace: &mut Workspace<S>,
+        memory: &mut ConstraintMemory<S>,
+    ) {
+        let zeros = |length: usize| vec![S::zero(); length];
+        let (mut phi, mut x, still) = (zeros(model.constraint_rows()), zeros(model.n()), zeros(model.n()));
+        constraint_jacobian(model, theta, &still, workspace, &mut memory.A, &mut [], &mut phi);
+        for &corrections in &self.positions[..self.factorizations] {
+            delassus::factor(model, workspace, memory);
+            for _ in 0..corrections {
+                memory.right.copy_from_slice(&phi);
+                change(model, memory, &mut x);
+                integrate(model, theta, &x, S::one());
+                constraint_jacobian(model, theta, &still, workspace, &mut memory.A, &mut [], &mut phi);
+            }
+        }
+        for _ in 0..self.velocities {
+            let ConstraintMemory { A, right, .. } = &mut *memory;
+            right.fill(S::zero());
+            delassus::add_products(model, A, dtheta, right);
+            change(model, memory, &mut x);
+            dtheta.iter_mut().zip(&x).for_each(|(rate, &change)| *rate += change);
+        }
     }
 }
 

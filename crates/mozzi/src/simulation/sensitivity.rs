@@ -1,8 +1,10 @@
 //! How the end of a simulation changes with its start, its torques and the robot: exact derivatives of the discrete
 //! map, by dual numbers (forward mode).
 
+use super::closing::{Closer, Corrections};
 use super::options::check;
 use super::{Explicit, Motion, Options};
+use crate::constraints::{ConstraintMemory, constrained_forward_dynamics};
 use crate::dynamics::forward_dynamics;
 use crate::kinematics::{difference, seed_direction};
 use crate::model::{Environment, Error, Model, Pivots, Variation, Workspace};
@@ -62,11 +64,11 @@ impl EndSensitivity {
 impl Model<f64> {
     /// One step of δt = t_f / N from (θ, θ̇), τ held: the state (θ, θ̇) after it. The method, friction and gravity are
     /// those of the options, {s} is at rest, no wrenches are applied. The Euler methods' steps are those of
-    /// [`simulate`](Self::simulate).
+    /// [`simulate`](Self::simulate). A robot with constraints is brought back onto them after the step.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for invalid options, or a method that is not
-    /// [explicit](super::Method::explicit); [`Error::SingularMassMatrix`].
+    /// [explicit](super::Method::explicit); [`Error::SingularMassMatrix`]; [`Error::OpenStart`], [`Error::Opened`].
     pub fn held_step(
         &self,
         theta: &[f64],
@@ -74,16 +76,33 @@ impl Model<f64> {
         tau: &[f64],
         options: &Options,
     ) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let (end, _) = self.held(theta, dtheta, tau, options)?;
+        Ok((end.theta, end.dtheta))
+    }
+
+    /// The state after a held step, and how it was brought back onto the constraints.
+    fn held(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        options: &Options,
+    ) -> Result<(Motion, Option<Corrections>), Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("tau", tau)])?;
         options.check()?;
-        let m = self.constraint_rows();
-        check(m == 0, "the robot", format!("one with {m} constraint rows"), "a robot without constraints")?;
+        let mut closer = Closer::new(self);
+        if let Some(closer) = &mut closer {
+            closer.check_start(self, theta, dtheta)?;
+        }
         let fine = |theta: &[f64], workspace: &mut Workspace| {
             Pivots::new(workspace.pivots()).check(self, theta, || self.mass_matrix_rows(theta))
         };
         let way = (options.method.explicit()?, options);
-        let end = step(self, theta, dtheta, tau, way, &mut Workspace::new(self), fine)?;
-        Ok((end.theta, end.dtheta))
+        let mut end = step(self, theta, dtheta, tau, way, &mut Workspace::new(self), fine)?;
+        if let Some(closer) = &mut closer {
+            closer.close(self, options.step(), &mut end.theta, &mut end.dtheta)?;
+        }
+        Ok((end, closer.map(|closer| closer.corrections)))
     }
 
     /// [`held_step`](Self::held_step) with its derivatives with respect to the start, the torque, and each of these
@@ -102,8 +121,8 @@ impl Model<f64> {
         options: &Options,
         changes: &[Variation],
     ) -> Result<StepSensitivity, Error> {
-        let end = self.held_step(theta, dtheta, tau, options)?;
-        let way = (options.method.explicit()?, options);
+        let (end, corrections) = self.held(theta, dtheta, tau, options)?;
+        let way = (options.method.explicit()?, options, corrections);
         let (n, mut workspace) = (self.n(), Workspace::<Dual>::new(self));
         let zero = vec![0.0; n];
         let unit = |j: usize| {
@@ -128,7 +147,7 @@ impl Model<f64> {
         }
         let matrix = |columns: &[DVector<f64>]| DMatrix::from_fn(2 * n, columns.len(), |i, j| columns[j][i]);
         let A = matrix(&[d_theta, d_dtheta].concat());
-        Ok(StepSensitivity { theta: end.0, dtheta: end.1, A, B: matrix(&d_tau), P })
+        Ok(StepSensitivity { theta: end.theta, dtheta: end.dtheta, A, B: matrix(&d_tau), P })
     }
 
     /// [`step_sensitivity`](Self::step_sensitivity) along a trajectory of N steps, τ\[k\] held during step k: each step
@@ -161,14 +180,19 @@ fn column<C: Scalar>(
     theta: &[Dual],
     dtheta: &[Dual],
     tau: &[Dual],
-    way: (Explicit, &Options),
+    (method, options, corrections): (Explicit, &Options, Option<Corrections>),
     workspace: &mut Workspace<Dual>,
 ) -> DVector<f64>
 where
     Dual: From<C>,
 {
+    let way = (method, options);
     let end = step(model, theta, dtheta, tau, way, workspace, |_, _| Ok::<_, core::convert::Infallible>(()));
-    let Ok(end) = end;
+    let Ok(mut end) = end;
+    if let Some(corrections) = corrections {
+        let memory = &mut ConstraintMemory::new(model);
+        corrections.repeat(model, &mut end.theta, &mut end.dtheta, workspace, memory);
+    }
     let still: Vec<f64> = end.theta.iter().map(|x| x.value).collect();
     let mut way = vec![Dual::zero(); model.n()];
     difference(model, &Dual::constants(&still), &end.theta, &mut way);
@@ -188,9 +212,18 @@ fn step<S: Real + From<C>, C: Scalar, E>(
     let gravity = options.gravity.map_or(model.gravity().map(S::from), |g| g.map(S::from_f64));
     let environment = Environment::with_gravity(gravity);
     let mut force = tau.to_vec();
+    let m = model.constraint_rows();
+    let (mut memory, mut lambda) = ((m > 0).then(|| ConstraintMemory::new(model)), vec![S::zero(); m]);
     let mut F = |_: f64, theta: &[S], dtheta: &[S], ddtheta: &mut [S]| {
         options.friction.force(model, tau, dtheta, &mut force);
-        forward_dynamics(model, theta, dtheta, &force, &environment, workspace, ddtheta);
+        match &mut memory {
+            None => forward_dynamics(model, theta, dtheta, &force, &environment, workspace, ddtheta),
+            Some(memory) => {
+                let (environment, lambda) = (&environment, &mut lambda);
+                let dynamics = constrained_forward_dynamics;
+                dynamics(model, theta, dtheta, &force, environment, workspace, memory, ddtheta, lambda);
+            }
+        }
         check(theta, workspace)?;
         Ok([])
     };
@@ -293,7 +326,7 @@ mod tests {
         for model in models() {
             for method in METHODS {
                 let options = options(method, 5);
-                let way = (method.explicit().expect("explicit"), &options);
+                let way = (method.explicit().expect("explicit"), &options, None);
                 let [theta, dtheta, _] = state(&model, 4);
                 let tau = vec![vec![0.7; model.n()]; 5];
                 let parts = model.sensitivities(&theta, &dtheta, &tau, &options, &[]).expect("regular");
@@ -305,7 +338,7 @@ mod tests {
                 let (tau, mut workspace) = (Dual::constants(&tau[0]), Workspace::<Dual>::new(&model));
                 for _ in 1..5 {
                     let fine = |_: &[Dual], _: &mut _| Ok::<_, Error>(());
-                    let next = step(&model, &q, &dq, &tau, way, &mut workspace, fine).expect("fine");
+                    let next = step(&model, &q, &dq, &tau, (way.0, way.1), &mut workspace, fine).expect("fine");
                     (q, dq) = (next.theta, next.dtheta);
                 }
                 let found = column(&model, &q, &dq, &tau, way, &mut workspace);

@@ -15,6 +15,9 @@
 //! its own coordinates, not along the entries of the quaternion.
 
 mod adjoint;
+mod constrained;
+#[cfg(test)]
+mod constrained_tests;
 mod dynamics;
 mod explicit;
 mod midpoint;
@@ -43,6 +46,7 @@ use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
+use constrained::ConstrainedSteps;
 use dynamics::{HeldTorque, OneRobot};
 use midpoint::MidpointSteps;
 
@@ -70,7 +74,8 @@ pub struct RolloutGradient {
 }
 
 /// N steps of h seconds of one robot, τ\[k\] held over step k, and gradients through them. {s} is at rest, no wrenches
-/// are applied, joint limits are ignored. N is the number of rows of τ.
+/// are applied, joint limits are ignored. N is the number of rows of τ. A robot with constraints is brought back onto
+/// them after each step.
 ///
 /// ```
 /// use mozzi::simulation::{Method, Rollout};
@@ -101,6 +106,7 @@ pub struct Rollout<'m> {
 enum Kind<'m> {
     Explicit(Box<Steps<ExplicitSteps<OneRobot<'m>>>>),
     Midpoint(Box<Steps<MidpointSteps<'m>>>),
+    Constrained(Box<Steps<ConstrainedSteps<'m>>>),
 }
 
 /// The same with either kind of steps.
@@ -109,6 +115,7 @@ macro_rules! with_steps {
         match &mut $rollout.steps {
             Kind::Explicit($steps) => $value,
             Kind::Midpoint($steps) => $value,
+            Kind::Constrained($steps) => $value,
         }
     };
 }
@@ -118,12 +125,15 @@ impl<'m> Rollout<'m> {
     ///
     /// # Errors
     /// [`Error::BadArgument`] for a step that is not positive and finite, an [adaptive](Method::is_adaptive) method, or
-    /// a robot with constraints.
+    /// the midpoint rule for a robot with constraints.
     pub fn new(model: &'m Model, h: f64, method: Method) -> Result<Self, Error> {
-        check_rollout(model, h)?;
+        check_step(h)?;
         let options = Options { method, ..Options::new(h, 1) };
         let (n, p) = (model.n(), model.parameter_count());
-        let steps = if method == Method::Midpoint {
+        let steps = if model.constraint_rows() > 0 {
+            method.explicit()?;
+            Kind::Constrained(Box::new(Steps::new(ConstrainedSteps::new(model, options), n, p)))
+        } else if method == Method::Midpoint {
             Kind::Midpoint(Box::new(Steps::new(MidpointSteps::new(model, &options), n, p)))
         } else {
             let steps = ExplicitSteps::new(model, 1, method.explicit()?, h, OneRobot::new(model, &options));
@@ -154,15 +164,20 @@ impl<'m> Rollout<'m> {
         options.check()?;
         self.options = options;
         let gravity = options.gravity.unwrap_or(self.model.gravity());
-        let equation = self.equation();
-        (equation.gravity, equation.options) = (gravity, options);
+        if let Some(equation) = self.equation() {
+            (equation.gravity, equation.options) = (gravity, options);
+        } else if let Kind::Constrained(steps) = &mut self.steps {
+            steps.stepper.options = options;
+        }
         Ok(self)
     }
 
-    fn equation(&mut self) -> &mut Equation<'m, HeldTorque> {
+    /// The equation of motion of the steps that keep one.
+    fn equation(&mut self) -> Option<&mut Equation<'m, HeldTorque>> {
         match &mut self.steps {
-            Kind::Explicit(steps) => &mut steps.stepper.dynamics.equation,
-            Kind::Midpoint(steps) => &mut steps.stepper.driven.equation,
+            Kind::Explicit(steps) => Some(&mut steps.stepper.dynamics.equation),
+            Kind::Midpoint(steps) => Some(&mut steps.stepper.driven.equation),
+            Kind::Constrained(_) => None,
         }
     }
 
@@ -215,7 +230,7 @@ impl<'m> Rollout<'m> {
         let mut tables = Record { n, tau, theta_table: &mut *theta_table, dtheta_table: &mut *dtheta_table };
         with_steps!(self, |steps| steps.run([theta, dtheta], N, &mut tables).map(|_| ()))?;
         let (h, end) = (self.h, N as f64 * self.h);
-        let equation = self.equation();
+        let Some(equation) = self.equation() else { return Ok(()) }; // with constraints, each step is checked
         equation.at_step(N, h);
         equation.bounded("theta", end, &theta_table[N * nq..])?;
         equation.bounded("dtheta", end, &dtheta_table[N * n..])
@@ -319,15 +334,19 @@ impl<'m> Rollout<'m> {
     }
 }
 
-/// Checks the robot and the step's size in seconds.
+fn check_step(h: f64) -> Result<(), Error> {
+    check(h.is_finite() && h > 0.0, "the step", format!("{h} s"), "a positive, finite number of seconds")
+}
+
+/// Checks the robot and the step's size in seconds for rollouts of many robots together.
 ///
 /// # Errors
 /// [`Error::BadArgument`] for a step that is not positive and finite, or a robot with constraints.
 pub fn check_rollout(model: &Model, h: f64) -> Result<(), Error> {
-    check(h.is_finite() && h > 0.0, "the step", format!("{h} s"), "a positive, finite number of seconds")?;
+    check_step(h)?;
     let m = model.constraint_rows();
     let found = format!("`{}` with {m} constraint rows", model.description().name);
-    check(m == 0, "the robot of a rollout", found, "a robot without constraints")
+    check(m == 0, "the robot of many rollouts", found, "a robot without constraints, or one start")
 }
 
 fn length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {

@@ -211,8 +211,11 @@ fn invalid_rollouts_are_refused() {
     }
     assert!(refused(0.1, Method::DormandPrince { tolerance: 1e-9 }).contains("the method"));
     let closed = four_bar();
-    let error = Rollout::new(&closed, 0.1, Method::Euler).err().expect("refused").to_string();
-    assert!(error.contains("constraint rows") && error.contains("without constraints"), "{error}");
+    let error = Rollout::new(&closed, 0.1, Method::Midpoint).err().expect("refused").to_string();
+    assert!(error.contains("the method"), "{error}");
+    let mut open = Rollout::new(&closed, 0.1, Method::Euler).expect("explicit");
+    let error = open.states(&vec![0.3; closed.n()], &vec![0.0; closed.n()], &vec![0.0; closed.n()]);
+    assert!(matches!(error, Err(Error::OpenStart { .. })));
 
     let mut rollout = Rollout::new(&model, 0.1, Method::Euler).expect("explicit");
     let (theta, still, tau) = (vec![0.0; model.nq()], vec![0.0; n], vec![0.0; 3 * n]);
