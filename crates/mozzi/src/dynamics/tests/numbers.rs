@@ -99,13 +99,13 @@ fn random_states_many() {
 /// Every quantity on a scalar without value and order, on which a kernel cannot branch: equal bit for bit.
 #[test]
 fn a_recording_plays_back_bit_for_bit() {
-    use crate::quantities::{LIST, MOST_INPUTS, Memory, Of, Query};
+    use crate::quantities::{Dim, LIST, Memory, Of, Query};
     use crate::scalar::recorded::{Recorded, play};
     use alloc::vec::Vec;
     for (seed, mimics) in [(1, 0), (2, 2)] {
         let model = tree(seed, 6, mimics);
         let ([theta, dtheta, ddtheta], [_, x, _]) = (state(&model, seed), state(&model, seed + 1));
-        let (state, n) = ([theta, dtheta, ddtheta, x], model.n());
+        let (state, w) = ([theta, dtheta, ddtheta, x], [0.3, -0.7, 1.1, 2.0, -1.5, 0.4]);
         let frame = model.end_effector().expect("named");
         for index in 0..LIST.len() {
             let rows = &[0];
@@ -114,17 +114,19 @@ fn a_recording_plays_back_bit_for_bit() {
                 Of::Task => Query::at(index).of_task(task),
                 _ => Query::at(index).of(frame),
             };
-            let inputs: [Vec<Recorded>; MOST_INPUTS] =
-                core::array::from_fn(|k| (0..n).map(|j| Recorded::input(k * n + j)).collect());
-            let count = query.declaration().inputs.len();
-            let given: Vec<&[Recorded]> = inputs[..count].iter().map(Vec::as_slice).collect();
-            let numbers: Vec<&[f64]> = state[..count].iter().map(Vec::as_slice).collect();
+            let declared = query.declaration().inputs.iter().zip(&state);
+            let numbers = declared.map(|(input, x)| if input.dim == Dim::Is(6) { &w[..] } else { x });
+            let numbers: Vec<&[f64]> = numbers.collect();
+            let mut places = 0..;
+            let inputs = numbers.iter().map(|x| x.iter().zip(&mut places).map(|(_, k)| Recorded::input(k)).collect());
+            let inputs: Vec<Vec<Recorded>> = inputs.collect();
+            let given: Vec<&[Recorded]> = inputs.iter().map(Vec::as_slice).collect();
             let mut found: Vec<Vec<Recorded>> =
                 query.output_lengths(&model).map(|length| alloc::vec![Recorded::Constant(f64::NAN); length]).collect();
             let mut slices: Vec<&mut [Recorded]> = found.iter_mut().map(Vec::as_mut_slice).collect();
             let (environment, memory) = (model.environment::<Recorded>(), &mut Memory::new(&model));
             query.evaluate(&model, &given, &environment, memory, &mut slices);
-            let value = play(&state.concat());
+            let value = play(&numbers.concat());
             let expected = model.compute(query, &numbers, &model.environment()).expect("regular");
             for (found, expected) in found.iter().zip(&expected) {
                 let played: Vec<f64> = found.iter().map(|&x| value(x)).collect();
