@@ -38,7 +38,12 @@ fn every_quantity_is_the_same_at_one_state_and_in_a_table() {
         let names: Vec<&str> = table.iter().map(|(name, ..)| name.as_str()).collect();
         assert_eq!(names, declaration.outputs.iter().map(|output| output.name).collect::<Vec<_>>());
         for state in 0..3 {
-            let place = |name: &str| ["theta", "dtheta"].iter().position(|known| *known == name).unwrap_or(2);
+            let place = |name: &str| match name {
+                "theta" => 0,
+                "dtheta" => 1,
+                "w" => 3,
+                _ => 2,
+            };
             let mut flags: Vec<String> = Vec::new();
             for input in declaration.inputs {
                 flags.extend([format!("--{}", input.name), comma(states.at(place(input.name), state))]);

@@ -272,7 +272,7 @@ fn what_is_wrong_is_named() {
         (
             "mass-matrix",
             &odd,
-            "odd.npz has an array `thetadot`, expected only theta, dtheta, ddtheta, tau, x, t, wrench, gravity, parameters, or wrench_FRAME of a frame",
+            "odd.npz has an array `thetadot`, expected only theta, dtheta, ddtheta, tau, x, w, t, wrench, gravity, parameters, or wrench_FRAME of a frame",
         ),
         ("mass-matrix", &count, "count.npz: `dtheta` has shape (3, 6), expected (4, 6): as many states as `theta`"),
         ("mass-matrix", &none, "none.npz has no array `theta`, which mass-matrix needs"),

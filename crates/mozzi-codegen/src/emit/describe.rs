@@ -136,7 +136,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
 }
 
 /// Symbols and their names in plain letters, longer ones first.
-const LETTERS: [(&str, &str); 48] = [
+const LETTERS: [(&str, &str); 50] = [
     ("θ̈", "ddtheta"),
     ("θ̇", "dtheta"),
     ("θ_j", "theta_j"),
@@ -151,6 +151,8 @@ const LETTERS: [(&str, &str); 48] = [
     ("𝒱̇", "dV"),
     ("𝒱", "V"),
     ("𝓕", "F"),
+    ("𝒦", "K"),
+    ("𝒫", "P"),
     ("Λ", "Lambda"),
     ("λ", "lambda"),
     ("φ", "phi"),
