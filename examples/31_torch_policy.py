@@ -11,7 +11,7 @@ robot is that of Modern Robotics, exercise 8.4 (see 03_furuta.rs). `--short` tra
 """
 
 # mypy: ignore-errors
-# pyright: reportMissingImports=false
+# pyright: reportMissingImports=false, reportCallIssue=false
 
 import math
 import sys

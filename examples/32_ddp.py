@@ -12,8 +12,13 @@ the start, and the distance from a pose at rest at the end.
 import sys
 import time
 
+from typing import Any
+
 import mozzi
 import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 N, H, R = 80, 0.01, 1e-4
 END = np.concatenate([np.full(6, 1e3), np.full(6, 1e2)])
@@ -26,12 +31,14 @@ goal[:n] = [1.4, -0.6, 0.4, 1.2, -0.8, 0.7]
 hold = ur5.gravity_forces(start[:n])
 
 
-def follow(tau, x=None, gains=None, part=1.0, change=None):
-    """The motion under torques, or under their change by feedback on the motion x."""
+def follow(tau: Array, policy: tuple[Array, Array, Array] | None = None, part: float = 1.0) -> tuple[Array, Array]:
+    """The motion under torques, or under their change by a policy: the motion x, a change and gains on δx."""
     found, used = [start], []
     for k in range(N):
-        now = found[-1]
-        u = tau[k] if change is None else tau[k] + part * change[k] + gains[k] @ (now - x[k])
+        now, u = found[-1], tau[k]
+        if policy is not None:
+            x, change, gains = policy
+            u = u + part * change[k] + gains[k] @ (now - x[k])
         ddtheta = ur5.forward_dynamics(now[:n], now[n:], u)
         dtheta = now[n:] + H * ddtheta
         found.append(np.concatenate([now[:n] + H * dtheta, dtheta]))
@@ -39,11 +46,11 @@ def follow(tau, x=None, gains=None, part=1.0, change=None):
     return np.array(found), np.array(used)
 
 
-def cost(x, tau):
-    return 0.5 * R * np.sum((tau - hold) ** 2) + 0.5 * np.sum(END * (x[-1] - goal) ** 2)
+def cost(x: Array, tau: Array) -> float:
+    return float(0.5 * R * np.sum((tau - hold) ** 2) + 0.5 * np.sum(END * (x[-1] - goal) ** 2))
 
 
-def steps(x, tau):
+def steps(x: Array, tau: Array) -> tuple[Array, Array]:
     """∂f/∂x and ∂f/∂τ of every step."""
     found = ur5.forward_dynamics_derivatives(x[:-1, :n], x[:-1, n:], tau)
     by_x = np.concatenate([found.d_theta, found.d_dtheta], axis=2)
@@ -54,22 +61,22 @@ def steps(x, tau):
     return A, np.concatenate([H * H * found.d_tau, H * found.d_tau], axis=1)
 
 
-def hessians(x, tau, v):
+def hessians(x: Array, tau: Array, v: Array) -> Array:
     """The second derivatives of (h² v_θ + h v_θ̇)ᵀθ̈ at each step, 18 × 18."""
     weights = H * H * v[:, :n] + H * v[:, n:]
     unit = np.eye(3 * n).reshape(3, n, 3 * n).transpose(0, 2, 1)[:, None]  # inputs, 1, directions, entries
-    inputs = [table[:, None] for table in (x[:-1, :n], x[:-1, n:], tau, weights)]
+    inputs: Any = [table[:, None] for table in (x[:-1, :n], x[:-1, n:], tau, weights)]
     _, rates = ur5.jvp("forward_dynamics_vjp", inputs, [*unit, None])
     return np.concatenate([rates.d_theta, rates.d_dtheta, rates.d_tau], axis=2)
 
 
-def improve(x, tau, second, damping):
+def improve(x: Array, tau: Array, second: bool, damping: float) -> tuple[Array, Array, Array] | None:
     """The change of each torque, its feedback, and the gradient by the torques; None if damping is too small."""
     A, B = steps(x, tau)
-    slope = [END * (x[-1] - goal)]  # of the cost by the state: the adjoint, backwards
+    slopes = [END * (x[-1] - goal)]  # of the cost by the state: the adjoint, backwards
     for k in reversed(range(N)):
-        slope.append(A[k].T @ slope[-1])
-    slope = np.array(slope[::-1])
+        slopes.append(A[k].T @ slopes[-1])
+    slope = np.array(slopes[::-1])
     gradient = R * (tau - hold) + np.einsum("kij,ki->kj", B, slope[1:])
     # DDP takes the second derivatives at the slope of its own cost-to-go; near the optimum it is this one
     S = hessians(x, tau, slope[1:]) if second else np.zeros((N, 3 * n, 3 * n))
@@ -91,10 +98,11 @@ def improve(x, tau, second, damping):
     return change, gains, gradient
 
 
-def solve(second):
+def solve(second: bool) -> tuple[Array, Array, list[float], list[float], float]:
     """Far from the goal second derivatives are indefinite: DDP begins as iLQR."""
     x, tau = follow(np.tile(hold, (N, 1)))
-    costs, slopes, damping, began = [cost(x, tau)], [], 1.0, time.perf_counter()
+    costs, damping, began = [cost(x, tau)], 1.0, time.perf_counter()
+    slopes: list[float] = []
     while len(costs) < 100 and damping < 1e10:
         is_near = len(slopes) > 0 and slopes[-1] < 1e-2
         found = improve(x, tau, second and is_near, damping)
@@ -102,11 +110,11 @@ def solve(second):
             damping = max(10 * damping, 1e-3)
             continue
         change, gains, gradient = found
-        slopes.append(np.linalg.norm(gradient))
+        slopes.append(float(np.linalg.norm(gradient)))
         if slopes[-1] < 1e-8:
             break
         for part in 0.5 ** np.arange(8):
-            tried = follow(tau, x, gains, part, change)
+            tried = follow(tau, (x, change, gains), part)
             if cost(*tried) < costs[-1]:
                 x, tau = tried
                 costs.append(cost(x, tau))
@@ -127,7 +135,9 @@ for name, (x, _, costs, slopes, seconds) in found.items():
 
 # the gradient, by differences of the cost along a direction
 x, tau = follow(np.tile(hold, (N, 1)))
-gradient = improve(x, tau, False, 1e3)[2]
+first = improve(x, tau, False, 1e3)
+assert first is not None
+gradient = first[2]
 along = np.random.default_rng(1).standard_normal(tau.shape)
 difference = (cost(*follow(tau + 1e-4 * along)) - cost(*follow(tau - 1e-4 * along))) / 2e-4
 assert abs(difference - np.sum(gradient * along)) < 1e-6 * np.linalg.norm(gradient), "the gradient is exact"

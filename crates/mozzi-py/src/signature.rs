@@ -150,7 +150,7 @@ fn depends_on_parameters(declaration: &Declaration) -> bool {
     declaration.of != Of::Frame
         && !declaration.outputs.iter().all(of_constraints)
         && declaration.uses != Uses::WRENCHES
-        && !declaration.outputs.iter().any(|output| output.dims.iter().any(free_of_them))
+        && !declaration.outputs.iter().all(|output| output.dims.iter().any(free_of_them))
 }
 
 /// `(..., n, n)`.

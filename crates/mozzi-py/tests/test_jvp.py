@@ -17,7 +17,7 @@ def quantities(robot):
     """Each quantity's name, with its inputs."""
     for name in NAMES:
         arguments = list(inspect.signature(getattr(mozzi.Model, name)).parameters)[1:]
-        inputs = [a for a in arguments if a in ("theta", "dtheta", "ddtheta", "tau", "x")]
+        inputs = [a for a in arguments if a in ("theta", "dtheta", "ddtheta", "tau", "x", "w")]
         is_singular = name == "task_space_dynamics" and robot.n < 6
         if "out" in arguments and "constraint" not in name and not is_singular:
             yield name, inputs, {"frame": tip(robot)} if "frame" in arguments else {}
@@ -36,7 +36,8 @@ def moved(robot, theta, along, h):
 def test_every_quantity_against_differences(robot, random):
     theta, dtheta, ddtheta = state(robot, random)
     values = {"theta": theta, "dtheta": dtheta, "ddtheta": ddtheta, "tau": ddtheta, "x": random.normal(size=robot.n)}
-    rates = {name: random.uniform(-1, 1, robot.n) for name in values}
+    values["w"] = random.normal(size=6)
+    rates = {name: random.uniform(-1, 1, 6 if name == "w" else robot.n) for name in values}
     names = [name for name, *_ in quantities(robot)]
     assert len(names) > 30
     for name, inputs, subject in quantities(robot):

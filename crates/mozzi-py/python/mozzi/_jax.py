@@ -134,7 +134,8 @@ def evaluate(*operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) 
 def abstract(*operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> list[Any]:
     leading, dtype = operands[0].shape[:-1], operands[0].dtype
     shapes: Any = [(of.inputs[k][1],) for k in bits(wanted)] if wanted else of.outputs
-    return [jax.core.ShapedArray((*leading, *shape), dtype) for shape in shapes]
+    array: Any = jax.core.ShapedArray  # pyright: ignore[reportAttributeAccessIssue]
+    return [array((*leading, *shape), dtype) for shape in shapes]
 
 
 def lower(ctx: Any, *operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> Any:

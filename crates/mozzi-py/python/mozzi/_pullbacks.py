@@ -32,7 +32,8 @@ def _directional(
 
 def _row(w: Array, matrix: Array) -> Array:
     """wᵀ matrix."""
-    return np.matmul(w[..., None, :], matrix)[..., 0, :]
+    found: Array = np.matmul(w[..., None, :], matrix)[..., 0, :]
+    return found
 
 
 class Differentiable:
@@ -103,9 +104,11 @@ class InverseDynamics(Differentiable):
         return self.model.inverse_dynamics(*x, **keywords) if keywords else self.model.inverse_dynamics(*x)
 
     def vjp(self, x: Arrays, w: Array, of_parameters: bool) -> list[Array]:
-        x, keywords = self.split(x)
-        found = list(self.model.inverse_dynamics_vjp(*x, w, **keywords))
-        return [*found, self.model.inverse_dynamics_parameter_vjp(*x, w).d_parameters] if of_parameters else found
+        (theta, dtheta, ddtheta), keywords = self.split(x)
+        found = list(self.model.inverse_dynamics_vjp(theta, dtheta, ddtheta, w, **keywords))
+        if of_parameters:
+            found.append(self.model.inverse_dynamics_parameter_vjp(theta, dtheta, ddtheta, w).d_parameters)
+        return found
 
     def second(self, x: Arrays, w: Array, u: Arrays, of_parameters: bool) -> list[Array]:
         x, u, keywords = self.along(x, u)
@@ -175,10 +178,11 @@ class MassMatrix(Differentiable):
         return [theta[..., None, :], still, ddtheta], w, keywords
 
     def vjp(self, x: Arrays, w: Array, of_parameters: bool) -> list[Array]:
-        x, w, keywords = self._columns(x, w)
-        found = [self.model.inverse_dynamics_vjp(*x, w, gravity=[0.0] * 3, **keywords).d_theta.sum(-2)]
+        (theta, dtheta, ddtheta), w, keywords = self._columns(x, w)
+        still = [0.0] * 3
+        found = [self.model.inverse_dynamics_vjp(theta, dtheta, ddtheta, w, gravity=still, **keywords).d_theta.sum(-2)]
         if of_parameters:
-            products = self.model.inverse_dynamics_parameter_vjp(*x, w, gravity=[0.0] * 3)
+            products = self.model.inverse_dynamics_parameter_vjp(theta, dtheta, ddtheta, w, gravity=still)
             found.append(products.d_parameters.sum(-2))
         return found
 

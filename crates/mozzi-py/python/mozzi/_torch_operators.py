@@ -4,7 +4,7 @@ An operator has the key of a quantity, `model:quantity:frame`, and looks it up. 
 """
 
 # mypy: ignore-errors
-# pyright: reportMissingImports=false
+# pyright: reportMissingImports=false, reportFunctionMemberAccess=false, reportCallIssue=false
 
 import functools
 import math

@@ -5,7 +5,7 @@ differentiable by parameters, in forward mode, and twice.
 """
 
 # mypy: ignore-errors
-# pyright: reportMissingImports=false
+# pyright: reportMissingImports=false, reportFunctionMemberAccess=false, reportCallIssue=false
 
 import torch
 from torch import Tensor

@@ -13,7 +13,7 @@ states and are broadcast. All of `torch.autograd` and `torch.func` works, to sec
 """
 
 # mypy: ignore-errors
-# pyright: reportMissingImports=false
+# pyright: reportMissingImports=false, reportFunctionMemberAccess=false, reportCallIssue=false
 
 import hashlib
 import math
