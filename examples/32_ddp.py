@@ -128,7 +128,7 @@ def solve(second: bool) -> tuple[Array, Array, list[float], list[float], float]:
 
 
 found = {name: solve(name == "DDP") for name in ["DDP", "iLQR"]}
-for name, (x, _, costs, slopes, seconds) in found.items():
+for name, (x, tau, costs, slopes, seconds) in found.items():
     print(f"{name}: {len(slopes)} iterations, {seconds / len(slopes) * 1e3:.1f} ms each, cost {costs[-1]:.9f}")
     print("    ‖∂cost/∂τ‖ at the last:", " ".join(f"{slope:.1e}" for slope in slopes[-5:]))
     print(f"    from the goal: {np.abs(x[-1] - goal)[:n].max():.1e} rad, {np.abs(x[-1] - goal)[n:].max():.1e} rad/s")
@@ -141,7 +141,8 @@ gradient = first[2]
 along = np.random.default_rng(1).standard_normal(tau.shape)
 difference = (cost(*follow(tau + 1e-4 * along)) - cost(*follow(tau - 1e-4 * along))) / 2e-4
 assert abs(difference - np.sum(gradient * along)) < 1e-6 * np.linalg.norm(gradient), "the gradient is exact"
-(_, _, of_ddp, steep, _), (_, _, of_ilqr, shallow, _) = found.values()
+of_ddp, steep = found["DDP"][2:4]
+of_ilqr, shallow = found["iLQR"][2:4]
 assert abs(of_ddp[-1] - of_ilqr[-1]) < 1e-6 * of_ddp[-1], "both find the same motion"
 assert min(steep) < 1e-7, "DDP converges"
 assert len(steep) < len(shallow), "with second derivatives in fewer iterations"
@@ -153,8 +154,8 @@ if len(sys.argv) > 1:  # the name of a picture
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True)
-    for name, (_, _, _, slopes, _) in found.items():
-        left.semilogy(slopes, marker=".", label=name)
+    for name, solution in found.items():
+        left.semilogy(solution[3], marker=".", label=name)
     left.set(xlabel="iteration", ylabel="‖∂cost/∂τ‖", title="Convergence")
     left.legend()
     right.plot(H * np.arange(N + 1), found["DDP"][0][:, :n])
