@@ -30,6 +30,7 @@ SHORT = "--short" in sys.argv
 PENDULUMS, STEPS, ROUNDS = (32, 40, 15) if SHORT else (4096, 150, 300)
 STEP, MOST = 0.02, 100.0
 
+torch.set_num_threads(1)  # the pendulums have the cores; torch's own threads would wait for them
 torch.manual_seed(1763)
 torch.set_default_dtype(torch.float64)
 robot = mozzi.torch.Model(mozzi.models.furuta_pendulum())
