@@ -5,7 +5,7 @@ use crate::request::Request;
 use crate::{Batch, BatchEnvironment, Error, Layout};
 use mozzi::kinematics::integrate;
 use mozzi::model::least_is_clear;
-use mozzi::quantities::{Dim, Memory, Query};
+use mozzi::quantities::{Dim, Input, Memory, Query};
 use mozzi::{Dual, Environment, FrameId, Model, Vec3, Wrench};
 
 /// The states of a piece of work.
@@ -14,8 +14,8 @@ const TOGETHER: usize = 32;
 /// A direction at each of N states: the rates of the inputs and of the inertial parameters. `None` is zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Direction<'a> {
-    /// One table (N, n) for each input of the quantity. The rate of θ has n numbers, like a velocity: for a floating
-    /// base, a ball and a free joint a body twist in its own coordinates.
+    /// One table (N, n) for each input of the quantity, (N, 6) for w. The rate of θ has n numbers, like a velocity: for
+    /// a floating base, a ball and a free joint a body twist in its own coordinates.
     pub inputs: &'a [Option<&'a [f64]>],
     /// A table (N, p): the rate of the [`parameters`](mozzi::Model::parameters).
     pub parameters: Option<&'a [f64]>,
@@ -116,7 +116,9 @@ impl Batch<f64> {
         let mut tables: Vec<Table<f64>> =
             state.map(|((input, &numbers), width)| Table { name: input.name, numbers, width }).collect();
         tables.extend(request.further());
-        let given = direction.inputs.iter().flatten().map(|&numbers| (numbers, model.n()));
+        let width = |(input, width): (&Input, usize)| if input.dim == Dim::Nq { model.n() } else { width };
+        let lengths = declaration.inputs.iter().zip(query.input_lengths(model)).map(width);
+        let given = direction.inputs.iter().zip(lengths).filter_map(|(numbers, width)| Some(((*numbers)?, width)));
         let given = given.chain(direction.parameters.map(|numbers| (numbers, model.parameter_count())));
         tables.extend(given.map(|(numbers, width)| Table { name: "a rate of the direction", numbers, width }));
 

@@ -2,7 +2,7 @@
 
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::quantities::{
-    ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, Query,
+    ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, MomentumVjp, Query,
 };
 use mozzi::{Description, Model, SE3, SpatialInertia, Vec3};
 use mozzi_batch::{Batch, BatchEnvironment, Direction, Layout};
@@ -32,6 +32,29 @@ fn assert_close(found: &[f64], expected: &[f64]) {
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 1e-12 * size, "{found} {expected}");
     }
+}
+
+#[test]
+fn an_input_of_six_numbers_has_a_rate_of_six() {
+    let (model, states) = (anymal(), 3);
+    let (n, batch) = (model.n(), Batch::new(&model).with_layout(Layout::Rows));
+    let query = Query::from(MomentumVjp).about(Vec3([0.1, 0.2, 0.3]));
+    let (theta, dtheta) = (positions(&model, states), numbers(states * n, 2.0));
+    let (w, dw) = (numbers(states * 6, 3.0), numbers(states * 6, 4.0));
+    let environment: BatchEnvironment = model.environment().into();
+    let tables = || [vec![0.0; states * n], vec![0.0; states * n]];
+    let ([mut a, mut b], [mut da, mut db]) = (tables(), tables());
+    let direction = Direction { inputs: &[None, None, Some(&dw)], parameters: None };
+    let (values, rates) = (&mut [&mut a[..], &mut b[..]], &mut [&mut da[..], &mut db[..]]);
+    batch
+        .directional_derivative(query, &[&theta, &dtheta, &w], direction, &environment, values, rates)
+        .expect("lengths");
+    // linear in w
+    let [mut expected_a, mut expected_b] = tables();
+    let expected = &mut [&mut expected_a[..], &mut expected_b[..]];
+    batch.compute(query, &[&theta, &dtheta, &dw], &environment, expected).expect("lengths");
+    assert_close(&da, &expected_a);
+    assert_close(&db, &expected_b);
 }
 
 #[test]
