@@ -23,7 +23,7 @@ create_exception!(
     PyArithmeticError,
     "The mass matrix, or a task, is singular at a state: no acceleration or wrench answers."
 );
-create_exception!(mozzi, DivergedError, PyArithmeticError, "A simulated state left the numbers.");
+create_exception!(mozzi, DivergedError, PyArithmeticError, "A simulated state became infinite or NaN.");
 create_exception!(
     mozzi,
     MotionError,

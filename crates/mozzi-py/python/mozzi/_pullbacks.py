@@ -4,7 +4,7 @@ A quantity f(x) has inputs x: θ, others of length n, and for some the inertial 
 g(x, w) = wᵀ∂f/∂x; derivatives by θ are along the n velocities (see ``_tangent``). For each quantity:
 
 - ``value(x)`` is f;
-- ``vjp(x, w, of_parameters)`` is g, that by π only if asked for;
+- ``vjp(x, w, of_parameters)`` is g; the gradient by π is computed only if ``of_parameters``;
 - ``jvp(x, u)`` is ∂f/∂x u; u without an entry for π leaves it constant;
 - ``second(x, w, u, of_parameters)`` is ∂g/∂x u, by dual numbers. ``transposed`` turns it into the gradient of gᵀu.
 """

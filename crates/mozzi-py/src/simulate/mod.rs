@@ -121,7 +121,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// DivergedError
-    ///     Where a state leaves the numbers, with the start's place among many.
+    ///     If a state becomes infinite or NaN; of many starts, the message names which.
     ///
     /// Examples
     /// --------

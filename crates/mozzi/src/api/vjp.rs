@@ -150,7 +150,7 @@ impl Model<f64> {
     /// `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, the gradient of wᵀ𝒱_b: see [`frame_twist_vjp`](crate::frame_twist_vjp()).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::ForeignFrame`].
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn frame_twist_vjp(
         &self,
         theta: &[f64],
@@ -166,7 +166,7 @@ impl Model<f64> {
     /// [`frame_acceleration_vjp`](crate::frame_acceleration_vjp()).
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::ForeignFrame`].
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
     pub fn frame_acceleration_vjp(
         &self,
         theta: &[f64],

@@ -1,8 +1,8 @@
 //! Steps of a robot with constraints, which is brought back onto them after each, and their adjoint.
 //!
 //! The derivatives A = ∂x'/∂x and B = ∂x'/∂τ of a step, its closing included, are those of dual numbers: see
-//! [`step_sensitivity`](crate::Model::step_sensitivity). Then x̄ = Aᵀx̄', τ̄ = Bᵀx̄' and π̄ = Pᵀx̄', at the price of 3n steps
-//! on dual numbers, and one for each parameter.
+//! [`step_sensitivity`](crate::Model::step_sensitivity). Then x̄ = Aᵀx̄', τ̄ = Bᵀx̄' and π̄ = Pᵀx̄', at the price of 3n
+//! steps on dual numbers, and one for each parameter.
 
 use super::stepper::{Cotangents, Stepper};
 use super::tape::Tape;

@@ -1,4 +1,4 @@
-//! Gradients through steps that end on constraints, compared with the slopes of a loss and with the rollout's own parts.
+//! Gradients through steps that end on constraints, compared with slopes of a loss and with the rollout's own parts.
 
 extern crate std;
 use super::Rollout;
