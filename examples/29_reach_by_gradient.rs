@@ -2,9 +2,10 @@
 //!
 //! The loss of a rollout x[k+1] = Φ(x[k], τ[k]) is
 //!
-//! > L = ½ w ‖p(θ[N]) − p*‖² + ½ w_v ‖θ̇[N]‖² + ½ r h Σ ‖τ[k] − g‖²
+//! > L = ½ w ‖p(θ[N]) − p*‖² + ½ w_v ‖θ̇[N]‖² + ½ r h Σ ‖x[k]‖²,  τ[k] = g + D x[k]
 //!
-//! with g the torques that hold the start. `Rollout::gradient` takes ∂L/∂x[N] back through the steps, x̄[k] =
+//! with g the torques that hold the start and D the diagonal of M there: x is about an acceleration, so that a step
+//! moves a wrist of 0.001 kg m² no further than a shoulder of 1 kg m². `Rollout::gradient` takes ∂L/∂x[N] back through the steps, x̄[k] =
 //! (∂Φ/∂x)ᵀx̄[k+1], and returns (∂Φ/∂τ)ᵀx̄[k+1] of each step: exact for the discrete steps, as a difference of losses
 //! shows. L-BFGS (Nocedal 1980) descends along it. At the end: what a gradient costs, compared with its rollout.
 
@@ -24,12 +25,20 @@ struct Task<'m> {
     hand: FrameId,
     rollout: Rollout<'m>,
     hold: Vec<f64>,
+    inertia: Vec<f64>,
 }
 
 impl Task<'_> {
-    /// L and ∂L/∂τ.
-    fn loss(&mut self, tau: &[f64]) -> Result<(f64, Vec<f64>), Error> {
+    /// τ[k] = g + D x[k].
+    fn torques(&self, x: &[f64]) -> Vec<f64> {
+        let n = self.hold.len();
+        x.iter().enumerate().map(|(k, x)| self.hold[k % n] + self.inertia[k % n] * x).collect()
+    }
+
+    /// L and ∂L/∂x; an infinite loss where the motion diverges.
+    fn loss(&mut self, x: &[f64]) -> Result<(f64, Vec<f64>), Error> {
         let [w, w_v, r] = WEIGHTS;
+        let tau = self.torques(x);
         let (model, hand, n) = (self.model, self.hand, self.model.n());
         let (mut loss, mut failed) = (0.0, None);
         let mut at_end = |theta: &[f64], dtheta: &[f64], theta_bar: &mut [f64], dtheta_bar: &mut [f64]| {
@@ -42,34 +51,39 @@ impl Task<'_> {
             loss = 0.5 * w * off.dot(off) + 0.5 * w_v * dtheta.iter().map(|v| v * v).sum::<f64>();
             Ok::<_, Error>(())
         };
-        let found = self.rollout.gradient(&START, &vec![0.0; n], tau, |k, theta, dtheta, theta_bar, dtheta_bar| {
+        let found = self.rollout.gradient(&START, &vec![0.0; n], &tau, |k, theta, dtheta, theta_bar, dtheta_bar| {
             if k == STEPS {
                 failed = at_end(theta, dtheta, theta_bar, dtheta_bar).err();
             }
-        })?;
+        });
         if let Some(error) = failed {
             return Err(error);
         }
-        let mut gradient = found.tau;
+        let mut gradient = match found {
+            Ok(found) => found.tau,
+            Err(Error::Diverged { .. }) => return Ok((f64::INFINITY, vec![0.0; x.len()])),
+            Err(error) => return Err(error),
+        };
         for (k, slope) in gradient.iter_mut().enumerate() {
-            let off = tau[k] - self.hold[k % n];
-            *slope += r * STEP * off;
-            loss += 0.5 * r * STEP * off * off;
+            *slope = self.inertia[k % n] * *slope + r * STEP * x[k]; // ∂L/∂x = D ∂L/∂τ + r h x
+            loss += 0.5 * r * STEP * x[k] * x[k];
         }
         Ok((loss, gradient))
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let model = mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.03)])?;
+    let model = damped(mozzi_urdf::open("panda")?.build()?.with_locked_joints(&[("panda_finger_joint1", 0.03)])?)?;
     let (n, hand) = (model.n(), model.frame("panda_hand")?);
     let hold = model.gravity_forces(&START)?.as_slice().to_vec();
     let rollout = Rollout::new(&model, STEP, Method::RungeKutta4)?;
-    let mut task = Task { model: &model, hand, rollout, hold: hold.clone() };
+    let M = model.mass_matrix(&START)?;
+    let inertia = (0..n).map(|j| M[(j, j)]).collect();
+    let mut task = Task { model: &model, hand, rollout, hold, inertia };
 
-    let mut tau: Vec<f64> = hold.iter().copied().cycle().take(STEPS * n).collect();
-    let (mut loss, mut gradient) = task.loss(&tau)?;
-    check_slope(&mut task, &tau, &gradient)?;
+    let mut x = vec![0.0; STEPS * n];
+    let (mut loss, mut gradient) = task.loss(&x)?;
+    check_slope(&mut task, &x, &gradient)?;
     println!("\niteration        loss    slope");
     let mut memory = VecDeque::new();
     for iteration in 0..200 {
@@ -80,26 +94,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let slope = dot(&way, &gradient);
         let mut size = if memory.is_empty() { 0.1 / dot(&way, &way).sqrt() } else { 1.0 };
         let (next, next_loss, next_gradient) = loop {
-            let next: Vec<f64> = tau.iter().zip(&way).map(|(x, d)| x + size * d).collect();
+            let next: Vec<f64> = x.iter().zip(&way).map(|(x, d)| x + size * d).collect();
             let (next_loss, next_gradient) = task.loss(&next)?;
             if next_loss <= loss + 1e-4 * size * slope || size < 1e-10 {
                 break (next, next_loss, next_gradient);
             }
             size *= 0.5;
         };
-        let s: Vec<f64> = next.iter().zip(&tau).map(|(a, b)| a - b).collect();
+        let s: Vec<f64> = next.iter().zip(&x).map(|(a, b)| a - b).collect();
         let y: Vec<f64> = next_gradient.iter().zip(&gradient).map(|(a, b)| a - b).collect();
         if dot(&s, &y) > 0.0 {
             memory.push_front((s, y));
             memory.truncate(10);
         }
-        (tau, loss, gradient) = (next, next_loss, next_gradient);
+        (x, loss, gradient) = (next, next_loss, next_gradient);
         if dot(&gradient, &gradient).sqrt() < 1e-6 {
             break;
         }
     }
 
-    let end = task.rollout.states(&START, &vec![0.0; n], &tau)?;
+    let end = task.rollout.states(&START, &vec![0.0; n], &task.torques(&x))?;
     let theta = &end.theta[STEPS * n..];
     let off = (model.forward_kinematics(theta, hand)?.p - mozzi::Vec3(GOAL)).norm();
     let speed = dot(&end.dtheta[STEPS * n..], &end.dtheta[STEPS * n..]).sqrt();
@@ -108,15 +122,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     cost(&model)
 }
 
+/// The same robot with damping D/0.2 s. Without, the wrist is an inverted pendulum whose deviation grows a thousandfold
+/// in a second: a loss of torques alone is then no smooth function.
+fn damped(model: Model) -> Result<Model, Error> {
+    let M = model.mass_matrix(&START)?;
+    let mut parameters = model.parameters();
+    let joints = model.parameter_names();
+    let dampings = parameters.iter_mut().zip(joints).filter(|(_, name)| name.ends_with(".damping"));
+    dampings.enumerate().for_each(|(j, (damping, _))| *damping = M[(j, j)] / 0.2);
+    Ok(model.with_parameters(&parameters))
+}
+
 /// The gradient along itself against a difference of losses.
-fn check_slope(task: &mut Task<'_>, tau: &[f64], gradient: &[f64]) -> Result<(), Error> {
-    let e = 1e-3 / dot(gradient, gradient).sqrt();
+fn check_slope(task: &mut Task<'_>, x: &[f64], gradient: &[f64]) -> Result<(), Error> {
+    let e = 1e-5 / dot(gradient, gradient).sqrt();
     let mut at = |e: f64| {
-        let moved: Vec<f64> = tau.iter().zip(gradient).map(|(x, d)| x + e * d).collect();
+        let moved: Vec<f64> = x.iter().zip(gradient).map(|(x, d)| x + e * d).collect();
         task.loss(&moved).map(|(loss, _)| loss)
     };
     let slope = (at(e)? - at(-e)?) / (2.0 * e);
-    println!("‖∂L/∂τ‖²: {:.9}, by a difference {slope:.9}", dot(gradient, gradient));
+    println!("‖∂L/∂x‖²: {:.9}, by a difference {slope:.9}", dot(gradient, gradient));
     assert!((slope / dot(gradient, gradient) - 1.0).abs() < 1e-6);
     Ok(())
 }
