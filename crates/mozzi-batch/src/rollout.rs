@@ -164,7 +164,7 @@ impl Batch<f64> {
         results.into_iter().try_for_each(identity)
     }
 
-    /// The error of a robot whose state left the numbers, by its index in a piece.
+    /// The error of a robot whose state became infinite or NaN, by its index in a piece.
     fn check_lost(&self, lost: Option<Lost>, options: &BatchRollout) -> Result<(), Error> {
         let Some(Lost { robot, joint, step, value }) = lost else { return Ok(()) };
         let joint = self.model().velocity_names().nth(joint).unwrap_or_default().to_string();
