@@ -1,15 +1,18 @@
-//! Rollouts of many robots of one model, and gradients through them: [`mozzi::simulation::Rollout`] on registers.
+//! Rollouts of many robots of one model, and gradients through them: [`mozzi::simulation::Rollout`] on registers, or
+//! [one by one](each).
+
+mod each;
 
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsVjp};
 use mozzi::simulation::{
-    ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables, check_rollout,
+    ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables,
 };
 use mozzi::{Model, Vec3};
 use std::convert::identity;
 
-/// Robots that one thread moves together.
+/// Robots that one thread moves together, in registers.
 const TOGETHER: usize = 64;
 
 /// How the rollouts of a batch run. The tables are row-major whatever the batch's layout is.
@@ -19,7 +22,7 @@ pub struct BatchRollout {
     pub step: f64,
     /// N.
     pub steps: usize,
-    /// An [explicit](Method::explicit) method.
+    /// A method with fixed steps.
     pub method: Method,
     /// In {s} coordinates, m/s², in place of the robot's own.
     pub gravity: Option<Vec3>,
@@ -64,7 +67,16 @@ impl Batch<f64> {
         let robots = self.check_start([theta, dtheta, tau], options)?;
         let sizes = [("theta_table", theta_table.len(), rows * nq), ("dtheta_table", dtheta_table.len(), rows * n)];
         check_lengths(robots, sizes)?;
-        let tables = pieces(theta_table, rows * nq, robots).into_iter().zip(pieces(dtheta_table, rows * n, robots));
+        let together = self.together(options);
+        let thetas = pieces(theta_table, rows * nq, robots, together).into_iter();
+        let tables = thetas.zip(pieces(dtheta_table, rows * n, robots, together));
+        if together == 1 {
+            let start = [theta, dtheta, tau];
+            return self.each_rollout(options, false, start, tables.collect(), |rollout, start, _, tables| {
+                let ([theta, dtheta, tau], (theta_table, dtheta_table)) = (start, tables);
+                rollout.write_states(theta, dtheta, tau, theta_table, dtheta_table)
+            });
+        }
         self.by_pieces(options, robots, tables.collect(), |steps, first, count, (theta_table, dtheta_table)| {
             let part = |table, width| part(table, first, count, width);
             let (start, tau) = ([part(theta, nq), part(dtheta, n)], part(tau, options.steps * n));
@@ -101,8 +113,16 @@ impl Batch<f64> {
         ];
         check_lengths(robots, sizes)?;
         let outputs = [(to_theta, n), (to_dtheta, n), (to_tau, N * n), (parameters, p)];
-        let [a, b, c, d] = outputs.map(|(table, width)| pieces(table, width, robots));
+        let together = self.together(options);
+        let [a, b, c, d] = outputs.map(|(table, width)| pieces(table, width, robots, together));
         let outputs = a.into_iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| [a, b, c, d]).collect();
+        if together == 1 {
+            return self.each_rollout(options, p > 0, [theta, dtheta, tau], outputs, |rollout, start, robot, outputs| {
+                let [theta, dtheta, tau, parameters] = outputs;
+                let bars = [theta_bar, dtheta_bar].map(|table| part(table, robot, 1, rows * n));
+                BatchGradient { theta, dtheta, tau, parameters }.of_one(rollout, start, bars)
+            });
+        }
         self.by_pieces(options, robots, outputs, |steps, first, count, [to_theta, to_dtheta, to_tau, to_parameters]| {
             let part = |table, width| part(table, first, count, width);
             let (start, tau) = ([part(theta, nq), part(dtheta, n)], part(tau, N * n));
@@ -119,8 +139,7 @@ impl Batch<f64> {
 
     /// Checks the starts and the options; the number of robots.
     fn check_start(&self, [theta, dtheta, tau]: [&[f64]; 3], options: &BatchRollout) -> Result<usize, Error> {
-        check_rollout(self.model(), options.step)?;
-        options.method.explicit()?;
+        options.of_one(self.model())?;
         let (nq, n) = (self.model().nq().max(1), self.model().n());
         if !theta.len().is_multiple_of(nq) {
             return Err(Error::IncompleteState { what: "theta", found: theta.len(), width: nq, lanes: 1 });
@@ -135,6 +154,12 @@ impl Batch<f64> {
             }
         }
         Ok(robots)
+    }
+
+    /// Robots of a piece: one, if steps iterate.
+    fn together(&self, options: &BatchRollout) -> usize {
+        let is_explicit = options.method.explicit().is_ok();
+        if is_explicit && self.model().constraint_rows() == 0 { TOGETHER } else { 1 }
     }
 
     /// Applies f to pieces of robots: with memory for them, the first one's index, and their number.
@@ -313,11 +338,11 @@ fn part(table: &[f64], first: usize, count: usize, width: usize) -> &[f64] {
     &table[first * width..(first + count) * width]
 }
 
-/// The rows of each [`TOGETHER`] robots.
-fn pieces(mut table: &mut [f64], width: usize, robots: usize) -> Vec<&mut [f64]> {
-    let mut pieces = Vec::with_capacity(robots.div_ceil(TOGETHER));
-    for first in (0..robots).step_by(TOGETHER) {
-        let (piece, rest) = core::mem::take(&mut table).split_at_mut(TOGETHER.min(robots - first) * width);
+/// The rows of each `together` robots.
+fn pieces(mut table: &mut [f64], width: usize, robots: usize, together: usize) -> Vec<&mut [f64]> {
+    let mut pieces = Vec::with_capacity(robots.div_ceil(together));
+    for first in (0..robots).step_by(together) {
+        let (piece, rest) = core::mem::take(&mut table).split_at_mut(together.min(robots - first) * width);
         pieces.push(piece);
         table = rest;
     }

@@ -183,5 +183,13 @@ def test_rollouts_stay_closed_and_have_gradients(four_bar, state):
     *_, by_tau = four_bar.rollout_vjp(theta, dtheta, tau, 0.01, *bars)
     slope = (8 * (loss(1e-4) - loss(-1e-4)) - (loss(2e-4) - loss(-2e-4))) / 12e-4
     assert abs(slope - (by_tau * along).sum()) < 1e-8 * max(1, abs(slope))
-    with pytest.raises(ValueError, match="constraint rows"):
-        four_bar.rollout([theta] * 2, [dtheta] * 2, [tau] * 2, 0.01)
+    taus = random.uniform(-1, 1, (3, 5, 3))  # many starts, one by one on all cores
+    many = four_bar.rollout(theta, dtheta, taus, 0.01)
+    gradients = four_bar.rollout_vjp(theta, dtheta, taus, 0.01, *bars, parameters=True)
+    for k, tau in enumerate(taus):
+        own = theta, dtheta, tau, 0.01
+        assert all(np.array_equal(a[k], b) for a, b in zip(many, four_bar.rollout(*own), strict=True))
+        one = four_bar.rollout_vjp(*own, *bars, parameters=True)
+        assert all(np.array_equal(a[k], b) for a, b in zip(gradients, one, strict=True))
+    with pytest.raises(ValueError, match=r"state \[1\].*constraint"):
+        four_bar.rollout([theta, theta + 0.1], dtheta, tau, 0.01)

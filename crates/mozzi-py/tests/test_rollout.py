@@ -25,7 +25,7 @@ def test_states_are_those_of_simulate(robot, method, random):
     assert_close(found.dtheta, expected.dtheta, tolerance=1e-12)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [*METHODS, "midpoint"])
 def test_each_start_by_itself(robot, method, random):
     theta, dtheta, tau, *bars = case(robot, random, 3, 2)
     many = robot.rollout(theta, dtheta, tau, 0.01, method)
@@ -97,7 +97,7 @@ def test_what_is_refused(ur5, random):
             with pytest.raises(ValueError, match="the step"):
                 ur5.rollout(start, dtheta[0], tau[0], step)
     with pytest.raises(ValueError, match="the method"):
-        ur5.rollout(theta, dtheta, tau, 0.01, "midpoint")
+        ur5.rollout(theta, dtheta, tau, 0.01, "dopri")
     with pytest.raises(ValueError, match="the method"):
         ur5.rollout(theta[0], dtheta[0], tau[0], 0.01, "dopri")
     with pytest.raises(ValueError, match="expected 'rk4'"):

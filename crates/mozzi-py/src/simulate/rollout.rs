@@ -8,8 +8,7 @@ use crate::model::PyModel;
 use crate::numpy::Fresh;
 use crate::results::named;
 use crate::threads::Threads;
-use mozzi::simulation::Rollout;
-use mozzi::{Error, Model, Vec3};
+use mozzi::Vec3;
 use mozzi_batch::{BatchGradient, BatchRollout};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -71,20 +70,11 @@ impl<'py> Inputs<'py> {
     }
 }
 
-/// One robot's rollout with these options.
-fn of_one<'m>(options: &BatchRollout, model: &'m Model) -> Result<Rollout<'m>, Error> {
-    let rollout = Rollout::new(model, options.step, options.method)?;
-    match options.gravity {
-        Some(gravity) => rollout.with_gravity(gravity),
-        None => Ok(rollout),
-    }
-}
-
 #[pymethods]
 impl PyModel {
     /// The states of N steps under torques that are held over each step, from one start or from many at once, on all
-    /// cores: x[k + 1] = Φ(x[k], τ[k]) with x = (θ, θ̇). Joint limits are ignored. A robot with constraints
-    /// is brought back onto them after each step; it takes one start, and an explicit method.
+    /// cores: x[k + 1] = Φ(x[k], τ[k]) with x = (θ, θ̇). Joint limits are ignored. A robot with constraints is brought
+    /// back onto them after each step; it takes an explicit method.
     ///
     /// Parameters
     /// ----------
@@ -97,7 +87,7 @@ impl PyModel {
     /// step : float
     ///     The length of a step, s.
     /// method : {'rk4', 'semi-implicit-euler', 'euler', 'midpoint'}
-    ///     How a step is taken, as in `simulate`. 'midpoint' takes one start.
+    ///     How a step is taken, as in `simulate`.
     /// gravity : array_like, shape (3,), optional
     ///     In place of the model's own: m/s².
     /// threads : int, optional
@@ -144,7 +134,7 @@ impl PyModel {
         let states = [theta_table.numbers(), dtheta_table.numbers()];
         if given.leading.is_empty() {
             let ([theta, dtheta, tau], [theta_table, dtheta_table]) = (start, states);
-            py.detach(|| of_one(options, model)?.write_states(theta, dtheta, tau, theta_table, dtheta_table))
+            py.detach(|| options.of_one(model)?.write_states(theta, dtheta, tau, theta_table, dtheta_table))
                 .map_err(of_model)?;
         } else {
             let batch = robot.batch::<f64>(threads)?;
@@ -176,7 +166,7 @@ impl PyModel {
     /// dtheta_bar : array_like, shape (..., N + 1, n)
     ///     ∂L/∂θ̇[k].
     /// method : {'rk4', 'semi-implicit-euler', 'euler', 'midpoint'}
-    ///     How a step is taken, as in `simulate`. 'midpoint' takes one start.
+    ///     How a step is taken, as in `simulate`.
     /// parameters : bool
     ///     Whether to return the gradient by the parameters, too.
     /// gravity : array_like, shape (3,), optional
@@ -232,7 +222,12 @@ impl PyModel {
         let [theta, dtheta, tau] = found.each_mut().map(Fresh::numbers);
         let gradient = BatchGradient { theta, dtheta, tau, parameters: of_parameters.numbers() };
         if given.leading.is_empty() {
-            py.detach(|| one_vjp(model, options, start, bars, gradient)).map_err(of_model)?;
+            py.detach(|| {
+                let rollout = options.of_one(model)?;
+                let mut rollout = if parameters { rollout.with_parameter_gradient() } else { rollout };
+                gradient.of_one(&mut rollout, start, bars)
+            })
+            .map_err(of_model)?;
         } else {
             let batch = robot.batch::<f64>(threads)?;
             py.detach(|| batch.rollout_vjp(start, options, bars, gradient))
@@ -242,24 +237,4 @@ impl PyModel {
         results.extend(parameters.then(|| of_parameters.into_array()));
         PyTuple::new(py, results)
     }
-}
-
-/// The product of one rollout, into the tables.
-fn one_vjp(
-    model: &Model,
-    options: &BatchRollout,
-    [theta, dtheta, tau]: [&[f64]; 3],
-    [theta_bar, dtheta_bar]: [&[f64]; 2],
-    to: BatchGradient<'_>,
-) -> Result<(), Error> {
-    let mut rollout = of_one(options, model)?;
-    if !to.parameters.is_empty() {
-        rollout = rollout.with_parameter_gradient();
-    }
-    let found = rollout.vjp(theta, dtheta, tau, theta_bar, dtheta_bar)?;
-    to.theta.copy_from_slice(&found.theta);
-    to.dtheta.copy_from_slice(&found.dtheta);
-    to.tau.copy_from_slice(&found.tau);
-    to.parameters.copy_from_slice(&found.parameters);
-    Ok(())
 }

@@ -70,7 +70,7 @@ pub use policy::Policy;
 pub use recorder::{Account, Recorder, Thinned, stride};
 pub use rollout::{
     Cotangents, ExplicitSteps, ParameterGradient, Rollout, RolloutGradient, RolloutStates, Stage, StageDynamics,
-    StartGradient, Stepper, Steps, Tables, check_rollout,
+    StartGradient, Stepper, Steps, Tables,
 };
 pub use run::{Ending, Run, Simulation};
 pub use sensitivity::{EndSensitivity, StepSensitivity};

@@ -340,17 +340,6 @@ fn check_step(h: f64) -> Result<(), Error> {
     check(h.is_finite() && h > 0.0, "the step", format!("{h} s"), "a positive, finite number of seconds")
 }
 
-/// Checks the robot and the step's size in seconds for rollouts of many robots together.
-///
-/// # Errors
-/// [`Error::BadArgument`] for a step that is not positive and finite, or a robot with constraints.
-pub fn check_rollout(model: &Model, h: f64) -> Result<(), Error> {
-    check_step(h)?;
-    let m = model.constraint_rows();
-    let found = format!("`{}` with {m} constraint rows", model.description().name);
-    check(m == 0, "the robot of many rollouts", found, "a robot without constraints, or one start")
-}
-
 fn length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {
     if found == expected { Ok(()) } else { Err(Error::WrongLength { what, found, expected }) }
 }
