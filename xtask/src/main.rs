@@ -1,4 +1,4 @@
-//! `cargo xtask test | check | docs | page | bench | accuracy | nightly | wheel`: the same commands as in CI.
+//! `cargo xtask test | check | docs | page | bench | accuracy | nightly | wheel | dist`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -7,6 +7,7 @@ mod accuracy;
 mod advisories;
 mod bench;
 mod command;
+mod dist;
 mod docs;
 mod documents;
 mod examples;
@@ -59,7 +60,8 @@ usage: cargo xtask COMMAND
   nightly long simulations, accuracy at 1000 states, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
-          --of-tests                                  package the build of `test`, as `test` does it";
+          --of-tests                                  package the build of `test`, as `test` does it
+  dist    archives of the C and C++ library for Linux into target/dist, for glibc 2.28 or newer; needs cmake";
 
 /// Options of `test`, each with what it installs.
 const EXTRAS: [(&str, &str); 1] = [("--torch", venv::TORCH)];
@@ -76,6 +78,7 @@ fn main() -> ExitCode {
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
         ["wheel"] => wheel(&workspace),
+        ["dist"] => dist(&workspace),
         ["nightly"] => nightly::run(&workspace, nightly::SECONDS),
         ["nightly", "--seconds", seconds] if seconds.parse::<u32>().is_ok() => {
             nightly::run(&workspace, seconds.parse().unwrap_or(nightly::SECONDS))
@@ -131,6 +134,12 @@ fn wheel(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("Python environment", || venv::prepare(workspace));
     report.step("wheel", || wheel::build(workspace));
+    report.finish()
+}
+
+fn dist(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    dist::run(workspace, &mut report);
     report.finish()
 }
 

@@ -1,0 +1,15 @@
+# cmake -DFROM=… -DTO=… -DMOZZI_ABI=… -P copy-libraries.cmake: cargo's libraries under the names that they are installed with.
+include("${CMAKE_CURRENT_LIST_DIR}/mozzi-files.cmake")
+if(CMAKE_HOST_WIN32)
+  foreach(file ${MOZZI_CARGO_FILES})
+    configure_file("${FROM}/${file}" "${TO}/${file}" COPYONLY)
+  endforeach()
+  return()
+endif()
+list(GET MOZZI_CARGO_FILES 0 shared)
+list(GET MOZZI_CARGO_FILES 1 static)
+configure_file("${FROM}/${shared}" "${TO}/${MOZZI_SHARED_FILE}" COPYONLY)
+configure_file("${FROM}/${static}" "${TO}/${MOZZI_STATIC_FILE}" COPYONLY)
+if(MOZZI_SHARED_FILE MATCHES "^(.*\\.so)\\.")
+  file(CREATE_LINK "${MOZZI_SHARED_FILE}" "${TO}/${CMAKE_MATCH_1}" SYMBOLIC) # what -lmozzi finds
+endif()

@@ -1,0 +1,15 @@
+# Names of the library's files: as cargo builds them, and as they are installed. On Linux the shared library is named
+# after the version of its ABI, MOZZI_ABI.
+if(WIN32)
+  set(MOZZI_CARGO_FILES mozzi_c.dll mozzi_c.dll.lib mozzi_c.lib)
+  set(MOZZI_SHARED_FILE mozzi_c.dll)
+  set(MOZZI_STATIC_FILE mozzi_c.lib)
+elseif(APPLE)
+  set(MOZZI_CARGO_FILES libmozzi_c.dylib libmozzi_c.a)
+  set(MOZZI_SHARED_FILE libmozzi.dylib)
+  set(MOZZI_STATIC_FILE libmozzi.a)
+else()
+  set(MOZZI_CARGO_FILES libmozzi_c.so libmozzi_c.a)
+  set(MOZZI_SHARED_FILE libmozzi.so.${MOZZI_ABI})
+  set(MOZZI_STATIC_FILE libmozzi.a)
+endif()
