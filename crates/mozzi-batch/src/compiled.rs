@@ -152,13 +152,21 @@ impl Compiled {
     #[inline]
     pub fn evaluate<'q>(&self, query: impl Into<Query<'q>>, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> bool {
         let query = query.into();
-        if let Some(machine) = self.machine(&query)
-            && let Ok(kernel) = &machine.code
-            && let Some(are_clear) = machine.run(kernel, state, outputs)
-        {
-            return are_clear;
+        match self.evaluate_code(&query, state, outputs) {
+            Some(are_clear) => are_clear,
+            None => self.evaluate_by_kernels(query, state, outputs),
         }
-        self.evaluate_by_kernels(query, state, outputs)
+    }
+
+    /// [`evaluate`](Self::evaluate) by machine code alone: none if there is none for this quantity, or if an angle is
+    /// beyond its range; the outputs then mean nothing.
+    ///
+    /// # Panics
+    /// If the number of arrays or the length of one is wrong.
+    #[inline]
+    pub fn evaluate_code(&self, query: &Query, state: &[&[f64]], outputs: &mut [&mut [f64]]) -> Option<bool> {
+        let machine = self.machine(query)?;
+        machine.run(machine.code.as_ref().ok()?, state, outputs)
     }
 
     #[cold]

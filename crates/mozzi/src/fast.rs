@@ -16,9 +16,11 @@
 //! # }
 //! ```
 
-use crate::model::{Environment, Error, FrameId, Model};
-use crate::quantities::{Inputs, Memory, Outputs, Quantity, Query, Subject, are_clear, evaluate as run};
-use crate::scalar::Fused;
+use crate::model::{Environment, Error, FrameId, Model, Pivots};
+use crate::quantities::{
+    Inputs, MassMatrix, Memory, Of, Outputs, Quantity, Query, Subject, are_clear, evaluate as run,
+};
+use crate::scalar::{Fused, Scalar};
 use crate::spatial::Wrench;
 use alloc::vec::Vec;
 
@@ -65,6 +67,41 @@ impl Workspace {
             Inner::Fused(memory, _) => are_clear(query.declaration(), memory),
         }
     }
+}
+
+/// What is singular at a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Singular {
+    /// The mass matrix, at the joint of this velocity.
+    MassMatrix(usize),
+    /// The task.
+    Task,
+}
+
+impl Workspace {
+    /// What is singular according to this quantity's last call at θ, by the rule of [`Pivots`](crate::Pivots); for
+    /// calls after which [`are_pivots_clear`](Self::are_pivots_clear) is false. M, n × n, is overwritten. No
+    /// allocation.
+    ///
+    /// # Panics
+    /// When θ is not nq long, or M not n².
+    pub fn singular(&mut self, query: &Query, model: &Model, theta: &[f64], M: &mut [f64]) -> Option<Singular> {
+        if self.are_pivots_clear(query) {
+            return None;
+        }
+        // leaves the pivots as they are
+        evaluate(&Query::from(MassMatrix), model, &[theta], &model.environment(), self, &mut [M]);
+        match &self.0 {
+            Inner::Plain(memory) => singular(query, memory, model.n(), M),
+            Inner::Fused(memory, _) => singular(query, memory, model.n(), M),
+        }
+    }
+}
+
+fn singular<S: Scalar + Into<f64>>(query: &Query, memory: &Memory<S>, n: usize, M: &[f64]) -> Option<Singular> {
+    let singular = Pivots::new(memory.workspace.pivots()).first_singular(n, M).map(Singular::MassMatrix);
+    let of_task = || memory.task().filter(|task| task.is_singular(n)).map(|_| Singular::Task);
+    singular.or_else(|| if query.declaration().of == Of::Task { of_task() } else { None })
 }
 
 /// The outputs of a quantity at one state, matrices by rows.
@@ -124,7 +161,8 @@ type Entry = unsafe fn(&Subject, &Model, &Inputs<Fused>, Around, &mut Memory<Fus
 /// The environment, and memory for its wrenches in fused numbers.
 type Around<'a> = (&'a Environment<'a>, &'a mut Vec<(FrameId, Wrench<Fused>)>);
 
-const ENTRIES: &[Entry] = {
+// a static, so that no other crate compiles these kernels again
+static ENTRIES: &[Entry] = {
     macro_rules! entries {
         ($($Q:ident)*) => { &[$(fused::<crate::quantities::$Q>),*] };
     }

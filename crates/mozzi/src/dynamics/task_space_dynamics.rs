@@ -90,9 +90,12 @@ impl Kernel for TaskSpaceDynamics {
     #[inline(always)]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [Lambda, eta, ..], task) = (c.inputs, c.outputs, c.of.task());
-        let Memory { workspace, task: memory, .. } = c.memory;
-        memory.take_if(|(rows, _)| *rows != task.rows.len());
-        let (_, own) = memory.get_or_insert_with(|| (task.rows.len(), TaskMemory::new(c.model, task.rows.len())));
-        task_space_dynamics(c.model, theta, dtheta, task, c.environment, workspace, own, Lambda, eta);
+        let Memory { workspace, tasks, .. } = c.memory;
+        let own = tasks.iter().position(|memory| memory.pivots.len() == task.rows.len()).unwrap_or_else(|| {
+            tasks.push(TaskMemory::new(c.model, task.rows.len()));
+            tasks.len() - 1
+        });
+        tasks.swap(0, own);
+        task_space_dynamics(c.model, theta, dtheta, task, c.environment, workspace, &mut tasks[0], Lambda, eta);
     }
 }

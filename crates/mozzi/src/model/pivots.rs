@@ -32,6 +32,22 @@ impl<'a, S: Copy + Into<f64>> Pivots<'a, S> {
     }
 }
 
+impl<S: Copy + Into<f64>> Pivots<'_, S> {
+    /// The outermost velocity whose pivot fails the rule, M(θ) being given, n × n: it spoils the pivots closer to the
+    /// base.
+    ///
+    /// # Panics
+    /// When M is not n².
+    pub fn first_singular(&self, n: usize, M: &[f64]) -> Option<usize> {
+        assert!(M.len() == n * n, "M has {} entries, expected {}", M.len(), n * n);
+        let is_regular = |j: usize| {
+            let pivot: f64 = self.0[j].into();
+            pivot > 64.0 * f64::EPSILON * M[j * n + j] && pivot.is_finite()
+        };
+        (0..self.0.len()).rev().find(|&j| !is_regular(j))
+    }
+}
+
 impl Pivots<'_> {
     /// Applies the rule. `mass_matrix` is called for M(θ), n × n, only if the pivots are not [clear](Self::are_clear).
     ///
@@ -48,14 +64,9 @@ impl Pivots<'_> {
             return Ok(());
         }
         let (n, M) = (model.n(), mass_matrix());
-        for (j, &pivot) in self.0.iter().enumerate().rev() {
-            let diagonal = M[j * n + j];
-            if !(pivot > 64.0 * f64::EPSILON * diagonal && pivot.is_finite()) {
-                let joint = model.velocity_names().nth(j).unwrap_or_default().to_string();
-                return Err(Error::SingularMassMatrix { joint, pivot, diagonal, theta: theta.to_vec() });
-            }
-        }
-        Ok(())
+        let Some(j) = self.first_singular(n, &M) else { return Ok(()) };
+        let joint = model.velocity_names().nth(j).unwrap_or_default().to_string();
+        Err(Error::SingularMassMatrix { joint, pivot: self.0[j], diagonal: M[j * n + j], theta: theta.to_vec() })
     }
 }
 

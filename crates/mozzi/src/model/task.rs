@@ -6,7 +6,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::DMatrix;
+use nalgebra::{Matrix6, SMatrix, Vector6};
 
 /// Coordinates of the task's twist and wrench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,6 +99,33 @@ impl<S: Scalar> TaskMemory<S> {
     }
 }
 
+/// The singular values of a matrix of up to six rows, by rows, largest first; 0 for rows that it lacks. J is rotated
+/// into a 6 × 6 triangle, six columns at a time.
+fn singular_values<S: Scalar + Into<f64>>(J: &[S], rows: usize, n: usize) -> Vector6<f64> {
+    let mut R = Matrix6::zeros();
+    for first in (0..n).step_by(6) {
+        let mut stacked = SMatrix::<f64, 12, 6>::zeros();
+        stacked.fixed_rows_mut::<6>(0).copy_from(&R);
+        for (j, row) in (first..n.min(first + 6)).zip(6..) {
+            (0..rows).for_each(|r| stacked[(row, r)] = J[r * n + j].into());
+        }
+        R = stacked.qr().r();
+    }
+    R.singular_values()
+}
+
+impl<S: Scalar + Into<f64>> TaskMemory<S> {
+    /// Are the rows dependent? They are if the smallest singular value of J is below 10⁻¹² of the largest, or a pivot
+    /// not positive. No allocation.
+    pub(crate) fn is_singular(&self, n: usize) -> bool {
+        let (k, sigma) = (self.pivots.len(), singular_values(&self.J, self.pivots.len(), n));
+        (0..k).any(|i| !(sigma[i] > RANK * sigma[0])) || self.pivots.iter().any(|&pivot| !(pivot.into() > 0.0))
+    }
+}
+
+/// The smallest ratio of singular values that counts as independent rows.
+const RANK: f64 = 1e-12;
+
 impl TaskMemory {
     /// Checks that the rows are independent: the smallest singular value of J is above 10⁻¹² of the largest. Singular
     /// values are computed only if a quick test of the pivots fails.
@@ -109,14 +136,10 @@ impl TaskMemory {
         if Pivots::new(&self.pivots).are_clear() || theta.iter().any(|x| !x.is_finite()) {
             return Ok(());
         }
-        let k = self.pivots.len();
-        let J = DMatrix::from_row_slice(k, n, &self.J);
-        // if no joint moves, there is nothing to decompose
-        let mut singular_values: Vec<f64> =
-            if n == 0 { Vec::new() } else { J.singular_values().iter().copied().collect() };
-        singular_values.resize(k, 0.0); // more rows than joints
-        let tolerance = 1e-12 * singular_values[0];
-        if singular_values.iter().any(|&s| !(s > tolerance)) || self.pivots.iter().any(|&pivot| !(pivot > 0.0)) {
+        if self.is_singular(n) {
+            let k = self.pivots.len();
+            let singular_values = singular_values(&self.J, k, n).as_slice()[..k].to_vec();
+            let tolerance = RANK * singular_values[0];
             return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
         }
         Ok(())

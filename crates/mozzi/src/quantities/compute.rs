@@ -73,8 +73,8 @@ impl Query<'_> {
             return Ok(());
         }
         Pivots::new(memory.workspace.pivots()).check(model, theta, || model.mass_matrix_rows(theta))?;
-        match &memory.task {
-            Some((_, task)) if *of == Of::Task => task.check(model.n(), theta),
+        match memory.task() {
+            Some(task) if *of == Of::Task => task.check(model.n(), theta),
             _ => Ok(()),
         }
     }
@@ -83,5 +83,7 @@ impl Query<'_> {
 /// True if every pivot of a quantity's last call is well above rounding error. If false, [`Model::compute`] checks each
 /// pivot.
 pub(crate) fn are_clear<S: Scalar + Into<f64>>(declaration: &Declaration, memory: &Memory<S>) -> bool {
-    !declaration.divides || memory.pivots().all(|pivots| Pivots::new(pivots).are_clear())
+    // an earlier task's pivots do not matter to other quantities
+    let pivots = || memory.pivots().take(if declaration.of == Of::Task { 2 } else { 1 });
+    !declaration.divides || pivots().all(|pivots| Pivots::new(pivots).are_clear())
 }

@@ -23,7 +23,8 @@ pub struct Memory<S = f64> {
     pub(crate) vector: Vec<S>,
     /// The dense n × n pattern.
     pub(crate) dense: Option<Pattern>,
-    pub(crate) task: Option<(usize, TaskMemory<S>)>,
+    /// For each number of rows that was asked for; the last call's comes first.
+    pub(crate) tasks: Vec<TaskMemory<S>>,
     pub(crate) constraints: Option<ConstraintMemory<S>>,
     /// Replaces the query's point in the next call.
     pub(crate) point: Option<Vec3<S>>,
@@ -41,7 +42,7 @@ impl<S: Scalar> Memory<S> {
             matrix: Vec::new(),
             vector: Vec::new(),
             dense: None,
-            task: None,
+            tasks: Vec::new(),
             constraints: None,
             point: None,
         }
@@ -55,12 +56,12 @@ impl<S: Scalar> Memory<S> {
 
     /// The pivots of the last call: of the mass matrix, and of a task's Λ⁻¹.
     pub fn pivots(&self) -> impl Iterator<Item = &[S]> {
-        core::iter::once(&self.workspace.pivots[..]).chain(self.task.iter().map(|(_, task)| &task.pivots[..]))
+        core::iter::once(&self.workspace.pivots[..]).chain(self.task().map(|task| &task.pivots[..]))
     }
 
     /// Intermediate results of the last task-space dynamics.
     pub fn task(&self) -> Option<&TaskMemory<S>> {
-        self.task.as_ref().map(|(_, task)| task)
+        self.tasks.first()
     }
 
     /// Sets every number to NaN, to test that results do not depend on old contents.
@@ -72,9 +73,7 @@ impl<S: Scalar> Memory<S> {
         self.poses.fill(SE3::identity().map(|_: S| nan));
         self.matrix.fill(nan);
         self.vector.fill(nan);
-        if let Some((_, task)) = &mut self.task {
-            task.fill_nan();
-        }
+        self.tasks.iter_mut().for_each(TaskMemory::fill_nan);
         if let Some(constraints) = &mut self.constraints {
             constraints.fill_nan();
         }

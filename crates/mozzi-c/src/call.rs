@@ -1,0 +1,333 @@
+//! One quantity at one state: from C's pointers to the kernel and back, without allocation.
+
+use crate::border::{check_finite, slice};
+use crate::environment::CEnvironment;
+use crate::handle::{borrow, check_pointer};
+use crate::robot::{Frame, ModelHandle, Robot};
+use crate::status::{Outcome, Status, guard, of_model, refuse};
+use crate::workspace::{Memory, WorkspaceHandle};
+use mozzi::fast::{self, Singular};
+use mozzi::quantities::{MOST_INPUTS, MOST_OUTPUTS, Of, Output, Query, Subject};
+use mozzi::{Environment, TaskFrame, Vec3};
+use std::sync::Arc;
+
+/// `mozzi_task`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Task {
+    frame: Frame,
+    coordinates: i32,
+    rows: *const usize,
+    row_count: usize,
+}
+
+impl Task {
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+}
+
+/// The arguments of a call besides inputs and outputs; those that a quantity does not have are null or 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Given {
+    pub frame: Frame,
+    pub task: *const Task,
+    pub about: *const f64,
+    pub environment: *const CEnvironment,
+}
+
+impl Default for Given {
+    fn default() -> Self {
+        let (task, about, environment) = (std::ptr::null(), std::ptr::null(), std::ptr::null());
+        Given { frame: 0, task, about, environment }
+    }
+}
+
+/// Where an output goes: its address and the strides of its last three axes, in numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Out {
+    pub data: *mut f64,
+    pub strides: [isize; 3],
+}
+
+/// `mozzi_matrix`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Matrix {
+    data: *mut f64,
+    row_stride: isize,
+    column_stride: isize,
+}
+
+/// `mozzi_tensor`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Tensor {
+    data: *mut f64,
+    block_stride: isize,
+    row_stride: isize,
+    column_stride: isize,
+}
+
+impl From<*mut f64> for Out {
+    #[inline(always)]
+    fn from(data: *mut f64) -> Self {
+        Out { data, strides: [0, 0, 1] }
+    }
+}
+
+impl From<Matrix> for Out {
+    #[inline(always)]
+    fn from(Matrix { data, row_stride, column_stride }: Matrix) -> Self {
+        Out { data, strides: [0, row_stride, column_stride] }
+    }
+}
+
+impl From<Tensor> for Out {
+    #[inline(always)]
+    fn from(Tensor { data, block_stride, row_stride, column_stride }: Tensor) -> Self {
+        Out { data, strides: [block_stride, row_stride, column_stride] }
+    }
+}
+
+impl Given {
+    /// The quantity of this index with its frame, task or point.
+    ///
+    /// # Safety
+    /// The pointers are null or valid as long as 'a.
+    #[inline(always)]
+    pub unsafe fn query<'a>(&self, robot: &Robot, index: usize) -> Outcome<Query<'a>> {
+        let mut query: Query<'a> = Query::at(index);
+        match query.declaration().of {
+            Of::Robot => {}
+            Of::Frame => query.subject.frame = Some(robot.frame(self.frame)?),
+            // SAFETY: the caller's promise.
+            Of::Task => query = unsafe { self.of_task(robot, query)? },
+            Of::Point if !self.about.is_null() => {
+                // SAFETY: the caller's promise.
+                let about = unsafe { slice(self.about, 3, "about")? };
+                check_finite(about, "about")?;
+                query.subject.point = Vec3([about[0], about[1], about[2]]);
+            }
+            Of::Point => {}
+        }
+        if query.declaration().needs_mass {
+            query.check_subject(&robot.model).map_err(|error| of_model(&error))?;
+        }
+        Ok(query)
+    }
+
+    /// # Safety
+    /// As [`query`](Self::query).
+    unsafe fn of_task<'a>(&self, robot: &Robot, mut query: Query<'a>) -> Outcome<Query<'a>> {
+        check_pointer(self.task, "task")?;
+        // SAFETY: the caller's promise.
+        let task = unsafe { &*self.task };
+        query.subject.frame = Some(robot.frame(task.frame)?);
+        query.subject.coordinates = match task.coordinates {
+            0 => TaskFrame::Body,
+            1 => TaskFrame::Space,
+            other => {
+                return refuse!(
+                    Status::INVALID_ARGUMENT,
+                    "task.coordinates is {other}, expected MOZZI_BODY or MOZZI_SPACE"
+                );
+            }
+        };
+        if task.row_count > 6 {
+            return refuse!(Status::INVALID_ARGUMENT, "the task has {} rows, expected at most 6", task.row_count);
+        }
+        if task.row_count > 0 {
+            // SAFETY: the caller's promise.
+            query.subject.rows = unsafe { slice(task.rows, task.row_count, "task.rows")? };
+        }
+        query.check_subject(&robot.model).map_err(|error| of_model(&error))?;
+        Ok(query)
+    }
+}
+
+/// The shape of an output, its last axis last, 1 for axes that it lacks.
+#[inline(always)]
+pub fn shape(output: &Output, robot: &Robot, subject: &Subject) -> [usize; 3] {
+    let mut shape = [1; 3];
+    let first = 3 - output.dims.len();
+    for (size, dim) in shape[first..].iter_mut().zip(output.dims) {
+        *size = dim.size(&robot.model, subject);
+    }
+    shape
+}
+
+/// Are numbers by rows, without gaps, in these strides?
+#[inline(always)]
+fn is_by_rows(&[blocks, rows, columns]: &[usize; 3], &[block, row, column]: &[isize; 3]) -> bool {
+    (columns <= 1 || column == 1)
+        && (rows <= 1 || row == columns as isize)
+        && (blocks <= 1 || block == (rows * columns) as isize)
+}
+
+/// Do two arrays share memory?
+#[inline(always)]
+pub fn overlap(a: *const f64, a_length: usize, b: *const f64, b_length: usize) -> bool {
+    let (a, b) = (a.addr(), b.addr());
+    a < b.wrapping_add(8 * b_length) && b < a.wrapping_add(8 * a_length)
+}
+
+/// Copies numbers by rows to their place.
+///
+/// # Safety
+/// The place may be written.
+unsafe fn scatter(numbers: &[f64], &[_, rows, columns]: &[usize; 3], out: &Out) {
+    let [block, row, column] = out.strides;
+    for (b, numbers) in numbers.chunks_exact((rows * columns).max(1)).enumerate() {
+        for (r, numbers) in numbers.chunks_exact(columns.max(1)).enumerate() {
+            for (c, &number) in numbers.iter().enumerate() {
+                // SAFETY: the caller's promise.
+                unsafe { out.data.offset(b as isize * block + r as isize * row + c as isize * column).write(number) };
+            }
+        }
+    }
+}
+
+/// Computes the quantity of this index.
+///
+/// # Safety
+/// Handles, inputs and outputs are null or as mozzi.h promises; there are as many as the quantity has.
+#[inline(never)]
+pub unsafe fn call(
+    index: usize,
+    model: *const ModelHandle,
+    workspace: *const WorkspaceHandle,
+    inputs: &[*const f64],
+    given: &Given,
+    outputs: &[Out],
+) -> Status {
+    // SAFETY: the caller's promise.
+    guard(|| unsafe { checked(index, model, workspace, inputs, given, outputs) })
+}
+
+/// # Safety
+/// As [`call`].
+#[inline(always)]
+unsafe fn checked(
+    index: usize,
+    model: *const ModelHandle,
+    workspace: *const WorkspaceHandle,
+    inputs: &[*const f64],
+    given: &Given,
+    outputs: &[Out],
+) -> Outcome {
+    // SAFETY: the caller's promise.
+    let (robot, workspace) = unsafe { (borrow(model)?, borrow(workspace)?) };
+    if !Arc::ptr_eq(robot, &workspace.robot) {
+        let found = &workspace.robot.model.description().name;
+        let expected = &robot.model.description().name;
+        return refuse!(Status::FOREIGN, "the workspace is of a model '{found}', expected one of this '{expected}'");
+    }
+    let mut locked = workspace.lock()?;
+    let memory = &mut *locked;
+    // SAFETY: the caller's promise.
+    let query = unsafe { given.query(robot, index)? };
+    let declaration = query.declaration();
+
+    let mut state: [&[f64]; MOST_INPUTS] = [&[]; MOST_INPUTS];
+    for ((numbers, input), &pointer) in state.iter_mut().zip(declaration.inputs).zip(inputs) {
+        // SAFETY: the caller's promise.
+        *numbers = unsafe { slice(pointer, input.dim.size(&robot.model, &query.subject), input.name)? };
+        match input.name {
+            "theta" => robot.check_theta(numbers)?,
+            name => check_finite(numbers, name)?,
+        }
+    }
+    let state = &state[..declaration.inputs.len()];
+
+    let Memory { fast, program, applied, scratch, M } = memory;
+    let mut places: [&mut [f64]; MOST_OUTPUTS] = Default::default();
+    let mut shapes = [[0; 3]; MOST_OUTPUTS];
+    let mut is_direct = [true; MOST_OUTPUTS];
+    let mut rest = &mut scratch[..];
+    for (k, (output, out)) in declaration.outputs.iter().zip(outputs).enumerate() {
+        shapes[k] = shape(output, robot, &query.subject);
+        let length = shapes[k].iter().product();
+        if length == 0 {
+            continue;
+        }
+        check_pointer(out.data.cast_const(), output.name)?;
+        let data = out.data.cast_const();
+        is_direct[k] = is_by_rows(&shapes[k], &out.strides)
+            && !state.iter().any(|input| overlap(data, length, input.as_ptr(), input.len()))
+            && !(0..k).any(|other| overlap(data, length, places[other].as_ptr(), places[other].len()));
+        places[k] = if is_direct[k] {
+            // SAFETY: the caller's promise, and no other slice of this call has a part of it.
+            unsafe { std::slice::from_raw_parts_mut(out.data, length) }
+        } else {
+            let (part, tail) = std::mem::take(&mut rest).split_at_mut(length);
+            rest = tail;
+            part
+        };
+    }
+    let count = declaration.outputs.len();
+
+    let by_code = if given.environment.is_null() { program.as_ref() } else { None };
+    let by_code = by_code.and_then(|program| program.evaluate_code(&query, state, &mut places[..count]));
+    let singular = match by_code {
+        Some(true) => None,
+        _ => {
+            let around;
+            let environment: &Environment = if given.environment.is_null() {
+                &robot.own
+            } else {
+                // SAFETY: the caller's promise.
+                around = unsafe { CEnvironment::read(given.environment, robot, applied)? };
+                &around
+            };
+            fast::evaluate(&query, &robot.model, state, environment, fast, &mut places[..count]);
+            match fast.are_pivots_clear(&query) {
+                true => None,
+                false => fast.singular(&query, &robot.model, state[0], M),
+            }
+        }
+    };
+    if singular.is_some() {
+        places.iter_mut().for_each(|numbers| numbers.fill(f64::NAN));
+    }
+    for k in (0..count).filter(|&k| !is_direct[k]) {
+        // SAFETY: the caller's promise.
+        unsafe { scatter(places[k], &shapes[k], &outputs[k]) };
+    }
+    match singular {
+        None => Ok(()),
+        Some(Singular::MassMatrix(j)) => {
+            let joint = robot.names.velocities[j].to_str().unwrap_or_default();
+            let why = "it moves no inertia, or other joints produce the same motion";
+            refuse!(Status::SINGULAR, "the mass matrix is singular at joint '{joint}': {why}")
+        }
+        Some(Singular::Task) => {
+            refuse!(Status::SINGULAR, "the task is singular: the rows of its Jacobian are dependent")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_by_rows, overlap};
+
+    #[test]
+    fn rows_without_gaps_are_told_from_others() {
+        assert!(is_by_rows(&[1, 1, 7], &[0, 0, 1]));
+        assert!(is_by_rows(&[1, 6, 7], &[0, 7, 1]));
+        assert!(is_by_rows(&[3, 6, 7], &[42, 7, 1]));
+        assert!(is_by_rows(&[1, 1, 1], &[0, 9, 9]));
+        assert!(!is_by_rows(&[1, 6, 7], &[0, 1, 6]));
+        assert!(!is_by_rows(&[1, 6, 7], &[0, 8, 1]));
+        assert!(!is_by_rows(&[3, 6, 7], &[1, 7, 1]));
+        assert!(!is_by_rows(&[1, 1, 7], &[0, 0, 2]));
+    }
+
+    #[test]
+    fn arrays_overlap_if_they_share_a_number() {
+        let x = [0.0; 10];
+        let at = |k: usize| x[k..].as_ptr();
+        assert!(overlap(at(0), 5, at(4), 5) && overlap(at(4), 5, at(0), 5) && overlap(at(2), 1, at(0), 10));
+        assert!(!overlap(at(0), 5, at(5), 5) && !overlap(at(5), 5, at(0), 5));
+    }
+}
