@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <mozzi.hpp>
+#include <mozzi/mozzi.hpp>
 #include <rclcpp/node_interfaces/node_parameters_interface.hpp>
 #include <string>
 #include <vector>
