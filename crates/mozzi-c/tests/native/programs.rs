@@ -95,3 +95,16 @@ fn the_static_library() {
         Build { compiler, standard: "c99", flags: POSIX, is_static: true }.run("quantities.c");
     }
 }
+
+#[test]
+fn robots_in_c() {
+    c99("robots.c");
+}
+
+#[test]
+fn objects_in_cpp() {
+    cpp("objects.cpp", &[]);
+    for compiler in here(&CPP) {
+        Build { compiler, standard: "c++17", flags: &["-fno-exceptions"], is_static: false }.run("objects.cpp");
+    }
+}
