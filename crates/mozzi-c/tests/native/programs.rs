@@ -1,6 +1,6 @@
 //! Each program by each compiler.
 
-use crate::toolchain::{Build, SANITIZERS, copy_of_the_library, eigen, exists, has_sanitizers};
+use crate::toolchain::{Build, SANITIZERS, copy_of_the_library, eigen, exists, has_sanitizers, run, source};
 
 /// `fork`, `dlopen` and threads beside C99.
 const POSIX: &[&str] = &["-D_POSIX_C_SOURCE=200809L"];
@@ -106,5 +106,27 @@ fn objects_in_cpp() {
     cpp("objects.cpp", &[]);
     for compiler in here(&CPP) {
         Build { compiler, standard: "c++17", flags: &["-fno-exceptions"], is_static: false }.run("objects.cpp");
+    }
+}
+
+#[test]
+fn the_examples() {
+    let place = "../../examples/cpp";
+    let eigen = eigen();
+    for entry in std::fs::read_dir(source(place)).expect("the examples") {
+        let name = entry.expect("a file").file_name().into_string().expect("a name in UTF-8");
+        let text = std::fs::read_to_string(source(place).join(&name)).expect("a text");
+        let flags = match (&eigen, text.contains("#include <Eigen/")) {
+            (None, true) => continue,
+            (Some(flags), true) => flags.iter().map(String::as_str).collect(),
+            (_, false) => Vec::new(),
+        };
+        if name.ends_with(".cpp") {
+            for compiler in here(&CPP) {
+                let build = Build { compiler, standard: "c++17", flags: &flags, is_static: false };
+                let program = build.compile(&format!("{place}/{name}"));
+                print!("{name}: {}", run(&mut std::process::Command::new(program)));
+            }
+        }
     }
 }

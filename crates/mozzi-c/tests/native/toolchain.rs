@@ -101,15 +101,19 @@ pub struct Build<'a> {
 }
 
 impl Build<'_> {
-    /// Compiles a program of `tests/programs`; its path.
+    /// Compiles a program of `tests/programs`, or of another folder of the package; its path.
     pub fn compile(&self, program: &str) -> PathBuf {
+        let (place, program) = match program.rsplit_once('/') {
+            Some((place, program)) => (source(place), program),
+            None => (source("tests/programs"), program),
+        };
         let kind = format!("{}-{}-{}-{}", self.compiler, self.standard, self.flags.join(""), self.is_static);
         let kind: String = kind.chars().filter(|c| c.is_alphanumeric() || "-+".contains(*c)).collect();
         let to = folder().join(format!("{}-{kind}", program.replace('.', "-")));
         let mut compiler = Command::new(self.compiler);
         compiler.arg(format!("-std={}", self.standard)).args(WARNINGS).args(["-g1", "-O0"]).args(self.flags);
         compiler.arg("-I").arg(source("include")).arg("-I").arg(folder());
-        compiler.arg(source("tests/programs").join(program)).arg("-o").arg(&to);
+        compiler.arg(place.join(program)).arg("-o").arg(&to);
         if self.is_static {
             compiler.arg(folder().join("libmozzi.a"));
         } else {

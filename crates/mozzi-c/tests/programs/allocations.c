@@ -80,6 +80,38 @@ static size_t run(struct robot *robot, size_t rounds) {
     return done;
 }
 
+/* Inverse kinematics from near and far, with a secondary goal, and in vain. */
+static void search(void) {
+    mozzi_model *model = NULL;
+    mozzi_workspace *workspace = NULL;
+    mozzi_inverse_kinematics *solver = NULL;
+    mozzi_frame hand;
+    mozzi_solution solution;
+    double theta[16] = {0.3, -0.5, 0.2, -1.8, 0.1, 1.5, 0.4}, guess[16] = {0, 0, 0, -1.5, 0, 1.5, 0};
+    double far[16] = {2, 1, -2, -0.5, 2, 0.5, -2}, T[16], found[16];
+    const double beyond[3] = {100, 0, 0};
+    size_t before, k, starts = 0;
+    OK(mozzi_model_embedded("panda", &model));
+    OK(mozzi_workspace_new(model, &workspace));
+    OK(mozzi_model_frame(model, "panda_hand", &hand));
+    OK(mozzi_inverse_kinematics_new(model, hand, NULL, &solver));
+    before = calls;
+    for (k = 0; k < 20; ++k) {
+        theta[0] = 0.1 * (double)k;
+        OK(mozzi_forward_kinematics(model, workspace, theta, hand, mozzi_by_rows(T, 4)));
+        OK(mozzi_inverse_kinematics_solve(solver, MOZZI_GOAL_POSE, T, guess, NULL, found, &solution));
+        OK(mozzi_inverse_kinematics_solve(solver, MOZZI_GOAL_POSE, T, far, k < 2 ? guess : NULL, found, &solution));
+        starts += solution.starts;
+    }
+    EXPECT(MOZZI_NOT_REACHED,
+           mozzi_inverse_kinematics_solve(solver, MOZZI_GOAL_POSITION, beyond, guess, NULL, found, NULL));
+    CHECK(calls == before);
+    CHECK(starts >= 20);
+    OK(mozzi_inverse_kinematics_free(solver));
+    OK(mozzi_workspace_free(workspace));
+    OK(mozzi_model_free(model));
+}
+
 int main(int count, char **arguments) {
     FILE *file;
     struct robot robot;
@@ -93,6 +125,8 @@ int main(int count, char **arguments) {
         CHECK(calls > before + 100);
         OK(mozzi_model_free(model));
     }
+    mozzi_last_error(); /* allocates this thread's memory, if it must */
+    search();
     file = fopen(arguments[1], "r");
     CHECK(file != NULL);
     while (next_robot(file, &robot)) {
@@ -101,7 +135,6 @@ int main(int count, char **arguments) {
         mozzi_program *program = NULL;
         size_t q, before, rounds = CALLS / 4 / 2 / (2 * robot.count + 3) + 1, done;
         int kind;
-        mozzi_last_error(); /* allocates this thread's memory, if it must */
         for (kind = 0; kind < 2; ++kind) {
             if (kind == 1) {
                 for (q = 0; q < robot.count; ++q) {
