@@ -1,4 +1,4 @@
-//! The generated pages of `docs/` and the stubs of the Python package, written by the tests that otherwise check them.
+//! The generated pages of `docs/`, the stubs of the Python package, and the C and C++ headers, written by the tests that otherwise check them.
 
 use crate::command;
 use crate::oracles;
@@ -7,11 +7,15 @@ use crate::tests::give;
 use crate::workspace::Workspace;
 
 /// The tests that write pages.
-const PAGES: [&str; 5] = ["reports", "published", "oracles", "quantities_page", "stubs"];
+const PAGES: [&str; 6] = ["reports", "published", "oracles", "quantities_page", "stubs", "header"];
+/// Their packages.
+const PACKAGES: [&str; 4] = ["mozzi-urdf", "mozzi-batch", "mozzi-py", "mozzi-c"];
 
 pub fn write(workspace: &Workspace) -> Outcome {
-    let mut cargo =
-        workspace.cargo(&["test", "--package", "mozzi-urdf", "--package", "mozzi-batch", "--package", "mozzi-py"]);
+    let mut cargo = workspace.cargo(&["test"]);
+    for package in PACKAGES {
+        cargo.args(["--package", package]);
+    }
     for page in PAGES {
         cargo.args(["--test", page]);
     }

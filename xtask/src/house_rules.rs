@@ -6,8 +6,8 @@ use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
 /// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, NumPy's arrays, Python's
-/// methods, and XLA's calls. Each entry is a path prefix.
-const UNSAFE_ALLOWED: [&str; 7] = [
+/// methods, XLA's calls, and C's pointers. Each entry is a path prefix.
+const UNSAFE_ALLOWED: [&str; 8] = [
     "crates/mozzi/src/fast",
     "crates/mozzi-batch/src/number",
     "crates/mozzi-batch/src/lanes/",
@@ -15,6 +15,7 @@ const UNSAFE_ALLOWED: [&str; 7] = [
     "crates/mozzi-py/src/numpy",
     "crates/mozzi-py/src/methods/attach",
     "crates/mozzi-py/src/jax/interface",
+    "crates/mozzi-c/src/",
 ];
 
 /// The most characters in a line.

@@ -3,7 +3,7 @@
 use crate::border::{check_finite, slice, text, texts};
 use crate::handle::{borrow, clear};
 use crate::robot::{Frame, ModelHandle, Robot, put_model};
-use crate::status::{Outcome, Status, failure, guard, of_model, refuse};
+use crate::status::{Outcome, Status, failure, guard, of_model};
 use mozzi::model::{Base, State};
 use mozzi::{Error, Model, SE3, SpatialInertia};
 use mozzi_urdf::constraints::ConstraintsError;
@@ -33,7 +33,7 @@ pub unsafe fn pose(T: *const f64, name: &str) -> Outcome<SE3> {
     // SAFETY: the caller's promise.
     let T = unsafe { slice(T, 16, name)? };
     let rows = std::array::from_fn(|row| std::array::from_fn(|column| T[4 * row + column]));
-    SE3::from_matrix(rows).or_else(|error| refuse!(Status::INVALID_ARGUMENT, "{name}: {error}"))
+    SE3::from_matrix(rows).map_err(|error| failure(Status::INVALID_ARGUMENT, format_args!("{name}: {error}")))
 }
 
 fn of_constraints(error: &ConstraintsError) -> Status {

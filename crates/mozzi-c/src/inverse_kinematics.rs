@@ -1,12 +1,12 @@
 //! Inverse kinematics of one frame.
 
-use crate::border::{put_if_wanted, slice, slice_mut};
+use crate::border::{copy_out, put_if_wanted, slice};
 use crate::edits::pose;
 use crate::handle::{Handle, borrow, check_pointer, clear, free, kind, put};
 use crate::robot::{Frame, ModelHandle, Robot};
 use crate::status::{Outcome, Status, guard, of_motion, refuse};
 use mozzi::{Mat3, SO3, Vec3};
-use mozzi_motion::inverse_kinematics::{Goal, InverseKinematics, Method, Options, Secondary};
+use mozzi_motion::inverse_kinematics::{Goal, InverseKinematics, Method, Options, Residual, Secondary};
 use std::cell::UnsafeCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,12 +14,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// A solver with its memory.
 pub struct Solver {
     /// Refers to the model that `robot` keeps; dropped first.
-    solver: UnsafeCell<InverseKinematics<'static>>,
+    memory: UnsafeCell<Memory>,
     robot: Arc<Robot>,
     is_busy: AtomicBool,
 }
 
-// SAFETY: the solver is used by the holder of the mark `is_busy` alone.
+struct Memory {
+    solver: InverseKinematics<'static>,
+    /// θ during a search, so that the caller's arrays may overlap.
+    theta: Vec<f64>,
+}
+
+// SAFETY: the memory is used by the holder of the mark `is_busy` alone.
 unsafe impl Sync for Solver {}
 
 kind!(Solver, "mozzi_inverse_kinematics");
@@ -103,8 +109,9 @@ pub unsafe extern "C" fn mozzi_inverse_kinematics_new(
         // the model stays where it is as long as `robot` is kept, which is longer than the solver
         let model = &(*Arc::as_ptr(&robot)).model;
         let found = InverseKinematics::with_options(model, robot.frame(frame)?, options);
-        let found = UnsafeCell::new(found.map_err(|error| of_motion(&error))?);
-        put(Solver { solver: found, robot, is_busy: AtomicBool::new(false) }, solver)
+        let (found, theta) = (found.map_err(|error| of_motion(&error))?, vec![0.0; robot.model.nq()]);
+        let memory = UnsafeCell::new(Memory { solver: found, theta });
+        put(Solver { memory, robot, is_busy: AtomicBool::new(false) }, solver)
     })
 }
 
@@ -158,7 +165,7 @@ pub unsafe extern "C" fn mozzi_inverse_kinematics_solve(
 ) -> Status {
     // SAFETY: as above.
     guard(|| unsafe {
-        let Solver { solver, robot, is_busy } = borrow(solver.cast_const())?;
+        let Solver { memory, robot, is_busy } = borrow(solver.cast_const())?;
         if is_busy.swap(true, Ordering::Acquire) {
             return refuse!(Status::BUSY, "the solver is in use by another call, expected one for each thread");
         }
@@ -175,9 +182,20 @@ pub unsafe extern "C" fn mozzi_inverse_kinematics_solve(
             }
         };
         check_pointer(theta.cast_const(), "theta")?;
-        let found = (*solver.get()).solve_with(goal, guess, &secondary).map_err(|error| of_motion(&error))?;
-        slice_mut(theta, nq, "theta")?.copy_from_slice(&found.theta);
+        let Memory { solver, theta: own } = &mut *memory.get();
+        own.copy_from_slice(guess);
+        let found = solver.search(goal, &secondary, own).map_err(|error| of_motion(&error))?;
         let none = f64::NAN; // the goal leaves it free
+        if !found.is_reached {
+            let Residual { angle, distance } = found.residual;
+            let (angle, distance) = (angle.unwrap_or(0.0), distance.unwrap_or(0.0));
+            let searched = format_args!("{} starts, {} iterations in all", found.starts, found.iterations);
+            return refuse!(
+                Status::NOT_REACHED,
+                "the goal is not reached: the best of {searched}, is {angle:.2e} rad and {distance:.2e} m away"
+            );
+        }
+        copy_out(own, theta, "theta")?;
         let (angle, distance) = (found.residual.angle.unwrap_or(none), found.residual.distance.unwrap_or(none));
         let written = CSolution { angle, distance, starts: found.starts, iterations: found.iterations };
         put_if_wanted(written, solution, "solution")

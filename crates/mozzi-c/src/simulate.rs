@@ -61,9 +61,9 @@ impl CSimulationOptions {
     /// # Safety
     /// Its pointers are null or valid.
     unsafe fn read(&self) -> Outcome<Options> {
-        // SAFETY: the caller's promise.
         let gravity = match self.gravity.is_null() {
             true => None,
+            // SAFETY: the caller's promise.
             false => unsafe { slice(self.gravity, 3, "options.gravity")?.first_chunk::<3>() },
         };
         let joint_limits = match self.joint_limits {

@@ -508,6 +508,13 @@ class Model {
     return made([&](mozzi_model **m) { return mozzi_model_embedded(name.c_str(), m); });
   }
 
+  /// Another handle of a model of C's.
+  static Model from(const mozzi_model *model) {
+    Model copy;
+    mozzi_model_copy(model, copy.handle_.put());
+    return copy;
+  }
+
   Model(const Model &other) { mozzi_model_copy(other.get(), handle_.put()); }
   Model &operator=(const Model &other) { return *this = Model(other); }
   Model(Model &&) = default;

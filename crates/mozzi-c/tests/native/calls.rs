@@ -32,3 +32,31 @@ pub fn functions() -> String {
     (0..quantities().count()).for_each(|index| text += &format!("    typed_{index},\n"));
     text + "};\n"
 }
+
+/// A template for each method of C++, and a function that calls that of this number.
+pub fn methods() -> String {
+    let mut text = String::new();
+    for (index, (quantity, _)) in quantities().enumerate() {
+        let further = further(quantity);
+        let mut arguments: Vec<String> = (0..quantity.inputs.len()).map(|k| format!("c.in[{k}]")).collect();
+        let given = |kind: Further, argument: &str| further.contains(&kind).then(|| argument.to_string());
+        arguments.extend(given(Further::Frame, "c.frame"));
+        arguments.extend(given(Further::Task, "c.task"));
+        arguments.extend(quantity.outputs.iter().enumerate().map(|(k, output)| match output.dims.len() {
+            0 => format!("c.number[{k}]"),
+            1 => format!("c.vector[{k}]"),
+            2 => format!("c.matrix[{k}]"),
+            _ => format!("c.tensor[{k}]"),
+        }));
+        arguments.extend(given(Further::About, "c.about"));
+        arguments.extend(given(Further::Environment, "c.environment"));
+        let (name, arguments) = (quantity.name, arguments.join(", "));
+        writeln!(text, "template <class C> mozzi::Status method_{index}(C &c) {{").expect("a String");
+        writeln!(text, "  return c.workspace.{name}({arguments});\n}}").expect("a String");
+    }
+    text += "template <class C> mozzi::Status method(int32_t quantity, C &c) {\n  switch (quantity) {\n";
+    for index in 0..quantities().count() {
+        writeln!(text, "    case {index}: return method_{index}(c);").expect("a String");
+    }
+    text + "    default: return mozzi::Status(MOZZI_NOT_FOUND);\n  }\n}\n"
+}

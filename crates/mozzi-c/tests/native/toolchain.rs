@@ -29,9 +29,15 @@ pub fn folder() -> &'static Path {
         let _ = std::fs::remove_file(folder.join("libmozzi.a"));
         link(&libraries().join("libmozzi_c.a"), &folder.join("libmozzi.a"));
         std::fs::write(folder.join("calls.inc"), calls::functions()).expect("a file of this test's");
+        std::fs::write(folder.join("methods.inc"), calls::methods()).expect("a file of this test's");
         std::fs::write(folder.join("states.txt"), states::file()).expect("a file of this test's");
         folder
     })
+}
+
+/// Writes a copy of the library under another name.
+pub fn copy_of_the_library() {
+    std::fs::copy(libraries().join("libmozzi_c.so"), folder().join("copy-of-mozzi.so")).expect("a file of this test's");
 }
 
 #[cfg(unix)]
@@ -75,6 +81,16 @@ pub fn run(command: &mut Command) -> String {
     out
 }
 
+/// The compiler's flags for Eigen; none where it is not installed.
+pub fn eigen() -> Option<Vec<String>> {
+    let places = ["/usr/include/eigen3", "/usr/local/include/eigen3"];
+    let place = places.iter().find(|place| Path::new(place).join("Eigen/Core").exists());
+    if place.is_none() {
+        println!("skipped: Eigen is not installed");
+    }
+    place.map(|place| vec!["-isystem".to_string(), place.to_string()]) // its warnings are not ours
+}
+
 /// A way to compile a program.
 #[derive(Clone, Copy)]
 pub struct Build<'a> {
@@ -85,15 +101,19 @@ pub struct Build<'a> {
 }
 
 impl Build<'_> {
-    /// Compiles a program of `tests/programs`; its path.
+    /// Compiles a program of `tests/programs`, or of another folder of the package; its path.
     pub fn compile(&self, program: &str) -> PathBuf {
+        let (place, program) = match program.rsplit_once('/') {
+            Some((place, program)) => (source(place), program),
+            None => (source("tests/programs"), program),
+        };
         let kind = format!("{}-{}-{}-{}", self.compiler, self.standard, self.flags.join(""), self.is_static);
         let kind: String = kind.chars().filter(|c| c.is_alphanumeric() || "-+".contains(*c)).collect();
         let to = folder().join(format!("{}-{kind}", program.replace('.', "-")));
         let mut compiler = Command::new(self.compiler);
-        compiler.arg(format!("-std={}", self.standard)).args(WARNINGS).args(["-g", "-O1"]).args(self.flags);
+        compiler.arg(format!("-std={}", self.standard)).args(WARNINGS).args(["-g1", "-O0"]).args(self.flags);
         compiler.arg("-I").arg(source("include")).arg("-I").arg(folder());
-        compiler.arg(source("tests/programs").join(program)).arg("-o").arg(&to);
+        compiler.arg(place.join(program)).arg("-o").arg(&to);
         if self.is_static {
             compiler.arg(folder().join("libmozzi.a"));
         } else {

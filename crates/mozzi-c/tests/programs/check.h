@@ -12,7 +12,7 @@
 #define CHECK(condition)                                                                                   \
     do {                                                                                                   \
         if (!(condition)) {                                                                                \
-            fprintf(stderr, "%s:%d: not %s; last error: %s\n", __FILE__, __LINE__, #condition, mozzi_last_error()); \
+            fprintf(stderr, "%s:%d: not %s\n", __FILE__, __LINE__, #condition); \
             exit(1);                                                                                       \
         }                                                                                                  \
     } while (0)

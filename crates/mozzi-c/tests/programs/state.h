@@ -45,7 +45,7 @@ static inline double *by_rows(const struct arguments *a, size_t k) {
     const size_t blocks = a->axes[k] == 3 ? sizes[0] : 1;
     const size_t rows = a->axes[k] == 3 ? sizes[1] : a->axes[k] == 2 ? sizes[0] : 1;
     const size_t columns = a->axes[k] == 0 ? 1 : sizes[a->axes[k] - 1];
-    double *numbers = malloc((a->out_length[k] + 1) * sizeof *numbers);
+    double *numbers = (double *)malloc((a->out_length[k] + 1) * sizeof *numbers);
     size_t b, r, c;
     CHECK(numbers != NULL);
     for (b = 0; b < blocks; ++b) {
@@ -60,7 +60,7 @@ static inline double *by_rows(const struct arguments *a, size_t k) {
 }
 
 static inline double *numbers_of(FILE *file, size_t count) {
-    double *numbers = malloc((count + 1) * sizeof *numbers);
+    double *numbers = (double *)malloc((count + 1) * sizeof *numbers);
     size_t k;
     CHECK(numbers != NULL);
     for (k = 0; k < count; ++k) {
@@ -124,7 +124,7 @@ static inline int next_robot(FILE *file, struct robot *robot) {
     robot->task.rows = robot->rows;
     robot->task.row_count = rows;
     robot->count = mozzi_quantity_count();
-    robot->quantities = calloc(robot->count, sizeof *robot->quantities);
+    robot->quantities = (struct arguments *)calloc(robot->count, sizeof *robot->quantities);
     CHECK(robot->quantities != NULL);
     for (q = 0; q < robot->count; ++q) {
         struct arguments *a = &robot->quantities[q];
@@ -146,7 +146,7 @@ static inline int next_robot(FILE *file, struct robot *robot) {
             OK(mozzi_quantity_output_shape(robot->model, quantity, k, rows, &a->axes[k], a->sizes[k]));
             a->out_length[k] = a->sizes[k][0] * a->sizes[k][1] * a->sizes[k][2];
             a->expected[k] = numbers_of(file, a->out_length[k]);
-            a->out[k] = malloc((a->out_length[k] + 1) * sizeof(double));
+            a->out[k] = (double *)malloc((a->out_length[k] + 1) * sizeof(double));
             CHECK(a->out[k] != NULL);
         }
     }

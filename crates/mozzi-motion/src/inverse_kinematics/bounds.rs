@@ -13,9 +13,9 @@ pub(crate) trait Within {
     /// Puts each joint that is beyond a bound onto it.
     fn clamp(&self, theta: &mut [f64]);
 
-    /// Anywhere within the bounds; for a joint without, half a turn or a metre around the guess. A floating base and
-    /// free joints stay.
-    fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64>;
+    /// Moves the guess in θ to anywhere within the bounds; for a joint without, half a turn or a metre around the guess.
+    /// A floating base and free joints stay.
+    fn randomize(&self, theta: &mut [f64], random: &mut Random);
 }
 
 impl Within for Bounds {
@@ -39,8 +39,7 @@ impl Within for Bounds {
         }
     }
 
-    fn random(&self, guess: &[f64], random: &mut Random) -> Vec<f64> {
-        let mut theta = guess.to_vec();
+    fn randomize(&self, theta: &mut [f64], random: &mut Random) {
         for ((place, &[low, high]), turns) in self.places.iter().zip(&self.joints).zip(&self.turns) {
             let q = match place.freedom {
                 Freedom::One => &mut theta[place.q],
@@ -57,7 +56,6 @@ impl Within for Bounds {
             let high = if high.is_finite() { high } else { low + 2.0 * reach };
             *q = 0.5 * (low + high) + 0.5 * (high - low) * random.next();
         }
-        theta
     }
 }
 

@@ -42,6 +42,41 @@ pub struct Solution {
     pub iterations: usize,
 }
 
+/// The end of a search: see [`InverseKinematics::search`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Is the goal reached?
+    pub is_reached: bool,
+    /// The remaining error.
+    pub residual: Residual,
+    /// Starts that were needed, at least 1.
+    pub starts: usize,
+    /// Iterations of all starts.
+    pub iterations: usize,
+}
+
+/// Memory of a search.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    /// The best θ of one start, and of all.
+    best: Vec<f64>,
+    nearest: Vec<f64>,
+    /// The guess; then the next θ of the secondary goal.
+    next: Vec<f64>,
+    /// Its gradient, the step against it, and memory for that step.
+    z: Vec<f64>,
+    way: Vec<f64>,
+    back: Vec<f64>,
+}
+
+impl Room {
+    fn new(model: &Model) -> Self {
+        let [best, nearest, next] = [(); 3].map(|()| vec![0.0; model.nq()]);
+        let [z, way, back] = [(); 3].map(|()| vec![0.0; model.n()]);
+        Room { best, nearest, next, z, way, back }
+    }
+}
+
 /// A solver for one frame of a robot, with its memory.
 #[derive(Clone, Debug)]
 pub struct InverseKinematics<'m> {
@@ -52,6 +87,7 @@ pub struct InverseKinematics<'m> {
     step: Step,
     delta: Vec<f64>,
     iterations: usize,
+    room: Room,
 }
 
 impl<'m> InverseKinematics<'m> {
@@ -75,8 +111,11 @@ impl<'m> InverseKinematics<'m> {
             bounds.joints.fill([f64::NEG_INFINITY, f64::INFINITY]);
         }
         let n = model.n();
-        let step = Step { columns: vec![Twist::zero(); n], held: vec![false; n], cones: Vec::new(), rows: 0..6 };
-        Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0 })
+        // at most one for each ball
+        let cones = Vec::with_capacity(bounds.places.len());
+        let step = Step { columns: vec![Twist::zero(); n], held: vec![false; n], cones, rows: 0..6 };
+        let room = Room::new(model);
+        Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0, room })
     }
 
     /// Positions that reach the goal, from a guess and, if that fails, from random ones. An iteration costs O(n).
@@ -93,39 +132,73 @@ impl<'m> InverseKinematics<'m> {
     /// # Errors
     /// As [`solve`](Self::solve).
     pub fn solve_with(&mut self, goal: Goal, guess: &[f64], secondary: &Secondary) -> Result<Solution, Error> {
-        self.model.check_configuration(guess)?;
-        check(guess.iter().all(|x| x.is_finite()), "the guess", format!("{guess:?}"), "finite numbers")?;
-        check(goal.is_finite(), "the goal", format!("{goal:?}"), "finite numbers")?;
+        let mut theta = guess.to_vec();
+        let Found { is_reached, residual, starts, iterations } = self.search(goal, secondary, &mut theta)?;
+        if is_reached {
+            return Ok(Solution { theta, residual, starts, iterations });
+        }
+        let joints = self.model.joint_names().enumerate();
+        let at_limit = joints.filter(|&(k, _)| self.bounds.side(&theta, k) != 0.0);
+        let limits = at_limit.map(|(_, name)| name.to_string()).collect();
+        let frame = self.model.frame_name(self.frame).to_string();
+        Err(Error::NotReached { frame, theta, residual, limits, starts, iterations })
+    }
+
+    /// As [`solve_with`](Self::solve_with), from the guess in θ, for control loops: nothing is allocated. θ becomes the
+    /// solution, or the best that was found.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for an invalid guess or goal.
+    pub fn search(&mut self, goal: Goal, secondary: &Secondary, theta: &mut [f64]) -> Result<Found, Error> {
+        self.model.check_configuration(theta)?;
+        check(theta.iter().all(|x| x.is_finite()), "the guess", format_args!("{theta:?}"), "finite numbers")?;
+        check(goal.is_finite(), "the goal", format_args!("{goal:?}"), "finite numbers")?;
         if let Secondary::Near(reference) = secondary {
             self.model.check_configuration(reference)?;
         }
         self.step.rows = goal.rows();
         self.iterations = 0;
         let mut random = Random(self.options.seed);
-        let mut best: Option<(f64, Vec<f64>)> = None;
+        let mut room = core::mem::take(&mut self.room); // empty lists allocate nothing
+        let found = self.search_in(&mut room, &goal, secondary, theta, &mut random);
+        self.room = room;
+        Ok(found)
+    }
+
+    fn search_in(
+        &mut self,
+        room: &mut Room,
+        goal: &Goal,
+        secondary: &Secondary,
+        theta: &mut [f64],
+        random: &mut Random,
+    ) -> Found {
+        let mut least = f64::INFINITY;
+        // the guess, from which random starts begin
+        room.next.copy_from_slice(theta);
+        room.nearest.copy_from_slice(theta);
         for start in 1..=self.options.starts {
-            let mut theta = if start == 1 { guess.to_vec() } else { self.bounds.random(guess, &mut random) };
-            let left = self.approach(&goal, &mut theta, self.options.iterations);
-            if self.is_reached(&goal, &theta) {
-                self.descend(&goal, &mut theta, secondary);
-                let residual = goal.residual(self.error(&goal, &theta));
-                return Ok(Solution { theta, residual, starts: start, iterations: self.iterations });
+            theta.copy_from_slice(&room.next);
+            if start > 1 {
+                self.bounds.randomize(theta, random);
             }
-            if best.as_ref().is_none_or(|(least, _)| left < *least) {
-                best = Some((left, theta));
+            let left = self.approach(goal, theta, self.options.iterations, &mut room.best);
+            if self.is_reached(goal, theta) {
+                self.descend(room, goal, theta, secondary);
+                return self.found(true, goal, theta, start);
+            }
+            if left < least || start == 1 {
+                least = left;
+                room.nearest.copy_from_slice(theta);
             }
         }
-        let theta = best.map_or_else(|| guess.to_vec(), |(_, theta)| theta);
-        let joints = self.model.joint_names().enumerate();
-        let at_limit = joints.filter(|&(k, _)| self.bounds.side(&theta, k) != 0.0);
-        Err(Error::NotReached {
-            frame: self.model.frame_name(self.frame).to_string(),
-            residual: goal.residual(self.error(&goal, &theta)),
-            limits: at_limit.map(|(_, name)| name.to_string()).collect(),
-            theta,
-            starts: self.options.starts,
-            iterations: self.iterations,
-        })
+        theta.copy_from_slice(&room.nearest);
+        self.found(false, goal, theta, self.options.starts)
+    }
+
+    fn found(&self, is_reached: bool, goal: &Goal, theta: &[f64], starts: usize) -> Found {
+        let residual = goal.residual(self.error(goal, theta));
+        Found { is_reached, residual, starts, iterations: self.iterations }
     }
 
     fn error(&self, goal: &Goal, theta: &[f64]) -> Twist {
@@ -152,14 +225,16 @@ impl<'m> InverseKinematics<'m> {
 
     /// Steps towards the goal until it is reached, or there is no more progress; leaves the best θ on the way and
     /// returns ‖e‖ there.
-    fn approach(&mut self, goal: &Goal, theta: &mut [f64], iterations: usize) -> f64 {
+    fn approach(&mut self, goal: &Goal, theta: &mut [f64], iterations: usize, best: &mut [f64]) -> f64 {
         self.bounds.clamp(theta);
-        let (mut best, mut least, mut mark, mut since) = (theta.to_vec(), f64::INFINITY, f64::INFINITY, 0);
+        best.copy_from_slice(theta);
+        let (mut least, mut mark, mut since) = (f64::INFINITY, f64::INFINITY, 0);
         for _ in 0..=iterations {
             let e = self.scaled(self.error(goal, theta));
             let size = e.norm();
             if size < least {
-                (least, best) = (size, theta.to_vec());
+                least = size;
+                best.copy_from_slice(theta);
             }
             since = if size < 0.5 * mark { 0 } else { since + 1 };
             mark = if since == 0 { size } else { mark };
@@ -177,25 +252,24 @@ impl<'m> InverseKinematics<'m> {
             integrate(self.model, theta, &self.delta, 1.0);
             self.bounds.clamp(theta);
         }
-        theta.copy_from_slice(&best);
+        theta.copy_from_slice(best);
         least
     }
 
     /// From a solution to better ones: along −∂H in the null space, then back to the goal, as long as H falls.
-    fn descend(&mut self, goal: &Goal, theta: &mut [f64], secondary: &Secondary) {
+    fn descend(&mut self, room: &mut Room, goal: &Goal, theta: &mut [f64], secondary: &Secondary) {
         if matches!(secondary, Secondary::None) {
             return;
         }
-        let (mut z, mut along) = (vec![0.0; self.model.n()], 1.0);
-        let mut H = secondary.evaluate(self.model, theta, &mut z);
+        let Room { best, next, z, way, back, .. } = room;
+        let mut along = 1.0;
+        let mut H = secondary.evaluate(self.model, theta, z);
         for _ in 0..10 * self.options.iterations {
             self.linearize(theta);
-            let downhill: Vec<f64> = z.iter().map(|z| -z).collect();
-            let mut way = downhill.clone();
             loop {
-                way.copy_from_slice(&downhill);
-                self.step.within_null_space(&mut way);
-                if !self.step.hold_at_bounds(&self.bounds, theta, &way) {
+                way.iter_mut().zip(&*z).for_each(|(way, z)| *way = -z);
+                self.step.within_null_space(way, back);
+                if !self.step.hold_at_bounds(&self.bounds, theta, way) {
                     break;
                 }
             }
@@ -204,13 +278,13 @@ impl<'m> InverseKinematics<'m> {
                 return;
             }
             loop {
-                let mut next = theta.to_vec();
-                integrate(self.model, &mut next, &way, along);
-                self.approach(goal, &mut next, 10);
-                let better = secondary.evaluate(self.model, &next, &mut z);
-                if self.is_reached(goal, &next) && better < H - 1e-4 * along * square {
+                next.copy_from_slice(theta);
+                integrate(self.model, next, way, along);
+                self.approach(goal, next, 10, best);
+                let better = secondary.evaluate(self.model, next, z);
+                if self.is_reached(goal, next) && better < H - 1e-4 * along * square {
                     (H, along) = (better, (2.0 * along).min(1.0));
-                    theta.copy_from_slice(&next);
+                    theta.copy_from_slice(next);
                     break;
                 }
                 along *= 0.5;

@@ -78,13 +78,13 @@ impl Step {
     }
 
     /// z without the part that would move the frame: (I − J⁺J)z of the joints that move.
-    pub fn within_null_space(&self, z: &mut [f64]) {
+    /// `back` is overwritten.
+    pub fn within_null_space(&self, z: &mut [f64], back: &mut [f64]) {
         self.cones.iter().for_each(|(place, n)| remove_along(n, &mut z[place.velocities()]));
         let moved = self.moving().fold(Vector6::zeros(), |V, (j, column)| V + column * z[j]);
         let y = pseudo_inverse(self.gram()) * moved;
-        let mut back = vec![0.0; z.len()];
-        self.transpose_mul(&y, &mut back);
-        for ((z, back), held) in z.iter_mut().zip(&back).zip(&self.held) {
+        self.transpose_mul(&y, back);
+        for ((z, back), held) in z.iter_mut().zip(&*back).zip(&self.held) {
             *z = if *held { 0.0 } else { *z - back };
         }
     }

@@ -13,7 +13,9 @@ fn robot(name: &str, frame: &str) -> (Model, FrameId) {
 
 /// θ anywhere within the limits.
 fn within(model: &Model, random: &mut Random) -> Vec<f64> {
-    Bounds::of(model).random(&model.neutral_configuration::<f64>(), random)
+    let mut theta = model.neutral_configuration();
+    Bounds::of(model).randomize(&mut theta, random);
+    theta
 }
 
 fn assert_within(model: &Model, theta: &[f64]) {

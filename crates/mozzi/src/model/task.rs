@@ -111,7 +111,9 @@ fn singular_values<S: Scalar + Into<f64>>(J: &[S], rows: usize, n: usize) -> Vec
         }
         R = stacked.qr().r();
     }
-    R.singular_values()
+    let mut sigma = R.singular_values();
+    (n..6).for_each(|k| sigma[k] = 0.0); // more rows than joints
+    sigma
 }
 
 impl<S: Scalar + Into<f64>> TaskMemory<S> {
