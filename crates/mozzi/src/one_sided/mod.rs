@@ -21,6 +21,7 @@ mod sweeps;
 mod tests;
 
 pub use law::Law;
+pub(crate) use newton::least_squares;
 
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};

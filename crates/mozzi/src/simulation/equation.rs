@@ -6,7 +6,7 @@
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
-use crate::dynamics::{kinetic_energy, potential_energy};
+use crate::dynamics::{add_spring_forces, bias_forces, kinetic_energy, potential_energy};
 use crate::fast;
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
@@ -54,6 +54,11 @@ pub struct Equation<'m, I> {
     pub(super) force: Vec<f64>,
     /// λ of the last evaluation.
     lambda: Vec<f64>,
+    /// Is dry friction not part of θ̈, because impulses produce it?
+    pub(super) has_impulses: bool,
+    /// Further constant forces of a step, −Jᵀp/Δt, and the power that they give to moving planes.
+    pub(super) extra: Vec<f64>,
+    pub(super) extra_given: f64,
     wrenches: Vec<(FrameId, Wrench)>,
     columns: Vec<Twist>,
     fast: fast::Workspace,
@@ -76,6 +81,9 @@ impl<'m, I: Input> Equation<'m, I> {
             tau: vec![0.0; model.n()],
             force: vec![0.0; model.n()],
             lambda: vec![0.0; model.constraint_rows()],
+            has_impulses: false,
+            extra: vec![0.0; model.n()],
+            extra_given: 0.0,
             wrenches: Vec::new(),
             columns: vec![Twist::zero(); model.n()],
             fast: fast::Workspace::new(model),
@@ -139,7 +147,7 @@ impl<'m, I: Input> Equation<'m, I> {
         if !is_clear {
             self.model.compute(self.query(), &state, &environment)?; // names what is singular, if anything is
         }
-        let applied_power = self.applied_power(theta, dtheta);
+        let applied_power = self.applied_power(theta, dtheta) + self.extra_given;
         self.bounded("ddtheta", t, ddtheta)?;
         let motor_power = self.tau.iter().zip(dtheta).map(|(tau, rate)| tau * rate).sum();
         Ok([motor_power, friction_power, applied_power])
@@ -176,6 +184,52 @@ impl<'m, I: Input> Equation<'m, I> {
         }
     }
 
+    /// τ − h − k(θ − θ₀) − dθ̇: the forces that act on the joints, without dry friction and constraints. Returns the
+    /// powers of the motors, of damping and of applied wrenches.
+    pub(super) fn smooth_force(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        force: &mut [f64],
+    ) -> Result<Powers, Error> {
+        self.bounded("theta", t, theta)?;
+        self.bounded("dtheta", t, dtheta)?;
+        self.ask_input(t, theta, dtheta)?;
+        let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
+        bias_forces(self.model, theta, dtheta, &environment, &mut self.workspace, force);
+        add_spring_forces(self.model, theta, force);
+        for j in 0..force.len() {
+            force[j] = self.tau[j] - force[j] - self.model.damping[j] * dtheta[j] - self.smooth_friction(j, dtheta[j]);
+        }
+        let power = |force: &[f64]| force.iter().zip(dtheta).map(|(force, rate)| force * rate).sum::<f64>();
+        let motor_power = power(&self.tau);
+        Ok([motor_power, 0.0, self.applied_power(theta, dtheta)])
+    }
+
+    /// Friction of a velocity, without damping, if it is smooth.
+    fn smooth_friction(&self, j: usize, rate: f64) -> f64 {
+        match self.options.friction {
+            Friction::Coulomb => 0.0,
+            Friction::Smooth { slip_speed } => self.model.friction[j] * Scalar::tanh(rate / slip_speed),
+        }
+    }
+
+    /// The power of smooth friction.
+    pub(super) fn smooth_friction_power(&self, dtheta: &[f64]) -> f64 {
+        dtheta.iter().enumerate().map(|(j, &rate)| rate * self.smooth_friction(j, rate)).sum()
+    }
+
+    /// Calls the input for the motors' τ of a row.
+    pub(super) fn find_tau(&mut self, t: f64, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
+        self.ask_input(t, theta, dtheta)
+    }
+
+    /// Checks that velocities are below [`LARGEST`].
+    pub(super) fn check_velocities(&self, t: f64, dtheta: &[f64]) -> Result<(), Error> {
+        self.bounded("dtheta", t, dtheta)
+    }
+
     fn ask_input(&mut self, t: f64, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
         self.tau.fill(0.0);
         self.wrenches.clear();
@@ -200,17 +254,18 @@ impl<'m, I: Input> Equation<'m, I> {
     /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ plus
     /// the difference of the two laws. Returns the power of friction.
     pub(super) fn friction(&mut self, dtheta: &[f64]) -> f64 {
-        if self.is_frictionless {
+        if self.is_frictionless && !self.has_impulses {
             self.force.copy_from_slice(&self.tau);
             return 0.0;
         }
-        let mut power = 0.0;
+        let mut power = -self.extra_given;
         for (j, &rate) in dtheta.iter().enumerate() {
             let (damping, mu) = (self.model.damping[j], self.model.friction[j]);
             let coulomb = mu * rate.sgn();
             let law = match self.options.friction {
+                Friction::Coulomb if self.has_impulses => -self.extra[j],
                 Friction::Coulomb => coulomb,
-                Friction::Smooth { slip_speed } => mu * Scalar::tanh(rate / slip_speed),
+                Friction::Smooth { .. } => self.smooth_friction(j, rate) - self.extra[j],
             };
             self.force[j] = self.tau[j] + (coulomb - law);
             power += rate * (damping * rate + law);

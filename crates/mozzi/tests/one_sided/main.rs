@@ -1,0 +1,9 @@
+//! Dry friction, stops and contacts along motions, compared with closed-form solutions.
+#![allow(non_snake_case)]
+
+mod balls;
+mod boxes;
+mod drops;
+mod dry_friction;
+mod robots;
+mod stops;
