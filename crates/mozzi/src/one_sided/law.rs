@@ -28,6 +28,15 @@ impl Law {
         if let Law::Contact { .. } = self { 3 } else { 1 }
     }
 
+    /// The rows of friction, if its first row is this.
+    pub(crate) fn tangential(self, first: usize) -> core::ops::Range<usize> {
+        match self {
+            Law::Bilateral | Law::Stop => first..first,
+            Law::Dry { .. } => first..first + 1,
+            Law::Contact { .. } => first + 1..first + 3,
+        }
+    }
+
     /// De Saxcé's term μ‖u_t‖, which makes Coulomb's law a cone complementarity between p and u + μ‖u_t‖e_n.
     pub(super) fn shift(self, u: &[f64]) -> f64 {
         if let Law::Contact { mu } = self { mu * norm(u[1], u[2]) } else { 0.0 }

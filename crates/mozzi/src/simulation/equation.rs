@@ -6,7 +6,7 @@
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
-use crate::dynamics::{add_spring_forces, bias_forces, kinetic_energy, potential_energy};
+use crate::dynamics::{add_spring_forces, kinetic_energy, newton_euler, potential_energy};
 use crate::fast;
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
@@ -56,9 +56,8 @@ pub struct Equation<'m, I> {
     lambda: Vec<f64>,
     /// Is dry friction not part of θ̈, because impulses produce it?
     pub(super) has_impulses: bool,
-    /// Further constant forces of a step, −Jᵀp/Δt, and the power that they give to moving planes.
+    /// Further constant forces of a step, −Jᵀp/Δt, whose work is not part of the powers.
     pub(super) extra: Vec<f64>,
-    pub(super) extra_given: f64,
     wrenches: Vec<(FrameId, Wrench)>,
     columns: Vec<Twist>,
     fast: fast::Workspace,
@@ -83,7 +82,6 @@ impl<'m, I: Input> Equation<'m, I> {
             lambda: vec![0.0; model.constraint_rows()],
             has_impulses: false,
             extra: vec![0.0; model.n()],
-            extra_given: 0.0,
             wrenches: Vec::new(),
             columns: vec![Twist::zero(); model.n()],
             fast: fast::Workspace::new(model),
@@ -147,7 +145,7 @@ impl<'m, I: Input> Equation<'m, I> {
         if !is_clear {
             self.model.compute(self.query(), &state, &environment)?; // names what is singular, if anything is
         }
-        let applied_power = self.applied_power(theta, dtheta) + self.extra_given;
+        let applied_power = self.applied_power(theta, dtheta);
         self.bounded("ddtheta", t, ddtheta)?;
         let motor_power = self.tau.iter().zip(dtheta).map(|(tau, rate)| tau * rate).sum();
         Ok([motor_power, friction_power, applied_power])
@@ -184,27 +182,29 @@ impl<'m, I: Input> Equation<'m, I> {
         }
     }
 
-    /// τ − h − k(θ − θ₀) − dθ̇: the forces that act on the joints, without dry friction and constraints. Returns the
-    /// powers of the motors, of damping and of applied wrenches.
+    /// τ − h − Mθ̈ − k(θ − θ₀) − dθ̇: the forces that act on the joints, without dry friction and constraints. Returns the
+    /// power given to the environment.
     pub(super) fn smooth_force(
         &mut self,
         t: f64,
         theta: &[f64],
         dtheta: &[f64],
+        ddtheta: &[f64],
         force: &mut [f64],
-    ) -> Result<Powers, Error> {
+    ) -> Result<f64, Error> {
         self.bounded("theta", t, theta)?;
         self.bounded("dtheta", t, dtheta)?;
         self.ask_input(t, theta, dtheta)?;
         let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
-        bias_forces(self.model, theta, dtheta, &environment, &mut self.workspace, force);
+        for j in 0..force.len() {
+            force[j] = self.model.armature[j] * ddtheta[j];
+        }
+        newton_euler(self.model, theta, dtheta, ddtheta, &environment, &mut self.workspace, force);
         add_spring_forces(self.model, theta, force);
         for j in 0..force.len() {
             force[j] = self.tau[j] - force[j] - self.model.damping[j] * dtheta[j] - self.smooth_friction(j, dtheta[j]);
         }
-        let power = |force: &[f64]| force.iter().zip(dtheta).map(|(force, rate)| force * rate).sum::<f64>();
-        let motor_power = power(&self.tau);
-        Ok([motor_power, 0.0, self.applied_power(theta, dtheta)])
+        Ok(self.applied_power(theta, dtheta))
     }
 
     /// Friction of a velocity, without damping, if it is smooth.
@@ -258,16 +258,16 @@ impl<'m, I: Input> Equation<'m, I> {
             self.force.copy_from_slice(&self.tau);
             return 0.0;
         }
-        let mut power = -self.extra_given;
+        let mut power = 0.0;
         for (j, &rate) in dtheta.iter().enumerate() {
             let (damping, mu) = (self.model.damping[j], self.model.friction[j]);
             let coulomb = mu * rate.sgn();
             let law = match self.options.friction {
-                Friction::Coulomb if self.has_impulses => -self.extra[j],
+                Friction::Coulomb if self.has_impulses => 0.0,
                 Friction::Coulomb => coulomb,
-                Friction::Smooth { .. } => self.smooth_friction(j, rate) - self.extra[j],
+                Friction::Smooth { .. } => self.smooth_friction(j, rate),
             };
-            self.force[j] = self.tau[j] + (coulomb - law);
+            self.force[j] = self.tau[j] + (coulomb - law) + self.extra[j];
             power += rate * (damping * rate + law);
         }
         power

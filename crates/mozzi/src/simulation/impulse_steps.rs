@@ -1,11 +1,12 @@
 //! Steps with dry friction, contacts and stops.
 
 use super::course::{Course, Integrator};
+use super::driven::Driven;
 use super::impulses::{Impulses, System};
 use super::moreau::Phase;
 use super::state::State;
-use super::driven::Driven;
-use crate::kinematics::integrate;
+use super::Explicit;
+use crate::kinematics::{difference, integrate};
 use crate::model::Error;
 use alloc::vec;
 use nalgebra::DVector;
@@ -77,7 +78,7 @@ impl Course<'_> {
         let mut theta = start.theta.clone();
         integrate(model, &mut theta, &start.dtheta, 0.5 * h);
         let system = impulses.system(start.t + 0.5 * h, &theta, h, &vec![0.0; model.n()], &[])?;
-        let before = system.relative(&start.dtheta);
+        let before = impulses.relative_at(&system, start.t, &start.theta, &start.dtheta);
         let mut p = impulses.guess(&system, h);
         for round in 1..=ROUNDS {
             (0..model.constraint_rows()).for_each(|r| p[r] = 0.0); // forward dynamics finds their forces
@@ -94,13 +95,25 @@ impl Course<'_> {
                 }
                 Integrator::DormandPrince(_) | Integrator::MoreauJean(_) => {}
             }
-            let b = system.relative(&motion.dtheta) - &system.G * &p;
+            let b = impulses.relative_at(&system, end, &motion.theta, &motion.dtheta) - &system.G * &p;
             let solved = impulses.solve(&system, b, &before, &p);
             let change = &solved.p - &p;
             let size = if change.is_empty() { 0.0 } else { (&system.G * &change).amax() };
             impulses.apply(&system, &change, &mut motion.dtheta);
             p.copy_from(&solved.p);
             if size <= AGREES * (1.0 + before.iter().fold(0.0_f64, |most, x| most.max(x.abs()))) || round == ROUNDS {
+                let works = match integrator {
+                    Integrator::Explicit(Explicit::RungeKutta4) | Integrator::Midpoint(_) => {
+                        // a constant force, along the way
+                        let mut way = vec![0.0; model.n()];
+                        difference(model, &start.theta, &motion.theta, &mut way);
+                        let given = solved.p.dot(&system.w);
+                        [solved.p.dot(&(&system.J * DVector::from_vec(way))) / h - given, given]
+                    }
+                    _ => solved.works(&system, &before),
+                };
+                motion.integrals[1] += works[0];
+                motion.integrals[2] += works[1];
                 impulses.keep(&system, &solved, h);
                 break;
             }
@@ -113,7 +126,6 @@ impl Course<'_> {
 fn push(driven: &mut Driven, system: &System, p: &DVector<f64>, h: f64) {
     let force = system.J.tr_mul(p);
     driven.equation.extra.iter_mut().zip(force.iter()).for_each(|(extra, force)| *extra = -force / h);
-    driven.equation.extra_given = p.dot(&system.w) / h;
 }
 
 impl Impulses<'_> {

@@ -11,7 +11,9 @@ use super::events::bisect;
 use super::impulses::{Impulses, Key, Solved, System};
 use super::{Input, Powers};
 use crate::kinematics::integrate;
-use crate::model::{Error, Freedom, Model};
+use crate::lie::SO3;
+use crate::linalg::Vec3;
+use crate::model::{Error, Freedom, Model, Place};
 use crate::one_sided::Law;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -47,8 +49,7 @@ struct Trial {
     h: f64,
     system: System,
     solved: Solved,
-    dtheta: Vec<f64>,
-    works: Powers,
+    to: Phase,
 }
 
 impl Moreau {
@@ -117,7 +118,7 @@ impl Moreau {
         };
         let (mut failure, start) = (None, least(&state.dtheta));
         let mut speed = |s: f64| match self.trial(equation, impulses, state, s, stopping) {
-            Ok(trial) => least(&trial.dtheta),
+            Ok(trial) => least(&trial.to.dtheta),
             Err(error) => {
                 failure.get_or_insert(error);
                 f64::NAN
@@ -143,55 +144,125 @@ impl Moreau {
         h: f64,
         sliding: &[usize],
     ) -> Result<Trial, Error> {
-        let (model, v) = (impulses.model, &state.dtheta);
-        let (n, [stiffness, damping]) = (model.n(), &self.implicit);
+        let (model, n, [stiffness, damping]) = (impulses.model, impulses.model.n(), &self.implicit);
+        let (middle, end) = (state.t + 0.5 * h, state.t + h);
         let mut theta = state.theta.clone();
-        integrate(model, &mut theta, v, 0.5 * h);
-        let middle = state.t + 0.5 * h;
-        let diagonal: Vec<f64> =
-            (0..n).map(|j| 0.5 * h * damping[j] + 0.25 * h * h * stiffness[j]).collect();
+        straight(model, &mut theta, &state.dtheta, 0.5 * h);
+        let v = turned(model, &state.dtheta, &state.dtheta, -0.5 * h); // in the axes of the middle
+        let diagonal: Vec<f64> = (0..n).map(|j| 0.5 * h * damping[j] + 0.25 * h * h * stiffness[j]).collect();
         let system = impulses.system(middle, &theta, h, &diagonal, sliding)?;
-        let before = system.relative(v);
+        let before = impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
         let mut p = impulses.guess(&system, h);
         let (mut v_m, mut force) = (v.clone(), vec![0.0; n]);
-        let (mut after, mut solved) = (v.clone(), None);
-        let (mut motors, mut last) = ([0.0; 3], v.clone());
+        let (mut after, mut last, mut solved, mut given) = (v.clone(), v.clone(), None, 0.0);
+        let mut to = Phase { t: end, ..state.clone() };
         for _ in 0..PASSES {
-            motors = equation.smooth_force(middle, &theta, &v_m, &mut force)?;
+            let rates = frame_rates(model, &v_m);
+            given = equation.smooth_force(middle, &theta, &v_m, &rates, &mut force)?;
             for j in 0..n {
                 force[j] = h * (force[j] + damping[j] * (v_m[j] - v[j]));
             }
             sliding.iter().for_each(|&j| force[j] -= h * model.friction[j] * v[j].signum());
             impulses.divide(&mut force);
-            after.copy_from_slice(v);
-            after.iter_mut().zip(&force).for_each(|(rate, change)| *rate += change);
             if !system.rows.is_empty() {
-                let found = impulses.solve(&system, system.relative(&after), &before, &p);
+                // the laws hold for the velocities at the end, where the rows differ from those at the middle
+                end_of(model, state, &v, &after, h, &mut to);
+                let differs = impulses.relative_at(&system, end, &to.theta, &to.dtheta) - system.relative(&after);
+                add(&v, &force, &mut after);
+                let found = impulses.solve(&system, system.relative(&after) + differs, &before, &p);
                 impulses.apply(&system, &found.p, &mut after);
                 p.copy_from(&found.p);
                 solved = Some(found);
+            } else {
+                add(&v, &force, &mut after);
             }
             last.copy_from_slice(&v_m);
             (0..n).for_each(|j| v_m[j] = 0.5 * (v[j] + after[j]));
         }
         equation.check_velocities(middle, &after)?;
+        end_of(model, state, &v, &after, h, &mut to);
         let solved = solved.unwrap_or(Solved { u: before.clone(), p, residual: 0.0 });
         // works at the mean velocity
-        let mut works = [motors[0], 0.0, motors[2]].map(|power| h * power);
+        let [lost, moved] = solved.works(&system, &before);
+        let mut works = [0.0, lost + h * equation.smooth_friction_power(&v_m), moved + h * given];
         let [gain_stiffness, gain_damping] = &self.gains;
-        works[0] = 0.0;
         for j in 0..n {
-            let change = v_m[j] - last[j];
-            let tau = equation.tau()[j] - gain_damping[j] * change - 0.5 * h * gain_stiffness[j] * (v_m[j] - v[j]);
+            let (change, way) = (v_m[j] - last[j], 0.5 * h * (v_m[j] - v[j]));
+            let tau = equation.tau()[j] - gain_damping[j] * change - gain_stiffness[j] * way;
             works[0] += h * tau * v_m[j];
             works[1] += h * model.damping[j] * v_m[j] * v_m[j];
         }
-        works[1] += h * equation.smooth_friction_power(&v_m);
         sliding.iter().for_each(|&j| works[1] += h * model.friction[j] * v[j].signum() * v_m[j]);
-        let given = solved.p.dot(&system.w);
-        works[1] += -0.5 * solved.p.dot(&(&before + system.relative(&after)));
-        works[2] += given;
-        Ok(Trial { h, system, solved, dtheta: after, works })
+        (0..3).for_each(|k| to.works[k] += works[k]);
+        Ok(Trial { h, system, solved, to })
+    }
+}
+
+/// x ← v + change.
+fn add(v: &[f64], change: &[f64], x: &mut [f64]) {
+    x.copy_from_slice(v);
+    x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
+}
+
+fn vector(x: &[f64], at: usize) -> Vec3 {
+    Vec3([x[at], x[at + 1], x[at + 2]])
+}
+
+/// The places that move freely: a floating base, free joints.
+fn free_places(model: &Model) -> impl Iterator<Item = &Place> {
+    model.configuration_space().places().iter().filter(|place| place.freedom == Freedom::Free)
+}
+
+/// θ ← θ ⊕ hθ̇, where the origins of floating bodies move straight, not on screws: a wheel that rolls has velocities
+/// that turn in its own axes.
+fn straight(model: &Model, theta: &mut [f64], dtheta: &[f64], h: f64) {
+    let starts: Vec<(usize, Vec3)> = free_places(model).map(|place| (place.q, origin(theta, place, dtheta, h))).collect();
+    integrate(model, theta, dtheta, h);
+    for (q, p) in starts {
+        theta[q + 4..q + 7].copy_from_slice(&p.0);
+    }
+}
+
+/// p + h R v.
+fn origin(theta: &[f64], place: &Place, dtheta: &[f64], h: f64) -> Vec3 {
+    let q = &theta[place.q..];
+    let R = SO3::from_quaternion(q[0], vector(q, 1));
+    vector(q, 4) + R * vector(dtheta, place.j + 3) * h
+}
+
+/// x with the linear velocities of floating bodies in axes that are turned by h ω.
+fn turned(model: &Model, x: &[f64], omega: &[f64], h: f64) -> Vec<f64> {
+    let mut x = x.to_vec();
+    for place in free_places(model) {
+        let v = SO3::exp(vector(omega, place.j) * h) * vector(&x, place.j + 3);
+        x[place.j + 3..place.j + 6].copy_from_slice(&v.0);
+    }
+    x
+}
+
+/// θ̈ of floating bodies whose linear velocities are constant in axes that do not turn: v̇ = −ω × v.
+fn frame_rates(model: &Model, dtheta: &[f64]) -> Vec<f64> {
+    let mut rates = vec![0.0; dtheta.len()];
+    for place in free_places(model) {
+        let v = vector(dtheta, place.j + 3).cross(vector(dtheta, place.j));
+        rates[place.j + 3..place.j + 6].copy_from_slice(&v.0);
+    }
+    rates
+}
+
+/// The end of a step: from the velocities at both ends in the axes of the middle.
+fn end_of(model: &Model, state: &Phase, v: &[f64], after: &[f64], h: f64, to: &mut Phase) {
+    let mean: Vec<f64> = v.iter().zip(after).map(|(a, b)| 0.5 * (a + b)).collect();
+    to.theta.copy_from_slice(&state.theta);
+    integrate(model, &mut to.theta, &mean, h);
+    to.dtheta.copy_from_slice(after);
+    for place in free_places(model) {
+        let turn = |theta: &[f64]| SO3::from_quaternion(theta[place.q], vector(theta, place.q + 1));
+        let middle = turn(&state.theta) * SO3::exp(vector(&state.dtheta, place.j) * (0.5 * h));
+        let p = vector(&state.theta, place.q + 4) + middle * vector(&mean, place.j + 3) * h;
+        to.theta[place.q + 4..place.q + 7].copy_from_slice(&p.0);
+        let v = turn(&to.theta).inverse() * (middle * vector(after, place.j + 3));
+        to.dtheta[place.j + 3..place.j + 6].copy_from_slice(&v.0);
     }
 }
 
@@ -201,7 +272,7 @@ fn stopping(trial: &Trial, state: &Phase) -> Vec<usize> {
     for &(key, first, law) in &trial.system.rows {
         let (Key::Dry(j), Law::Dry { most }) = (key, law) else { continue };
         let rests = trial.solved.p[first].abs() < most;
-        if state.dtheta[j].abs() > AT_REST && (rests || trial.dtheta[j] * state.dtheta[j] < 0.0) {
+        if state.dtheta[j].abs() > AT_REST && (rests || trial.to.dtheta[j] * state.dtheta[j] < 0.0) {
             found.push(j);
         }
     }
@@ -210,11 +281,6 @@ fn stopping(trial: &Trial, state: &Phase) -> Vec<usize> {
 
 /// Takes the step.
 fn commit(impulses: &mut Impulses<'_>, state: &mut Phase, trial: &Trial) {
-    let h = trial.h;
-    let mean: Vec<f64> = state.dtheta.iter().zip(&trial.dtheta).map(|(a, b)| 0.5 * (a + b)).collect();
-    integrate(impulses.model, &mut state.theta, &mean, h);
-    state.dtheta.copy_from_slice(&trial.dtheta);
-    state.t += h;
-    (0..3).for_each(|k| state.works[k] += trial.works[k]);
-    impulses.keep(&trial.system, &trial.solved, h);
+    state.clone_from(&trial.to);
+    impulses.keep(&trial.system, &trial.solved, trial.h);
 }

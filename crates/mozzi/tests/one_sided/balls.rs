@@ -9,7 +9,7 @@ const RADIUS: f64 = 0.1;
 
 /// A solid ball of 0.5 kg that floats.
 fn ball() -> Model {
-    Description::new("ball").link("ball", Solid::Sphere(RADIUS).inertia(0.5)).floating().build().expect("sound")
+    Description::new("ball").link("ball", Solid::Sphere { radius: RADIUS }.inertia(0.5)).floating().build().expect("sound")
 }
 
 fn contact(model: &Model, link: &str, support: Support, mu: f64, restitution: f64) -> ContactPoint {

@@ -23,6 +23,10 @@ use nalgebra::DVector;
 const TOLERANCE: f64 = 1e-12;
 /// A residual above this is reported as unsolved, m/s.
 const UNSOLVED: f64 = 1e-6;
+/// Repeated solutions in which the friction of more blocks is taken at the middle of the step.
+const SHIFTS: usize = 4;
+/// Energy that friction may give by rounding, J.
+const GAINS: f64 = 1e-16;
 /// Contacts nearer than this act at least, m: rounding of positions.
 const NEAR: f64 = 1e-8;
 
@@ -59,7 +63,28 @@ pub(super) struct Solved {
     pub residual: f64,
 }
 
+/// Is the friction of a block opposite to the mean of its velocities before and after the step? So it is for what slides
+/// throughout (second order instead of first), and for what would gain energy otherwise. Only the direction of u_t counts
+/// for sliding friction, so the mean's law is that of b_t + u_t.
+fn is_at_middle(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
+    let rows = law.tangential(first);
+    let sum = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>();
+    if sum(&|r| p[r] * (before[r] + after[r])) > GAINS {
+        return true;
+    }
+    let Law::Contact { .. } = law else { return false };
+    let squares = sum(&|r| before[r] * before[r]) * sum(&|r| after[r] * after[r]);
+    let along = sum(&|r| before[r] * after[r]);
+    p[first] > 0.0 && squares > 1e-32 && along > 0.0 && along * along > 0.25 * squares
+}
+
 impl Solved {
+    /// The energy that the impulses dissipate and that they give to moving planes, from the velocities of the
+    /// surroundings before and after the step.
+    pub fn works(&self, system: &System, before: &DVector<f64>) -> [f64; 2] {
+        [-0.5 * self.p.dot(&(before + &self.u)), self.p.dot(&system.w)]
+    }
+
     /// Is p inside its cone, so that the contact sticks?
     fn sticks(&self, system: &System, first: usize, law: Law) -> bool {
         let Law::Contact { mu } = law else { return false };
@@ -151,37 +176,47 @@ impl<'r> Impulses<'r> {
     }
 
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
-    pub fn solve(&mut self, system: &System, mut b: DVector<f64>, before: &DVector<f64>, guess: &DVector<f64>) -> Solved {
+    pub fn solve(
+        &mut self,
+        system: &System,
+        mut b: DVector<f64>,
+        before: &DVector<f64>,
+        guess: &DVector<f64>,
+    ) -> Solved {
+        let original = b.clone();
         for &(key, first, _) in &system.rows {
-            if let Key::Contact(point, _) = key {
-                b[first] += self.contacts.points[point].restitution * before[first].min(0.0);
+            match key {
+                Key::Contact(point, _) if before[first] < 0.0 => {
+                    b[first] += self.contacts.points[point].restitution * before[first];
+                }
+                // what opens at first must not be pushed: its mean velocity stays positive
+                Key::Contact(..) | Key::Stop(..) => b[first] += before[first].max(0.0),
+                _ => {}
             }
         }
         let tolerance = TOLERANCE * (1.0 + b.amax());
         let mut problem = Problem { G: system.G.clone(), b, laws: system.laws.clone() };
         let mut found = solve(&problem, guess, tolerance);
         self.account.add(&found);
-        let mut u = problem.velocity(&found.p);
-        // the direction of sliding friction at the middle of the step: only its direction counts, and u_t + u_t⁺ is b_t
-        // larger by u_t
-        let mut turns = false;
-        for &(_, first, law) in &system.rows {
-            let Law::Contact { .. } = law else { continue };
-            let (a, c) = ([before[first + 1], before[first + 2]], [u[first + 1], u[first + 2]]);
-            let squares = (a[0] * a[0] + a[1] * a[1]) * (c[0] * c[0] + c[1] * c[1]);
-            let along = a[0] * c[0] + a[1] * c[1];
-            if found.p[first] > 0.0 && squares > 1e-32 && along > 0.0 && along * along > 0.25 * squares {
-                problem.b[first + 1] += a[0];
-                problem.b[first + 2] += a[1];
-                turns = true;
+        let mut shifted = vec![false; system.rows.len()];
+        for _ in 0..SHIFTS {
+            let u = &system.G * &found.p + &original;
+            let mut changes = false;
+            for (row, &(_, first, law)) in system.rows.iter().enumerate() {
+                if !shifted[row] && is_at_middle(law, first, &found.p, before, &u) {
+                    for r in law.tangential(first) {
+                        problem.b[r] += before[r];
+                    }
+                    (shifted[row], changes) = (true, true);
+                }
             }
+            if !changes {
+                break;
+            }
+            found = solve(&problem, &found.p, tolerance);
+            self.account.add(&found);
         }
-        if turns {
-            let shifted = solve(&problem, &found.p, tolerance);
-            self.account.add(&shifted);
-            u += &system.G * (&shifted.p - &found.p);
-            found = shifted;
-        }
+        let u = &system.G * &found.p + original;
         Solved { p: found.p, u, residual: found.residual }
     }
 

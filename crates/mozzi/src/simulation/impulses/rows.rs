@@ -2,7 +2,7 @@
 
 use super::Impulses;
 use crate::constraints::constraint_jacobian;
-use crate::kinematics::body_jacobian;
+use crate::kinematics::{body_jacobian, forward_kinematics, twist_of};
 use crate::linalg::{Vec3, ldlt};
 use crate::model::{Error, FrameId, Freedom};
 use crate::one_sided::Law;
@@ -49,6 +49,44 @@ impl System {
 }
 
 impl Impulses<'_> {
+    /// The velocities of the surroundings as seen from the robot at (t, θ, θ̇), along the rows of a system, which was
+    /// made nearby.
+    pub fn relative_at(&mut self, system: &System, t: f64, theta: &[f64], dtheta: &[f64]) -> DVector<f64> {
+        let (model, n, m) = (self.model, self.model.n(), self.model.constraint_rows());
+        let mut u = DVector::zeros(system.w.len());
+        let mut columns = (None, vec![Twist::zero(); n]);
+        let surfaces = self.surfaces(t);
+        if m > 0 {
+            let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut []);
+            for (r, row) in A.chunks_exact(n).enumerate() {
+                u[r] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
+            }
+        }
+        for &(key, first, _) in &system.rows {
+            match key {
+                Key::Constraint(_) => {}
+                Key::Dry(j) => u[first] = -dtheta[j],
+                Key::Stop(k, side) => {
+                    let row = self.stop_row(theta, k, side);
+                    u[first] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
+                }
+                Key::Contact(point, plane) => {
+                    let of = &self.contacts.points[point];
+                    self.columns(theta, of.frame, &mut columns);
+                    let T = forward_kinematics(model, theta, of.frame);
+                    let touch = of.touch(T, &surfaces[plane]);
+                    let V = twist_of(&columns.1, dtheta);
+                    let v = T.R * (V.v + V.w.cross(touch.of_frame));
+                    for k in 0..3 {
+                        u[first + k] = touch.speeds[k] - touch.axes[k].dot(v);
+                    }
+                }
+            }
+        }
+        u
+    }
+
     /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M. `sliding` joints have no
     /// row. M stays factored.
     pub fn system(
@@ -152,7 +190,7 @@ impl Impulses<'_> {
         touch: &Touch,
         axis: Vec3,
     ) -> RowDVector<f64> {
-        let T = crate::kinematics::forward_kinematics(self.model, theta, frame);
+        let T = forward_kinematics(self.model, theta, frame);
         let axis = T.R.inverse_mul(axis);
         let moment = touch.of_frame.cross(axis);
         RowDVector::from_iterator(columns.len(), columns.iter().map(|V| V.v.dot(axis) + V.w.dot(moment)))
