@@ -6,6 +6,7 @@ use super::driven::Driven;
 use super::impulses::Impulses;
 use super::events::{Event, Occurrence, first_zero};
 use super::midpoint::Midpoint;
+use super::modes::Modes;
 use super::moreau::Moreau;
 use super::options::check;
 use super::stall::{Stall, Trouble};
@@ -91,16 +92,20 @@ impl<'r> Course<'r> {
         options.check()?;
         let contacts = &simulation.contacts;
         let is_forced = options.method == Method::MoreauJean;
-        let impulses = Impulses::new(model, contacts, &options, is_forced)?.map(Box::new);
+        let mut impulses = Impulses::new(model, contacts, &options, is_forced)?.map(Box::new);
         options.method = options.method.resolved(impulses.is_some());
         let equation = Equation::new(model, input, &options).with_forward_dynamics(simulation.forward_dynamics)?;
         let mut driven = Driven::new(equation);
-        driven.equation.has_impulses = impulses.is_some();
+        let has_impulses = impulses.is_some();
+        driven.equation.has_impulses = has_impulses;
+        if options.method.is_adaptive() {
+            driven.modes = impulses.take().map(|impulses| Box::new(Modes::new(model, *impulses)));
+        }
         let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
         driven.close_start(&mut theta, &mut dtheta)?;
         let (theta, dtheta) = (&theta[..], &dtheta[..]);
         let integrator = Integrator::new(options.method, model)?;
-        let stops = Stops::new(model, options.joint_limits, theta, impulses.is_some())?;
+        let stops = Stops::new(model, options.joint_limits, theta, has_impulses)?;
         let motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
             driven.evaluate(t, q, dq, ddq)
         })?;
@@ -205,10 +210,11 @@ impl<'r> Course<'r> {
         let until = if impact.is_some() { dense.at(model, end) } else { State::of(&self.motion) };
         let release = self.stops.first_release(&dense, &until, &mut self.driven)?;
         let impact = impact.filter(|_| release.is_none());
-        end = release.unwrap_or(end);
+        let change = self.driven.first_change(&dense, reached)?;
+        end = release.or(change).unwrap_or(end);
         let over = self.events_until(&dense, &mut end);
         self.rows_until(&dense, end)?;
-        let happens = impact.is_some() || release.is_some();
+        let happens = impact.is_some() || release.is_some() || change.is_some();
         if end < reached || happens {
             let mut there = dense.at(model, end);
             there.ddtheta.copy_from_slice(&self.motion.ddtheta);
@@ -226,6 +232,10 @@ impl<'r> Course<'r> {
         }
         if respected {
             self.stops.stop_at_limits(&mut state, &mut self.driven)?;
+        }
+        match change.filter(|t| *t <= end) {
+            Some(_) => self.switch(&mut state)?,
+            None => self.driven.keep_modes(&mut state)?,
         }
         self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
         state.copy_to(&mut self.motion);
@@ -304,7 +314,7 @@ impl<'r> Course<'r> {
             self.next += self.options.record_every;
             let energy = self.driven.energy(&row.theta, &row.dtheta, row.works);
             let State { t, theta, dtheta, ddtheta, .. } = &row;
-            let contact_forces = self.impulses.as_ref().map_or(&[][..], |impulses| &impulses.forces);
+            let contact_forces = forces(&self.impulses, &self.driven);
             let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
             self.is_closed = self.recorder.take(&row).is_break();
         }
@@ -353,10 +363,16 @@ impl<'r> Course<'r> {
     fn record(&mut self) {
         let Motion { t, theta, dtheta, ddtheta, integrals, .. } = &self.motion;
         let energy = self.driven.energy(theta, dtheta, *integrals);
-        let contact_forces = self.impulses.as_ref().map_or(&[][..], |impulses| &impulses.forces);
+        let contact_forces = forces(&self.impulses, &self.driven);
         let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
         self.is_closed = self.recorder.take(&row).is_break();
     }
+}
+
+/// The contact forces.
+fn forces<'a>(impulses: &'a Option<Box<Impulses>>, driven: &'a Driven) -> &'a [f64] {
+    let modes = driven.modes.as_ref().map(|modes| &modes.impulses.forces);
+    impulses.as_ref().map(|impulses| &impulses.forces).or(modes).map_or(&[], |forces| forces)
 }
 
 /// A step from t, and its end: the full length, or to `until` if at most a rounding error would be left for a last

@@ -2,7 +2,7 @@
 
 use super::course::{Course, Integrator};
 use super::driven::Driven;
-use super::impulses::{Impulses, System};
+use super::impulses::{Choice, Impulses, System};
 use super::moreau::Phase;
 use super::state::State;
 use super::Explicit;
@@ -19,6 +19,11 @@ const AGREES: f64 = 1e-14;
 impl Course<'_> {
     /// θ̈ and the contact forces at the start: those of a first step that does not count.
     pub(super) fn start_impulses(&mut self) -> Result<(), Error> {
+        if self.driven.modes.is_some() {
+            let mut state = State::of(&self.motion);
+            self.switch(&mut state)?;
+            state.copy_to(&mut self.motion);
+        }
         if self.impulses.is_none() || self.options.duration == 0.0 {
             return Ok(());
         }
@@ -32,6 +37,22 @@ impl Course<'_> {
         }
         let super::Motion { t, theta, dtheta, .. } = &self.motion;
         self.driven.equation.find_tau(*t, theta, dtheta)
+    }
+
+    /// Jumps of velocities and new modes, at an event.
+    pub(super) fn switch(&mut self, state: &mut State) -> Result<(), Error> {
+        self.driven.switch(state)?;
+        let Some(modes) = &mut self.driven.modes else { return Ok(()) };
+        for (k, side) in modes.impulses.struck.drain(..) {
+            self.stops.note_impulse(state.t, k, side);
+        }
+        Ok(())
+    }
+
+    /// The account of one-sided forces.
+    pub(super) fn account(&self) -> Option<super::OneSidedAccount> {
+        let modes = self.driven.modes.as_ref().map(|modes| modes.impulses.account);
+        self.impulses.as_ref().map(|impulses| impulses.account).or(modes)
     }
 
     /// A step of h seconds, which ends at a time.
@@ -77,7 +98,7 @@ impl Course<'_> {
         let (model, start) = (driven.model, motion.clone());
         let mut theta = start.theta.clone();
         integrate(model, &mut theta, &start.dtheta, 0.5 * h);
-        let system = impulses.system(start.t + 0.5 * h, &theta, h, &vec![0.0; model.n()], &[])?;
+        let system = impulses.system(start.t + 0.5 * h, &theta, h, &vec![0.0; model.n()], Choice::Near(&[]))?;
         let before = impulses.relative_at(&system, start.t, &start.theta, &start.dtheta);
         let mut p = impulses.guess(&system, h);
         for round in 1..=ROUNDS {

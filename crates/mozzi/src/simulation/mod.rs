@@ -37,6 +37,7 @@ mod impulses;
 mod input;
 mod method;
 mod midpoint;
+mod modes;
 mod moreau;
 mod motion;
 mod options;

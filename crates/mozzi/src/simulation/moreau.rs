@@ -8,7 +8,7 @@
 
 use super::equation::Equation;
 use super::events::bisect;
-use super::impulses::{Impulses, Key, Solved, System};
+use super::impulses::{Choice, Impulses, Key, Solved, System};
 use super::{Input, Powers};
 use crate::kinematics::integrate;
 use crate::lie::SO3;
@@ -45,10 +45,10 @@ pub(super) struct Phase {
 }
 
 /// A step that may count.
-struct Trial {
+pub(super) struct Trial {
     h: f64,
-    system: System,
-    solved: Solved,
+    pub system: System,
+    pub solved: Solved,
     to: Phase,
 }
 
@@ -135,8 +135,8 @@ impl Moreau {
         Ok(Some((s, self.trial(equation, impulses, state, s, stopping)?)))
     }
 
-    /// A step of h seconds without its positions; `sliding` joints keep their full dry friction.
-    fn trial<I: Input>(
+    /// A step of h seconds that may count; `sliding` joints keep their full dry friction.
+    pub fn trial<I: Input>(
         &self,
         equation: &mut Equation<'_, I>,
         impulses: &mut Impulses<'_>,
@@ -150,7 +150,7 @@ impl Moreau {
         straight(model, &mut theta, &state.dtheta, 0.5 * h);
         let v = turned(model, &state.dtheta, &state.dtheta, -0.5 * h); // in the axes of the middle
         let diagonal: Vec<f64> = (0..n).map(|j| 0.5 * h * damping[j] + 0.25 * h * h * stiffness[j]).collect();
-        let system = impulses.system(middle, &theta, h, &diagonal, sliding)?;
+        let system = impulses.system(middle, &theta, h, &diagonal, Choice::Near(sliding))?;
         let before = impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
         let mut p = impulses.guess(&system, h);
         let (mut v_m, mut force) = (v.clone(), vec![0.0; n]);

@@ -5,10 +5,10 @@ use mozzi::simulation::{ContactPoint, Contacts, Method, Options, Plane, PlaneMot
 use mozzi::{Description, Model, SE3, Solid, SpatialInertia, Sym3, Twist, Vec3};
 
 const G: f64 = 9.81;
-const RADIUS: f64 = 0.1;
+pub const RADIUS: f64 = 0.1;
 
 /// A solid ball of 0.5 kg that floats.
-fn ball() -> Model {
+pub fn ball() -> Model {
     Description::new("ball").link("ball", Solid::Sphere { radius: RADIUS }.inertia(0.5)).floating().build().expect("sound")
 }
 
@@ -17,7 +17,7 @@ fn contact(model: &Model, link: &str, support: Support, mu: f64, restitution: f6
     ContactPoint { support, restitution, ..point }
 }
 
-fn rolling(model: &Model, plane: Plane<'static>, mu: f64, restitution: f64, start: [[f64; 3]; 3], options: Options) -> Run {
+pub fn rolling(model: &Model, plane: Plane<'static>, mu: f64, restitution: f64, start: [[f64; 3]; 3], options: Options) -> Run {
     let contacts =
         Contacts { points: vec![contact(model, "ball", Support::Sphere { radius: RADIUS }, mu, restitution)], planes: vec![plane] };
     let [p, w, v] = start;
@@ -27,7 +27,7 @@ fn rolling(model: &Model, plane: Plane<'static>, mu: f64, restitution: f64, star
 }
 
 /// Height of a ball dropped from 1 m with restitution e.
-fn bounced(t: f64, e: f64) -> f64 {
+pub fn bounced(t: f64, e: f64) -> f64 {
     let fall = (2.0 / G).sqrt();
     if t < fall {
         return 1.0 - 0.5 * G * t * t;

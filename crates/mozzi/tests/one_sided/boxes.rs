@@ -30,7 +30,7 @@ fn slope(angle: f64) -> SE3 {
 }
 
 /// A motion on the slope from a velocity along it; returns the path and the velocity along the slope at the end.
-fn on_slope(points: usize, angle: f64, v: [f64; 2], method: Method, [duration, step]: [f64; 2]) -> (Run, [f64; 2], f64) {
+pub fn on_slope(points: usize, angle: f64, v: [f64; 2], method: Method, [duration, step]: [f64; 2]) -> (Run, [f64; 2], f64) {
     let model = free_box();
     let T = slope(angle);
     let start = T * SE3::translation([0.0, 0.0, 0.5 * SIZE[2]]);

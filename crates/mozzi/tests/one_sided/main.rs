@@ -5,5 +5,6 @@ mod balls;
 mod boxes;
 mod drops;
 mod dry_friction;
+mod events;
 mod robots;
 mod stops;

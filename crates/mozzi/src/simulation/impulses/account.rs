@@ -33,7 +33,7 @@ impl OneSidedAccount {
     }
 
     /// The quality of a solution that counts.
-    pub(super) fn keep(&mut self, residual: f64, rows: usize) {
+    pub(in crate::simulation) fn keep(&mut self, residual: f64, rows: usize) {
         self.steps += 1;
         self.last_residual = residual;
         self.largest_residual = if residual <= self.largest_residual { self.largest_residual } else { residual };

@@ -5,7 +5,7 @@ mod position;
 mod rows;
 
 pub use account::OneSidedAccount;
-pub(super) use rows::{Key, System};
+pub(super) use rows::{Choice, Key, System};
 
 use super::contact::{Contacts, Surface};
 use super::{Friction, Options, Policy};
@@ -33,20 +33,22 @@ const NEAR: f64 = 1e-8;
 /// The one-sided forces of a robot along a motion.
 pub(super) struct Impulses<'r> {
     pub model: &'r Model,
-    contacts: &'r Contacts<'r>,
+    pub contacts: &'r Contacts<'r>,
     /// The limits that act as stops, joint and side.
     stops: Option<(Bounds, Vec<(usize, usize)>)>,
     /// The velocities with dry friction.
     pub dry: Vec<usize>,
     frames: Vec<FrameId>,
     /// Contacts at most this far act, m.
-    reach: f64,
+    pub reach: f64,
+    /// Slower impacts do not rebound, m/s.
+    pub slowest: f64,
     /// The forces of the last step.
     warm: BTreeMap<Key, [f64; 3]>,
     /// Where sticking contact points touch: in the coordinates of the plane.
     anchors: BTreeMap<(usize, usize), Vec3>,
     /// The contacts and stops that carried in the last step, and whether they stick.
-    carrying: Vec<(Key, bool)>,
+    pub carrying: Vec<(Key, bool)>,
     /// Joints and sides of stops that were struck and not reported yet.
     pub struck: Vec<(usize, usize)>,
     pub account: OneSidedAccount,
@@ -86,7 +88,7 @@ impl Solved {
     }
 
     /// Is p inside its cone, so that the contact sticks?
-    fn sticks(&self, system: &System, first: usize, law: Law) -> bool {
+    pub fn sticks(&self, system: &System, first: usize, law: Law) -> bool {
         let Law::Contact { mu } = law else { return false };
         let g = system.G[(first + 1, first + 1)].max(f64::MIN_POSITIVE);
         let [x, y] = [1, 2].map(|k| self.p[first + k] - self.u[first + k] / g);
@@ -125,6 +127,7 @@ impl<'r> Impulses<'r> {
             dry,
             frames,
             reach: (g * h * h).max(NEAR),
+            slowest: 0.0,
             warm: BTreeMap::new(),
             anchors: BTreeMap::new(),
             carrying: Vec::new(),
@@ -186,7 +189,7 @@ impl<'r> Impulses<'r> {
         let original = b.clone();
         for &(key, first, _) in &system.rows {
             match key {
-                Key::Contact(point, _) if before[first] < 0.0 => {
+                Key::Contact(point, _) if before[first] < -self.slowest => {
                     b[first] += self.contacts.points[point].restitution * before[first];
                 }
                 // what opens at first must not be pushed: its mean velocity stays positive
@@ -237,9 +240,15 @@ impl<'r> Impulses<'r> {
                 }
             }
         }
+        self.set_forces(system, &(&solved.p / h));
+    }
+
+    /// The contact forces in {s}, from those along the rows.
+    pub fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
         for &(key, axes) in &system.axes {
-            let (Key::Contact(point, plane), Some(force)) = (key, self.warm.get(&key)) else { continue };
-            let total = axes[0] * force[0] + axes[1] * force[1] + axes[2] * force[2];
+            let row = system.rows.iter().find(|(other, ..)| *other == key);
+            let (Key::Contact(point, plane), Some(&(_, first, _))) = (key, row) else { continue };
+            let total = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
             let pair = point * self.contacts.planes.len() + plane;
             self.forces[3 * pair..3 * pair + 3].copy_from_slice(&total.0);
         }

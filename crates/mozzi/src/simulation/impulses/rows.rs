@@ -26,6 +26,25 @@ pub(in crate::simulation) enum Key {
     Contact(usize, usize),
 }
 
+/// Which rows a system has.
+#[derive(Clone, Copy)]
+pub(in crate::simulation) enum Choice<'a> {
+    /// Those of everything near, and of the joints with dry friction that are not listed.
+    Near(&'a [usize]),
+    /// Those of the listed keys.
+    Only(&'a [Key]),
+}
+
+impl Choice<'_> {
+    fn has(&self, key: Key, is_near: bool) -> bool {
+        match (self, key) {
+            (Choice::Near(sliding), Key::Dry(j)) => !sliding.contains(&j),
+            (Choice::Near(_), _) => is_near,
+            (Choice::Only(keys), _) => keys.contains(&key),
+        }
+    }
+}
+
 /// J, G and the laws at the middle of a step.
 pub(in crate::simulation) struct System {
     /// The blocks: what they belong to, their first row, and their law.
@@ -87,15 +106,14 @@ impl Impulses<'_> {
         u
     }
 
-    /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M. `sliding` joints have no
-    /// row. M stays factored.
+    /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M, which stays factored.
     pub fn system(
         &mut self,
         t: f64,
         theta: &[f64],
         h: f64,
         diagonal: &[f64],
-        sliding: &[usize],
+        choice: Choice,
     ) -> Result<System, Error> {
         let (model, n) = (self.model, self.model.n());
         let mut rows: Vec<RowDVector<f64>> = Vec::new();
@@ -110,12 +128,15 @@ impl Impulses<'_> {
                 w.push(0.0);
             }
         }
-        for (k, side) in self.near_stops(theta) {
+        for (k, side) in self.sides() {
+            if !choice.has(Key::Stop(k, side), self.room(theta, k, side) <= super::NEAR) {
+                continue;
+            }
             blocks.push((Key::Stop(k, side), rows.len(), Law::Stop));
             rows.push(self.stop_row(theta, k, side));
             w.push(0.0);
         }
-        for &j in self.dry.iter().filter(|j| !sliding.contains(j)) {
+        for &j in self.dry.iter().filter(|&&j| choice.has(Key::Dry(j), true)) {
             blocks.push((Key::Dry(j), rows.len(), Law::Dry { most: h * model.friction[j] }));
             let mut row = RowDVector::zeros(n);
             row[j] = 1.0;
@@ -124,10 +145,10 @@ impl Impulses<'_> {
         }
         let mut columns = (None, vec![Twist::zero(); n]);
         for (point, plane, touch) in self.touches(t, theta) {
-            if touch.gap > self.reach {
+            let key = Key::Contact(point, plane);
+            if !choice.has(key, touch.gap <= self.reach) {
                 continue;
             }
-            let key = Key::Contact(point, plane);
             let of = &self.contacts.points[point];
             blocks.push((key, rows.len(), Law::Contact { mu: of.mu }));
             self.columns(theta, of.frame, &mut columns);
@@ -145,7 +166,7 @@ impl Impulses<'_> {
     }
 
     /// J M⁻¹Jᵀ: with M = LᵀDL, the products of the rows of D^{−½}L⁻ᵀJᵀ.
-    pub(super) fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
         let (n, pattern) = (self.model.n(), &self.model.structure.pattern);
         let mut Y = J.transpose();
         for mut column in Y.column_iter_mut() {
@@ -158,7 +179,7 @@ impl Impulses<'_> {
     }
 
     /// Every pair of a contact point and a plane.
-    pub(super) fn touches(&self, t: f64, theta: &[f64]) -> Vec<(usize, usize, Touch)> {
+    pub fn touches(&self, t: f64, theta: &[f64]) -> Vec<(usize, usize, Touch)> {
         let (surfaces, poses) = (self.surfaces(t), self.poses(theta));
         let mut found = Vec::with_capacity(self.contacts.pairs());
         for (k, point) in self.contacts.points.iter().enumerate() {
@@ -196,14 +217,13 @@ impl Impulses<'_> {
         RowDVector::from_iterator(columns.len(), columns.iter().map(|V| V.v.dot(axis) + V.w.dot(moment)))
     }
 
-    /// The limits that a joint has reached.
-    fn near_stops(&self, theta: &[f64]) -> Vec<(usize, usize)> {
-        let Some((_, sides)) = &self.stops else { return Vec::new() };
-        sides.iter().copied().filter(|&(k, side)| self.room(theta, k, side) <= super::NEAR).collect()
+    /// The limits that act as stops.
+    pub fn sides(&self) -> Vec<(usize, usize)> {
+        self.stops.as_ref().map_or(Vec::new(), |(_, sides)| sides.clone())
     }
 
     /// How far joint k is from its limit.
-    pub(super) fn room(&self, theta: &[f64], k: usize, side: usize) -> f64 {
+    pub fn room(&self, theta: &[f64], k: usize, side: usize) -> f64 {
         self.stops.as_ref().map_or(f64::INFINITY, |(bounds, _)| {
             let ([low, high], value) = (bounds.joints[k], bounds.value(theta, k));
             if side == 0 { value - low } else { high - value }
