@@ -46,6 +46,7 @@ pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
+pub mod one_sided;
 pub mod quantities;
 mod quantity;
 pub mod random;

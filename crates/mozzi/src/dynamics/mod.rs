@@ -61,6 +61,7 @@ pub use forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics;
 pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynamics_derivatives};
 pub use forward_dynamics_vjp::{ForwardDynamicsVjp, forward_dynamics_vjp};
 pub use frame_vjp::{FrameAccelerationVjp, FrameTwistVjp, frame_acceleration_vjp, frame_twist_vjp};
+pub(crate) use inverse_dynamics::newton_euler;
 pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
 pub use inverse_dynamics_derivatives::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
 pub use inverse_dynamics_vjp::{InverseDynamicsVjp, inverse_dynamics_vjp};

@@ -3,8 +3,11 @@
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
+use super::impulses::Impulses;
 use super::events::{Event, Occurrence, first_zero};
 use super::midpoint::Midpoint;
+use super::modes::Modes;
+use super::moreau::Moreau;
 use super::options::check;
 use super::stall::{Stall, Trouble};
 use super::state::State;
@@ -17,10 +20,11 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 /// What takes the steps.
-enum Integrator {
+pub(super) enum Integrator {
     Explicit(Explicit),
     DormandPrince(Box<DormandPrince>),
     Midpoint(Box<Midpoint>),
+    MoreauJean(Box<Moreau>),
 }
 
 impl Integrator {
@@ -30,6 +34,7 @@ impl Integrator {
                 Integrator::DormandPrince(Box::new(DormandPrince::new(model.n(), model.nq(), tolerance)))
             }
             Method::Midpoint => Integrator::Midpoint(Box::new(Midpoint::new(model))),
+            Method::MoreauJean => Integrator::MoreauJean(Box::new(Moreau::new(model))),
             method => Integrator::Explicit(method.explicit()?),
         })
     }
@@ -49,13 +54,15 @@ impl Integrator {
 
 /// A running simulation.
 pub(super) struct Course<'r> {
-    options: Options,
+    pub(super) options: Options,
     events: &'r [Event<'r>],
-    integrator: Integrator,
+    pub(super) integrator: Integrator,
     pub driven: Driven<'r>,
+    /// Dry friction, contacts, and stops next to them.
+    pub impulses: Option<Box<Impulses<'r>>>,
     pub stops: Stops,
     stall: Stall,
-    motion: Motion<f64, 3>,
+    pub(super) motion: Motion<f64, 3>,
     /// The state at the beginning of the step; kept only if something may happen within it.
     from: State,
     /// Can events, stops or rows lie within a step?
@@ -76,31 +83,45 @@ impl<'r> Course<'r> {
         input: &'r mut (dyn Input + 'r),
         recorder: &'r mut dyn Recorder,
     ) -> Result<Self, Error> {
-        let options = simulation.options;
+        let mut options = simulation.options;
         model.check_lengths(theta, [("dtheta", dtheta)])?;
         for (what, values) in [("theta", theta), ("dtheta", dtheta)] {
             let finite = values.iter().all(|x| x.is_finite());
             check(finite, what, format!("{values:?}"), "finite numbers")?;
         }
         options.check()?;
+        let contacts = &simulation.contacts;
+        let is_forced = options.method == Method::MoreauJean;
+        let mut impulses = Impulses::new(model, contacts, &options, is_forced)?.map(Box::new);
+        options.method = options.method.resolved(impulses.is_some());
         let equation = Equation::new(model, input, &options).with_forward_dynamics(simulation.forward_dynamics)?;
         let mut driven = Driven::new(equation);
+        let has_impulses = impulses.is_some();
+        driven.equation.has_impulses = has_impulses;
+        if options.method.is_adaptive() {
+            driven.modes = impulses.take().map(|impulses| Box::new(Modes::new(model, *impulses)));
+        }
         let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
         driven.close_start(&mut theta, &mut dtheta)?;
         let (theta, dtheta) = (&theta[..], &dtheta[..]);
         let integrator = Integrator::new(options.method, model)?;
-        let stops = Stops::new(model, options.joint_limits, theta)?;
+        let stops = Stops::new(model, options.joint_limits, theta, has_impulses)?;
         let motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
             driven.evaluate(t, q, dq, ddq)
         })?;
-        Ok(Course {
-            is_watched: !matches!(integrator, Integrator::Explicit(_))
-                || !simulation.events.is_empty()
-                || stops.are_respected(),
+        let takes_equal_steps = match &integrator {
+            Integrator::Explicit(_) => true,
+            Integrator::Midpoint(_) | Integrator::MoreauJean(_) => impulses.is_some(),
+            Integrator::DormandPrince(_) => false,
+        };
+        let mut course = Course {
+            is_watched: !takes_equal_steps || !simulation.events.is_empty() || stops.are_located(),
+            ending: Ending::new(options.method),
             options,
             events: &simulation.events,
             integrator,
             driven,
+            impulses,
             stops,
             stall: Stall::new(&options),
             from: State::of(&motion),
@@ -108,8 +129,9 @@ impl<'r> Course<'r> {
             next: options.record_every,
             recorder,
             is_closed: false,
-            ending: Ending::default(),
-        })
+        };
+        course.start_impulses()?;
+        Ok(course)
     }
 
     pub fn run(&mut self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<(), Error> {
@@ -120,7 +142,7 @@ impl<'r> Course<'r> {
             self.ending.complete = true;
             return Ok(());
         }
-        if self.stops.are_respected() {
+        if self.stops.are_located() {
             let mut state = State::of(&self.motion);
             self.stops.stop_at_limits(&mut state, &mut self.driven)?;
             state.copy_to(&mut self.motion);
@@ -154,6 +176,14 @@ impl<'r> Course<'r> {
     fn plain_step(&mut self, done: usize) -> Result<(), Error> {
         let (h, end) = (self.options.step(), self.options.time(done));
         self.driven.at_step(done, h);
+        if self.impulses.is_some() {
+            self.impulse_step(h, end)?;
+            if self.options.is_recorded(done) {
+                self.complete()?;
+            }
+            self.ending.steps = done;
+            return Ok(());
+        }
         if let Integrator::Explicit(method) = self.integrator {
             let driven = &mut self.driven;
             self.motion.advance(method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
@@ -174,18 +204,21 @@ impl<'r> Course<'r> {
         self.ending.steps = done;
 
         let reached = self.motion.t;
-        let respected = self.stops.are_respected();
+        let respected = self.stops.are_located();
         let impact = if respected { self.stops.first_impact(model, &dense, reached, &self.driven.held) } else { None };
         let mut end = impact.map_or(reached, |(t, ..)| t);
         let until = if impact.is_some() { dense.at(model, end) } else { State::of(&self.motion) };
         let release = self.stops.first_release(&dense, &until, &mut self.driven)?;
         let impact = impact.filter(|_| release.is_none());
-        end = release.unwrap_or(end);
+        let change = self.driven.first_change(&dense, reached)?;
+        end = release.or(change).unwrap_or(end);
         let over = self.events_until(&dense, &mut end);
         self.rows_until(&dense, end)?;
-        let happens = impact.is_some() || release.is_some();
+        let happens = impact.is_some() || release.is_some() || change.is_some();
         if end < reached || happens {
-            dense.at(model, end).copy_to(&mut self.motion);
+            let mut there = dense.at(model, end);
+            there.ddtheta.copy_from_slice(&self.motion.ddtheta);
+            there.copy_to(&mut self.motion);
             self.close()?;
             self.complete()?;
         }
@@ -200,6 +233,10 @@ impl<'r> Course<'r> {
         if respected {
             self.stops.stop_at_limits(&mut state, &mut self.driven)?;
         }
+        match change.filter(|t| *t <= end) {
+            Some(_) => self.switch(&mut state)?,
+            None => self.driven.keep_modes(&mut state)?,
+        }
         self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
         state.copy_to(&mut self.motion);
         if end != dense.t + dense.h || happens {
@@ -212,7 +249,12 @@ impl<'r> Course<'r> {
     fn step(&mut self, step: f64) -> Result<Dense, Error> {
         let Course { options: Options { duration, .. }, integrator, driven, motion, from, .. } = self;
         let (h, end) = step_to(step, from.t, *duration);
+        if self.impulses.is_some() {
+            self.impulse_step(h, end)?;
+            return Ok(Dense::hermite(self.driven.model, &self.from, &State::of(&self.motion)));
+        }
         match integrator {
+            Integrator::MoreauJean(_) => {} // which always has impulses
             Integrator::Explicit(method) => {
                 motion.advance(*method, h, end, |t, q, dq, ddq| driven.evaluate(t, q, dq, ddq))?;
                 self.close()?;
@@ -262,11 +304,18 @@ impl<'r> Course<'r> {
             let mut row = dense.at(self.driven.model, self.options.time(self.next));
             self.driven.close(row.t, &mut row.theta, &mut row.dtheta)?;
             self.driven.keep_at_limits(&mut row)?;
-            self.driven.complete(&mut row)?;
+            match &self.impulses {
+                Some(_) => {
+                    row.ddtheta.copy_from_slice(&self.motion.ddtheta);
+                    self.driven.equation.find_tau(row.t, &row.theta, &row.dtheta)?;
+                }
+                None => self.driven.complete(&mut row)?,
+            }
             self.next += self.options.record_every;
             let energy = self.driven.energy(&row.theta, &row.dtheta, row.works);
             let State { t, theta, dtheta, ddtheta, .. } = &row;
-            let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy };
+            let contact_forces = forces(&self.impulses, &self.driven);
+            let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
             self.is_closed = self.recorder.take(&row).is_break();
         }
         Ok(())
@@ -284,7 +333,7 @@ impl<'r> Course<'r> {
     }
 
     /// Brings the state back onto the constraints.
-    fn close(&mut self) -> Result<(), Error> {
+    pub(super) fn close(&mut self) -> Result<(), Error> {
         let Motion { t, theta, dtheta, .. } = &mut self.motion;
         self.driven.close(*t, theta, dtheta)
     }
@@ -303,6 +352,9 @@ impl<'r> Course<'r> {
     /// Fills in θ̈ and the powers.
     fn complete(&mut self) -> Result<(), Error> {
         let Motion { t, theta, dtheta, ddtheta, rates, .. } = &mut self.motion;
+        if self.impulses.is_some() {
+            return self.driven.equation.find_tau(*t, theta, dtheta); // θ̈ is the mean of the step
+        }
         *rates = self.driven.evaluate(*t, theta, dtheta, ddtheta)?;
         Ok(())
     }
@@ -311,9 +363,16 @@ impl<'r> Course<'r> {
     fn record(&mut self) {
         let Motion { t, theta, dtheta, ddtheta, integrals, .. } = &self.motion;
         let energy = self.driven.energy(theta, dtheta, *integrals);
-        let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy };
+        let contact_forces = forces(&self.impulses, &self.driven);
+        let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
         self.is_closed = self.recorder.take(&row).is_break();
     }
+}
+
+/// The contact forces.
+fn forces<'a>(impulses: &'a Option<Box<Impulses>>, driven: &'a Driven) -> &'a [f64] {
+    let modes = driven.modes.as_ref().map(|modes| &modes.impulses.forces);
+    impulses.as_ref().map(|impulses| &impulses.forces).or(modes).map_or(&[], |forces| forces)
 }
 
 /// A step from t, and its end: the full length, or to `until` if at most a rounding error would be left for a last

@@ -2,10 +2,12 @@
 
 use super::closing::Closer;
 use super::held::Held;
+use super::modes::Modes;
 use super::state::State;
 use super::{Closing, Energy, Equation, Input, Options, Powers};
 use crate::dynamics::mass_matrix;
 use crate::model::{Error, Freedom, Model, Workspace};
+use alloc::boxed::Box;
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -23,6 +25,8 @@ pub(super) struct Driven<'m, I = &'m mut (dyn Input + 'm)> {
     closer: Option<Closer>,
     /// A of the constraints at the last factorization of M.
     A: DMatrix<f64>,
+    /// What holds and what slides, for methods that stop at events.
+    pub modes: Option<Box<Modes<'m>>>,
 }
 
 impl<'m, I: Input> Driven<'m, I> {
@@ -38,6 +42,7 @@ impl<'m, I: Input> Driven<'m, I> {
             M: vec![0.0; n * n],
             closer: Closer::new(model),
             A: DMatrix::zeros(0, n),
+            modes: None,
         }
     }
 
@@ -56,7 +61,12 @@ impl<'m, I: Input> Driven<'m, I> {
 
     /// θ̈ and the powers.
     pub fn evaluate(&mut self, t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]) -> Result<Powers, Error> {
-        let powers = self.equation.evaluate(t, theta, dtheta, ddtheta)?;
+        let mut powers = self.equation.evaluate(t, theta, dtheta, ddtheta)?;
+        if let Some(modes) = &mut self.modes {
+            let [lost, given] = modes.accelerate(t, theta, dtheta, ddtheta)?;
+            powers[1] += lost;
+            powers[2] += given;
+        }
         if !self.held.is_empty() {
             let M = self.factored(theta)?;
             self.reactions = self.bring_to_rest(&M, theta, Some(dtheta), ddtheta);

@@ -6,7 +6,7 @@
 use super::options::{LARGEST, check};
 use super::trajectory::Energy;
 use super::{Friction, Input, Options};
-use crate::dynamics::{kinetic_energy, potential_energy};
+use crate::dynamics::{add_spring_forces, kinetic_energy, newton_euler, potential_energy};
 use crate::fast;
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
@@ -54,6 +54,10 @@ pub struct Equation<'m, I> {
     pub(super) force: Vec<f64>,
     /// λ of the last evaluation.
     lambda: Vec<f64>,
+    /// Is dry friction not part of θ̈, because impulses produce it?
+    pub(super) has_impulses: bool,
+    /// Further constant forces of a step, −Jᵀp/Δt, whose work is not part of the powers.
+    pub(super) extra: Vec<f64>,
     wrenches: Vec<(FrameId, Wrench)>,
     columns: Vec<Twist>,
     fast: fast::Workspace,
@@ -76,6 +80,8 @@ impl<'m, I: Input> Equation<'m, I> {
             tau: vec![0.0; model.n()],
             force: vec![0.0; model.n()],
             lambda: vec![0.0; model.constraint_rows()],
+            has_impulses: false,
+            extra: vec![0.0; model.n()],
             wrenches: Vec::new(),
             columns: vec![Twist::zero(); model.n()],
             fast: fast::Workspace::new(model),
@@ -176,6 +182,54 @@ impl<'m, I: Input> Equation<'m, I> {
         }
     }
 
+    /// τ − h − Mθ̈ − k(θ − θ₀) − dθ̇: the forces that act on the joints, without dry friction and constraints. Returns the
+    /// power given to the environment.
+    pub(super) fn smooth_force(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, Error> {
+        self.bounded("theta", t, theta)?;
+        self.bounded("dtheta", t, dtheta)?;
+        self.ask_input(t, theta, dtheta)?;
+        let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
+        for j in 0..force.len() {
+            force[j] = self.model.armature[j] * ddtheta[j];
+        }
+        newton_euler(self.model, theta, dtheta, ddtheta, &environment, &mut self.workspace, force);
+        add_spring_forces(self.model, theta, force);
+        for j in 0..force.len() {
+            force[j] = self.tau[j] - force[j] - self.model.damping[j] * dtheta[j] - self.smooth_friction(j, dtheta[j]);
+        }
+        Ok(self.applied_power(theta, dtheta))
+    }
+
+    /// Friction of a velocity, without damping, if it is smooth.
+    fn smooth_friction(&self, j: usize, rate: f64) -> f64 {
+        match self.options.friction {
+            Friction::Coulomb => 0.0,
+            Friction::Smooth { slip_speed } => self.model.friction[j] * Scalar::tanh(rate / slip_speed),
+        }
+    }
+
+    /// The power of smooth friction.
+    pub(super) fn smooth_friction_power(&self, dtheta: &[f64]) -> f64 {
+        dtheta.iter().enumerate().map(|(j, &rate)| rate * self.smooth_friction(j, rate)).sum()
+    }
+
+    /// Calls the input for the motors' τ of a row.
+    pub(super) fn find_tau(&mut self, t: f64, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
+        self.ask_input(t, theta, dtheta)
+    }
+
+    /// Checks that velocities are below [`LARGEST`].
+    pub(super) fn check_velocities(&self, t: f64, dtheta: &[f64]) -> Result<(), Error> {
+        self.bounded("dtheta", t, dtheta)
+    }
+
     fn ask_input(&mut self, t: f64, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
         self.tau.fill(0.0);
         self.wrenches.clear();
@@ -200,7 +254,7 @@ impl<'m, I: Input> Equation<'m, I> {
     /// Writes the force for forward dynamics, which subtracts d θ̇ + μ sgn θ̇ itself: τ, and for smooth friction τ plus
     /// the difference of the two laws. Returns the power of friction.
     pub(super) fn friction(&mut self, dtheta: &[f64]) -> f64 {
-        if self.is_frictionless {
+        if self.is_frictionless && !self.has_impulses {
             self.force.copy_from_slice(&self.tau);
             return 0.0;
         }
@@ -209,10 +263,11 @@ impl<'m, I: Input> Equation<'m, I> {
             let (damping, mu) = (self.model.damping[j], self.model.friction[j]);
             let coulomb = mu * rate.sgn();
             let law = match self.options.friction {
+                Friction::Coulomb if self.has_impulses => 0.0,
                 Friction::Coulomb => coulomb,
-                Friction::Smooth { slip_speed } => mu * Scalar::tanh(rate / slip_speed),
+                Friction::Smooth { .. } => self.smooth_friction(j, rate),
             };
-            self.force[j] = self.tau[j] + (coulomb - law);
+            self.force[j] = self.tau[j] + (coulomb - law) + self.extra[j];
             power += rate * (damping * rate + law);
         }
         power

@@ -105,7 +105,7 @@ pub(super) fn first_zero(
 }
 
 /// The Illinois method: chords, with a halved weight of the end that stays, which always bracket the zero.
-fn bisect(f: impl Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
+pub(super) fn bisect(mut f: impl FnMut(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
     let side = |x: f64, rises: bool| if rises { x >= 0.0 } else { x <= 0.0 };
     let rises = a.1 < 0.0;
     for k in 0..200 {

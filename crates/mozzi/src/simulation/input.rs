@@ -37,6 +37,13 @@ pub trait Input {
         let _ = (t, theta, dtheta, wrenches);
         Ok(())
     }
+
+    /// Adds −∂τ_j/∂θ_j and −∂τ_j/∂θ̇_j of each velocity, as far as they are known: the [Moreau-Jean
+    /// step](super::Method::MoreauJean) is implicit in them, so that stiff controllers do not need short steps. They do
+    /// not change what it converges to.
+    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        let _ = (stiffness, damping);
+    }
 }
 
 macro_rules! forward_to {
@@ -48,6 +55,9 @@ macro_rules! forward_to {
         fn applied(&mut $s, t: f64, theta: &[f64], dtheta: &[f64], wrenches: &mut Vec<(FrameId, Wrench)>) -> Result<(), Error> {
             $($inner.applied(t, theta, dtheta, wrenches)?;)*
             Ok(())
+        }
+        fn gains(&$s, stiffness: &mut [f64], damping: &mut [f64]) {
+            $($inner.gains(stiffness, damping);)*
         }
     };
 }

@@ -6,6 +6,14 @@ use crate::model::Error;
 /// such a step on any number type, see [`explicit`](Self::explicit). With θ̈ = F(t, θ, θ̇) and step h:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
+    /// [`MoreauJean`](Self::MoreauJean) if the robot has dry friction or contacts, else
+    /// [`RungeKutta4`](Self::RungeKutta4).
+    Automatic,
+    /// Moreau and Jean's step with θ = ½, for dry friction, stops and contacts: their impulses are solved for together
+    /// with those of constraints, once a step. Order 2 as long as no contact changes and through rests of joints with
+    /// dry friction, order 1 through impacts. It is implicit in springs, damping and the motors'
+    /// [gains](super::Input::gains).
+    MoreauJean,
     /// The book's: θ\[k+1\] = θ\[k\] + θ̇\[k\]h, θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h. Order 1; a swinging robot gains
     /// energy.
     Euler,
@@ -41,8 +49,8 @@ impl Method {
     pub fn order(self) -> u32 {
         match self {
             Method::Euler | Method::SemiImplicitEuler => 1,
-            Method::Midpoint => 2,
-            Method::RungeKutta4 => 4,
+            Method::Midpoint | Method::MoreauJean => 2,
+            Method::RungeKutta4 | Method::Automatic => 4,
             Method::DormandPrince { .. } => 5,
         }
     }
@@ -61,8 +69,8 @@ impl Method {
         match self {
             Method::Euler => Ok(Explicit::Euler),
             Method::SemiImplicitEuler => Ok(Explicit::SemiImplicitEuler),
-            Method::RungeKutta4 => Ok(Explicit::RungeKutta4),
-            Method::DormandPrince { .. } | Method::Midpoint => Err(Error::BadArgument {
+            Method::RungeKutta4 | Method::Automatic => Ok(Explicit::RungeKutta4),
+            Method::DormandPrince { .. } | Method::Midpoint | Method::MoreauJean => Err(Error::BadArgument {
                 what: "the method",
                 found: self.name().into(),
                 expected: "Euler, semi-implicit Euler or Runge-Kutta 4",
@@ -70,9 +78,20 @@ impl Method {
         }
     }
 
-    /// "Euler", "semi-implicit Euler", "Runge-Kutta 4", "Dormand-Prince 5(4)" or "implicit midpoint".
+    /// The method that [`Automatic`](Self::Automatic) is for a robot with or without one-sided forces.
+    pub(super) fn resolved(self, is_one_sided: bool) -> Self {
+        match (self, is_one_sided) {
+            (Method::Automatic, true) => Method::MoreauJean,
+            (Method::Automatic, false) => Method::RungeKutta4,
+            (method, _) => method,
+        }
+    }
+
+    /// "Moreau-Jean", "Euler", "semi-implicit Euler", "Runge-Kutta 4", "Dormand-Prince 5(4)" or "implicit midpoint".
     pub fn name(self) -> &'static str {
         match self {
+            Method::Automatic => "automatic",
+            Method::MoreauJean => "Moreau-Jean",
             Method::Euler => "Euler",
             Method::SemiImplicitEuler => "semi-implicit Euler",
             Method::RungeKutta4 => "Runge-Kutta 4",

@@ -23,6 +23,7 @@
 
 mod closing;
 mod condition;
+mod contact;
 mod course;
 mod dense;
 mod dormand_prince;
@@ -31,9 +32,13 @@ mod equation;
 mod events;
 mod friction;
 mod held;
+mod impulse_steps;
+mod impulses;
 mod input;
 mod method;
 mod midpoint;
+mod modes;
+mod moreau;
 mod motion;
 mod options;
 mod policy;
@@ -59,9 +64,11 @@ mod free_base;
 mod robots;
 
 pub use closing::{Closer, Closing};
+pub use contact::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 pub use dormand_prince::dormand_prince_by_equal_steps;
 pub use equation::{Equation, ForwardDynamics, Powers, forward_dynamics_of};
 pub use events::{Direction, Event, EventFunction, Occurrence};
+pub use impulses::OneSidedAccount;
 pub use input::{GravityCompensation, Input, Zero, applied, torque};
 pub use method::{Explicit, Method};
 pub use motion::Motion;

@@ -12,7 +12,7 @@ pub const LARGEST: f64 = 1e150;
 /// `Options { method: Method::Euler, ..Options::new(2.0, 2000) }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The method of integration; default Runge-Kutta 4.
+    /// The method of integration; default [`Automatic`](Method::Automatic).
     pub method: Method,
     /// t_f in seconds, at least 0; the motion starts at t = 0.
     pub duration: f64,
@@ -31,13 +31,13 @@ pub struct Options {
     pub joint_limits: Policy,
 }
 
-/// How to model Coulomb friction μ. Neither model includes sticking: no joint is held at rest against a torque.
+/// How to model Coulomb friction μ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction {
-    /// μ sgn θ̇ with sgn 0 = 0, as in forward dynamics. Around rest θ̇ changes its sign from step to step, by up to
-    /// μ δt / M, instead of staying 0.
+    /// Dry friction: |f| ≤ μ, a joint at rest sticks as long as |f| < μ holds it, and a moving one loses μ |θ̇|. See
+    /// [`crate::one_sided`].
     Coulomb,
-    /// μ tanh(θ̇ / v_s), smooth, so that Runge-Kutta keeps its order; creeps at up to about v_s instead of sticking.
+    /// μ tanh(θ̇ / v_s), smooth, so that Runge-Kutta keeps its order; it does not stick but creeps at up to about v_s.
     /// Stiff for small v_s: the explicit methods here need δt below about v_s M / μ.
     Smooth {
         /// v_s > 0: three quarters of μ act at this speed; rad/s or m/s.
@@ -46,10 +46,10 @@ pub enum Friction {
 }
 
 impl Options {
-    /// N equal steps to t_f: Runge-Kutta 4, every step recorded, gravity and friction as in the model.
+    /// N equal steps to t_f: the automatic method, every step recorded, gravity and friction as in the model.
     pub fn new(duration: f64, steps: usize) -> Self {
         Options {
-            method: Method::RungeKutta4,
+            method: Method::Automatic,
             duration,
             steps,
             record_every: 1,

@@ -1,10 +1,12 @@
 //! A simulation of one robot, and its results.
 
 use super::closing::Closing;
+use super::contact::Contacts;
 use super::course::Course;
 use super::events::{Event, Occurrence};
+use super::impulses::OneSidedAccount;
 use super::stops::Stopped;
-use super::{ForwardDynamics, Input, Options, Recorder, Trajectory};
+use super::{ForwardDynamics, Input, Method, Options, Recorder, Trajectory};
 use crate::model::{Error, Model};
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -34,6 +36,8 @@ pub struct Simulation<'a> {
     pub events: Vec<Event<'a>>,
     /// θ̈ by machine code instead of the kernels, such as `mozzi_batch::Compiled::simulator` returns.
     pub forward_dynamics: Option<&'a dyn ForwardDynamics>,
+    /// Contact points and planes.
+    pub contacts: Contacts<'a>,
 }
 
 /// A simulated motion, with its events and stops.
@@ -47,10 +51,14 @@ pub struct Run {
     pub stops: Vec<Stopped>,
     /// The largest violation of the robot's constraints.
     pub closing: Closing,
+    /// The method that took the steps.
+    pub method: Method,
+    /// The solutions for dry friction, stops and contacts; `None` if there are none.
+    pub one_sided: Option<OneSidedAccount>,
 }
 
 /// The result of a simulation whose rows went to a recorder.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ending {
     /// Steps taken.
     pub steps: usize,
@@ -62,12 +70,31 @@ pub struct Ending {
     pub stops: Vec<Stopped>,
     /// The largest violation of the robot's constraints.
     pub closing: Closing,
+    /// The method that took the steps.
+    pub method: Method,
+    /// The solutions for dry friction, stops and contacts; `None` if there are none.
+    pub one_sided: Option<OneSidedAccount>,
+}
+
+impl Ending {
+    /// Before the first step.
+    pub(super) fn new(method: Method) -> Self {
+        Ending {
+            steps: 0,
+            complete: false,
+            events: Vec::new(),
+            stops: Vec::new(),
+            closing: Closing::default(),
+            method,
+            one_sided: None,
+        }
+    }
 }
 
 impl<'a> Simulation<'a> {
     /// Without events, by the kernels.
     pub fn new(options: Options) -> Self {
-        Simulation { options, events: Vec::new(), forward_dynamics: None }
+        Simulation { options, events: Vec::new(), forward_dynamics: None, contacts: Contacts::default() }
     }
 
     /// The motion from (θ(0), θ̇(0)) under an input.
@@ -92,10 +119,10 @@ impl<'a> Simulation<'a> {
         progress: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Run, Error> {
         let mut motion = Trajectory::new(model);
-        let Ending { steps, complete, events, stops, closing } =
+        let Ending { steps, complete, events, stops, closing, method, one_sided } =
             self.stream(model, theta, dtheta, input, &mut motion, progress)?;
         (motion.steps, motion.complete) = (steps, complete);
-        Ok(Run { motion, events, stops, closing })
+        Ok(Run { motion, events, stops, closing, method, one_sided })
     }
 
     /// As [`run_with_progress`](Self::run_with_progress), but passes the rows to a recorder one by one: memory does not
@@ -114,8 +141,9 @@ impl<'a> Simulation<'a> {
     ) -> Result<Ending, Error> {
         let mut course = Course::new(self, model, [theta, dtheta], &mut input, recorder)?;
         course.run(&mut progress)?;
-        course.ending.stops = course.stops.noted();
         course.ending.closing = course.driven.closing();
+        course.ending.one_sided = course.account();
+        course.ending.stops = course.stops.noted();
         Ok(course.ending)
     }
 }

@@ -32,6 +32,8 @@ pub struct Stopped {
 /// The state of the joints' limits along a motion.
 pub(super) struct Stops {
     policy: Policy,
+    /// Do the steps stop the joints themselves, by impulses?
+    by_impulses: bool,
     bounds: Bounds,
     /// Joint and side, lower (0) or upper (1), of every limit that can be reached.
     sides: Vec<(usize, usize)>,
@@ -43,7 +45,7 @@ pub(super) struct Stops {
 }
 
 impl Stops {
-    pub fn new(model: &Model, policy: Policy, start: &[f64]) -> Result<Self, Error> {
+    pub fn new(model: &Model, policy: Policy, start: &[f64], by_impulses: bool) -> Result<Self, Error> {
         let bounds = Bounds::of(model);
         let names: Vec<String> = model.joint_names().map(ToString::to_string).collect();
         for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(&names) {
@@ -67,6 +69,7 @@ impl Stops {
         }
         Ok(Stops {
             policy,
+            by_impulses,
             noted: vec![[None, None]; names.len()],
             beyond: vec![[false; 2]; names.len()],
             sides: sides(&bounds),
@@ -82,8 +85,14 @@ impl Stops {
         all
     }
 
-    pub fn are_respected(&self) -> bool {
-        self.policy == Policy::Respect
+    /// Are joints stopped at the times at which they reach their limits?
+    pub fn are_located(&self) -> bool {
+        self.policy == Policy::Respect && !self.by_impulses
+    }
+
+    /// Records a joint that an impulse stopped.
+    pub fn note_impulse(&mut self, t: f64, k: usize, side: usize) {
+        self.note(t, k, side, 0.0, true);
     }
 
     /// How far joint k is beyond its lower (0) or upper (1) bound.
@@ -188,7 +197,7 @@ impl Stops {
 }
 
 /// The limits that can be reached; a ball's angle is from 0 to π.
-fn sides(bounds: &Bounds) -> Vec<(usize, usize)> {
+pub(super) fn sides(bounds: &Bounds) -> Vec<(usize, usize)> {
     let all = (0..bounds.joints.len()).flat_map(|k| [(k, 0), (k, 1)]);
     let is_reachable = |&(k, side): &(usize, usize)| {
         let (limit, is_ball) = (bounds.joints[k][side], bounds.places[k].freedom == Freedom::Ball);

@@ -55,6 +55,11 @@ pub struct Trajectory {
     pub tau: Vec<f64>,
     /// One for each row.
     pub energy: Vec<Energy>,
+    /// Columns of `contact_forces`: three for each pair of a contact point and a plane.
+    pub forces: usize,
+    /// The forces that contact points apply to planes, in {s}, N: see
+    /// [`Contacts::names`](super::Contacts::names). The mean over the step that ends at the row.
+    pub contact_forces: Vec<f64>,
     /// Steps taken.
     pub steps: usize,
     /// Did it reach t_f? `false` if the progress callback stopped it.
@@ -76,6 +81,8 @@ pub struct Sample<'a> {
     pub tau: &'a [f64],
     /// Energies, and works since the start.
     pub energy: Energy,
+    /// The forces that contact points apply to planes, in {s}, N: three for each pair.
+    pub contact_forces: &'a [f64],
 }
 
 impl Trajectory {
@@ -90,6 +97,8 @@ impl Trajectory {
             ddtheta: Vec::new(),
             tau: Vec::new(),
             energy: Vec::new(),
+            forces: 0,
+            contact_forces: Vec::new(),
             steps: 0,
             complete: false,
         }
@@ -104,7 +113,11 @@ impl Trajectory {
         for list in [row.dtheta, row.ddtheta, row.tau] {
             assert!(list.len() == self.n, "a slice has {} entries, expected {}", list.len(), self.n);
         }
+        if self.t.is_empty() {
+            self.forces = row.contact_forces.len();
+        }
         self.t.push(row.t);
+        self.contact_forces.extend(row.contact_forces);
         self.theta.extend(row.theta);
         self.dtheta.extend(row.dtheta);
         self.ddtheta.extend(row.ddtheta);
@@ -124,6 +137,7 @@ impl Trajectory {
         };
         thin(&mut self.t, 1);
         thin(&mut self.theta, nq);
+        thin(&mut self.contact_forces, self.forces.max(1));
         [&mut self.dtheta, &mut self.ddtheta, &mut self.tau].into_iter().for_each(|list| thin(list, n));
         let mut row = 0;
         self.energy.retain(|_| {
@@ -136,6 +150,7 @@ impl Trajectory {
     pub(super) fn clear(&mut self) {
         let lists = [&mut self.t, &mut self.theta, &mut self.dtheta, &mut self.ddtheta, &mut self.tau];
         lists.into_iter().for_each(Vec::clear);
+        self.contact_forces.clear();
         self.energy.clear();
     }
 
@@ -161,6 +176,7 @@ impl Trajectory {
             ddtheta: self.velocities(&self.ddtheta, k),
             tau: self.velocities(&self.tau, k),
             energy: self.energy[k],
+            contact_forces: &self.contact_forces[k * self.forces..(k + 1) * self.forces],
         }
     }
 

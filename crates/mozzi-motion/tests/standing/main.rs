@@ -1,0 +1,5 @@
+//! ANYmal on its feet.
+#![allow(non_snake_case)]
+
+mod anymal;
+mod drop;

@@ -1,0 +1,215 @@
+//! Points of a robot, and the planes that stop them.
+
+use super::options::check;
+use crate::lie::SE3;
+use crate::linalg::Vec3;
+use crate::model::{Error, FrameId, Model};
+use crate::scalar::Scalar;
+use crate::spatial::Twist;
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// A point, or a rounded end, of a robot that planes stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// The name in results.
+    pub name: String,
+    /// The frame that carries it.
+    pub frame: FrameId,
+    /// The point, or the centre of the rounding, in the frame, m.
+    pub center: Vec3,
+    /// What is around the centre.
+    pub support: Support,
+    /// The coefficient of friction μ, at least 0.
+    pub mu: f64,
+    /// The coefficient of restitution e, 0 to 1: u_n⁺ = −e u_n⁻.
+    pub restitution: f64,
+}
+
+/// The shape around the centre of a contact point; the point that is nearest to a plane touches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Support {
+    /// The point itself.
+    Point,
+    /// A sphere, for example an end of a capsule. A sphere rolls.
+    Sphere {
+        /// m
+        radius: f64,
+    },
+    /// A thin disc, for example a wheel or the rim of a cylinder.
+    Disc {
+        /// The axis of the disc in the frame; its length does not matter.
+        axis: Vec3,
+        /// m
+        radius: f64,
+    },
+}
+
+/// A plane that stops the robot's contact points: z = 0 of a frame, whose z-axis points towards the robot.
+pub struct Plane<'a> {
+    /// The name in results.
+    pub name: String,
+    /// How it moves.
+    pub motion: PlaneMotion<'a>,
+}
+
+/// The motion of a plane.
+pub enum PlaneMotion<'a> {
+    /// At rest in this configuration in {s}.
+    Fixed(SE3),
+    /// A belt: the plane is at rest, its surface moves with this velocity in {s}, m/s.
+    Belt(SE3, Vec3),
+    /// Of the time in seconds: its configuration in {s}, and its angular velocity and the velocity of its origin, in
+    /// the axes of {s}.
+    Moving(Box<dyn Fn(f64) -> (SE3, Twist) + 'a>),
+}
+
+/// The contact points of a robot and the planes of its environment. Each point can touch each plane. Shapes do not touch
+/// each other.
+#[derive(Default)]
+pub struct Contacts<'a> {
+    /// The points.
+    pub points: Vec<ContactPoint>,
+    /// The planes.
+    pub planes: Vec<Plane<'a>>,
+}
+
+/// A plane at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub T: SE3,
+    pub V: Twist,
+}
+
+/// A contact point next to a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// The distance, m; negative within the plane.
+    pub gap: f64,
+    /// The touching point in its frame, and in {s}.
+    pub of_frame: Vec3,
+    pub at: Vec3,
+    /// n (into the plane), t₁ and t₂ in {s}.
+    pub axes: [Vec3; 3],
+    /// The velocity of the plane's material there along these axes.
+    pub speeds: [f64; 3],
+}
+
+impl ContactPoint {
+    /// A sharp point, without restitution.
+    pub fn new(name: impl Into<String>, frame: FrameId, center: Vec3, mu: f64) -> Self {
+        ContactPoint { name: name.into(), frame, center, support: Support::Point, mu, restitution: 0.0 }
+    }
+
+    /// The point that is farthest in a direction, in the frame.
+    fn farthest(&self, direction: Vec3) -> Vec3 {
+        match self.support {
+            Support::Point => self.center,
+            Support::Sphere { radius } => self.center + direction * radius,
+            Support::Disc { axis, radius } => {
+                let axis = axis * (1.0 / axis.norm());
+                let within = direction - axis * axis.dot(direction);
+                let size = within.norm();
+                // a disc that lies flat touches with its centre
+                if size > 1e-12 { self.center + within * (radius / size) } else { self.center }
+            }
+        }
+    }
+
+    /// The point next to a plane; T is its frame's configuration in {s}.
+    pub(super) fn touch(&self, T: SE3, surface: &Surface) -> Touch {
+        let axes = surface.T.R.matrix().transpose().rows().map(Vec3);
+        let n = -axes[2];
+        let of_frame = self.farthest(T.R.inverse_mul(n));
+        let at = T * of_frame;
+        let from = at - surface.T.p;
+        let v = surface.V.v + surface.V.w.cross(from);
+        let axes = [n, axes[0], axes[1]];
+        Touch { gap: -n.dot(from), of_frame, at, axes, speeds: axes.map(|axis| axis.dot(v)) }
+    }
+}
+
+impl<'a> Plane<'a> {
+    /// The ground: z = 0 of {s}.
+    pub fn ground() -> Self {
+        Plane { name: "ground".into(), motion: PlaneMotion::Fixed(SE3::identity()) }
+    }
+
+    /// A plane at rest.
+    pub fn fixed(name: impl Into<String>, T: SE3) -> Self {
+        Plane { name: name.into(), motion: PlaneMotion::Fixed(T) }
+    }
+
+    pub(super) fn at(&self, t: f64) -> Surface {
+        match &self.motion {
+            PlaneMotion::Fixed(T) => Surface { T: *T, V: Twist::zero() },
+            PlaneMotion::Belt(T, v) => Surface { T: *T, V: Twist { w: Vec3::zero(), v: *v } },
+            PlaneMotion::Moving(motion) => {
+                let (T, V) = motion(t);
+                Surface { T, V }
+            }
+        }
+    }
+}
+
+impl Contacts<'_> {
+    /// Are there no contacts?
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty() || self.planes.is_empty()
+    }
+
+    /// The number of pairs of a point and a plane.
+    pub fn pairs(&self) -> usize {
+        self.points.len() * self.planes.len()
+    }
+
+    /// The names of the pairs: of each point, with the plane's if there are several.
+    pub fn names(&self) -> impl Iterator<Item = String> + '_ {
+        self.points.iter().flat_map(move |point| {
+            self.planes.iter().map(move |plane| match self.planes.len() {
+                1 => point.name.clone(),
+                _ => format!("{} on {}", point.name, plane.name),
+            })
+        })
+    }
+
+    /// The distances of all pairs at a time, m: those of the first point to each plane, then of the second.
+    ///
+    /// # Panics
+    /// When θ is not nq long.
+    pub fn gaps(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<f64> {
+        let surfaces: Vec<Surface> = self.planes.iter().map(|plane| plane.at(t)).collect();
+        let of_point = |point: &ContactPoint| {
+            let T = crate::kinematics::forward_kinematics(model, theta, point.frame);
+            surfaces.iter().map(|surface| point.touch(T, surface).gap).collect::<Vec<f64>>()
+        };
+        self.points.iter().flat_map(of_point).collect()
+    }
+
+    /// Checks coefficients, shapes and frames.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] naming the contact point.
+    pub fn check(&self, model: &Model) -> Result<(), Error> {
+        let frames = model.frames().len();
+        for ContactPoint { name, frame, center, support, mu, restitution } in &self.points {
+            let says = |what: &str| format!("{what} of contact point `{name}`");
+            check(frame.0 < frames, "the frame of a contact point", says("that"), "a frame of this model")?;
+            check(*mu >= 0.0 && mu.is_finite(), "the coefficient of friction", says(&format!("{mu}")), "at least 0")?;
+            let is_ratio = (0.0..=1.0).contains(restitution);
+            check(is_ratio, "the coefficient of restitution", says(&format!("{restitution}")), "0 to 1")?;
+            let (radius, axis) = match *support {
+                Support::Point => (0.0, Vec3([0.0, 0.0, 1.0])),
+                Support::Sphere { radius } => (radius, Vec3([0.0, 0.0, 1.0])),
+                Support::Disc { axis, radius } => (radius, axis),
+            };
+            let numbers = [center.0, axis.0].concat();
+            let is_finite = numbers.iter().all(|x| x.is_finite()) && Scalar::sqrt(axis.dot(axis)) > 0.0;
+            check(is_finite, "the shape", says(&format!("{support:?} at {center:?}")), "finite numbers and an axis")?;
+            check(radius >= 0.0 && radius.is_finite(), "the radius", says(&format!("{radius}")), "at least 0")?;
+        }
+        Ok(())
+    }
+}

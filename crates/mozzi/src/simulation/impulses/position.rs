@@ -1,0 +1,116 @@
+//! Positions after a step: contacts and stops that carry have no gap, feet that stick stay where they are.
+
+use super::{Impulses, Key};
+use crate::constraints::constraint_jacobian;
+use crate::kinematics::integrate;
+use crate::linalg::Vec3;
+use crate::model::Error;
+use crate::one_sided::least_squares;
+use crate::simulation::contact::{PlaneMotion, Support};
+use crate::spatial::Twist;
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// Gaps below this are rounding, m.
+const CLOSED: f64 = 1e-13;
+const CORRECTIONS: usize = 3;
+
+impl Impulses<'_> {
+    /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
+    /// either side, and sticking points back to their anchors. `h` is the length of the step.
+    pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64) -> Result<(), Error> {
+        if self.carrying.is_empty() {
+            self.anchors.clear();
+            return Ok(());
+        }
+        self.move_anchors(h);
+        let n = self.model.n();
+        let (mut last, mut is_factored) = (f64::INFINITY, false);
+        for _ in 0..CORRECTIONS {
+            let (rows, errors) = self.open_rows(t, theta);
+            let size = errors.amax();
+            if size < CLOSED || !(size < 0.5 * last) {
+                break;
+            }
+            last = size;
+            if !is_factored {
+                self.factor(theta, &[])?;
+                is_factored = true;
+            }
+            let J = DMatrix::from_rows(&rows);
+            let Some(impulse) = least_squares(self.delassus(&J), errors) else { break };
+            let mut change = J.tr_mul(&impulse);
+            self.divide(change.as_mut_slice());
+            debug_assert!(change.len() == n);
+            integrate(self.model, theta, change.as_slice(), 1.0);
+        }
+        self.set_anchors(t, theta);
+        Ok(())
+    }
+
+    /// Rows of the contacts, stops and constraints that hold, and how far to move along them.
+    fn open_rows(&mut self, t: f64, theta: &[f64]) -> (Vec<RowDVector<f64>>, DVector<f64>) {
+        let (model, n) = (self.model, self.model.n());
+        let (mut rows, mut errors) = (Vec::new(), Vec::new());
+        let mut columns = (None, vec![Twist::zero(); n]);
+        let touches = self.touches(t, theta);
+        let surfaces = self.surfaces(t);
+        for &(key, sticks) in &self.carrying {
+            match key {
+                Key::Stop(k, side) => {
+                    rows.push(self.stop_row(theta, k, side));
+                    errors.push(self.room(theta, k, side));
+                }
+                Key::Contact(point, plane) => {
+                    let frame = self.contacts.points[point].frame;
+                    let (.., touch) = touches[point * self.contacts.planes.len() + plane];
+                    self.columns(theta, frame, &mut columns);
+                    rows.push(self.point_row(theta, frame, &columns.1, &touch, touch.axes[0]));
+                    errors.push(touch.gap);
+                    let Some(anchor) = self.anchors.get(&(point, plane)).filter(|_| sticks) else { continue };
+                    let way = surfaces[plane].T * *anchor - touch.at;
+                    for axis in &touch.axes[1..] {
+                        rows.push(self.point_row(theta, frame, &columns.1, &touch, *axis));
+                        errors.push(axis.dot(way));
+                    }
+                }
+                _ => {}
+            }
+        }
+        let m = model.constraint_rows();
+        if m > 0 {
+            let (mut A, mut phi, still) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut phi);
+            rows.extend(A.chunks_exact(n).map(RowDVector::from_row_slice));
+            errors.extend(phi.iter().map(|x| -x));
+        }
+        (rows, DVector::from_vec(errors))
+    }
+
+    /// The anchors on belts move with them.
+    fn move_anchors(&mut self, h: f64) {
+        for (&(_, plane), anchor) in &mut self.anchors {
+            if let PlaneMotion::Belt(T, v) = &self.contacts.planes[plane].motion {
+                *anchor += T.R.inverse_mul(*v) * h;
+            }
+        }
+    }
+
+    /// Keeps the anchors of the points that stick, and sets those of points that begin to. A sphere or a disc has none:
+    /// it rolls.
+    fn set_anchors(&mut self, t: f64, theta: &[f64]) {
+        let (touches, surfaces) = (self.touches(t, theta), self.surfaces(t));
+        let mut kept: BTreeMap<(usize, usize), Vec3> = BTreeMap::new();
+        for &(key, sticks) in &self.carrying {
+            let Key::Contact(point, plane) = key else { continue };
+            if sticks && self.contacts.points[point].support == Support::Point {
+                let (.., touch) = touches[point * self.contacts.planes.len() + plane];
+                let here = surfaces[plane].T.inverse() * touch.at;
+                kept.insert((point, plane), self.anchors.get(&(point, plane)).copied().unwrap_or(here));
+            }
+        }
+        self.anchors = kept;
+    }
+}

@@ -1,0 +1,245 @@
+//! The rows of the one-sided forces that act in a step.
+
+use super::Impulses;
+use crate::constraints::constraint_jacobian;
+use crate::kinematics::{body_jacobian, forward_kinematics, twist_of};
+use crate::linalg::{Vec3, ldlt};
+use crate::model::{Error, FrameId, Freedom};
+use crate::one_sided::Law;
+use crate::scalar::Scalar;
+use crate::simulation::contact::Touch;
+use crate::spatial::Twist;
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// What a block of rows belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::simulation) enum Key {
+    /// A row of the robot's constraints.
+    Constraint(usize),
+    /// A joint's lower (0) or upper (1) limit.
+    Stop(usize, usize),
+    /// A velocity.
+    Dry(usize),
+    /// A contact point and a plane.
+    Contact(usize, usize),
+}
+
+/// Which rows a system has.
+#[derive(Clone, Copy)]
+pub(in crate::simulation) enum Choice<'a> {
+    /// Those of everything near, and of the joints with dry friction that are not listed.
+    Near(&'a [usize]),
+    /// Those of the listed keys.
+    Only(&'a [Key]),
+}
+
+impl Choice<'_> {
+    fn has(&self, key: Key, is_near: bool) -> bool {
+        match (self, key) {
+            (Choice::Near(sliding), Key::Dry(j)) => !sliding.contains(&j),
+            (Choice::Near(_), _) => is_near,
+            (Choice::Only(keys), _) => keys.contains(&key),
+        }
+    }
+}
+
+/// J, G and the laws at the middle of a step.
+pub(in crate::simulation) struct System {
+    /// The blocks: what they belong to, their first row, and their law.
+    pub rows: Vec<(Key, usize, Law)>,
+    pub laws: Vec<Law>,
+    /// m × n
+    pub J: DMatrix<f64>,
+    /// The velocity of the surroundings along the rows.
+    pub w: DVector<f64>,
+    /// J M⁻¹Jᵀ
+    pub G: DMatrix<f64>,
+    /// n, t₁ and t₂ of the contacts.
+    pub axes: Vec<(Key, [Vec3; 3])>,
+}
+
+impl System {
+    /// The velocities of the surroundings as seen from the robot.
+    pub fn relative(&self, dtheta: &[f64]) -> DVector<f64> {
+        &self.w - &self.J * DVector::from_column_slice(dtheta)
+    }
+}
+
+impl Impulses<'_> {
+    /// The velocities of the surroundings as seen from the robot at (t, θ, θ̇), along the rows of a system, which was
+    /// made nearby.
+    pub fn relative_at(&mut self, system: &System, t: f64, theta: &[f64], dtheta: &[f64]) -> DVector<f64> {
+        let (model, n, m) = (self.model, self.model.n(), self.model.constraint_rows());
+        let mut u = DVector::zeros(system.w.len());
+        let mut columns = (None, vec![Twist::zero(); n]);
+        let surfaces = self.surfaces(t);
+        if m > 0 {
+            let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut []);
+            for (r, row) in A.chunks_exact(n).enumerate() {
+                u[r] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
+            }
+        }
+        for &(key, first, _) in &system.rows {
+            match key {
+                Key::Constraint(_) => {}
+                Key::Dry(j) => u[first] = -dtheta[j],
+                Key::Stop(k, side) => {
+                    let row = self.stop_row(theta, k, side);
+                    u[first] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
+                }
+                Key::Contact(point, plane) => {
+                    let of = &self.contacts.points[point];
+                    self.columns(theta, of.frame, &mut columns);
+                    let T = forward_kinematics(model, theta, of.frame);
+                    let touch = of.touch(T, &surfaces[plane]);
+                    let V = twist_of(&columns.1, dtheta);
+                    let v = T.R * (V.v + V.w.cross(touch.of_frame));
+                    for k in 0..3 {
+                        u[first + k] = touch.speeds[k] - touch.axes[k].dot(v);
+                    }
+                }
+            }
+        }
+        u
+    }
+
+    /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M, which stays factored.
+    pub fn system(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        h: f64,
+        diagonal: &[f64],
+        choice: Choice,
+    ) -> Result<System, Error> {
+        let (model, n) = (self.model, self.model.n());
+        let mut rows: Vec<RowDVector<f64>> = Vec::new();
+        let (mut w, mut blocks, mut all_axes) = (Vec::new(), Vec::new(), Vec::new());
+        let m = model.constraint_rows();
+        if m > 0 {
+            let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut []);
+            for (r, row) in A.chunks_exact(n).enumerate() {
+                blocks.push((Key::Constraint(r), rows.len(), Law::Bilateral));
+                rows.push(RowDVector::from_row_slice(row));
+                w.push(0.0);
+            }
+        }
+        for (k, side) in self.sides() {
+            if !choice.has(Key::Stop(k, side), self.room(theta, k, side) <= super::NEAR) {
+                continue;
+            }
+            blocks.push((Key::Stop(k, side), rows.len(), Law::Stop));
+            rows.push(self.stop_row(theta, k, side));
+            w.push(0.0);
+        }
+        for &j in self.dry.iter().filter(|&&j| choice.has(Key::Dry(j), true)) {
+            blocks.push((Key::Dry(j), rows.len(), Law::Dry { most: h * model.friction[j] }));
+            let mut row = RowDVector::zeros(n);
+            row[j] = 1.0;
+            rows.push(row);
+            w.push(0.0);
+        }
+        let mut columns = (None, vec![Twist::zero(); n]);
+        for (point, plane, touch) in self.touches(t, theta) {
+            let key = Key::Contact(point, plane);
+            if !choice.has(key, touch.gap <= self.reach) {
+                continue;
+            }
+            let of = &self.contacts.points[point];
+            blocks.push((key, rows.len(), Law::Contact { mu: of.mu }));
+            self.columns(theta, of.frame, &mut columns);
+            for k in 0..3 {
+                rows.push(self.point_row(theta, of.frame, &columns.1, &touch, touch.axes[k]));
+                w.push(touch.speeds[k]);
+            }
+            all_axes.push((key, touch.axes));
+        }
+        self.factor(theta, diagonal)?;
+        let J = if rows.is_empty() { DMatrix::zeros(0, n) } else { DMatrix::from_rows(&rows) };
+        let G = self.delassus(&J);
+        let laws = blocks.iter().map(|&(_, _, law)| law).collect();
+        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, axes: all_axes })
+    }
+
+    /// J M⁻¹Jᵀ: with M = LᵀDL, the products of the rows of D^{−½}L⁻ᵀJᵀ.
+    pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
+        let (n, pattern) = (self.model.n(), &self.model.structure.pattern);
+        let mut Y = J.transpose();
+        for mut column in Y.column_iter_mut() {
+            ldlt::solve_transposed_all(pattern, &self.M, column.as_mut_slice());
+            for j in 0..n {
+                column[j] /= Scalar::sqrt(self.M[j * n + j]);
+            }
+        }
+        Y.tr_mul(&Y)
+    }
+
+    /// Every pair of a contact point and a plane.
+    pub fn touches(&self, t: f64, theta: &[f64]) -> Vec<(usize, usize, Touch)> {
+        let (surfaces, poses) = (self.surfaces(t), self.poses(theta));
+        let mut found = Vec::with_capacity(self.contacts.pairs());
+        for (k, point) in self.contacts.points.iter().enumerate() {
+            let T = self.pose_of(&poses, point.frame);
+            found.extend(surfaces.iter().enumerate().map(|(plane, surface)| (k, plane, point.touch(T, surface))));
+        }
+        found
+    }
+
+    /// The body Jacobian of a frame, unless the columns are already its.
+    pub(super) fn columns(
+        &self,
+        theta: &[f64],
+        frame: FrameId,
+        (of, columns): &mut (Option<FrameId>, Vec<Twist>),
+    ) {
+        if *of != Some(frame) {
+            body_jacobian(self.model, theta, frame, columns);
+            *of = Some(frame);
+        }
+    }
+
+    /// The velocity of the material at a touching point along an axis in {s}.
+    pub(super) fn point_row(
+        &self,
+        theta: &[f64],
+        frame: FrameId,
+        columns: &[Twist],
+        touch: &Touch,
+        axis: Vec3,
+    ) -> RowDVector<f64> {
+        let T = forward_kinematics(self.model, theta, frame);
+        let axis = T.R.inverse_mul(axis);
+        let moment = touch.of_frame.cross(axis);
+        RowDVector::from_iterator(columns.len(), columns.iter().map(|V| V.v.dot(axis) + V.w.dot(moment)))
+    }
+
+    /// The limits that act as stops.
+    pub fn sides(&self) -> Vec<(usize, usize)> {
+        self.stops.as_ref().map_or(Vec::new(), |(_, sides)| sides.clone())
+    }
+
+    /// How far joint k is from its limit.
+    pub fn room(&self, theta: &[f64], k: usize, side: usize) -> f64 {
+        self.stops.as_ref().map_or(f64::INFINITY, |(bounds, _)| {
+            let ([low, high], value) = (bounds.joints[k], bounds.value(theta, k));
+            if side == 0 { value - low } else { high - value }
+        })
+    }
+
+    /// The rate of the joint towards its limit.
+    pub(super) fn stop_row(&self, theta: &[f64], k: usize, side: usize) -> RowDVector<f64> {
+        let mut row = RowDVector::zeros(self.model.n());
+        if let Some((bounds, _)) = &self.stops {
+            let place = bounds.places[k];
+            let sign = if side == 0 { -1.0 } else { 1.0 };
+            let gradient = place.bounded_gradient(theta);
+            let count = if place.freedom == Freedom::Ball { 3 } else { 1 };
+            (0..count).for_each(|i| row[place.j + i] = sign * gradient[i]);
+        }
+        row
+    }
+}

@@ -1,0 +1,10 @@
+//! Dry friction, stops and contacts along motions, compared with closed-form solutions.
+#![allow(non_snake_case)]
+
+mod balls;
+mod boxes;
+mod drops;
+mod dry_friction;
+mod events;
+mod robots;
+mod stops;
