@@ -1,0 +1,24 @@
+//! The robot that you have, from its own log.
+mod choice;
+mod columns;
+mod compress;
+mod error;
+pub mod estimate;
+mod finding;
+mod identify;
+mod log;
+mod payload;
+mod predict;
+mod setup;
+pub mod signals;
+
+pub use choice::{Choice, Sensor};
+pub use columns::{Columns, Equations, Kind, Unknown};
+pub use compress::{Compressed, Evidence, Pattern, Triangle, stacked};
+pub use error::Error;
+pub use finding::{Finding, Level};
+pub use identify::{Errors, Identification, Options, identify};
+pub use log::{Log, Rows};
+pub use payload::Carried;
+pub use predict::{identified, parameters, predict};
+pub use setup::{Estimates, Limits, Setup};
