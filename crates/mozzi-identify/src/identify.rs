@@ -1,7 +1,7 @@
 //! The whole of it: from logs to estimates and their errors on parts that were left out.
 
 use crate::compress::{Compressed, Evidence, PARTS};
-use crate::estimate::least_squares::{Decomposition, reduced};
+use crate::estimate::least_squares::Decomposition;
 use crate::setup::{Estimates, Limits, Setup};
 use crate::signals::{Filter, Samples, prepare};
 use crate::{Choice, Error, Finding, Kind, Log};
@@ -255,10 +255,4 @@ fn reweighted(setup: &Setup<'_>, samples: &[Samples], estimates: &Estimates) -> 
     };
     let one = |samples: &Samples| Compressed::new(&setup.columns, &setup.pattern, samples, Some(&weight));
     samples.iter().map(one).collect()
-}
-
-/// The singular values of the weighted equations of the base parameters.
-pub(crate) fn decomposition(found: &Identification<'_>) -> Decomposition {
-    let data = found.evidence().weighted(&found.estimates.least_squares.sigma);
-    Decomposition::new(&reduced(&data, &found.setup.base))
 }

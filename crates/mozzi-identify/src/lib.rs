@@ -6,6 +6,7 @@ mod error;
 pub mod estimate;
 mod finding;
 mod identify;
+pub mod judgement;
 mod log;
 mod payload;
 mod predict;

@@ -208,7 +208,8 @@ impl Evidence {
             for (k, &c) in columns.iter().chain([&self.unknowns]).enumerate() {
                 B.column_mut(c).copy_from(&force.R.column(k.min(own)));
             }
-            all.push(B / (sigma * N), force.rows);
+            // its columns ascend: column c has entries in its first c + 1 rows alone
+            all.push_upper(B / (sigma * N), force.rows);
         }
         all
     }

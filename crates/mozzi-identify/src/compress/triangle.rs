@@ -1,7 +1,7 @@
 //! Equations added to a triangle: a QR decomposition that grows by rows (Golub and Van Loan, section 12.5.1; blocked as
 //! by Schreiber and Van Loan 1989).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 
 /// Columns that are eliminated before the others are updated by matrix products.
 const PANEL: usize = 24;
@@ -27,13 +27,30 @@ impl Triangle {
     ///
     /// # Panics
     /// When the matrix has not P + 1 columns.
-    pub fn push(&mut self, mut B: DMatrix<f64>, rows: usize) {
+    pub fn push(&mut self, B: DMatrix<f64>, rows: usize) {
+        let height = B.nrows();
+        self.add(B, rows, |_| height);
+    }
+
+    /// Adds equations in a form in which column k has entries in its first k + 1 rows alone, as a triangle: at a third
+    /// of the cost.
+    ///
+    /// # Panics
+    /// When the matrix has not P + 1 columns.
+    pub fn push_upper(&mut self, B: DMatrix<f64>, rows: usize) {
+        let height = B.nrows();
+        self.add(B, rows, |column| height.min(column + 1));
+    }
+
+    fn add(&mut self, mut B: DMatrix<f64>, rows: usize, height: impl Fn(usize) -> usize) {
         let size = self.R.ncols();
         assert!(B.ncols() == size, "{} columns, expected {size}", B.ncols());
         self.rows += rows;
         self.square += B.column(size - 1).norm_squared();
         for first in (0..size).step_by(PANEL) {
             let count = PANEL.min(size - first);
+            let filled = height(first + count - 1);
+            let mut B = B.rows_mut(0, filled);
             let T = self.panel(&mut B, first, count);
             let rest = size - first - count;
             if rest == 0 {
@@ -51,7 +68,7 @@ impl Triangle {
     }
 
     /// Eliminates a few columns of B by reflections; B keeps their vectors. Returns T of the compact form.
-    fn panel(&mut self, B: &mut DMatrix<f64>, first: usize, count: usize) -> DMatrix<f64> {
+    fn panel(&mut self, B: &mut DMatrixViewMut<f64>, first: usize, count: usize) -> DMatrix<f64> {
         let mut T = DMatrix::zeros(count, count);
         for k in 0..count {
             let c = first + k;
@@ -83,7 +100,7 @@ impl Triangle {
     pub fn merge(&mut self, other: &Triangle, factor: f64) {
         let (rows, square) = (other.rows, other.square);
         let before = self.square;
-        self.push(&other.R * factor, rows);
+        self.push_upper(&other.R * factor, rows);
         self.square = before + factor * factor * square;
     }
 
@@ -128,6 +145,10 @@ mod tests {
             let direct = (all.columns(0, P) * DVector::from_column_slice(&x) - all.column(P)).norm_squared();
             assert!((triangle.error(&x) - direct).abs() < 1e-11 * direct);
             assert_eq!(triangle.rows, 5 * P);
+            let mut two = triangle.clone();
+            two.merge(&triangle, 2.0);
+            let (expected, found) = (5.0 * all.transpose() * &all, two.R.transpose() * &two.R);
+            assert!((expected - found).amax() < 1e-12 * (25 * P) as f64);
         }
     }
 }

@@ -60,20 +60,73 @@ impl LeastSquares {
             }
         }
         let R = reduced(&evidence.weighted(&sigma), base);
-        let decomposition = Decomposition::new(&R);
-        let independent = evidence.samples() as f64 * evidence.independent;
-        let values = decomposition.solution();
+        let independent = (evidence.samples() as f64 * evidence.independent).sqrt();
+        let Solution { values, deviations, condition, rank } = Solution::new(&R);
         x.fill(0.0);
         base.columns.iter().zip(&values).for_each(|(&k, value)| x[k] = *value);
-        Ok(LeastSquares {
-            deviations: decomposition.deviations().into_iter().map(|d| d / independent.sqrt()).collect(),
-            values,
-            x,
-            sigma,
-            condition: decomposition.condition(),
-            rank: decomposition.rank(),
-        })
+        let deviations = deviations.into_iter().map(|d| d / independent).collect();
+        Ok(LeastSquares { deviations, values, x, sigma, condition, rank })
     }
+}
+
+/// A solution with what is known about it.
+struct Solution {
+    values: Vec<f64>,
+    /// For one sample of weight 1.
+    deviations: Vec<f64>,
+    condition: f64,
+    rank: usize,
+}
+
+impl Solution {
+    /// By substitution; by singular values, if the triangle is close to singular.
+    fn new(triangle: &Triangle) -> Self {
+        let by_singular_values = || {
+            let all = Decomposition::new(triangle);
+            let (values, deviations) = (all.solution(), all.deviations());
+            Solution { values, deviations, condition: all.condition(), rank: all.rank() }
+        };
+        let P = triangle.unknowns();
+        let Some(inverse) = regular_inverse(triangle) else { return by_singular_values() };
+        let R = triangle.R.view((0, 0), (P, P));
+        let norm = DVector::from_iterator(P, R.column_iter().map(|column| column.norm()));
+        // R with unit columns is R/‖·‖, its inverse ‖·‖R⁻¹
+        let largest = power(P, |v| R.tr_mul(&(R * v.component_div(&norm))).component_div(&norm));
+        let of_inverse = |v: &DVector<f64>| {
+            let w = inverse.tr_mul(&v.component_mul(&norm));
+            (&inverse * w).component_mul(&norm)
+        };
+        let condition = (largest * power(P, of_inverse)).sqrt();
+        if !(condition < 0.1 / DETERMINED) {
+            return by_singular_values();
+        }
+        let values = (&inverse * triangle.R.view((0, P), (P, 1))).iter().copied().collect();
+        let deviations = inverse.row_iter().map(|row| row.norm()).collect();
+        Solution { values, deviations, condition, rank: P }
+    }
+}
+
+/// The largest eigenvalue of a symmetric positive matrix, to a few percent, by power iteration.
+fn power(P: usize, product: impl Fn(&DVector<f64>) -> DVector<f64>) -> f64 {
+    let mut random = mozzi::random::Random(2);
+    let (mut v, mut value) = (DVector::from_vec(random.vector(P, 1.0)).normalize(), 0.0);
+    for _ in 0..60 {
+        let next = product(&v);
+        value = next.norm();
+        if value == 0.0 {
+            break;
+        }
+        v = next / value;
+    }
+    value
+}
+
+/// R⁻¹, unless a diagonal entry is close to 0 relative to its column.
+fn regular_inverse(triangle: &Triangle) -> Option<DMatrix<f64>> {
+    let P = triangle.unknowns();
+    let R = triangle.R.view((0, 0), (P, P));
+    let is_clear = |k: usize| R[(k, k)].abs() > DETERMINED * R.column(k).norm();
+    if (0..P).all(is_clear) { R.solve_upper_triangular(&DMatrix::identity(P, P)) } else { None }
 }
 
 /// The triangle of the base parameters' columns alone.
@@ -88,11 +141,11 @@ pub fn reduced(all: &Triangle, base: &BaseParameters) -> Triangle {
 fn solve(triangle: &Triangle) -> Vec<f64> {
     let P = triangle.unknowns();
     let R = triangle.R.view((0, 0), (P, P));
-    let norm = |k: usize| R.column(k).norm();
-    if (0..P).all(|k| R[(k, k)].abs() > DETERMINED * norm(k) && norm(k) > 0.0) {
-        if let Some(x) = R.solve_upper_triangular(&triangle.R.view((0, P), (P, 1))) {
-            return x.iter().copied().collect();
-        }
+    let is_clear = |k: usize| R[(k, k)].abs() > DETERMINED * R.column(k).norm();
+    if (0..P).all(is_clear)
+        && let Some(x) = R.solve_upper_triangular(&triangle.R.view((0, P), (P, 1)))
+    {
+        return x.iter().copied().collect();
     }
     Decomposition::new(triangle).solution()
 }
