@@ -174,6 +174,11 @@ impl<'m> Columns<'m> {
         self.unknowns.iter().position(|unknown| unknown.kind == kind)
     }
 
+    /// The first row of the joint whose parameters hold entry k.
+    pub(crate) fn row_of(&self, k: usize) -> usize {
+        self.rows[self.place_of(k)].start
+    }
+
     /// The index of the joint whose parameters hold entry k.
     fn place_of(&self, k: usize) -> usize {
         (k - link_parameters(self.model)) / OF_JOINT

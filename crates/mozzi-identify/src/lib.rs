@@ -2,8 +2,10 @@
 mod choice;
 mod columns;
 mod compress;
+mod describe;
 mod error;
 pub mod estimate;
+pub mod excite;
 mod finding;
 mod identify;
 pub mod judgement;
@@ -16,6 +18,7 @@ pub mod signals;
 pub use choice::{Choice, Sensor};
 pub use columns::{Columns, Equations, Kind, Unknown};
 pub use compress::{Compressed, Evidence, Pattern, Triangle, stacked};
+pub use describe::describe;
 pub use error::Error;
 pub use finding::{Finding, Level};
 pub use identify::{Errors, Identification, Options, identify};
