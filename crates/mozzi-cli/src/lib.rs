@@ -74,6 +74,9 @@ enum Command {
     Bench(commands::bench::BenchArguments),
     /// Inverse kinematics: joint positions that place the end effector at a desired pose, or at a table of poses
     Ik(commands::ik::IkArguments),
+    /// Identify the robot from logs of its motion: masses, inertias, friction that predict the measured torques
+    #[command(after_help = IDENTIFICATIONS)]
+    Identify(commands::identify::IdentifyArguments),
     /// Plan a trajectory in joint space or along lines and screws, within limits of velocity, acceleration and torque
     #[command(after_help = TRAJECTORIES)]
     Trajectory(commands::trajectory::TrajectoryArguments),
@@ -158,6 +161,16 @@ Examples:
   mozzi trajectory ur5 --from 0,-1.2,1.5,0.3,1.1,0 --path line --position 0.4,0.2,0.5 --time 2
   mozzi trajectory ur5 --via points.csv --profile trapezoidal      a spline through points
   mozzi simulate ur5 --follow way.csv --controller computed.json   see mozzi simulate --help";
+
+const IDENTIFICATIONS: &str = "\
+Examples:
+  mozzi identify ur10.urdf log.csv --out identified.urdf --report fit.html
+  mozzi identify panda.urdf log.csv --torque link --lock panda_finger_joint1=0 --cutoff 4
+  mozzi identify ur5 log.csv --only payload --payload tool0          weigh what the robot carries
+  mozzi identify ur5 log.csv --only friction --stribeck 0.1
+  mozzi identify ur5 a.csv b.csv --validate c.csv --fit 70           several logs; 30 % of each is predicted
+  mozzi identify ur5 a.csv b.csv --torque current --known-payload 2:tool0=4,0,0,0.1
+Logs are described in docs/identify.md: names of columns such as theta_elbow, q1, pos_elbow_deg, effort_elbow, current_1.";
 
 const SIMULATIONS: &str = "\
 Examples:
@@ -252,6 +265,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Compute(arguments)) => compute::run(arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
         Some(Command::Ik(arguments)) => commands::ik::run(arguments),
+        Some(Command::Identify(arguments)) => commands::identify::run(arguments),
         Some(Command::Trajectory(arguments)) => commands::trajectory::run(arguments),
         Some(Command::Assemble(arguments)) => assemble::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),

@@ -23,6 +23,7 @@ mod base64;
 mod drawing;
 mod error;
 pub mod figure;
+mod fit;
 mod motion;
 mod page;
 pub mod pictures;
@@ -32,6 +33,7 @@ mod testing;
 
 pub use drawing::{Drawing, Meshes};
 pub use error::Error;
+pub use fit::fit_html;
 pub use motion::Motion;
 
 use mozzi::Model;

@@ -1,5 +1,5 @@
-//! Edits a URDF's text in place for changed inertias, locked joints or a floating base, so that visuals, comments and
-//! unknown elements remain.
+//! Edits a URDF's text in place for changed inertias, friction, armature and springs, locked joints or a floating base,
+//! so that visuals, comments and unknown elements remain.
 
 mod element;
 mod joint;
@@ -21,7 +21,8 @@ pub use transmission::drives_of_fixed_joints;
 pub enum EditError {
     /// The text cannot be read.
     Load(LoadError),
-    /// The edited robot differs from the text in more than inertias, locked joints and a floating base.
+    /// The edited robot differs from the text in more than inertias, friction, armature, springs, locked joints and a
+    /// floating base.
     Unsupported(NotUrdf),
 }
 
@@ -36,13 +37,25 @@ impl fmt::Display for EditError {
 
 impl std::error::Error for EditError {}
 
-/// The text of a URDF, edited so that it describes another robot: one that differs in inertias, in joints that became
-/// fixed, and in a base that became floating. Only the attributes and elements that differ are rewritten; without
+/// The text of a URDF, edited so that it describes another robot: one that differs in inertias, in friction, armature
+/// and springs of joints, in joints that became fixed, and in a base that became floating. Only the attributes and elements that differ are rewritten; without
 /// differences the text is returned unchanged.
 ///
 /// # Errors
 /// [`EditError`]: the text cannot be read, or the robots differ in other things.
 pub fn edit(file_name: &str, text: &str, edited: &Description) -> Result<String, EditError> {
+    edited_text(file_name, text, edited, false)
+}
+
+/// As [`edit`], with a comment in each edited element that holds the old numbers.
+///
+/// # Errors
+/// As [`edit`].
+pub fn edit_with_old_values(file_name: &str, text: &str, edited: &Description) -> Result<String, EditError> {
+    edited_text(file_name, text, edited, true)
+}
+
+fn edited_text(file_name: &str, text: &str, edited: &Description, keeps_old: bool) -> Result<String, EditError> {
     // if the text is valid only after repairs, the repaired robot is compared, and all inertias are those of `edited`
     let (original, is_repaired) = match parse_with(file_name, text, Policy::Default) {
         Ok(loaded) => (loaded.description, false),
@@ -61,13 +74,23 @@ pub fn edit(file_name: &str, text: &str, edited: &Description) -> Result<String,
     let differ = |(old, new): &(&Link, &Link)| is_repaired || old.inertia != new.inertia;
     for (old, new) in original.links.iter().zip(&edited.links).filter(differ) {
         match root.named("link", &old.name) {
-            Some(tag) => link::set_inertia(tag, new.inertia, &mut editor),
+            Some(tag) => {
+                link::set_inertia(tag, new.inertia, &mut editor);
+                if keeps_old {
+                    link::comment(tag, old.inertia, &mut editor);
+                }
+            }
             None => reasons.push(format!("link `{}` has no element of its own", old.name)),
         }
     }
     for (old, new) in original.joints.iter().zip(&edited.joints).filter(|(old, new)| old != new) {
         match root.named("joint", &old.name) {
-            Some(tag) => joint::lock(tag, new.origin, &mut editor),
+            Some(tag) => {
+                if new.kind != old.kind || new.origin != old.origin {
+                    joint::lock(tag, new.origin, &mut editor);
+                }
+                joint::set_dynamics(tag, old, new, keeps_old, &mut editor);
+            }
             None => reasons.push(format!("joint `{}` is a part of a planar joint", old.name)),
         }
     }
@@ -96,7 +119,19 @@ fn unsupported(a: &Description, b: &Description) -> Vec<String> {
     differ(a.motors != b.motors, "its motors are others".into());
     for (old, new) in a.joints.iter().zip(&b.joints).filter(|(old, new)| old != new) {
         let locked = Joint { kind: JointKind::Fixed, origin: new.origin, mimic: None, ..old.clone() };
-        differ(locked != *new, format!("joint `{}` differs in other things than being locked", old.name));
+        let moving = Joint {
+            damping: new.damping,
+            friction: new.friction,
+            armature: new.armature,
+            stiffness: new.stiffness,
+            spring_reference: new.spring_reference,
+            ..old.clone()
+        };
+        let is_known = locked == *new || moving == *new;
+        differ(
+            !is_known,
+            format!("joint `{}` differs in other things than being locked, friction and springs", old.name),
+        );
     }
     reasons
 }

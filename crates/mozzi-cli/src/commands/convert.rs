@@ -1,7 +1,7 @@
 //! `mozzi convert`: the same robot in another file, or an edited one.
 
-mod edits;
-mod urdf;
+pub mod edits;
+pub mod urdf;
 
 use super::screws;
 use crate::columns::save;

@@ -8,6 +8,7 @@ pub mod compare;
 pub mod compute;
 pub mod convert;
 pub mod explain;
+pub mod identify;
 pub mod ik;
 pub mod info;
 pub mod outcome;

@@ -1,8 +1,10 @@
-//! A locked joint becomes a fixed joint, with its child's pose as origin.
+//! A locked joint becomes a fixed joint, with its child's pose as origin; other friction, armature or springs are
+//! attributes of `<dynamics>`.
 
 use super::element::{Editor, Tag};
 use crate::number::numbers;
 use crate::write::triple;
+use mozzi::model::description::Joint;
 use mozzi::{SE3, Vec3};
 
 pub(super) fn lock<'a>(joint: Tag<'a>, origin: SE3, editor: &mut Editor<'a>) {
@@ -11,6 +13,37 @@ pub(super) fn lock<'a>(joint: Tag<'a>, origin: SE3, editor: &mut Editor<'a>) {
         editor.remove(mimic);
     }
     place(joint, origin, editor);
+}
+
+/// Rewrites the attributes of `<dynamics>` that differ.
+pub(super) fn set_dynamics<'a>(tag: Tag<'a>, old: &Joint, new: &Joint, keeps_old: bool, editor: &mut Editor<'a>) {
+    let of = |joint: &Joint| {
+        [
+            ("damping", joint.damping),
+            ("friction", joint.friction),
+            ("armature", joint.armature),
+            ("spring_stiffness", joint.stiffness),
+            ("spring_reference", joint.spring_reference),
+        ]
+    };
+    let changed: Vec<_> = of(old).into_iter().zip(of(new)).filter(|(old, new)| old.1 != new.1).collect();
+    if changed.is_empty() {
+        return;
+    }
+    match tag.child("dynamics") {
+        Some(dynamics) => {
+            changed.iter().for_each(|(_, (name, value))| editor.set(dynamics, name, Some(&format!("{value:?}"))));
+        }
+        None => {
+            let attributes: String =
+                changed.iter().map(|(_, (name, value))| format!(" {name}=\"{value:?}\"")).collect();
+            editor.insert_last(tag, &[format!("<dynamics{attributes}/>")]);
+        }
+    }
+    if keeps_old {
+        let values: Vec<String> = changed.iter().map(|((name, value), _)| format!("{name} {value:?}")).collect();
+        editor.insert_first(tag, &format!("<!-- before: {} -->", values.join(", ")));
+    }
 }
 
 /// Rewrites those attributes of `<origin>` that differ.

@@ -33,6 +33,39 @@ pub struct BaseParameters {
 }
 
 impl BaseParameters {
+    /// The base parameters of any linear equations W π = b, stacked at as many states as determine their rank: by
+    /// Gram-Schmidt without pivoting, so that among columns that cannot be distinguished the first is kept. `names`
+    /// belong to the columns.
+    ///
+    /// Cost O(rows · p²).
+    pub fn of_columns(W: &DMatrix<f64>, names: Vec<String>) -> Self {
+        let p = W.ncols();
+        // W = QR of the independent columns, twice so that Q is orthogonal to rounding
+        let (mut Q, mut R, mut columns) = (Vec::<DVector<f64>>::new(), DMatrix::zeros(p, p), Vec::new());
+        let largest = W.column_iter().fold(0.0_f64, |m, w| m.max(w.norm()));
+        for k in 0..p {
+            let (mut rest, size) = (W.column(k).clone_owned(), W.column(k).norm());
+            for _ in 0..2 {
+                for (i, q) in Q.iter().enumerate() {
+                    let along = q.dot(&rest);
+                    R[(i, k)] += along;
+                    rest.axpy(-along, q, 1.0);
+                }
+            }
+            let left = rest.norm();
+            if left > INDEPENDENT * size && size > INDEPENDENT * largest {
+                R[(columns.len(), k)] = left;
+                Q.push(rest / left);
+                columns.push(k);
+            }
+        }
+        // w_k = W_b β with R_b β = Qᵀw_k
+        let R = R.rows(0, columns.len());
+        let combination =
+            R.select_columns(&columns).solve_upper_triangular(&R.clone_owned()).unwrap_or_else(|| R.clone_owned());
+        BaseParameters { columns, combination, parameters: names }
+    }
+
     /// The number of base parameters: the rank of the stacked regressor.
     pub fn count(&self) -> usize {
         self.columns.len()
@@ -90,32 +123,7 @@ impl Model<f64> {
     ///
     /// Cost O(p³) for p parameters.
     pub fn base_parameters(&self) -> BaseParameters {
-        let W = stacked_regressor(self);
-        let p = W.ncols();
-        // W = QR of the independent columns, by Gram-Schmidt, twice so that Q is orthogonal to rounding
-        let (mut Q, mut R, mut columns) = (Vec::<DVector<f64>>::new(), DMatrix::zeros(p, p), Vec::new());
-        let largest = W.column_iter().fold(0.0_f64, |m, w| m.max(w.norm()));
-        for k in 0..p {
-            let (mut rest, size) = (W.column(k).clone_owned(), W.column(k).norm());
-            for _ in 0..2 {
-                for (i, q) in Q.iter().enumerate() {
-                    let along = q.dot(&rest);
-                    R[(i, k)] += along;
-                    rest.axpy(-along, q, 1.0);
-                }
-            }
-            let left = rest.norm();
-            if left > INDEPENDENT * size && size > INDEPENDENT * largest {
-                R[(columns.len(), k)] = left;
-                Q.push(rest / left);
-                columns.push(k);
-            }
-        }
-        // w_k = W_b β with R_b β = Qᵀw_k
-        let R = R.rows(0, columns.len());
-        let combination =
-            R.select_columns(&columns).solve_upper_triangular(&R.clone_owned()).unwrap_or_else(|| R.clone_owned());
-        BaseParameters { columns, combination, parameters: self.parameter_names() }
+        BaseParameters::of_columns(&stacked_regressor(self), self.parameter_names())
     }
 }
 

@@ -55,20 +55,28 @@ impl EditArguments {
             let all = list.try_into().unwrap_or([0.0; 10]);
             model = model.with_payload(model.frame(name)?, inertia(&place, all)?)?;
         }
-        let mut locks = Vec::new();
-        for text in &self.lock {
-            let (name, position) = split("--lock", text, "JOINT=POSITION")?;
-            locks.push((name, number(format_args!("--lock {name}"), position)?));
-        }
+        let locks = locks(&self.lock)?;
         Ok(if locks.is_empty() { model } else { model.with_locked_joints(&locks)? })
     }
 }
 
-fn split<'t>(flag: &str, text: &'t str, expected: &str) -> Result<(&'t str, &'t str)> {
+/// Joints with their positions, from texts "JOINT=POSITION".
+pub fn locks(texts: &[String]) -> Result<Vec<(&str, f64)>> {
+    let mut found = Vec::new();
+    for text in texts {
+        let (name, position) = split("--lock", text, "JOINT=POSITION")?;
+        found.push((name, number(format_args!("--lock {name}"), position)?));
+    }
+    Ok(found)
+}
+
+/// The parts before and after the last `=`.
+pub fn split<'t>(flag: &str, text: &'t str, expected: &str) -> Result<(&'t str, &'t str)> {
     text.rsplit_once('=').ok_or_else(|| Failure::wrong(format!("{flag} is `{text}`, expected {expected}")))
 }
 
-fn inertia(place: &str, [m, x, y, z, xx, xy, xz, yy, yz, zz]: [f64; 10]) -> Result<SpatialInertia> {
+/// An inertia, checked for its mass.
+pub fn inertia(place: &str, [m, x, y, z, xx, xy, xz, yy, yz, zz]: [f64; 10]) -> Result<SpatialInertia> {
     if m < 0.0 {
         return Err(Failure::wrong(format!("{place}: the mass is {m} kg, expected at least 0")));
     }

@@ -5,7 +5,7 @@ use crate::robot_json;
 use clap::ValueEnum;
 use mozzi::Description;
 use mozzi::model::description::Joint;
-use mozzi_urdf::{Settings, drives_of_fixed_joints, edit, embedded, expanded, expressible, mjcf};
+use mozzi_urdf::{Settings, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible, mjcf};
 use std::path::Path;
 
 /// What a URDF is written without.
@@ -43,6 +43,18 @@ pub fn text(
             ignored_elsewhere(output, &robot);
             Ok(text)
         }
+    }
+}
+
+/// The text of an identified robot: that of IN with other numbers, or, if IN is no URDF, a new one.
+pub fn edited(input: &str, output: &str, robot: &Description, keeps_old: bool, settings: Settings) -> Result<String> {
+    match source(input, settings.clone())? {
+        Some(text) if keeps_old => {
+            relative_meshes(input, output, &text);
+            edit_with_old_values(input, &text, robot)
+                .map_err(|why| Failure::wrong(format!("{output} is not written: {why}; {HELP}")))
+        }
+        _ => text(input, output, robot, &[], settings),
     }
 }
 

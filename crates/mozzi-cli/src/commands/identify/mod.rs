@@ -1,0 +1,252 @@
+//! `mozzi identify`: the robot's parameters from logs of its motion.
+
+#[cfg(feature = "mcap")]
+mod joint_states;
+mod log_file;
+mod names;
+mod page;
+mod result;
+
+use crate::columns::save;
+use crate::commands::convert::{edits, urdf};
+use crate::failure::{self, Failure, Result};
+use crate::numbers::{array, number, numbers};
+use crate::robot::RobotArguments;
+use crate::{interrupt, robot_json};
+use clap::{Args, ValueEnum};
+use log_file::read_log;
+use mozzi::Model;
+use mozzi_identify::judgement::judge;
+use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
+use mozzi_identify::{Choice, Limits, Log, Options, Sensor, describe, identify};
+
+#[derive(Args, Debug)]
+pub struct IdentifyArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    /// Logs: .csv with columns t, theta_JOINT, dtheta_JOINT, tau_JOINT (q1, qd1, effort_JOINT, … are understood, too),
+    /// .npz, .npy, .arrow, .mcap
+    #[arg(value_name = "LOG", required = true)]
+    logs: Vec<String>,
+    /// Write the identified robot: .urdf (the text of a URDF is edited in place) or .json
+    #[arg(long, value_name = "FILE")]
+    out: Option<String>,
+    /// Keep the old numbers in comments of OUT
+    #[arg(long, requires = "out")]
+    old_values: bool,
+    /// Write a report: forces, residuals, parameters, ellipsoids of inertia
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<String>,
+    /// Another log, whose forces are predicted
+    #[arg(long, value_name = "LOG")]
+    validate: Vec<String>,
+    /// Estimate these parameters alone
+    #[arg(long)]
+    only: Option<Only>,
+    /// The frame that carries the payload of --only payload [default: the end effector]
+    #[arg(long, value_name = "FRAME")]
+    payload: Option<String>,
+    /// Where forces are measured; current: estimate drive gains, which needs --known-payload
+    #[arg(long, value_name = "PLACE", default_value = "motor")]
+    torque: Torque,
+    /// The payload that log N (from 1) carried: its frame, mass and centre of mass
+    #[arg(long, value_name = "N:FRAME=m,cx,cy,cz")]
+    known_payload: Vec<String>,
+    /// Cut-off of the filter, Hz, `auto` or `none` [default: auto, five times the velocities' band]
+    #[arg(long, value_name = "HZ", default_value = "auto", hide_default_value = true)]
+    cutoff: String,
+    /// How accelerations are computed
+    #[arg(long, value_name = "HOW", default_value = "differences")]
+    acceleration: How,
+    /// Weight of the robot's own values where the data is silent
+    #[arg(long, value_name = "WEIGHT", default_value = "0.3", allow_hyphen_values = true)]
+    prior: String,
+    /// Let large residuals count less (Huber)
+    #[arg(long)]
+    robust: bool,
+    /// Percent of each log to fit, in tens; the rest is predicted
+    #[arg(long, value_name = "PERCENT", default_value = "100", allow_hyphen_values = true)]
+    fit: String,
+    /// Add Stribeck friction, with this velocity, rad/s or m/s
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
+    stribeck: Option<String>,
+    /// Width of Coulomb friction, μ tanh(θ̇/w), rad/s or m/s
+    #[arg(long, value_name = "SPEED", default_value = "0.05", allow_hyphen_values = true)]
+    width: String,
+    /// Estimate springs
+    #[arg(long)]
+    springs: bool,
+    /// Estimate no offsets of forces
+    #[arg(long)]
+    no_offsets: bool,
+    /// The mass of all moving links, kg, and its standard deviation
+    #[arg(long, value_name = "M,DEVIATION")]
+    total_mass: Option<String>,
+    /// Bounds of a parameter
+    #[arg(long, value_name = "NAME=LOW,HIGH", allow_hyphen_values = true)]
+    between: Vec<String>,
+    /// A box in the link's frame that contains its centre of mass, m
+    #[arg(long, value_name = "LINK=x,y,z,X,Y,Z", allow_hyphen_values = true)]
+    center_in: Vec<String>,
+    /// Lock a joint that the log does not move, at this position, rad or m
+    #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
+    lock: Vec<String>,
+    /// The log's names of joints, in the robot's order
+    #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',')]
+    order: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Only {
+    /// A payload at a frame, with friction and offsets
+    Payload,
+    /// Friction and offsets
+    Friction,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Torque {
+    /// By the motor: armature is part of the force
+    Motor,
+    /// Behind the gear
+    Link,
+    /// Motor currents, A
+    Current,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum How {
+    /// Central differences of filtered signals
+    Differences,
+    /// A smoothing spline, which also filters
+    Spline,
+}
+
+pub fn run(arguments: &IdentifyArguments) -> Result<String> {
+    if let Some(out) = arguments.out.as_deref().filter(|out| !out.ends_with(".urdf") && !out.ends_with(".json")) {
+        return Err(Failure::wrong(format!("--out is `{out}`, expected a name that ends in .urdf or .json")));
+    }
+    let whole = arguments.robot.load()?;
+    let locks = edits::locks(&arguments.lock)?;
+    let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
+    let options = arguments.options(&model)?;
+    let mut logs = Vec::new();
+    for file in &arguments.logs {
+        logs.push(read_log(file, &model, &arguments.order)?);
+    }
+    arguments.known_payloads(&model, &mut logs)?;
+    interrupt::listen();
+    let found = identify(&model, &logs, &options, &interrupt::asked)?;
+    let mut judged = judge(&found, &logs)?;
+    let mut validations = Vec::new();
+    for file in &arguments.validate {
+        let log = read_log(file, &model, &arguments.order)?;
+        let (errors, _, findings) = found.validate(&log, &options.filter)?;
+        judged.findings.extend(findings);
+        validations.push((file.clone(), errors));
+    }
+    let (robot, more) = describe(&found.setup.columns, &found.estimates.consistent.x, whole.description())?;
+    judged.findings.extend(more);
+    let findings: Vec<_> = found.findings.iter().chain(&judged.findings).collect();
+    findings.iter().for_each(|finding| failure::write(&format!("{finding}\n")));
+    if let Some(out) = &arguments.out {
+        let text = match out.ends_with(".json") {
+            true => robot_json::write(&robot.clone().build()?),
+            false => {
+                let input = &arguments.robot.model;
+                urdf::edited(input, out, &robot, arguments.old_values, arguments.robot.settings())?
+            }
+        };
+        save(out, &text)?;
+    }
+    if let Some(file) = &arguments.report {
+        save(file, mozzi_report::fit_html(&found, &judged, &validations))?;
+    }
+    let text = match arguments.robot.json {
+        true => result::object(&found, &judged, &validations),
+        false => page::text(&found, &judged, &validations, arguments.out.as_deref()),
+    };
+    if found.estimates.consistent.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }
+}
+
+impl IdentifyArguments {
+    fn options(&self, model: &Model) -> Result<Options> {
+        let sensor = if self.torque == Torque::Motor { Sensor::Motor } else { Sensor::Link };
+        let frame = || match &self.payload {
+            Some(name) => model.frame(name),
+            None => model.end_effector(),
+        };
+        let mut choice = match self.only {
+            Some(Only::Friction) => Choice::only_friction(),
+            Some(Only::Payload) => Choice::only_payload(frame()?),
+            None if self.payload.is_some() => {
+                let help = "expected --only payload: links and a payload cannot be told apart by one log";
+                return Err(Failure::wrong(format!("--payload without --only, {help}")));
+            }
+            None => Choice::all(sensor),
+        };
+        choice.gains = self.torque == Torque::Current;
+        choice.width = number("--width", &self.width)?;
+        choice.stribeck = self.stribeck.as_deref().map(|text| number("--stribeck", text)).transpose()?;
+        choice.stiffness |= self.springs;
+        choice.offset &= !self.no_offsets;
+        let cutoff = match self.cutoff.as_str() {
+            "auto" => Cutoff::Automatic,
+            "none" => Cutoff::None,
+            text => Cutoff::Hz(number("--cutoff", text)?),
+        };
+        let acceleration = match self.acceleration {
+            How::Differences => Acceleration::Differences,
+            How::Spline => Acceleration::Spline,
+        };
+        let percent = number("--fit", &self.fit)?;
+        if !(10.0..=100.0).contains(&percent) || percent % 10.0 != 0.0 {
+            return Err(Failure::wrong(format!("--fit is {percent}, expected 10, 20, … or 100")));
+        }
+        Ok(Options {
+            choice,
+            filter: Filter { cutoff, acceleration, ..Filter::default() },
+            prior: number("--prior", &self.prior)?,
+            robust: self.robust,
+            limits: self.limits()?,
+            tenths: (percent / 10.0) as usize,
+        })
+    }
+
+    fn limits(&self) -> Result<Limits> {
+        let mut limits = Limits::default();
+        if let Some(text) = &self.total_mass {
+            limits.total_mass = Some(array("--total-mass", text, ["the mass", "its deviation"])?);
+        }
+        for text in &self.between {
+            let (name, list) = edits::split("--between", text, "NAME=LOW,HIGH")?;
+            limits.between.push((name.to_string(), array(&format!("--between {name}"), list, ["low", "high"])?));
+        }
+        for text in &self.center_in {
+            let (name, list) = edits::split("--center-in", text, "LINK=x,y,z,X,Y,Z")?;
+            let [x, y, z, X, Y, Z] = array(&format!("--center-in {name}"), list, ["x", "y", "z", "X", "Y", "Z"])?;
+            limits.center_of_mass.push((name.to_string(), [[x, y, z], [X, Y, Z]]));
+        }
+        Ok(limits)
+    }
+
+    fn known_payloads(&self, model: &Model, logs: &mut [Log]) -> Result<()> {
+        const EXPECTED: &str = "N:FRAME=m,cx,cy,cz";
+        for text in &self.known_payload {
+            let (name, list) = edits::split("--known-payload", text, EXPECTED)?;
+            let (log, frame) = name
+                .split_once(':')
+                .ok_or_else(|| Failure::wrong(format!("--known-payload is `{text}`, expected {EXPECTED}")))?;
+            let count = logs.len();
+            let log =
+                log.trim().parse::<usize>().ok().and_then(|k| logs.get_mut(k.checked_sub(1)?)).ok_or_else(|| {
+                    Failure::wrong(format!("--known-payload is of log `{log}`, expected a number from 1 to {count}"))
+                })?;
+            let place = format!("--known-payload {name}");
+            let mut list = numbers(&place, list)?;
+            list.resize(10, 0.0);
+            log.payload = Some((model.frame(frame)?, edits::inertia(&place, list.try_into().unwrap_or([0.0; 10]))?));
+        }
+        Ok(())
+    }
+}

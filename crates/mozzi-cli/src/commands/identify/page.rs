@@ -1,0 +1,108 @@
+//! The result as text.
+
+use crate::text::{Page, table};
+use mozzi_identify::judgement::Judgement;
+use mozzi_identify::{Errors, Identification, Kind};
+
+pub fn text(
+    found: &Identification<'_>,
+    judged: &Judgement,
+    validations: &[(String, Errors)],
+    out: Option<&str>,
+) -> String {
+    let model = found.setup.columns.model;
+    let mut page = Page::default();
+    let rows: usize = found.samples.iter().map(|samples| samples.count()).sum();
+    page.line(format!(
+        "{}: {} unknowns, {} of {} base parameters determined, from {rows} samples",
+        model.description().name,
+        found.setup.columns.count(),
+        found.estimates.least_squares.rank,
+        found.setup.base.count(),
+    ));
+    page.line(format!("condition number {:.0}", found.estimates.least_squares.condition));
+    if let Some(errors) = &found.left_out {
+        errors_table(&mut page, "error of predictions, five blocks of time left out in turn", found, errors);
+    }
+    if let Some(errors) = &found.held_out {
+        errors_table(&mut page, "error on the part that was not fitted", found, errors);
+    }
+    for (file, errors) in validations {
+        errors_table(&mut page, &format!("error on {file}"), found, errors);
+    }
+    if found.left_out.is_none() && found.held_out.is_none() {
+        errors_table(&mut page, "error on the samples that were fitted", found, &found.fitted);
+    }
+    page.line("Differences below 3 % mean nothing on one trajectory.");
+    parameters(&mut page, found);
+    weak(&mut page, judged);
+    if let Some(out) = out {
+        page.blank().line(format!("{out} is written"));
+    }
+    page.end()
+}
+
+/// Root mean square errors by joint.
+fn errors_table(page: &mut Page, title: &str, found: &Identification<'_>, errors: &Errors) {
+    let model = found.setup.columns.model;
+    let mut rows = vec![
+        ["", "force", "as it was", "+ friction", "least squares", "identified", "identified, %"]
+            .map(str::to_string)
+            .to_vec(),
+    ];
+    let show = |x: f64| format!("{x:.3}");
+    for (j, name) in model.velocity_names().enumerate() {
+        let all = [errors.force[j], errors.robot[j], errors.friction[j], errors.least_squares[j], errors.consistent[j]];
+        let percent = if errors.force[j] > 0.0 { 100.0 * errors.consistent[j] / errors.force[j] } else { 0.0 };
+        rows.push([vec![name.to_string()], all.map(show).to_vec(), vec![format!("{percent:.2}")]].concat());
+    }
+    let nrms = |x: &[f64]| format!("{:.2} %", 100.0 * errors.normalized(x));
+    let of = [&errors.robot, &errors.friction, &errors.least_squares, &errors.consistent];
+    rows.push([vec!["NRMS".to_string(), String::new()], of.map(|x| nrms(x)).to_vec(), vec![String::new()]].concat());
+    page.title(&format!("{title}, N m or N")).lines(&table(&rows, "lrrrrrr"));
+}
+
+/// Masses and joint parameters, before and after.
+fn parameters(page: &mut Page, found: &Identification<'_>) {
+    let optimum = &found.estimates.consistent;
+    let mut rows = vec![["", "before", "identified", "deviation", "from the prior"].map(str::to_string).to_vec()];
+    for (k, unknown) in found.setup.columns.unknowns.iter().enumerate() {
+        let is_shown = match unknown.kind {
+            Kind::Link(k) => k % 10 == 0,
+            _ => true,
+        };
+        if is_shown {
+            rows.push(vec![
+                unknown.name.clone(),
+                format!("{:.4}", unknown.prior),
+                format!("{:.4}", optimum.x[k]),
+                format!("{:.4}", optimum.deviations[k]),
+                format!("{:.0} %", 100.0 * optimum.prior_share[k]),
+            ]);
+        }
+    }
+    page.title("parameters; links: their masses").lines(&table(&rows, "lrrrr"));
+}
+
+/// What the motion does not determine.
+fn weak(page: &mut Page, judged: &Judgement) {
+    let weak: Vec<_> = judged.parameters.iter().filter(|parameter| parameter.is_weak()).collect();
+    if weak.is_empty() {
+        return;
+    }
+    let mut rows = vec![["", "value", "deviation", "what would help"].map(str::to_string).to_vec()];
+    for parameter in weak {
+        let name: String = if parameter.name.chars().count() > 60 {
+            parameter.name.chars().take(57).chain("…".chars()).collect()
+        } else {
+            parameter.name.clone()
+        };
+        rows.push(vec![
+            name,
+            format!("{:.4}", parameter.least_squares),
+            format!("{:.4}", parameter.deviation),
+            parameter.advice.clone().unwrap_or_default(),
+        ]);
+    }
+    page.title("base parameters that the motion does not determine").lines(&table(&rows, "lrrl"));
+}

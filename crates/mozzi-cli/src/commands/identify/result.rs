@@ -1,0 +1,77 @@
+//! The result as JSON.
+
+use crate::json::{self, vector};
+use mozzi_identify::judgement::Judgement;
+use mozzi_identify::{Errors, Identification};
+use serde_json::{Value, json};
+
+pub fn object(found: &Identification<'_>, judged: &Judgement, validations: &[(String, Errors)]) -> String {
+    let (setup, estimates) = (&found.setup, &found.estimates);
+    let optimum = &estimates.consistent;
+    let unknowns: Vec<Value> = setup
+        .columns
+        .unknowns
+        .iter()
+        .enumerate()
+        .map(|(k, unknown)| {
+            json!({
+                "name": unknown.name, "before": unknown.prior, "value": optimum.x[k],
+                "deviation": optimum.deviations[k], "prior_share": optimum.prior_share[k],
+            })
+        })
+        .collect();
+    let base: Vec<Value> = judged
+        .parameters
+        .iter()
+        .map(|one| {
+            json!({
+                "name": one.name, "before": one.robot, "least_squares": one.least_squares, "deviation": one.deviation,
+                "value": one.consistent, "advice": one.advice,
+            })
+        })
+        .collect();
+    let findings: Vec<Value> = found
+        .findings
+        .iter()
+        .chain(&judged.findings)
+        .map(|one| json!({ "code": one.code, "level": format!("{:?}", one.level).to_lowercase(), "text": one.text }))
+        .collect();
+    let residuals: Vec<Value> = judged
+        .residuals
+        .iter()
+        .flatten()
+        .map(|one| {
+            json!({
+                "name": one.name, "force": one.force, "rmse": one.rmse, "peak_hz": one.peak.0, "peak_share": one.peak.1,
+                "autocorrelation": one.autocorrelation, "lag": one.lag, "lag_deviation": one.lag_deviation,
+            })
+        })
+        .collect();
+    let validations: Vec<Value> =
+        validations.iter().map(|(file, errors)| json!({ "log": file, "errors": of_errors(errors) })).collect();
+    json::print(&json::of_robot(
+        setup.columns.model,
+        json!({
+            "condition": estimates.least_squares.condition,
+            "determined": estimates.least_squares.rank,
+            "steps": optimum.steps,
+            "sigma": vector(&estimates.least_squares.sigma),
+            "parameters": unknowns,
+            "base_parameters": base,
+            "fitted": of_errors(&found.fitted),
+            "left_out": found.left_out.as_ref().map(of_errors),
+            "held_out": found.held_out.as_ref().map(of_errors),
+            "validations": validations,
+            "residuals": residuals,
+            "findings": findings,
+        }),
+    ))
+}
+
+fn of_errors(errors: &Errors) -> Value {
+    json!({
+        "force": vector(&errors.force), "robot": vector(&errors.robot), "friction": vector(&errors.friction),
+        "least_squares": vector(&errors.least_squares), "consistent": vector(&errors.consistent),
+        "nrms": errors.normalized(&errors.consistent),
+    })
+}

@@ -1,0 +1,294 @@
+//! The linear equations A x = b of one sample: which unknowns there are, and their columns.
+
+use crate::choice::Choice;
+use crate::signals::Samples;
+use crate::{Error, payload::Carried};
+use mozzi::quantities::{Query, Regressor, TipForces};
+use mozzi::{Environment, FrameId, Model, Wrench, fast};
+
+/// What a column belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Entry k of the robot's [`parameters`](Model::parameters): a link's.
+    Link(usize),
+    /// Rotor inertia: entry k of the parameters.
+    Armature(usize),
+    /// Viscous friction: entry k of the parameters.
+    Viscous(usize),
+    /// Coulomb friction: entry k of the parameters.
+    Coulomb(usize),
+    /// Stribeck friction of an independent joint.
+    Stribeck(usize),
+    /// Stiffness: entry k of the parameters.
+    Stiffness(usize),
+    /// A constant force of row j.
+    Offset(usize),
+    /// Parameter k of the payload.
+    Payload(usize),
+    /// The drive gain of row j.
+    Gain(usize),
+}
+
+impl Kind {
+    /// Whether the parameter cannot be negative by itself.
+    pub fn is_positive(self) -> bool {
+        matches!(self, Kind::Armature(_) | Kind::Viscous(_) | Kind::Coulomb(_) | Kind::Stiffness(_) | Kind::Gain(_))
+    }
+}
+
+/// A parameter that is estimated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknown {
+    /// As in [`parameter_names`](Model::parameter_names); `joint.stribeck`, `joint.offset`, `payload.m`, `joint.gain`.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// The robot's own value.
+    pub prior: f64,
+}
+
+/// Joint parameters in [`parameters`](Model::parameters): armature, damping, friction, stiffness, preload.
+const OF_JOINT: usize = 5;
+
+/// The number of link parameters, which come first.
+fn link_parameters(model: &Model) -> usize {
+    10 * (model.moving_links() + usize::from(model.is_floating()))
+}
+
+/// The unknowns of a robot, and how the others are fixed.
+#[derive(Clone, Debug)]
+pub struct Columns<'m> {
+    /// The robot.
+    pub model: &'m Model,
+    /// What is estimated.
+    pub choice: Choice,
+    /// The columns, in order.
+    pub unknowns: Vec<Unknown>,
+    /// Entries of the parameters that are not estimated and not 0.
+    fixed: Vec<(usize, f64)>,
+    /// Coulomb friction that is not estimated, by place.
+    fixed_coulomb: Vec<f64>,
+    payload: Option<Carried>,
+    /// The row of each joint parameter, by place.
+    rows: Vec<core::ops::Range<usize>>,
+}
+
+impl<'m> Columns<'m> {
+    /// The columns of a choice.
+    ///
+    /// # Errors
+    /// [`Error::NotExciting`] if nothing is to be estimated; [`Error::BadOption`] for a width that is not positive.
+    pub fn new(model: &'m Model, choice: Choice) -> Result<Self, Error> {
+        for (option, width) in
+            [("the width of Coulomb friction", Some(choice.width)), ("Stribeck's velocity", choice.stribeck)]
+        {
+            if width.is_some_and(|width| !(width > 0.0 && width.is_finite())) {
+                let found = format!("{} rad/s", width.unwrap_or_default());
+                return Err(Error::BadOption { option, found, expected: "a positive velocity".into() });
+            }
+        }
+        let (names, values) = (model.parameter_names(), model.parameters());
+        let places = model.places();
+        let first = link_parameters(model);
+        let (mut unknowns, mut fixed, mut fixed_coulomb) = (Vec::new(), Vec::new(), vec![0.0; places.len()]);
+        let mut add = |name: String, kind: Kind, prior: f64| unknowns.push(Unknown { name, kind, prior });
+        for k in 0..first {
+            match choice.links {
+                true => add(names[k].clone(), Kind::Link(k), values[k]),
+                false => fixed.push((k, values[k])),
+            }
+        }
+        let kinds: [(bool, fn(usize) -> Kind); 4] = [
+            (choice.armature, Kind::Armature),
+            (choice.viscous, Kind::Viscous),
+            (choice.coulomb, Kind::Coulomb),
+            (choice.stiffness, Kind::Stiffness),
+        ];
+        for (entry, (is_chosen, kind)) in kinds.into_iter().enumerate() {
+            for place in 0..places.len() {
+                let k = first + OF_JOINT * place + entry;
+                match (is_chosen, entry) {
+                    (true, _) => add(names[k].clone(), kind(k), values[k]),
+                    (false, 2) => fixed_coulomb[place] = values[k],
+                    (false, _) => fixed.push((k, values[k])),
+                }
+            }
+        }
+        for k in first + OF_JOINT * places.len()..model.parameter_count() {
+            match choice.armature {
+                true => add(names[k].clone(), Kind::Armature(k), values[k]),
+                false => fixed.push((k, values[k])),
+            }
+        }
+        let joints: Vec<&str> = model.joint_names().collect();
+        if choice.stribeck.is_some() {
+            joints.iter().enumerate().for_each(|(k, joint)| add(format!("{joint}.stribeck"), Kind::Stribeck(k), 0.0));
+        }
+        let base = if model.is_floating() { 6 } else { 0 };
+        let rows: Vec<&str> = model.velocity_names().collect();
+        if choice.offset {
+            (base..model.n()).for_each(|j| add(format!("{}.offset", rows[j]), Kind::Offset(j), 0.0));
+        } else {
+            // preloads, which an offset contains
+            fixed.extend((0..places.len()).map(|place| first + OF_JOINT * place + 4).map(|k| (k, values[k])));
+        }
+        let payload = choice.payload.map(|frame| Carried::new(model, frame)).transpose()?;
+        if payload.is_some() {
+            for (k, name) in names.iter().take(10).enumerate() {
+                let name = name.rsplit('.').next().unwrap_or_default();
+                add(format!("payload.{name}"), Kind::Payload(k), 0.0);
+            }
+        }
+        if choice.gains {
+            (base..model.n()).for_each(|j| add(format!("{}.gain", rows[j]), Kind::Gain(j), 1.0));
+        }
+        fixed.retain(|(_, value)| *value != 0.0);
+        if unknowns.is_empty() {
+            return Err(Error::NotExciting { reason: "no parameter is chosen to be estimated".into() });
+        }
+        let rows = places.iter().map(|place| place.velocities()).collect();
+        Ok(Columns { model, choice, unknowns, fixed, fixed_coulomb, payload, rows })
+    }
+
+    /// The number of unknowns.
+    pub fn count(&self) -> usize {
+        self.unknowns.len()
+    }
+
+    /// The first columns of each link's ten parameters, and of the payload's.
+    pub fn bodies(&self) -> Vec<usize> {
+        let is_first = |unknown: &Unknown| match unknown.kind {
+            Kind::Link(k) | Kind::Payload(k) => k % 10 == 0,
+            _ => false,
+        };
+        (0..self.count()).filter(|&k| is_first(&self.unknowns[k])).collect()
+    }
+
+    /// The robot's own values.
+    pub fn prior(&self) -> Vec<f64> {
+        self.unknowns.iter().map(|unknown| unknown.prior).collect()
+    }
+
+    /// The index of a kind.
+    pub fn index(&self, kind: Kind) -> Option<usize> {
+        self.unknowns.iter().position(|unknown| unknown.kind == kind)
+    }
+
+    /// The first row of the joint whose parameters hold entry k.
+    pub(crate) fn row_of(&self, k: usize) -> usize {
+        self.rows[self.place_of(k)].start
+    }
+
+    /// The index of the joint whose parameters hold entry k.
+    fn place_of(&self, k: usize) -> usize {
+        (k - link_parameters(self.model)) / OF_JOINT
+    }
+}
+
+/// Fills the equations of one sample after another.
+pub struct Equations<'c, 'm> {
+    columns: &'c Columns<'m>,
+    workspace: fast::Workspace,
+    query: Query<'static>,
+    Y: Vec<f64>,
+    JtF: Vec<f64>,
+    applied: Vec<(FrameId, Wrench)>,
+    known: Option<(Carried, [f64; 10])>,
+}
+
+impl<'c, 'm> Equations<'c, 'm> {
+    /// Memory for the equations of these samples.
+    ///
+    /// # Errors
+    /// [`Error::Model`] if a payload's frame belongs to another model.
+    pub fn new(columns: &'c Columns<'m>, samples: &Samples) -> Result<Self, Error> {
+        let model = columns.model;
+        let known = samples
+            .payload
+            .map(|(frame, inertia)| Carried::new(model, frame).map(|carried| (carried, inertia.to_parameters())));
+        Ok(Equations {
+            columns,
+            workspace: fast::Workspace::new(model),
+            query: Query::from(Regressor),
+            Y: vec![0.0; model.n() * model.parameter_count()],
+            JtF: vec![0.0; model.n()],
+            applied: Vec::new(),
+            known: known.transpose()?,
+        })
+    }
+
+    /// The equations of sample k: A, n × P by rows, and b.
+    pub fn fill(&mut self, samples: &Samples, k: usize, A: &mut [f64], b: &mut [f64]) {
+        let model = self.columns.model;
+        let (n, nq) = (model.n(), model.nq());
+        let theta = &samples.theta[k * nq..][..nq];
+        let row = k * n..(k + 1) * n;
+        let (dtheta, ddtheta) = (&samples.dtheta[row.clone()], &samples.ddtheta[row.clone()]);
+        let tau = &samples.tau[row];
+        self.applied.clear();
+        self.applied.extend(samples.wrenches.iter().map(|(frame, table)| {
+            let w: [f64; 6] = core::array::from_fn(|i| table[6 * k + i]);
+            (*frame, Wrench::from_array(w))
+        }));
+        self.at([theta, dtheta, ddtheta, tau], A, b);
+        if !self.applied.is_empty() {
+            // JᵀF depends on no parameter
+            let environment = Environment { applied: &self.applied, ..Environment::with_gravity(mozzi::Vec3::zero()) };
+            let query = Query::from(TipForces);
+            fast::evaluate(&query, model, &[theta], &environment, &mut self.workspace, &mut [&mut self.JtF]);
+            b.iter_mut().zip(&self.JtF).for_each(|(b, JtF)| *b -= JtF);
+        }
+    }
+
+    /// The equations at a state θ, θ̇, θ̈, τ.
+    pub fn at(&mut self, [theta, dtheta, ddtheta, tau]: [&[f64]; 4], A: &mut [f64], b: &mut [f64]) {
+        let columns = self.columns;
+        let (model, choice, P) = (columns.model, &columns.choice, columns.count());
+        let (n, p) = (model.n(), model.parameter_count());
+        let environment = model.environment();
+        let inputs = [theta, dtheta, ddtheta];
+        fast::evaluate(&self.query, model, &inputs, &environment, &mut self.workspace, &mut [&mut self.Y]);
+        let Y = &self.Y;
+        A.fill(0.0);
+        b.copy_from_slice(tau);
+        let coulomb = |j: usize| (dtheta[j] / choice.width).tanh();
+        for (column, unknown) in columns.unknowns.iter().enumerate() {
+            match unknown.kind {
+                Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) => {
+                    (0..n).for_each(|j| A[j * P + column] = Y[j * p + k]);
+                }
+                Kind::Coulomb(k) => {
+                    columns.rows[columns.place_of(k)].clone().for_each(|j| A[j * P + column] = coulomb(j));
+                }
+                Kind::Stribeck(place) => {
+                    let v = choice.stribeck.unwrap_or(1.0);
+                    let rows = columns.rows[place].clone();
+                    rows.for_each(|j| A[j * P + column] = (-(dtheta[j] / v).powi(2)).exp() * coulomb(j));
+                }
+                Kind::Offset(j) => A[j * P + column] = 1.0,
+                Kind::Gain(j) => {
+                    A[j * P + column] = -tau[j];
+                    b[j] = 0.0;
+                }
+                Kind::Payload(k) => {
+                    if let Some(carried) = &columns.payload {
+                        (0..n).for_each(|j| A[j * P + column] = carried.column(&Y[j * p..][..p], k));
+                    }
+                }
+            }
+        }
+        for j in 0..n {
+            b[j] -= columns.fixed.iter().map(|&(k, value)| Y[j * p + k] * value).sum::<f64>();
+        }
+        for (rows, &mu) in columns.rows.iter().zip(&columns.fixed_coulomb) {
+            if mu != 0.0 {
+                rows.clone().for_each(|j| b[j] -= mu * coulomb(j));
+            }
+        }
+        if let Some((carried, parameters)) = &self.known {
+            for j in 0..n {
+                b[j] -= (0..10).map(|k| carried.column(&Y[j * p..][..p], k) * parameters[k]).sum::<f64>();
+            }
+        }
+    }
+}

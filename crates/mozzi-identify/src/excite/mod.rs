@@ -1,0 +1,200 @@
+//! Motions that determine a robot's parameters, within limits.
+
+mod basis;
+pub mod lbfgs;
+mod limits;
+mod objective;
+
+pub use basis::Basis;
+pub use limits::{Box3, MotionLimits, Sphere};
+pub use objective::Goal;
+
+use crate::columns::Columns;
+use crate::compress::stacked;
+use crate::{Choice, Error};
+use mozzi::random::Random;
+use mozzi::{BaseParameters, Freedom, Model};
+use objective::Objective;
+
+/// What motion is sought.
+#[derive(Clone, Debug)]
+pub struct ExciteOptions {
+    /// Its duration, s.
+    pub duration: f64,
+    /// Harmonics of the Fourier series.
+    pub harmonics: usize,
+    /// The largest determinant of the information, or the least condition number.
+    pub goal: Goal,
+    /// Limits of the motion.
+    pub limits: MotionLimits,
+    /// The parameters that are to be estimated.
+    pub choice: Choice,
+    /// Standard deviation of each force's noise, N m or N, for the predicted confidence.
+    pub noise: Vec<f64>,
+    /// Independent samples per second of the later log.
+    pub rate: f64,
+    /// Where the motion begins, n numbers; the middle of the limits by default.
+    pub start: Option<Vec<f64>>,
+    /// Iterations, at most, of each of the three searches.
+    pub iterations: usize,
+    /// Random starts, of which the best is kept.
+    pub starts: usize,
+}
+
+impl ExciteOptions {
+    /// A motion of this duration for a robot: its own limits, 1 % of each effort limit as noise.
+    pub fn new(model: &Model, duration: f64) -> Self {
+        let limits = MotionLimits::of(model);
+        let noise = limits.torque.iter().map(|t| if t.is_finite() { 0.01 * t } else { 0.1 }).collect();
+        ExciteOptions {
+            duration,
+            harmonics: 5,
+            goal: Goal::LogDet,
+            limits,
+            choice: Choice::default(),
+            noise,
+            rate: 100.0,
+            start: None,
+            iterations: 60,
+            starts: 2,
+        }
+    }
+}
+
+/// A motion and what it will determine.
+#[derive(Clone, Debug)]
+pub struct Excitation {
+    /// Its basis.
+    pub basis: Basis,
+    /// Coefficients, by joint.
+    pub coefficients: Vec<f64>,
+    /// The condition number of the weighted base regressor with unit columns.
+    pub condition: f64,
+    /// The same of the first random motion within the limits, for comparison.
+    pub condition_of_random: f64,
+    /// Base parameters: names, the robot's values, and the standard deviations that a log of this motion will give.
+    pub parameters: Vec<(String, f64, f64)>,
+    /// Whether it was stopped early.
+    pub is_stopped: bool,
+}
+
+impl Excitation {
+    /// θ, θ̇ and θ̈ at a time.
+    pub fn at(&self, t: f64) -> [Vec<f64>; 3] {
+        state(&self.basis, &self.coefficients, t)
+    }
+}
+
+/// θ, θ̇ and θ̈ of coefficients at a time.
+fn state(basis: &Basis, coefficients: &[f64], t: f64) -> [Vec<f64>; 3] {
+    let shares = basis.at(t);
+    let n = coefficients.len() / basis.count();
+    let sum = |j: usize, order: usize| {
+        coefficients[j * basis.count()..][..basis.count()].iter().zip(&shares).map(|(c, s)| c * s[order]).sum()
+    };
+    core::array::from_fn(|order| (0..n).map(|j| sum(j, order)).collect())
+}
+
+/// Searches a motion. `stop` ends the search with the best so far.
+///
+/// # Errors
+/// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, or a start outside its limits.
+pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -> Result<Excitation, Error> {
+    check(model, options)?;
+    let columns = Columns::new(model, options.choice.clone())?;
+    let (P, n) = (columns.count(), model.n());
+    let names = columns.unknowns.iter().map(|unknown| unknown.name.clone()).collect();
+    let base = BaseParameters::of_columns(&stacked(&columns, 2 * P / n + 10)?, names);
+    let basis = Basis { duration: options.duration, harmonics: options.harmonics };
+    let mut objective = Objective::new(&columns, &base, &basis, options)?;
+    let middle = options.start.clone().unwrap_or_else(|| options.limits.middle());
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut condition_of_random = f64::INFINITY;
+    for seed in 0..options.starts.max(1) {
+        let mut random = Random(17 + seed as u64);
+        let mut c = vec![0.0; n * basis.count()];
+        for j in 0..n {
+            c[j * basis.count()] = middle[j];
+            let size = options.limits.velocity[j] * options.duration / (12.0 * options.harmonics as f64);
+            for k in 1..basis.count() {
+                c[j * basis.count() + k] = size * random.next() / (1.0 + (k / 2) as f64).sqrt();
+            }
+        }
+        objective.shrink(&mut c);
+        if seed == 0 {
+            condition_of_random = objective.condition(&c);
+        }
+        let hold = options.start.is_some();
+        for weight in [10.0, 100.0, 1000.0] {
+            let f = |c: &[f64]| {
+                let (value, mut gradient) = objective.value(c, weight);
+                if hold {
+                    (0..n).for_each(|j| gradient[j * basis.count()] = 0.0);
+                }
+                (value, gradient)
+            };
+            lbfgs::minimize(&mut c, options.iterations, 1e-5, f, stop);
+        }
+        objective.shrink(&mut c);
+        let value = objective.value(&c, 0.0).0;
+        if best.as_ref().is_none_or(|(least, _)| value < *least) {
+            best = Some((value, c));
+        }
+        if stop() {
+            break;
+        }
+    }
+    let (_, coefficients) = best.unwrap_or((0.0, vec![0.0; n * basis.count()]));
+    let deviations = objective.deviations(&coefficients);
+    let values = base.values(&columns.prior());
+    let parameters = base.names().into_iter().zip(values.iter().copied()).zip(deviations);
+    Ok(Excitation {
+        condition: objective.condition(&coefficients),
+        condition_of_random,
+        parameters: parameters.map(|((name, value), deviation)| (name, value, deviation)).collect(),
+        basis,
+        coefficients,
+        is_stopped: stop(),
+    })
+}
+
+fn check(model: &Model, options: &ExciteOptions) -> Result<(), Error> {
+    let n = model.n();
+    let wrong = |option: &'static str, found: String, expected: &str| {
+        Err(Error::BadOption { option, found, expected: expected.into() })
+    };
+    if !model.configuration_space().places().iter().all(|place| place.freedom == Freedom::One) {
+        return wrong("the robot", "a floating base or a ball".into(), "a fixed base and joints of one axis");
+    }
+    if !(options.duration > 0.0 && options.duration.is_finite()) {
+        return wrong("the duration", format!("{} s", options.duration), "a positive number of seconds");
+    }
+    if options.harmonics == 0 || options.harmonics > 50 {
+        return wrong("harmonics", options.harmonics.to_string(), "1 to 50");
+    }
+    let limits = &options.limits;
+    let lengths = [
+        limits.position.len(),
+        limits.velocity.len(),
+        limits.acceleration.len(),
+        limits.torque.len(),
+        options.noise.len(),
+    ];
+    if lengths.iter().any(|&length| length != n) {
+        return wrong("limits and noise", format!("of lengths {lengths:?}"), "one number for each joint");
+    }
+    if !options.noise.iter().all(|x| *x > 0.0 && x.is_finite()) {
+        return wrong("the noise", format!("{:?}", options.noise), "positive numbers");
+    }
+    let positive = |list: &[f64]| list.iter().all(|x| *x > 0.0);
+    if !positive(&limits.velocity) || !positive(&limits.acceleration) || !positive(&limits.torque) {
+        return wrong("a limit of velocity, acceleration or torque", "not positive".into(), "positive numbers");
+    }
+    if let Some(start) = &options.start {
+        let inside = |(x, [low, high]): (&f64, &[f64; 2])| x >= low && x <= high;
+        if start.len() != n || !start.iter().zip(&limits.position).all(inside) {
+            return wrong("the start", format!("{start:?}"), "positions within the limits, one for each joint");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,258 @@
+//! The whole of it: from logs to estimates and their errors on parts that were left out.
+
+use crate::compress::{Compressed, Evidence, PARTS};
+use crate::estimate::least_squares::Decomposition;
+use crate::setup::{Estimates, Limits, Setup};
+use crate::signals::{Filter, Samples, prepare};
+use crate::{Choice, Error, Finding, Kind, Log};
+use mozzi::Model;
+use nalgebra::DMatrix;
+
+/// How a robot is identified.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Which parameters are estimated.
+    pub choice: Choice,
+    /// How signals are filtered.
+    pub filter: Filter,
+    /// γ: the weight of the robot's own values, relative to the weighted squared error per sample. Between 0.1 and 1
+    /// it hardly matters.
+    pub prior: f64,
+    /// Whether large residuals count less: Huber's weights.
+    pub robust: bool,
+    /// Bounds that the data alone does not know.
+    pub limits: Limits,
+    /// The first part of each log that is used, in tenths: 10 for all of it. The rest is held out.
+    pub tenths: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (choice, filter) = (Choice::default(), Filter::default());
+        Options { choice, filter, prior: 0.3, robust: false, limits: Limits::default(), tenths: PARTS }
+    }
+}
+
+/// Root mean square errors of each force, N m or N, on the same samples.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// The force itself.
+    pub force: Vec<f64>,
+    /// Of the robot as it was, with its own friction.
+    pub robot: Vec<f64>,
+    /// Of the robot as it was, with fitted friction and offsets.
+    pub friction: Vec<f64>,
+    /// Of least squares.
+    pub least_squares: Vec<f64>,
+    /// Of bodies that exist.
+    pub consistent: Vec<f64>,
+}
+
+impl Errors {
+    /// Σ_j error_j / weight_j: one number for all joints.
+    pub fn weighted_sum(errors: &[f64], weights: &[f64]) -> f64 {
+        errors.iter().zip(weights).filter(|(_, w)| **w > 0.0).map(|(e, w)| e / w).sum()
+    }
+
+    /// The root mean square over joints of the errors relative to the forces: NRMS.
+    pub fn normalized(&self, errors: &[f64]) -> f64 {
+        let used: Vec<f64> = errors.iter().zip(&self.force).filter(|(_, f)| **f > 0.0).map(|(e, f)| e / f).collect();
+        (used.iter().map(|e| e * e).sum::<f64>() / used.len().max(1) as f64).sqrt()
+    }
+}
+
+/// An identified robot.
+#[derive(Debug)]
+pub struct Identification<'m> {
+    /// What was fitted.
+    pub setup: Setup<'m>,
+    /// The filtered logs.
+    pub samples: Vec<Samples>,
+    /// The equations of the logs.
+    pub logs: Vec<Compressed>,
+    /// Both estimates.
+    pub estimates: Estimates,
+    /// Errors on the samples that were fitted.
+    pub fitted: Errors,
+    /// Errors on five blocks of the fitted part, each predicted by a fit on the other four.
+    pub left_out: Option<Errors>,
+    /// Errors on the part of the logs that `tenths` holds out.
+    pub held_out: Option<Errors>,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+    tenths: usize,
+}
+
+/// Identifies a robot from its logs. `stop` is asked now and then; once it is true, the best so far is the result.
+///
+/// # Errors
+/// [`Error`]: a log that cannot be read, a motion that excites nothing, or a wrong option.
+pub fn identify<'m>(
+    model: &'m Model,
+    logs: &[Log],
+    options: &Options,
+    stop: &dyn Fn() -> bool,
+) -> Result<Identification<'m>, Error> {
+    if options.tenths == 0 || options.tenths > PARTS {
+        let found = options.tenths.to_string();
+        return Err(Error::BadOption { option: "the part to fit", found, expected: "1 to 10 tenths".into() });
+    }
+    if options.choice.gains && logs.iter().all(|log| log.payload.is_none()) {
+        return Err(Error::BadOption {
+            option: "drive gains",
+            found: "no log has a known payload".into(),
+            expected: "at least one log with a payload of known mass".into(),
+        });
+    }
+    let setup = Setup::new(model, options.choice.clone(), options.prior, &options.limits)?;
+    let (mut samples, mut findings) = (Vec::new(), Vec::new());
+    for log in logs {
+        let (of_log, more) = prepare(model, log, &options.filter)?;
+        samples.push(of_log);
+        findings.extend(more);
+    }
+    let compress = |samples: &Samples| Compressed::new(&setup.columns, &setup.pattern, samples, None);
+    let compressed: Vec<Compressed> = samples.iter().map(compress).collect::<Result<_, _>>()?;
+    let tenths = options.tenths;
+    let P = setup.columns.count();
+    let all = |logs: &[Compressed]| Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths);
+    let evidence = all(&compressed);
+    let mut estimates = setup.fit(&evidence, stop)?;
+    if options.robust {
+        let weighted = reweighted(&setup, &samples, &estimates)?;
+        estimates = setup.fit(&all(&weighted), stop)?;
+    }
+    let fitted = errors(&setup, &evidence, &estimates, &evidence)?;
+    let held_out = (tenths < PARTS)
+        .then(|| {
+            let rest = Evidence::new(&setup.pattern, P, &compressed, |_, part| part >= tenths);
+            errors(&setup, &evidence, &estimates, &rest)
+        })
+        .transpose()?;
+    if estimates.consistent.is_stopped {
+        findings.push(Finding::warning("stopped", "stopped before the optimum: the result is the best so far"));
+    }
+    let mut found = Identification {
+        setup,
+        samples,
+        logs: compressed,
+        estimates,
+        fitted,
+        left_out: None,
+        held_out,
+        findings,
+        tenths,
+    };
+    if !stop() {
+        found.left_out = found.cross_validate(5, stop).ok();
+    }
+    Ok(found)
+}
+
+impl<'m> Identification<'m> {
+    /// Errors on blocks in time, each predicted by fits on the other blocks, pooled.
+    ///
+    /// # Errors
+    /// [`Error::NotExciting`] if the other blocks do not determine the unknowns.
+    pub fn cross_validate(&self, blocks: usize, stop: &dyn Fn() -> bool) -> Result<Errors, Error> {
+        let (P, tenths) = (self.setup.columns.count(), self.tenths);
+        let block = |part: usize| part * blocks / tenths;
+        let mut pooled: Option<Errors> = None;
+        for left_out in 0..blocks.min(tenths) {
+            let others =
+                Evidence::new(&self.setup.pattern, P, &self.logs, |_, part| part < tenths && block(part) != left_out);
+            let own =
+                Evidence::new(&self.setup.pattern, P, &self.logs, |_, part| part < tenths && block(part) == left_out);
+            let estimates = self.setup.fit(&others, stop)?;
+            let of_block = errors(&self.setup, &others, &estimates, &own)?;
+            pooled = Some(match pooled {
+                None => of_block,
+                Some(all) => all.pooled(&of_block, left_out as f64),
+            });
+        }
+        pooled.ok_or_else(|| Error::NotExciting { reason: "there are no blocks".into() })
+    }
+
+    /// Errors of this robot on other logs.
+    ///
+    /// # Errors
+    /// As [`identify`].
+    pub fn validate(&self, log: &Log, filter: &Filter) -> Result<(Errors, Samples, Vec<Finding>), Error> {
+        let (samples, findings) = prepare(self.setup.columns.model, log, filter)?;
+        let P = self.setup.columns.count();
+        let compressed = [Compressed::new(&self.setup.columns, &self.setup.pattern, &samples, None)?];
+        let other = Evidence::new(&self.setup.pattern, P, &compressed, |_, _| true);
+        Ok((errors(&self.setup, &self.evidence(), &self.estimates, &other)?, samples, findings))
+    }
+
+    /// The equations that were fitted.
+    pub fn evidence(&self) -> Evidence {
+        Evidence::new(&self.setup.pattern, self.setup.columns.count(), &self.logs, |_, part| part < self.tenths)
+    }
+}
+
+impl Errors {
+    /// Root mean squares over `count` blocks and one more.
+    fn pooled(&self, other: &Errors, count: f64) -> Errors {
+        let mean = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| ((count * a * a + b * b) / (count + 1.0)).sqrt()).collect()
+        };
+        Errors {
+            force: mean(&self.force, &other.force),
+            robot: mean(&self.robot, &other.robot),
+            friction: mean(&self.friction, &other.friction),
+            least_squares: mean(&self.least_squares, &other.least_squares),
+            consistent: mean(&self.consistent, &other.consistent),
+        }
+    }
+}
+
+/// The errors of estimates on some equations; friction alone is fitted to those of the estimates.
+fn errors(setup: &Setup<'_>, fitted: &Evidence, estimates: &Estimates, on: &Evidence) -> Result<Errors, Error> {
+    let prior = setup.columns.prior();
+    Ok(Errors {
+        force: on.rms(),
+        robot: on.rmse(&prior),
+        friction: on.rmse(&friction_alone(setup, fitted, &estimates.least_squares.sigma)),
+        least_squares: on.rmse(&estimates.least_squares.x),
+        consistent: on.rmse(&estimates.consistent.x),
+    })
+}
+
+/// The robot's own links, with friction and offsets by least squares.
+fn friction_alone(setup: &Setup<'_>, evidence: &Evidence, sigma: &[f64]) -> Vec<f64> {
+    let mut x = setup.columns.prior();
+    let is_free = |k: &usize| {
+        !matches!(setup.columns.unknowns[*k].kind, Kind::Link(_) | Kind::Payload(_) | Kind::Armature(_) | Kind::Gain(_))
+    };
+    let free: Vec<usize> = (0..x.len()).filter(is_free).collect();
+    if free.is_empty() {
+        return x;
+    }
+    free.iter().for_each(|&k| x[k] = 0.0);
+    let all = evidence.weighted(sigma);
+    let P = all.unknowns();
+    let columns: Vec<usize> = free.iter().copied().chain([P]).collect();
+    let mut rows: DMatrix<f64> = all.R.select_columns(&columns);
+    for k in (0..P).filter(|k| !free.contains(k)) {
+        rows.column_mut(free.len()).axpy(-x[k], &all.R.column(k), 1.0);
+    }
+    let mut R = crate::Triangle::new(free.len());
+    R.push(rows, all.rows);
+    let values = Decomposition::new(&R).solution();
+    free.iter().zip(values).for_each(|(&k, value)| x[k] = value);
+    x
+}
+
+/// The equations with Huber's weights: residuals above 1.345 σ count by their size alone.
+fn reweighted(setup: &Setup<'_>, samples: &[Samples], estimates: &Estimates) -> Result<Vec<Compressed>, Error> {
+    let (x, sigma, P) = (&estimates.consistent.x, &estimates.least_squares.sigma, setup.columns.count());
+    let weight = |_: usize, A: &[f64], b: &[f64], w: &mut [f64]| {
+        for (j, w) in w.iter_mut().enumerate() {
+            let residual = A[j * P..][..P].iter().zip(x).map(|(a, x)| a * x).sum::<f64>() - b[j];
+            *w = (1.345 * sigma[j] / residual.abs().max(f64::MIN_POSITIVE)).min(1.0).sqrt();
+        }
+    };
+    let one = |samples: &Samples| Compressed::new(&setup.columns, &setup.pattern, samples, Some(&weight));
+    samples.iter().map(one).collect()
+}

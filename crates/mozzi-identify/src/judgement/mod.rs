@@ -1,0 +1,110 @@
+//! How good an identification is: predictions on what was left out first, then parameters.
+
+pub mod excitation;
+pub mod residuals;
+pub mod suspicion;
+
+use crate::{Error, Finding, Identification, Log};
+use excitation::Parameter;
+use residuals::Residual;
+
+/// Everything that a report shows beside the errors.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// By log, then by force: what is left.
+    pub residuals: Vec<Vec<Residual>>,
+    /// By log: predicted forces, N × n.
+    pub predicted: Vec<Vec<f64>>,
+    /// Base parameters.
+    pub parameters: Vec<Parameter>,
+    /// Mistakes in the logs, and effects that the model lacks.
+    pub findings: Vec<Finding>,
+}
+
+/// Judges an identification from these logs.
+///
+/// # Errors
+/// [`Error::Model`].
+pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Error> {
+    let columns = &found.setup.columns;
+    let model = columns.model;
+    let n = model.n();
+    let names: Vec<&str> = model.velocity_names().collect();
+    let (mut residuals, mut predicted, mut findings) = (Vec::new(), Vec::new(), Vec::new());
+    for (samples, log) in found.samples.iter().zip(logs) {
+        findings.extend(suspicion::velocities(model, log, &log.check(model)?));
+        if !columns.choice.gains {
+            findings.extend(suspicion::mistakes(model, samples)?);
+        }
+        let of_log = crate::predict(columns, &found.estimates.consistent.x, samples)?;
+        let all: Vec<Residual> = (0..n).map(|j| Residual::new(names[j], j, n, samples, &of_log)).collect();
+        findings.extend(lag(&log.name, &all, 1.0 / samples.rate));
+        findings.extend(colour(&log.name, &all));
+        residuals.push(all);
+        predicted.push(of_log);
+    }
+    let parameters = excitation::parameters(found)?;
+    let weak = parameters.iter().filter(|parameter| parameter.is_weak()).count();
+    if weak > 0 {
+        findings.push(Finding::note(
+            "not_excited",
+            format!("{weak} of {} base parameters have a standard deviation larger than their value", parameters.len()),
+        ));
+    }
+    let condition = found.estimates.least_squares.condition;
+    if condition > 300.0 {
+        findings.push(Finding::warning(
+            "condition",
+            format!(
+                "the equations' condition number is {condition:.0} (below 100 is good): move joints more, or longer"
+            ),
+        ));
+    }
+    for name in &found.setup.repaired {
+        findings.push(Finding::note(
+            "thin_prior",
+            format!("the robot's own inertia of {name} is massless or thinner than 5 mm; its prior is 1 cm thick"),
+        ));
+    }
+    Ok(Judgement { residuals, predicted, parameters, findings })
+}
+
+/// A common lag of all forces, where it is clear: torques that were filtered forwards only.
+fn lag(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
+    let weight = |r: &Residual| 1.0 / (r.lag_deviation * r.lag_deviation);
+    let total: f64 = residuals.iter().map(weight).sum();
+    let mean = residuals.iter().map(|r| weight(r) * r.lag).sum::<f64>() / total;
+    let alike = residuals.iter().filter(|r| r.lag * mean > 0.0).count();
+    let is_clear =
+        mean.abs() > (0.5 * step).max(3e-3) && mean.abs() > 5.0 / total.sqrt() && 4 * alike >= 3 * residuals.len();
+    is_clear.then(|| {
+        let when = if mean > 0.0 { "later" } else { "earlier" };
+        Finding::warning(
+            "causal_filter",
+            format!(
+                "{log}: forces come {:.1} ms {when} than predicted: a causal filter or a clock, or friction with memory; \
+                 log them unfiltered",
+                1e3 * mean.abs()
+            ),
+        )
+    })
+}
+
+/// Residuals that are no noise make deviations too small.
+fn colour(log: &str, residuals: &[Residual]) -> Option<Finding> {
+    const HIGH: f64 = 0.5;
+    let coloured: Vec<&Residual> = residuals.iter().filter(|r| r.autocorrelation > HIGH).collect();
+    let most = coloured.iter().map(|r| r.autocorrelation).fold(0.0, f64::max).min(0.99);
+    (!coloured.is_empty()).then(|| {
+        let names: Vec<&str> = coloured.iter().map(|r| r.name.as_str()).collect();
+        Finding::note(
+            "coloured_residuals",
+            format!(
+                "{log}: residuals of {} are no noise but effects that the model lacks (autocorrelation up to {most:.2}): \
+                 standard deviations are too small, by up to {:.0} times",
+                names.join(", "),
+                ((1.0 + most) / (1.0 - most)).sqrt()
+            ),
+        )
+    })
+}

@@ -1,0 +1,215 @@
+//! A recorded motion, and the check of its rows.
+
+use crate::{Error, Finding};
+use mozzi::{FrameId, Model, SpatialInertia};
+
+/// A recorded motion with its torques. Tables are by rows: N rows of nq or n numbers in the model's order.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    /// Its name in messages.
+    pub name: String,
+    /// Times, s, increasing.
+    pub t: Vec<f64>,
+    /// Positions θ, N × nq: rad or m.
+    pub theta: Vec<f64>,
+    /// Velocities θ̇, N × n; without them they are differentiated from θ.
+    pub dtheta: Option<Vec<f64>>,
+    /// Accelerations θ̈, N × n, if they are known better than by differentiation, as in simulations.
+    pub ddtheta: Option<Vec<f64>>,
+    /// Measured forces τ, N × n: N m or N; or motor currents, if drive gains are estimated.
+    pub tau: Vec<f64>,
+    /// Measured wrenches that frames apply to the environment, N × 6 each, in the frame's coordinates, (m, f).
+    pub wrenches: Vec<(FrameId, Vec<f64>)>,
+    /// A known payload that was fixed to a frame, its inertia in the frame's coordinates.
+    pub payload: Option<(FrameId, SpatialInertia)>,
+}
+
+/// The largest share of rows that may contain NaN.
+const MOST_MISSING: f64 = 0.05;
+
+/// A gap is a step in time longer than this many median steps.
+const GAP: f64 = 5.0;
+
+/// Equal extreme forces in this many consecutive rows are saturation.
+const SATURATED: usize = 5;
+
+/// The rows of a log that can be used: runs of rows without gaps, and forces that are not saturated.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    /// The rows of each run.
+    pub runs: Vec<Vec<usize>>,
+    /// Median step of time, s.
+    pub step: f64,
+    /// N × n: whether the force is saturated there.
+    pub saturated: Vec<bool>,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+}
+
+impl Log {
+    /// The number of rows.
+    pub fn rows(&self) -> usize {
+        self.t.len()
+    }
+
+    /// All tables with their names and widths.
+    fn tables<'l>(&'l self, model: &Model) -> Vec<(&'static str, &'l [f64], usize)> {
+        let mut all = vec![("theta", self.theta.as_slice(), model.nq()), ("tau", self.tau.as_slice(), model.n())];
+        all.extend(self.dtheta.as_deref().map(|table| ("dtheta", table, model.n())));
+        all.extend(self.ddtheta.as_deref().map(|table| ("ddtheta", table, model.n())));
+        all.extend(self.wrenches.iter().map(|(_, table)| ("wrench", table.as_slice(), 6)));
+        all
+    }
+
+    /// Checks lengths, times and numbers. Rows with NaN and rows that repeat the row before are left out; a step in
+    /// time longer than five median steps ends a run.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotMonotonic`], [`Error::NotFinite`] if more than 5 % of the rows are not
+    /// numbers, [`Error::TooShort`] with fewer than 20 rows.
+    pub fn check(&self, model: &Model) -> Result<Rows, Error> {
+        let (N, n, log) = (self.rows(), model.n(), || self.name.clone());
+        let tables = self.tables(model);
+        for &(what, table, width) in &tables {
+            if table.len() != N * width {
+                let expected = format!("{N} rows of {width}");
+                return Err(Error::WrongLength { log: log(), what, found: table.len(), expected });
+            }
+        }
+        let (mut findings, mut usable, mut missing) = (Vec::new(), Vec::new(), None);
+        let (mut not_finite, mut repeated) = (0, 0);
+        for row in 0..N {
+            let bad = tables.iter().find_map(|&(what, table, width)| {
+                let k = table[row * width..][..width].iter().position(|x| !x.is_finite())?;
+                Some(format!("{what} {}", k + 1))
+            });
+            let bad = bad.or_else(|| (!self.t[row].is_finite()).then(|| "t".to_string()));
+            if let Some(column) = bad {
+                not_finite += 1;
+                missing.get_or_insert((column, row));
+                continue;
+            }
+            if let Some(&last) = usable.last() {
+                let same = |&(_, table, width): &(&str, &[f64], usize)| {
+                    table[row * width..][..width] == table[last * width..][..width]
+                };
+                if tables.iter().all(same) {
+                    repeated += 1;
+                    continue;
+                }
+                if !(self.t[row] > self.t[last]) {
+                    let (found, before) = (self.t[row], self.t[last]);
+                    return Err(Error::NotMonotonic { log: log(), row, found, before });
+                }
+            }
+            usable.push(row);
+        }
+        if let Some((column, row)) = missing {
+            if not_finite as f64 > MOST_MISSING * N as f64 {
+                return Err(Error::NotFinite { log: log(), column, row, count: not_finite, rows: N });
+            }
+            findings.push(Finding::warning(
+                "not_finite",
+                format!(
+                    "{}: {not_finite} rows with NaN or infinite numbers are left out, first `{column}` at row {row}",
+                    self.name
+                ),
+            ));
+        }
+        if repeated > 0 {
+            findings.push(Finding::note(
+                "repeated_rows",
+                format!("{}: {repeated} of {N} rows repeat the row before and are left out", self.name),
+            ));
+        }
+        let expected = 20;
+        if usable.len() < expected {
+            return Err(Error::TooShort { log: log(), found: usable.len(), expected, why: format!("of {N}") });
+        }
+        let step = self.median_step(&usable, repeated, &mut findings);
+        let runs = self.runs(&usable, step, &mut findings);
+        let saturated = self.saturated(model, &usable, &mut findings);
+        debug_assert_eq!(saturated.len(), N * n);
+        Ok(Rows { runs, step, saturated, findings })
+    }
+
+    /// The median step of time; a warning if steps vary.
+    fn median_step(&self, usable: &[usize], repeated: usize, findings: &mut Vec<Finding>) -> f64 {
+        let mut steps: Vec<f64> = usable.windows(2).map(|w| self.t[w[1]] - self.t[w[0]]).collect();
+        steps.sort_by(f64::total_cmp);
+        let median = steps[steps.len() / 2];
+        let at = |share: f64| steps[((steps.len() - 1) as f64 * share) as usize];
+        let spread = (at(0.95) - at(0.05)) / median;
+        if spread > 0.2 && repeated == 0 {
+            findings.push(Finding::note(
+                "jitter",
+                format!(
+                    "{}: steps of time vary between {:.3e} and {:.3e} s (5 % and 95 %); the log is resampled every {median:.3e} s",
+                    self.name,
+                    at(0.05),
+                    at(0.95)
+                ),
+            ));
+        }
+        median
+    }
+
+    fn runs(&self, usable: &[usize], step: f64, findings: &mut Vec<Finding>) -> Vec<Vec<usize>> {
+        let mut runs: Vec<Vec<usize>> = vec![Vec::new()];
+        for (k, &row) in usable.iter().enumerate() {
+            if k > 0 && self.t[row] - self.t[usable[k - 1]] > GAP * step {
+                findings.push(Finding::warning(
+                    "gap",
+                    format!(
+                        "{}: nothing was recorded between t = {} and {} s; the parts are filtered separately",
+                        self.name,
+                        self.t[usable[k - 1]],
+                        self.t[row]
+                    ),
+                ));
+                runs.push(Vec::new());
+            }
+            if let Some(run) = runs.last_mut() {
+                run.push(row);
+            }
+        }
+        runs
+    }
+
+    /// Forces that stay at their extreme value, or at the effort limit, are saturated.
+    fn saturated(&self, model: &Model, usable: &[usize], findings: &mut Vec<Finding>) -> Vec<bool> {
+        let n = model.n();
+        let mut saturated = vec![false; self.rows() * n];
+        for j in 0..n {
+            let of = |row: usize| self.tau[row * n + j];
+            let (low, high) = usable.iter().fold((f64::MAX, f64::MIN), |(a, b), &row| (a.min(of(row)), b.max(of(row))));
+            if low == high {
+                continue; // unused, or a base without a motor
+            }
+            let mut k = 0;
+            let mut count = 0;
+            while k < usable.len() {
+                let start = k;
+                let value = of(usable[k]);
+                while k < usable.len() && of(usable[k]) == value {
+                    k += 1;
+                }
+                if k - start >= SATURATED && (value == low || value == high) {
+                    count += k - start;
+                    usable[start..k].iter().for_each(|&row| saturated[row * n + j] = true);
+                }
+            }
+            if count > 0 {
+                findings.push(Finding::warning(
+                    "saturation",
+                    format!(
+                        "{}: the force of {} stays at its extreme value in {count} rows ({low} or {high}); they are left out",
+                        self.name,
+                        model.velocity_names().nth(j).unwrap_or_default()
+                    ),
+                ));
+            }
+        }
+        saturated
+    }
+}

@@ -1,0 +1,100 @@
+//! The forces that an estimate predicts: by inverse dynamics of the identified robot, not by the equations that were
+//! fitted.
+
+use crate::Error;
+use crate::columns::{Columns, Kind};
+use crate::payload::Carried;
+use crate::signals::Samples;
+use mozzi::quantities::{InverseDynamics, Query};
+use mozzi::{Environment, Model, Wrench, fast};
+
+/// The robot's [`parameters`](Model::parameters) with the unknowns in their places. A payload is added to the link that
+/// carries it; offsets, Stribeck friction and drive gains are not among them.
+///
+/// # Errors
+/// [`Error::Model`].
+pub fn parameters(columns: &Columns<'_>, x: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut pi = columns.model.parameters();
+    let mut payload = [0.0; 10];
+    for (unknown, &value) in columns.unknowns.iter().zip(x) {
+        match unknown.kind {
+            Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Coulomb(k) | Kind::Stiffness(k) => {
+                pi[k] = value
+            }
+            Kind::Payload(k) => payload[k] = value,
+            Kind::Stribeck(_) | Kind::Offset(_) | Kind::Gain(_) => {}
+        }
+    }
+    if let Some(frame) = columns.choice.payload {
+        Carried::new(columns.model, frame)?.add(&mut pi, &payload);
+    }
+    Ok(pi)
+}
+
+/// The identified robot: [`parameters`] in the model. Its Coulomb friction is μ sgn θ̇.
+///
+/// # Errors
+/// [`Error::Model`].
+pub fn identified(columns: &Columns<'_>, x: &[f64]) -> Result<Model, Error> {
+    Ok(columns.model.with_parameters(&parameters(columns, x)?))
+}
+
+/// Predicted forces of all samples, N × n; currents, if drive gains are estimated.
+///
+/// # Errors
+/// [`Error::Model`].
+pub fn predict(columns: &Columns<'_>, x: &[f64], samples: &Samples) -> Result<Vec<f64>, Error> {
+    let model = columns.model;
+    let (n, nq) = (model.n(), model.nq());
+    let mut pi = parameters(columns, x)?;
+    if let Some((frame, inertia)) = samples.payload {
+        Carried::new(model, frame)?.add(&mut pi, &inertia.to_parameters());
+    }
+    // Coulomb friction is smooth here
+    let names = model.parameter_names();
+    let places = model.places();
+    let mut mu = vec![0.0; n];
+    for (place, joint) in places.iter().zip(model.joint_names()) {
+        if let Some(k) = names.iter().position(|name| name.strip_suffix(".friction") == Some(joint)) {
+            place.velocities().for_each(|j| mu[j] = pi[k]);
+            pi[k] = 0.0;
+        }
+    }
+    if columns.choice.offset {
+        // an offset contains the spring's preload
+        names.iter().zip(&mut pi).filter(|(name, _)| name.ends_with(".preload")).for_each(|(_, value)| *value = 0.0);
+    }
+    let robot = model.with_parameters(&pi);
+    let (mut offset, mut stribeck, mut gain) = (vec![0.0; n], vec![0.0; n], vec![1.0; n]);
+    for (unknown, &value) in columns.unknowns.iter().zip(x) {
+        match unknown.kind {
+            Kind::Offset(j) => offset[j] = value,
+            Kind::Gain(j) => gain[j] = value,
+            Kind::Stribeck(place) => places[place].velocities().for_each(|j| stribeck[j] = value),
+            _ => {}
+        }
+    }
+    let (width, v) = (columns.choice.width, columns.choice.stribeck.unwrap_or(1.0));
+    let (query, mut workspace) = (Query::from(InverseDynamics), fast::Workspace::new(&robot));
+    let mut all = vec![0.0; samples.count() * n];
+    let mut applied = Vec::new();
+    for (k, tau) in all.chunks_mut(n).enumerate() {
+        let (theta, row) = (&samples.theta[k * nq..][..nq], k * n..(k + 1) * n);
+        let (dtheta, ddtheta) = (&samples.dtheta[row.clone()], &samples.ddtheta[row]);
+        applied.clear();
+        applied.extend(
+            samples
+                .wrenches
+                .iter()
+                .map(|(frame, table)| (*frame, Wrench::from_array(core::array::from_fn(|i| table[6 * k + i])))),
+        );
+        let environment = Environment { applied: &applied, ..robot.environment() };
+        fast::evaluate(&query, &robot, &[theta, dtheta, ddtheta], &environment, &mut workspace, &mut [tau]);
+        for j in 0..n {
+            let sign = (dtheta[j] / width).tanh();
+            let friction = (mu[j] + stribeck[j] * (-(dtheta[j] / v).powi(2)).exp()) * sign;
+            tau[j] = (tau[j] + friction + offset[j]) / gain[j];
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,143 @@
+//! What is fitted, apart from the data: columns, base parameters, priors and bounds.
+
+use crate::columns::{Columns, Kind};
+use crate::compress::{Evidence, Pattern, stacked};
+use crate::estimate::consistent::{Bound, Optimum, Problem};
+use crate::estimate::least_squares::LeastSquares;
+use crate::estimate::pseudo_inertia::Prior;
+use crate::{Choice, Error};
+use mozzi::{BaseParameters, Model};
+use nalgebra::DMatrix;
+
+/// Bounds that the data alone does not know.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// The mass of all moving links, kg, and its standard deviation.
+    pub total_mass: Option<[f64; 2]>,
+    /// Unknowns by name, with their lowest and highest values.
+    pub between: Vec<(String, [f64; 2])>,
+    /// A box in the link's frame that contains its centre of mass, by link: lowest and highest corner, m.
+    pub center_of_mass: Vec<(String, [[f64; 3]; 2])>,
+}
+
+/// The weight of a payload's prior relative to that of a link: the prior is a guess.
+const GUESS: f64 = 0.01;
+
+/// What is fitted.
+#[derive(Clone, Debug)]
+pub struct Setup<'m> {
+    /// The unknowns.
+    pub columns: Columns<'m>,
+    /// The columns of each force.
+    pub pattern: Pattern,
+    /// The combinations that some motion can determine.
+    pub base: BaseParameters,
+    /// The convex problem.
+    pub problem: Problem,
+    /// Names of bodies whose prior was massless or too thin, and was changed.
+    pub repaired: Vec<String>,
+    total_mass: Option<[f64; 2]>,
+}
+
+/// Both estimates from the same equations, with the same weights.
+#[derive(Clone, Debug)]
+pub struct Estimates {
+    /// By least squares.
+    pub least_squares: LeastSquares,
+    /// Of bodies that exist.
+    pub consistent: Optimum,
+}
+
+impl<'m> Setup<'m> {
+    /// For a robot, a choice of unknowns, the weight γ of the prior, and limits.
+    ///
+    /// # Errors
+    /// [`Error::BadOption`] for a weight that is not positive or a limit of an unknown name; those of
+    /// [`Columns::new`].
+    pub fn new(model: &'m Model, choice: Choice, gamma: f64, limits: &Limits) -> Result<Self, Error> {
+        if !(gamma > 0.0 && gamma.is_finite()) {
+            let expected = "a positive number, such as 0.3".to_string();
+            return Err(Error::BadOption { option: "the prior's weight", found: gamma.to_string(), expected });
+        }
+        let columns = Columns::new(model, choice)?;
+        let (P, n) = (columns.count(), model.n().max(1));
+        let names = columns.unknowns.iter().map(|unknown| unknown.name.clone()).collect();
+        let base = BaseParameters::of_columns(&stacked(&columns, 2 * P / n + 10)?, names);
+        let pattern = Pattern::new(&columns)?;
+        let (mut bodies, mut repaired) = (Vec::new(), Vec::new());
+        let start = columns.prior();
+        for first in columns.bodies() {
+            let name = columns.unknowns[first].name.trim_end_matches(".m").to_string();
+            let is_payload = matches!(columns.unknowns[first].kind, Kind::Payload(_));
+            // of a payload nothing is known: a ball of 1 kg and 5 cm
+            let ball = [1.0, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 1e-3, 0.0, 1e-3];
+            let prior = Prior::new(if is_payload { &ball } else { &start[first..first + 10] }, &name)?;
+            if prior.is_repaired {
+                repaired.push(name);
+            }
+            bodies.push((first, prior, if is_payload { GUESS } else { 1.0 }));
+        }
+        let positive = (0..P).filter(|&k| columns.unknowns[k].kind.is_positive()).collect();
+        let bounds = bounds(&columns, limits)?;
+        let problem = Problem { bodies, positive, bounds, gamma, start };
+        Ok(Setup { columns, pattern, base, problem, repaired, total_mass: limits.total_mass })
+    }
+
+    /// Fits both estimates. `stop` ends the second one early, with the best so far.
+    ///
+    /// # Errors
+    /// Those of [`LeastSquares::new`] and [`Problem::solve`].
+    pub fn fit(&self, evidence: &Evidence, stop: &dyn Fn() -> bool) -> Result<Estimates, Error> {
+        let least_squares = LeastSquares::new(evidence, &self.base)?;
+        let mut data = evidence.weighted(&least_squares.sigma);
+        if let Some([mass, deviation]) = self.total_mass {
+            let P = self.columns.count();
+            let mut row = DMatrix::zeros(1, P + 1);
+            self.problem.bodies.iter().for_each(|(first, ..)| row[(0, *first)] = 1.0 / deviation);
+            row[(0, P)] = mass / deviation;
+            data.push(row, 0);
+        }
+        let mut consistent = self.problem.solve(&data, stop)?;
+        let independent = (evidence.samples() as f64 * evidence.independent).max(1.0).sqrt();
+        consistent.deviations.iter_mut().for_each(|d| *d /= independent);
+        Ok(Estimates { least_squares, consistent })
+    }
+}
+
+fn bounds(columns: &Columns<'_>, limits: &Limits) -> Result<Vec<Bound>, Error> {
+    let find = |name: &str| {
+        let known = columns.unknowns.iter().position(|unknown| unknown.name == name);
+        known.ok_or_else(|| Error::BadOption {
+            option: "a limit",
+            found: format!("of `{name}`"),
+            expected: "the name of an estimated parameter, such as `link.m`".into(),
+        })
+    };
+    let mut all = Vec::new();
+    for (name, [low, high]) in &limits.between {
+        if !(low < high) {
+            return Err(Error::BadOption {
+                option: "a limit",
+                found: format!("{low} to {high} of `{name}`"),
+                expected: "a lower number first".into(),
+            });
+        }
+        let (k, scale) = (find(name)?, (high - low).min(1e6));
+        if low.is_finite() {
+            all.push(Bound { name: format!("{name} > {low}"), terms: vec![(k, 1.0)], least: *low, scale });
+        }
+        if high.is_finite() {
+            all.push(Bound { name: format!("{name} < {high}"), terms: vec![(k, -1.0)], least: -*high, scale });
+        }
+    }
+    for (link, [low, high]) in &limits.center_of_mass {
+        let m = find(&format!("{link}.m"))?;
+        for axis in 0..3 {
+            let (mc, scale) = (m + 1 + axis, columns.unknowns[m].prior.max(0.1) * (high[axis] - low[axis]));
+            let name = format!("the centre of mass of {link} in its box");
+            all.push(Bound { name: name.clone(), terms: vec![(mc, 1.0), (m, -low[axis])], least: 0.0, scale });
+            all.push(Bound { name, terms: vec![(m, high[axis]), (mc, -1.0)], least: 0.0, scale });
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,340 @@
+//! From a log to evenly spaced positions, velocities, accelerations and forces, all filtered alike.
+
+pub mod butterworth;
+pub mod smoothing_spline;
+pub mod spectrum;
+
+use crate::log::Rows;
+use crate::{Error, Finding, Log};
+use butterworth::LowPass;
+use mozzi::{FrameId, Freedom, Model, SpatialInertia};
+use smoothing_spline::SmoothingSpline;
+use spectrum::Spectrum;
+
+/// Where the low-pass filter's gain is ½.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Cutoff {
+    /// Five times the frequency below which 99.9 % of the velocities' power lies.
+    #[default]
+    Automatic,
+    /// This frequency, Hz.
+    Hz(f64),
+    /// No filter.
+    None,
+}
+
+/// How velocities and accelerations are computed from positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Acceleration {
+    /// Central differences of fourth order, of the filtered signals.
+    #[default]
+    Differences,
+    /// The smoothing spline of the same cut-off, which also replaces the filter of the other signals.
+    Spline,
+}
+
+/// How signals are filtered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filter {
+    /// The cut-off frequency.
+    pub cutoff: Cutoff,
+    /// The order of Butterworth's filter, which runs forwards and backwards.
+    pub order: usize,
+    /// How accelerations are computed.
+    pub acceleration: Acceleration,
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Filter { cutoff: Cutoff::Automatic, order: 4, acceleration: Acceleration::Differences }
+    }
+}
+
+/// Evenly spaced states with their forces, by rows.
+#[derive(Clone, Debug, Default)]
+pub struct Samples {
+    /// Times, s.
+    pub t: Vec<f64>,
+    /// N × nq.
+    pub theta: Vec<f64>,
+    /// N × n.
+    pub dtheta: Vec<f64>,
+    /// N × n.
+    pub ddtheta: Vec<f64>,
+    /// N × n.
+    pub tau: Vec<f64>,
+    /// N × n: whether the force may be used.
+    pub is_valid: Vec<bool>,
+    /// N × 6 for each frame.
+    pub wrenches: Vec<(FrameId, Vec<f64>)>,
+    /// A known payload of this log.
+    pub payload: Option<(FrameId, SpatialInertia)>,
+    /// Samples per second.
+    pub rate: f64,
+    /// The cut-off, Hz, if the signals were filtered.
+    pub cutoff: Option<f64>,
+    /// Power of forces above the cut-off, which the filter removed, by joint: an estimate of the noise's, N² m².
+    pub removed: Vec<f64>,
+}
+
+impl Samples {
+    /// The number of samples.
+    pub fn count(&self) -> usize {
+        self.t.len()
+    }
+
+    /// The share of independent samples: neighbours that a filter of cut-off f_c made alike count as 2 f_c / rate.
+    pub fn independent(&self) -> f64 {
+        self.cutoff.map_or(1.0, |cutoff| (2.0 * cutoff / self.rate).min(1.0))
+    }
+}
+
+/// Filters a log.
+///
+/// # Errors
+/// As [`Log::check`], and [`Error::TooShort`] if no run is long enough for the filter.
+pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Vec<Finding>), Error> {
+    let rows = log.check(model)?;
+    let mut findings = rows.findings.clone();
+    let rate = 1.0 / rows.step;
+    let cutoff = match filter.cutoff {
+        Cutoff::None => None,
+        Cutoff::Hz(f) => Some(f),
+        Cutoff::Automatic => {
+            let f = automatic(model, log, &rows);
+            findings.push(Finding::note(
+                "cutoff",
+                format!(
+                    "{}: the cut-off is {f:.3} Hz, five times the band of 99.9 % of the velocities' power",
+                    log.name
+                ),
+            ));
+            Some(f)
+        }
+    };
+    let low_pass = cutoff.map(|f| LowPass::new(filter.order, f, rate)).transpose()?;
+    // what the ends of a filtered run are worth: two periods of the cut-off
+    let trim = cutoff.map_or(0, |f| (2.0 * rate / f).ceil() as usize);
+    let mut samples =
+        Samples { rate, cutoff, payload: log.payload, removed: vec![0.0; model.n()], ..Samples::default() };
+    samples.wrenches = log.wrenches.iter().map(|(frame, _)| (*frame, Vec::new())).collect();
+    for run in rows.runs.iter().filter(|run| run.len() > 2 * trim + 10) {
+        let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
+        part.append(trim, &mut samples);
+    }
+    if samples.count() < 20 {
+        let why = format!("two periods of the cut-off, {trim} rows, are left out at both ends of each run");
+        return Err(Error::TooShort { log: log.name.clone(), found: samples.count(), expected: 20, why });
+    }
+    let N = samples.count() as f64;
+    samples.removed.iter_mut().for_each(|sum| *sum /= N);
+    Ok((samples, findings))
+}
+
+/// Five times the band of the velocities, at most 0.8 of half the sampling rate.
+fn automatic(model: &Model, log: &Log, rows: &Rows) -> f64 {
+    let (n, rate) = (model.n(), 1.0 / rows.step);
+    let Some(run) = rows.runs.iter().max_by_key(|run| run.len()) else { return 0.4 * rate };
+    let t: Vec<f64> = run.iter().map(|&row| log.t[row]).collect();
+    let mut power: Option<Spectrum> = None;
+    let mut add = |x: &[f64]| {
+        let of_one = Spectrum::new(&resampled(&t, x, rows.step), rate);
+        match &mut power {
+            Some(all) => all.power.iter_mut().zip(&of_one.power).for_each(|(sum, x)| *sum += x),
+            None => power = Some(of_one),
+        }
+    };
+    match &log.dtheta {
+        Some(table) => (0..n).for_each(|j| add(&run.iter().map(|&row| table[row * n + j]).collect::<Vec<_>>())),
+        None => {
+            let nq = model.nq();
+            for q in 0..nq {
+                let x: Vec<f64> = run.iter().map(|&row| log.theta[row * nq + q]).collect();
+                add(&x);
+            }
+        }
+    }
+    let band = power.map_or(0.1 * rate, |power| power.band(0.999).max(power.step));
+    (5.0 * band).min(0.4 * rate)
+}
+
+/// Linear interpolation at even times.
+fn resampled(t: &[f64], x: &[f64], step: f64) -> Vec<f64> {
+    let count = ((t[t.len() - 1] - t[0]) / step + 1e-6) as usize + 1;
+    let mut k = 0;
+    (0..count)
+        .map(|i| {
+            let at = t[0] + i as f64 * step;
+            while k + 2 < t.len() && t[k + 1] <= at {
+                k += 1;
+            }
+            let share = ((at - t[k]) / (t[k + 1] - t[k])).clamp(0.0, 1.0);
+            x[k] + share * (x[k + 1] - x[k])
+        })
+        .collect()
+}
+
+/// One run of rows.
+struct Part<'a> {
+    model: &'a Model,
+    log: &'a Log,
+    run: &'a [usize],
+    rows: &'a Rows,
+    cutoff: Option<f64>,
+    low_pass: Option<&'a LowPass>,
+    filter: &'a Filter,
+}
+
+impl Part<'_> {
+    fn append(&self, trim: usize, samples: &mut Samples) {
+        let (n, nq, step) = (self.model.n(), self.model.nq(), self.rows.step);
+        let t: Vec<f64> = self.run.iter().map(|&row| self.log.t[row]).collect();
+        let raw = |table: &[f64], width: usize, k: usize| -> Vec<f64> {
+            resampled(&t, &self.run.iter().map(|&row| table[row * width + k]).collect::<Vec<_>>(), step)
+        };
+        let columns =
+            |table: &[f64], width: usize| -> Vec<Vec<f64>> { (0..width).map(|k| raw(table, width, k)).collect() };
+        let times: Vec<f64> = (0..raw(&self.log.t, 1, 0).len()).map(|k| t[0] + k as f64 * step).collect();
+        let N = times.len();
+
+        let mut theta = columns(&self.log.theta, nq);
+        continuous(self.model, &mut theta);
+        let positions = theta.clone();
+        theta.iter_mut().for_each(|x| self.smooth(&times, x));
+        normalize(self.model, &mut theta);
+        let differentiate = |x: &[f64]| derivative(x, step);
+        let mut dtheta = match &self.log.dtheta {
+            Some(table) => columns(table, n),
+            None => self.velocities(&times, &theta, &positions),
+        };
+        if self.log.dtheta.is_some() {
+            dtheta.iter_mut().for_each(|x| self.smooth(&times, x));
+        }
+        let ddtheta: Vec<Vec<f64>> = match (&self.log.ddtheta, self.filter.acceleration, self.cutoff) {
+            (Some(table), ..) => {
+                let mut given = columns(table, n);
+                given.iter_mut().for_each(|x| self.smooth(&times, x));
+                given
+            }
+            (None, Acceleration::Spline, Some(cutoff)) => self.by_spline(&times, &dtheta, &positions, cutoff),
+            _ => dtheta.iter().map(|x| differentiate(x)).collect(),
+        };
+        let raw_tau = columns(&self.log.tau, n);
+        let mut tau = raw_tau.clone();
+        tau.iter_mut().for_each(|x| self.smooth(&times, x));
+        let mut wrenches: Vec<Vec<Vec<f64>>> = self.log.wrenches.iter().map(|(_, table)| columns(table, 6)).collect();
+        wrenches.iter_mut().flatten().for_each(|x| self.smooth(&times, x));
+
+        let kept = trim..N - trim;
+        for k in kept.clone() {
+            samples.t.push(times[k]);
+            let push = |to: &mut Vec<f64>, from: &[Vec<f64>]| to.extend(from.iter().map(|x| x[k]));
+            push(&mut samples.theta, &theta);
+            push(&mut samples.dtheta, &dtheta);
+            push(&mut samples.ddtheta, &ddtheta);
+            push(&mut samples.tau, &tau);
+            for ((_, to), from) in samples.wrenches.iter_mut().zip(&wrenches) {
+                push(to, from);
+            }
+            let nearest = self.nearest(&t, times[k]);
+            samples.is_valid.extend((0..n).map(|j| !self.rows.saturated[nearest * n + j]));
+        }
+        for j in 0..n {
+            samples.removed[j] += kept.clone().map(|k| (raw_tau[j][k] - tau[j][k]).powi(2)).sum::<f64>();
+        }
+    }
+
+    /// The row of the log nearest to a time.
+    fn nearest(&self, t: &[f64], at: f64) -> usize {
+        let k = t.partition_point(|&t| t < at).min(t.len() - 1);
+        let k = if k > 0 && at - t[k - 1] < t[k] - at { k - 1 } else { k };
+        self.run[k]
+    }
+
+    /// Filters one signal in place.
+    fn smooth(&self, times: &[f64], x: &mut Vec<f64>) {
+        match (self.filter.acceleration, self.cutoff, self.low_pass) {
+            (Acceleration::Spline, Some(cutoff), _) => *x = SmoothingSpline::new(times, x, cutoff).value,
+            (_, _, Some(filter)) => filter.filter(x),
+            _ => {}
+        }
+    }
+
+    /// θ̇ from θ: differences of filtered positions, along the configuration space.
+    fn velocities(&self, times: &[f64], theta: &[Vec<f64>], raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let (model, step) = (self.model, self.rows.step);
+        let (n, N) = (model.n(), times.len());
+        let space = model.configuration_space();
+        let at = |k: usize| -> Vec<f64> { theta.iter().map(|x| x[k]).collect() };
+        let mut found = vec![vec![0.0; N]; n];
+        let mut difference = vec![0.0; n];
+        for place in space.places() {
+            if place.freedom == Freedom::One {
+                found[place.j] = match (self.filter.acceleration, self.cutoff) {
+                    (Acceleration::Spline, Some(cutoff)) => SmoothingSpline::new(times, &raw[place.q], cutoff).first,
+                    _ => derivative(&theta[place.q], step),
+                };
+            }
+        }
+        if space.places().iter().any(|place| place.freedom != Freedom::One) {
+            for k in 0..N {
+                let (before, after) = (k.saturating_sub(1), (k + 1).min(N - 1));
+                space.difference(&at(before), &at(after), &mut difference);
+                for place in space.places().iter().filter(|place| place.freedom != Freedom::One) {
+                    place.velocities().for_each(|j| found[j][k] = difference[j] / ((after - before) as f64 * step));
+                }
+            }
+        }
+        found
+    }
+
+    /// θ̈ by the smoothing spline: its second derivative if there are positions alone, else the first of θ̇.
+    fn by_spline(&self, times: &[f64], dtheta: &[Vec<f64>], raw: &[Vec<f64>], cutoff: f64) -> Vec<Vec<f64>> {
+        let mut found: Vec<Vec<f64>> = dtheta.iter().map(|x| derivative(x, self.rows.step)).collect();
+        let places = self.model.configuration_space().places();
+        if self.log.dtheta.is_none() {
+            for place in places.iter().filter(|place| place.freedom == Freedom::One) {
+                found[place.j] = SmoothingSpline::new(times, &raw[place.q], cutoff).second;
+            }
+        }
+        found
+    }
+}
+
+/// Makes quaternions continuous in time: q and −q are the same orientation.
+fn continuous(model: &Model, theta: &mut [Vec<f64>]) {
+    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
+        let q = place.q;
+        for k in 1..theta[q].len() {
+            let dot: f64 = (q..q + 4).map(|i| theta[i][k] * theta[i][k - 1]).sum();
+            if dot < 0.0 {
+                (q..q + 4).for_each(|i| theta[i][k] = -theta[i][k]);
+            }
+        }
+    }
+}
+
+/// Gives filtered quaternions the length 1 again.
+fn normalize(model: &Model, theta: &mut [Vec<f64>]) {
+    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
+        let q = place.q;
+        for k in 0..theta[q].len() {
+            let length = (q..q + 4).map(|i| theta[i][k].powi(2)).sum::<f64>().sqrt();
+            (q..q + 4).for_each(|i| theta[i][k] /= length);
+        }
+    }
+}
+
+/// Central differences of fourth order, of lower order at the ends.
+pub(crate) fn derivative(x: &[f64], step: f64) -> Vec<f64> {
+    let N = x.len();
+    (0..N)
+        .map(|k| match k {
+            _ if N < 2 => 0.0,
+            0 => (x[1] - x[0]) / step,
+            _ if k == N - 1 => (x[k] - x[k - 1]) / step,
+            _ if k == 1 || k == N - 2 => (x[k + 1] - x[k - 1]) / (2.0 * step),
+            _ => (8.0 * (x[k + 1] - x[k - 1]) - (x[k + 2] - x[k - 2])) / (12.0 * step),
+        })
+        .collect()
+}

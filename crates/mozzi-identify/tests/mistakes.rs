@@ -1,0 +1,193 @@
+//! Mistakes in logs are reported, and only those.
+
+mod common;
+
+use common::{cases, motion, with_forces};
+use mozzi::Model;
+use mozzi::random::Random;
+use mozzi_identify::judgement::judge;
+use mozzi_identify::signals::{Cutoff, Filter};
+use mozzi_identify::{Choice, Error, Log, Options, Sensor, identify};
+
+fn codes(model: &Model, log: &Log, cutoff: f64) -> Vec<&'static str> {
+    let filter = Filter { cutoff: Cutoff::Hz(cutoff), ..Filter::default() };
+    let options = Options { filter, choice: Choice::all(Sensor::Link), ..Options::default() };
+    let found = identify(model, std::slice::from_ref(log), &options, &|| false).expect("an identification");
+    let judged = judge(&found, std::slice::from_ref(log)).expect("a judgement");
+    let all = found
+        .findings
+        .iter()
+        .chain(&judged.findings)
+        .filter(|finding| ["swapped_joints", "sign", "unit", "gravity", "causal_filter"].contains(&finding.code));
+    let all: Vec<_> = all.collect();
+    all.iter().for_each(|finding| eprintln!("{finding}"));
+    all.into_iter().map(|finding| finding.code).collect()
+}
+
+fn edited(log: &Log, n: usize, edit: impl Fn(&mut [f64], &mut [f64], &mut [f64])) -> Log {
+    let mut log = log.clone();
+    log.ddtheta = None;
+    let mut dtheta = log.dtheta.take().expect("velocities");
+    for k in 0..log.rows() {
+        let row = k * n..(k + 1) * n;
+        edit(&mut log.theta[row.clone()], &mut dtheta[row.clone()], &mut log.tau[row]);
+    }
+    log.dtheta = Some(dtheta);
+    log
+}
+
+/// A UR5 whose masses differ from the file's by up to 20 %.
+fn simulated() -> (Model, Log) {
+    let model = mozzi_urdf::open("ur5").expect("embedded").description.build().expect("sound");
+    let choice = Choice::all(Sensor::Link);
+    let columns = mozzi_identify::Columns::new(&model, choice.clone()).expect("columns");
+    let mut random = Random(4);
+    let mut x = columns.prior();
+    for first in columns.bodies() {
+        let factor = 1.0 + 0.2 * random.next();
+        x[first..first + 10].iter_mut().for_each(|x| *x *= factor);
+    }
+    for (k, unknown) in columns.unknowns.iter().enumerate().filter(|(_, u)| u.kind.is_positive()) {
+        x[k] = 1.0 + unknown.prior;
+    }
+    let log = motion(&model, 20.0, 100.0, 1.0, 3);
+    let log = with_forces(&log, &model, &choice, &x, &[0.3, 0.3, 0.2, 0.05, 0.05, 0.05], &mut random);
+    (model, log)
+}
+
+#[test]
+fn simulated_logs_with_a_mistake_say_which() {
+    let (model, log) = simulated();
+    let n = model.n();
+    assert_eq!(codes(&model, &edited(&log, n, |_, _, _| {}), 8.0), Vec::<&str>::new());
+    let swapped = edited(&log, n, |theta, dtheta, tau| [theta, dtheta, tau].into_iter().for_each(|x| x.swap(1, 2)));
+    assert!(codes(&model, &swapped, 8.0).contains(&"swapped_joints"));
+    assert!(codes(&model, &edited(&log, n, |_, _, tau| tau.swap(2, 3)), 8.0).contains(&"swapped_joints"));
+    assert!(codes(&model, &edited(&log, n, |_, dtheta, _| dtheta.swap(0, 4)), 8.0).contains(&"swapped_joints"));
+    assert!(codes(&model, &edited(&log, n, |_, _, tau| tau[1] = -tau[1]), 8.0).contains(&"sign"));
+    assert!(codes(&model, &edited(&log, n, |_, dtheta, _| dtheta[3] = -dtheta[3]), 8.0).contains(&"sign"));
+    assert!(codes(&model, &edited(&log, n, |_, _, tau| tau.iter_mut().for_each(|x| *x *= 1e3)), 8.0).contains(&"unit"));
+    let degrees = edited(&log, n, |theta, dtheta, _| theta.iter_mut().chain(dtheta).for_each(|x| *x = x.to_degrees()));
+    assert!(codes(&model, &degrees, 8.0).contains(&"unit"));
+    let slow = edited(&log, n, |_, dtheta, _| dtheta.iter_mut().for_each(|x| *x = x.to_degrees()));
+    assert!(codes(&model, &slow, 8.0).contains(&"unit"));
+    let wall = model.with_gravity([0.0, -9.81, 0.0]).expect("finite");
+    assert!(codes(&wall, &edited(&log, n, |_, _, _| {}), 8.0).contains(&"gravity"));
+}
+
+#[test]
+fn a_causal_filter_is_noticed() {
+    let (model, log) = simulated();
+    let n = model.n();
+    // first order, 5 Hz: 32 ms
+    let filtered = |table: &mut [f64]| {
+        for j in 0..n {
+            let share = 1.0 - (-core::f64::consts::TAU * 5.0 / 100.0_f64).exp();
+            let mut y = table[j];
+            for k in 0..table.len() / n {
+                y += share * (table[k * n + j] - y);
+                table[k * n + j] = y;
+            }
+        }
+    };
+    let mut late = edited(&log, n, |_, _, _| {});
+    filtered(&mut late.tau);
+    assert!(codes(&model, &late, 8.0).contains(&"causal_filter"));
+    let mut late = edited(&log, n, |_, _, _| {});
+    late.dtheta.as_deref_mut().map(filtered);
+    assert!(codes(&model, &late, 8.0).contains(&"causal_filter"));
+}
+
+#[test]
+fn real_logs_have_no_mistakes_until_columns_are_swapped() {
+    for case in cases() {
+        let n = case.model.n();
+        let found = codes(&case.model, &case.log, case.cutoff);
+        assert!(!found.iter().any(|code| ["swapped_joints", "sign", "unit", "gravity"].contains(code)), "{found:?}");
+        let (mut all, mut noticed) = (0, 0);
+        for a in 0..n {
+            for b in a + 1..n {
+                let swapped = edited(&case.log, n, |theta, dtheta, tau| {
+                    [theta, dtheta, tau].into_iter().for_each(|x| x.swap(a, b))
+                });
+                all += 1;
+                noticed += usize::from(codes(&case.model, &swapped, case.cutoff).contains(&"swapped_joints"));
+            }
+        }
+        eprintln!("{}: {noticed} of {all} swaps of two joints are noticed", case.name);
+        assert!(noticed * 10 >= all * 7, "{}: {noticed} of {all}", case.name);
+    }
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let (model, log) = simulated();
+    let n = model.n();
+    let error = |log: &Log, options: &Options| {
+        identify(&model, std::slice::from_ref(log), options, &|| false).expect_err("wrong")
+    };
+    let options = Options::default();
+    let mut short = log.clone();
+    short.t.truncate(15);
+    for table in [Some(&mut short.theta), Some(&mut short.tau), short.dtheta.as_mut(), short.ddtheta.as_mut()]
+        .into_iter()
+        .flatten()
+    {
+        table.truncate(15 * n);
+    }
+    assert!(matches!(error(&short, &options), Error::TooShort { found: 15, .. }));
+    let mut back = log.clone();
+    back.t[700] = back.t[600];
+    assert!(matches!(error(&back, &options), Error::NotMonotonic { row: 700, .. }));
+    let mut nan = log.clone();
+    (0..200).for_each(|k| nan.tau[k * n + 2] = f64::NAN);
+    let text = error(&nan, &options).to_string();
+    assert!(text.contains("`tau 3` at row 0") && text.contains("200 of 2000"), "{text}");
+    let mut narrow = log.clone();
+    narrow.tau.pop();
+    assert!(error(&narrow, &options).to_string().contains("tau has 11999 numbers, expected 2000 rows of 6"));
+    let mut still = log.clone();
+    still.theta.fill(0.5);
+    let zeros = vec![0.0; still.tau.len()];
+    (still.dtheta, still.ddtheta, still.tau) = (Some(zeros.clone()), Some(zeros.clone()), zeros);
+    still.t.iter().enumerate().for_each(|_| {});
+    assert!(matches!(error(&still, &options), Error::TooShort { .. } | Error::NotExciting { .. }));
+    let wrong = Options { prior: -1.0, ..Options::default() };
+    assert!(error(&log, &wrong).to_string().contains("the prior's weight is -1"));
+    let wrong = Options { tenths: 11, ..Options::default() };
+    assert!(error(&log, &wrong).to_string().contains("1 to 10"));
+    let wrong = Options { filter: Filter { cutoff: Cutoff::Hz(80.0), ..Filter::default() }, ..Options::default() };
+    assert!(error(&log, &wrong).to_string().contains("half of the sampling rate"));
+}
+
+#[test]
+fn gaps_repetitions_and_saturation_are_reported() {
+    let (model, log) = simulated();
+    let n = model.n();
+    let mut log = edited(&log, n, |_, _, tau| tau[1] = tau[1].clamp(-40.0, 40.0));
+    (700..log.rows()).for_each(|k| log.t[k] += 0.7);
+    log.tau[300 * n] = f64::NAN;
+    for table in [&mut log.theta, &mut log.tau] {
+        table.copy_within(100 * n..101 * n, 101 * n);
+    }
+    if let Some(table) = &mut log.dtheta {
+        table.copy_within(100 * n..101 * n, 101 * n);
+    }
+    let found =
+        identify(&model, std::slice::from_ref(&log), &Options::default(), &|| false).expect("an identification");
+    let codes: Vec<&str> = found.findings.iter().map(|finding| finding.code).collect();
+    for code in ["not_finite", "repeated_rows", "gap", "saturation", "cutoff"] {
+        assert!(codes.contains(&code), "{code} is not in {codes:?}");
+    }
+    assert!(found.samples[0].is_valid.iter().any(|is_valid| !is_valid));
+}
+
+#[test]
+fn a_stopped_search_keeps_the_best_so_far() {
+    let (model, log) = simulated();
+    let asked = std::sync::atomic::AtomicUsize::new(0);
+    let stop = || asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 5;
+    let found = identify(&model, &[log], &Options::default(), &stop).expect("an identification");
+    assert!(found.estimates.consistent.is_stopped && found.findings.iter().any(|finding| finding.code == "stopped"));
+    assert!(found.estimates.consistent.x.iter().all(|x| x.is_finite()));
+}

@@ -1,0 +1,269 @@
+//! Robots whose parameters are known, with logs made of them.
+
+mod common;
+
+use common::{floating_motion, humanoid, motion, normal, with_forces};
+use mozzi::random::Random;
+use mozzi::{Environment, Model, SpatialInertia, Vec3, Wrench};
+use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
+use mozzi_identify::{
+    Choice, Columns, Compressed, Evidence, Kind, Limits, Log, Options, Sensor, Setup, identified, identify, predict,
+};
+
+const UNFILTERED: Filter = Filter { cutoff: Cutoff::None, order: 4, acceleration: Acceleration::Differences };
+
+fn robot(name: &str) -> Model {
+    mozzi_urdf::open(name).expect("embedded").description.build().expect("sound")
+}
+
+/// Another robot: links by up to 30 % heavier or lighter, friction and offsets.
+fn truth(columns: &Columns<'_>, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    let mut x = columns.prior();
+    for first in columns.bodies() {
+        let factor = 1.0 + 0.3 * random.next();
+        x[first..first + 10].iter_mut().for_each(|x| *x *= factor);
+    }
+    for (k, unknown) in columns.unknowns.iter().enumerate() {
+        match unknown.kind {
+            Kind::Offset(_) => x[k] = 0.5 * random.next(),
+            Kind::Armature(_) => x[k] = 0.1 + 0.05 * random.next(),
+            kind if kind.is_positive() => x[k] = 1.0 + 0.5 * random.next(),
+            _ => {}
+        }
+    }
+    x
+}
+
+fn largest_error(found: &[f64], expected: &[f64], deviations: &[f64]) -> f64 {
+    found.iter().zip(expected).zip(deviations).map(|((a, b), d)| (a - b).abs() / d).fold(0.0, f64::max)
+}
+
+#[test]
+fn without_noise_base_parameters_are_exact() {
+    for (name, sensor) in [("ur5", Sensor::Motor), ("double_pendulum", Sensor::Link), ("furuta_pendulum", Sensor::Link)]
+    {
+        let model = robot(name);
+        let choice = Choice { stribeck: Some(0.2), stiffness: name != "ur5", ..Choice::all(sensor) };
+        let columns = Columns::new(&model, choice.clone()).expect("columns");
+        let x = truth(&columns, 3);
+        let log = motion(&model, 8.0, 100.0, 1.0, 3);
+        let log = with_forces(&log, &model, &choice, &x, &vec![0.0; model.n()], &mut Random(1));
+        let options = Options { choice, filter: UNFILTERED, prior: 1e-9, ..Options::default() };
+        let found = identify(&model, &[log], &options, &|| false).expect("an identification");
+        let expected = found.setup.base.values(&x);
+        let scale = vec![expected.amax(); expected.len()];
+        let error = largest_error(&found.estimates.least_squares.values, expected.as_slice(), &scale);
+        eprintln!("{name}: {error:e}");
+        assert!(error < 1e-8, "{name}: {error:e}");
+        // the second way: inverse dynamics of the identified robot instead of the equations
+        for x in [&found.estimates.least_squares.x, &found.estimates.consistent.x] {
+            let predicted = predict(&found.setup.columns, x, &found.samples[0]).expect("forces");
+            let rms = (predicted.iter().map(|x| x * x).sum::<f64>() / predicted.len() as f64).sqrt();
+            let error = predicted.iter().zip(&found.samples[0].tau).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-3 * rms, "{name}: {error:e} of {rms}");
+        }
+    }
+}
+
+#[test]
+fn intervals_of_95_percent_contain_the_truth_in_95_percent_of_runs() {
+    // noise in τ alone, of another size for each joint
+    for (name, runs, duration) in [("double_pendulum", 1000, 4.0), ("ur5", 1000, 3.0)] {
+        let model = robot(name);
+        let choice = Choice::all(Sensor::Motor);
+        let setup = Setup::new(&model, choice.clone(), 0.3, &Limits::default()).expect("a setup");
+        let x = truth(&setup.columns, 5);
+        let quiet = motion(&model, duration, 100.0, 1.5, 11);
+        let log = with_forces(&quiet, &model, &choice, &x, &vec![0.0; model.n()], &mut Random(1));
+        let noise: Vec<f64> = (0..model.n()).map(|j| 1.0 / (1 + j) as f64).collect();
+        let (samples, _) = mozzi_identify::signals::prepare(&model, &log, &UNFILTERED).expect("samples");
+        let expected = setup.base.values(&x);
+        let one = |run: u64| -> Vec<bool> {
+            let mut random = Random(1000 + run);
+            let mut samples = samples.clone();
+            samples
+                .tau
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, tau)| *tau += noise[i % noise.len()] * normal(&mut random));
+            let compressed = [Compressed::new(&setup.columns, &setup.pattern, &samples, None).expect("equations")];
+            let evidence = Evidence::new(&setup.pattern, setup.columns.count(), &compressed, |_, _| true);
+            let found =
+                mozzi_identify::estimate::least_squares::LeastSquares::new(&evidence, &setup.base).expect("values");
+            (0..expected.len()).map(|k| (found.values[k] - expected[k]).abs() < 1.96 * found.deviations[k]).collect()
+        };
+        let mut inside = vec![0; expected.len()];
+        std::thread::scope(|scope| {
+            let of = |first: u64| (first..runs).step_by(2).map(one).collect::<Vec<_>>();
+            let halves = [scope.spawn(move || of(0)), scope.spawn(move || of(1))];
+            for half in halves.map(|half| half.join().expect("runs")) {
+                half.iter()
+                    .for_each(|run| run.iter().enumerate().for_each(|(k, is_in)| inside[k] += u64::from(*is_in)));
+            }
+        });
+        let shares: Vec<f64> = inside.iter().map(|&count| 100.0 * count as f64 / runs as f64).collect();
+        let (low, high) = shares.iter().fold((100.0_f64, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
+        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        eprintln!(
+            "{name}: {} base parameters, each in {low:.1} to {high:.1} % of {runs} runs, mean {mean:.2} %",
+            shares.len()
+        );
+        assert!(low >= 93.0 && high <= 97.0, "{name}: {shares:?}");
+    }
+}
+
+#[test]
+fn a_payload_is_weighed() {
+    let model = robot("ur5");
+    let tool = model.end_effector().expect("a tool");
+    let heavy = SpatialInertia::new(2.5, Vec3([0.02, -0.01, 0.06]), mozzi::Sym3::diagonal(0.01, 0.012, 0.006));
+    let loaded = model.with_payload(tool, heavy).expect("a payload");
+    let choice = Choice::only_payload(tool);
+    let log = motion(&model, 10.0, 100.0, 1.0, 2);
+    let of_robot = Choice { links: false, payload: None, ..Choice::only_friction() };
+    let columns = Columns::new(&loaded, of_robot.clone()).expect("columns");
+    let log = with_forces(&log, &loaded, &of_robot, &vec![0.4; columns.count()], &[0.2; 6], &mut Random(9));
+    let options = Options { choice, filter: UNFILTERED, ..Options::default() };
+    let found = identify(&model, &[log], &options, &|| false).expect("an identification");
+    let first = found.setup.columns.index(Kind::Payload(0)).expect("a payload");
+    let payload = &found.estimates.consistent.x[first..first + 10];
+    eprintln!("payload {payload:.4?}");
+    assert!((payload[0] - 2.5).abs() < 0.03 && (payload[3] / payload[0] - 0.06).abs() < 0.01, "{payload:?}");
+    let robot = identified(&found.setup.columns, &found.estimates.consistent.x).expect("a robot");
+    assert!((robot.mass() - loaded.mass()).abs() < 0.03);
+}
+
+#[test]
+fn drive_gains_follow_from_a_known_payload() {
+    let model = robot("ur5");
+    let tool = model.end_effector().expect("a tool");
+    let known = SpatialInertia::new(4.0, Vec3([0.0, 0.03, 0.1]), mozzi::Sym3::diagonal(0.02, 0.02, 0.01));
+    let choice = Choice { gains: true, ..Choice::all(Sensor::Link) };
+    let without = Choice { gains: false, ..choice.clone() };
+    let x = truth(&Columns::new(&model, without.clone()).expect("columns"), 8);
+    let gains = [12.0, 11.0, 9.0, 5.0, 4.0, 3.0];
+    let mut logs = Vec::new();
+    for (seed, payload) in [(2, None), (3, Some((tool, known)))] {
+        let mut log = motion(&model, 10.0, 100.0, 1.0, seed);
+        log.payload = payload;
+        let columns = Columns::new(&model, without.clone()).expect("columns");
+        let mut forces = with_forces(&log, &model, &without, &x, &[0.0; 6], &mut Random(1));
+        if payload.is_some() {
+            let (samples, _) = mozzi_identify::signals::prepare(&model, &forces, &UNFILTERED).expect("samples");
+            forces.tau = predict(&columns, &x, &samples).expect("forces");
+        }
+        let mut random = Random(seed);
+        forces.tau.iter_mut().enumerate().for_each(|(k, tau)| *tau = *tau / gains[k % 6] + 0.001 * normal(&mut random));
+        forces.payload = payload;
+        logs.push(forces);
+    }
+    let options = Options { choice, filter: UNFILTERED, prior: 1e-3, ..Options::default() };
+    let found = identify(&model, &logs, &options, &|| false).expect("an identification");
+    for (j, gain) in gains.iter().enumerate() {
+        let k = found.setup.columns.index(Kind::Gain(j)).expect("a gain");
+        let (a, b) = (found.estimates.least_squares.x[k], found.estimates.consistent.x[k]);
+        eprintln!("gain {} of {gain}: least squares {a:.3}, consistent {b:.3}", j + 1);
+        assert!((b / gain - 1.0).abs() < 0.03, "{b} instead of {gain}");
+    }
+    let error = identify(&model, &logs[..1], &options, &|| false).expect_err("no payload").to_string();
+    assert!(error.contains("known mass"), "{error}");
+}
+
+#[test]
+fn mimic_joints_count_with_their_source() {
+    let model = robot("panda"); // its second finger follows the first
+    assert!(model.has_mimic_joints());
+    let choice = Choice::all(Sensor::Motor);
+    let columns = Columns::new(&model, choice.clone()).expect("columns");
+    let x = truth(&columns, 4);
+    let log = motion(&model, 10.0, 60.0, 1.0, 5);
+    let log = with_forces(&log, &model, &choice, &x, &vec![0.0; model.n()], &mut Random(1));
+    let options = Options { choice, filter: UNFILTERED, ..Options::default() };
+    let found = identify(&model, &[log], &options, &|| false).expect("an identification");
+    let expected = found.setup.base.values(&x);
+    let scale = vec![expected.amax(); expected.len()];
+    let error = largest_error(&found.estimates.least_squares.values, expected.as_slice(), &scale);
+    assert!(error < 1e-8, "{error:e}");
+}
+
+/// A humanoid on one foot: no motor drives its base, the wrench at the foot is measured.
+fn standing(model: &Model, log: &mut Log, x: &[f64], choice: &Choice, noise: f64) {
+    let (n, nq) = (model.n(), model.nq());
+    let foot = model.frame("left_leg6").expect("a foot");
+    let quiet = with_forces(log, model, choice, x, &vec![0.0; n], &mut Random(1));
+    let (mut random, mut wrench) = (Random(3), Vec::new());
+    log.tau.clear();
+    for k in 0..log.rows() {
+        let theta = &quiet.theta[k * nq..(k + 1) * nq];
+        let tau = &quiet.tau[k * n..(k + 1) * n];
+        // JᵀF cancels the base's six rows
+        let J = model.body_jacobian(theta, foot).expect("a Jacobian");
+        let base = J.matrix().columns(0, 6).transpose();
+        let F = base.lu().solve(&-nalgebra::DVector::from_column_slice(&tau[..6])).expect("regular");
+        let applied = [(foot, Wrench::from_array(core::array::from_fn(|i| F[i])))];
+        let environment = Environment { applied: &applied, ..Environment::with_gravity(Vec3::zero()) };
+        let zeros = vec![0.0; n];
+        let without = model.with_parameters(&vec![0.0; model.parameter_count()]);
+        let JtF = without.inverse_dynamics(theta, &zeros, &zeros, &environment).expect("lengths");
+        log.tau.extend((0..n).map(|j| tau[j] + JtF[j] + if j < 6 { 0.0 } else { noise * normal(&mut random) }));
+        wrench.extend(F.iter().map(|f| f + noise * normal(&mut random)));
+    }
+    log.wrenches = vec![(foot, wrench)];
+}
+
+#[test]
+fn a_floating_base_is_identified_by_its_contact_wrench() {
+    let model = humanoid();
+    assert_eq!(model.n(), 36);
+    let choice = Choice::all(Sensor::Link);
+    let columns = Columns::new(&model, choice.clone()).expect("columns");
+    let x = truth(&columns, 6);
+    let mut log = floating_motion(&model, 6.0, 50.0, 4);
+    standing(&model, &mut log, &x, &choice, 1e-9);
+    let options = Options { choice, filter: UNFILTERED, ..Options::default() };
+    let found = identify(&model, &[log], &options, &|| false).expect("an identification");
+    let expected = found.setup.base.values(&x);
+    let scale = vec![expected.amax(); expected.len()];
+    let error = largest_error(&found.estimates.least_squares.values, expected.as_slice(), &scale);
+    eprintln!("humanoid: {} unknowns, {} base, error {error:e}", found.setup.columns.count(), expected.len());
+    assert!(error < 1e-6, "{error:e}");
+    let robot = identified(&found.setup.columns, &found.estimates.consistent.x).expect("a robot");
+    let mass: f64 = columns.bodies().iter().map(|&k| x[k]).sum();
+    assert!((robot.mass() / mass - 1.0).abs() < 0.01, "{} kg instead of {mass}", robot.mass());
+}
+
+#[test]
+fn limits_hold_and_contradictions_are_named() {
+    let model = robot("ur5");
+    let choice = Choice::all(Sensor::Link);
+    let columns = Columns::new(&model, choice.clone()).expect("columns");
+    let x = truth(&columns, 3);
+    let log = motion(&model, 8.0, 100.0, 1.0, 3);
+    let log = with_forces(&log, &model, &choice, &x, &[0.5; 6], &mut Random(1));
+    let name = columns.unknowns[10].name.clone();
+    let link = name.trim_end_matches(".m").to_string();
+    let run = |limits: Limits| {
+        let options = Options { choice: choice.clone(), filter: UNFILTERED, limits, ..Options::default() };
+        identify(&model, std::slice::from_ref(&log), &options, &|| false)
+    };
+    let found =
+        run(Limits { between: vec![(name.clone(), [1.0, 2.0])], ..Limits::default() }).expect("an identification");
+    let mass = found.estimates.consistent.x[10];
+    assert!(mass > 1.0 && mass < 2.0, "{mass}");
+    let found = run(Limits { total_mass: Some([17.0, 1e-3]), ..Limits::default() }).expect("an identification");
+    let total: f64 = found.setup.columns.bodies().iter().map(|&k| found.estimates.consistent.x[k]).sum();
+    assert!((total - 17.0).abs() < 0.01, "{total}");
+    let bounds = vec![(link, [[-0.5, -0.1, -0.05], [0.0, 0.1, 0.05]])];
+    let found = run(Limits { center_of_mass: bounds, ..Limits::default() });
+    match found {
+        Ok(found) => {
+            let x = &found.estimates.consistent.x;
+            assert!((1..4).all(|k| x[10 + k].abs() <= 0.5 * x[10]), "{:?}", &x[10..14]);
+        }
+        Err(error) => panic!("{error}"),
+    }
+    let twice = vec![(name.clone(), [1.0, 2.0]), (name, [3.0, 4.0])];
+    let error = run(Limits { between: twice, ..Limits::default() }).expect_err("a contradiction").to_string();
+    assert!(error.contains("contradict"), "{error}");
+}
