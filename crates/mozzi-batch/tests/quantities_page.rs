@@ -35,6 +35,7 @@ Each quantity works in each of these ways:
 | Rust, C and CUDA source text | `mozzi_codegen::emit`, `mozzi codegen` |
 | the command line | `mozzi compute MODEL QUANTITY` |
 | Python, one state and arrays | `model.quantity(…)`, `model.compile(\"quantity\")` |
+| C and C++, one state and many | `mozzi_quantity(model, workspace, …)`, `workspace.quantity(…)`, `mozzi_batch_compute` |
 
 Arrays go through one of two engines. *Registers*: the kernel is compiled for registers of 4 to 16 states. *Program*: the kernel is recorded for
 the robot, and the program runs as machine code, or in an interpreter over 32 states where there is none: on other processors, and where

@@ -253,7 +253,9 @@ unsafe fn checked(
         }
         check_pointer(out.data.cast_const(), output.name)?;
         let data = out.data.cast_const();
-        is_direct[k] = is_by_rows(&shapes[k], &out.strides)
+        let [block, row, column] = out.strides;
+        is_direct[k] = (is_by_rows(&shapes[k], &out.strides)
+            || output.is_symmetric && is_by_rows(&shapes[k], &[block, column, row]))
             && !state.iter().any(|input| overlap(data, length, input.as_ptr(), input.len()))
             && !(0..k).any(|other| overlap(data, length, places[other].as_ptr(), places[other].len()));
         places[k] = if is_direct[k] {

@@ -1,7 +1,7 @@
 //! mozzi in C and C++: the functions of `include/mozzi/mozzi.h`, as a static and a shared library.
 //!
 //! No mathematics is here: a call checks its arguments, computes by [`mozzi::fast`], machine code or a batch, and
-//! returns a [`Status`](status::Status). Nothing unwinds across the border. Calls on a workspace allocate nothing.
+//! returns a status. Nothing unwinds across the border. Calls on a workspace allocate nothing.
 #![allow(clippy::missing_safety_doc)] // mozzi.h has it
 
 mod batch;

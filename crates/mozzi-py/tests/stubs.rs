@@ -55,7 +55,7 @@ fn tuples() -> String {
             declaration.name
         );
         text += &heading;
-        for Output { name, dims, unit } in declaration.outputs {
+        for Output { name, dims, unit, .. } in declaration.outputs {
             writeln!(text, "    {name}: Array\n    \"\"\"Shape {}: {unit}.\"\"\"", shape(dims)).expect("a String");
         }
     }

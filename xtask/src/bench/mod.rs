@@ -51,7 +51,7 @@ fn compare(workspace: &Workspace, options: &Options) -> Result<String, String> {
     let folder = if options.is_whole() { RESULTS } else { "target/bench" };
     let mut run = compare(&["--write", folder]);
     let mut missing = Vec::new();
-    for peer in PEERS.iter().filter(|peer| options.wants(peer.name)) {
+    for peer in PEERS.iter().filter(|peer| options.wants(peer)) {
         match (peer.build)(&workshop) {
             Ok(library) => run.arg("--peer").arg(format!("{}={}", peer.name, library.display())),
             Err(why) => {

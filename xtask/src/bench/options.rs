@@ -1,6 +1,6 @@
 //! `bench [--robots A,B] [--peers A,B] [--seconds S] [--install]`.
 
-use super::peers::PEERS;
+use super::peers::{PEERS, Peer};
 
 #[derive(Debug, Default, PartialEq)]
 pub struct Options {
@@ -32,8 +32,9 @@ impl Options {
         Ok(options)
     }
 
-    pub fn wants(&self, peer: &str) -> bool {
-        self.peers.as_ref().is_none_or(|peers| peers.iter().any(|name| name.eq_ignore_ascii_case(peer)))
+    pub fn wants(&self, peer: &Peer) -> bool {
+        let is_named = |peers: &Vec<String>| peers.iter().any(|name| name.eq_ignore_ascii_case(peer.name));
+        self.peers.as_ref().map_or(!peer.is_mozzi, is_named)
     }
 
     /// True if all robots and all peers are measured.
@@ -60,11 +61,12 @@ mod tests {
 
     #[test]
     fn a_part_is_no_whole() -> Result<(), String> {
+        let wants = |options: &Options, name: &str| PEERS.iter().any(|peer| peer.name == name && options.wants(peer));
         let all = Options::parse(&["--seconds", "3"])?;
-        assert!(all.is_whole() && all.wants("KDL"));
-        let part = Options::parse(&["--peers", "kdl,pinocchio", "--robots", "ur5"])?;
-        assert!(!part.is_whole() && part.wants("KDL") && !part.wants("MuJoCo"));
-        assert!(!Options::parse(&["--peers", ""])?.wants("KDL"));
+        assert!(all.is_whole() && wants(&all, "KDL") && !wants(&all, "C++"));
+        let part = Options::parse(&["--peers", "kdl,pinocchio,c++", "--robots", "ur5"])?;
+        assert!(!part.is_whole() && wants(&part, "KDL") && wants(&part, "C++") && !wants(&part, "MuJoCo"));
+        assert!(!wants(&Options::parse(&["--peers", ""])?, "KDL"));
         Ok(())
     }
 

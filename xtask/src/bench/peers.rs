@@ -10,15 +10,19 @@ pub struct Peer {
     pub name: &'static str,
     /// The library, or the reason why there is none.
     pub build: fn(&Workshop) -> Result<PathBuf, String>,
+    /// mozzi itself, in another language: measured only if it is asked for.
+    pub is_mozzi: bool,
 }
 
-pub const PEERS: [Peer; 6] = [
-    Peer { name: "Pinocchio", build: pinocchio },
-    Peer { name: "MuJoCo", build: mujoco },
-    Peer { name: "KDL", build: kdl },
-    Peer { name: "dynibo", build: dynibo },
-    Peer { name: "CasADi", build: casadi },
-    Peer { name: "Drake", build: drake },
+pub const PEERS: [Peer; 8] = [
+    Peer { name: "Pinocchio", build: pinocchio, is_mozzi: false },
+    Peer { name: "MuJoCo", build: mujoco, is_mozzi: false },
+    Peer { name: "KDL", build: kdl, is_mozzi: false },
+    Peer { name: "dynibo", build: dynibo, is_mozzi: false },
+    Peer { name: "CasADi", build: casadi, is_mozzi: false },
+    Peer { name: "Drake", build: drake, is_mozzi: false },
+    Peer { name: "C++", build: cpp, is_mozzi: true },
+    Peer { name: "C++-compiled", build: cpp_compiled, is_mozzi: true },
 ];
 
 const HEADER: &str = "benches/peers/peer.hpp";
@@ -113,6 +117,37 @@ fn casadi(workshop: &Workshop) -> Result<PathBuf, String> {
         link.current_dir(&workshop.workspace.root).args(["-std=c++17", "-O3", "-fPIC", "-shared"]);
         link.arg(format!("-DPEER_FLAGS={WORDS}")).arg("-I").arg(&folder).arg(SOURCE).args(files(&folder, "o"));
         command::run(link.arg("-o").arg(library))
+    })
+}
+
+/// mozzi.hpp with Eigen's arguments, on the shared library.
+fn cpp(workshop: &Workshop) -> Result<PathBuf, String> {
+    own(workshop, "mozzi-cpp", FAST)
+}
+
+/// As [`cpp`], by machine code.
+fn cpp_compiled(workshop: &Workshop) -> Result<PathBuf, String> {
+    own(workshop, "mozzi-cpp-compiled", &format!("{FAST} -DCOMPILED"))
+}
+
+fn own(workshop: &Workshop, name: &str, words: &str) -> Result<PathBuf, String> {
+    const SOURCE: &str = "benches/peers/mozzi.cpp";
+    const EIGEN: &str = "benches/requirements.txt";
+    const HEADERS: [&str; 2] = ["crates/mozzi-c/include/mozzi/mozzi.h", "crates/mozzi-c/include/mozzi/mozzi.hpp"];
+    command::run(workshop.workspace.cargo(&["build", "--release", "--quiet", "-p", "mozzi-c"]))?;
+    let folder = workshop.workspace.fresh_folder(&format!("target/bench/{name}"))?;
+    let library = workshop.workspace.target().join("release/libmozzi_c.so");
+    for link in ["libmozzi.so", "libmozzi.so.0"] {
+        let to = folder.join(link);
+        std::fs::copy(&library, &to).map_err(|error| format!("{}: {error}", to.display()))?;
+    }
+    let [header, methods] = HEADERS;
+    workshop.library(name, words, &[SOURCE, HEADER, EIGEN, header, methods], |library| {
+        workshop.pip(EIGEN)?;
+        let mut compile = workshop.compile(words);
+        compile.arg("-isystem").arg(workshop.package("cmeel.prefix")?.join("include/eigen3"));
+        compile.args(["-I", "crates/mozzi-c/include", SOURCE, "-o"]).arg(library).arg("-L").arg(&folder);
+        command::run(compile.arg("-lmozzi").arg(format!("-Wl,-rpath,{}", folder.display())))
     })
 }
 

@@ -42,7 +42,7 @@ fn state(input: &Input) -> String {
 }
 
 fn one(output: &Output) -> String {
-    let Output { name, unit, dims } = output;
+    let Output { name, unit, dims, .. } = output;
     match dims {
         [] => format!("{name} : float, or numpy.ndarray of the leading axes\n    {unit}.\n"),
         dims => format!("{name} : numpy.ndarray, shape {}\n    {unit}.\n", shape(dims)),

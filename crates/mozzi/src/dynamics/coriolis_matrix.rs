@@ -5,7 +5,7 @@ use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, com
 use crate::kinematics::{base_twist, joint_transforms};
 use crate::linalg::add_transpose;
 use crate::model::{ByRates, Model, Workspace};
-use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output};
+use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output, symmetric};
 use crate::scalar::Scalar;
 use crate::spatial::{AxisRate, CoriolisFactor, Twist};
 
@@ -119,7 +119,7 @@ impl Quantity for MassMatrixRate {
         "mass_matrix_rate",
         "Ṁ(θ, θ̇) = C + Cᵀ",
         &[THETA, DTHETA],
-        &[output("dM", MATRIX, "kg m²/s, kg m/s or kg/s")],
+        &[symmetric("dM", MATRIX, "kg m²/s, kg m/s or kg/s")],
     )
     .with_first_output(1);
 }

@@ -13,7 +13,8 @@ use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
-    ACCELERATION, Call, D_ACCELERATION, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR, output,
+    ACCELERATION, Call, D_ACCELERATION, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR,
+    output, symmetric,
 };
 use crate::scalar::Scalar;
 
@@ -91,7 +92,7 @@ impl Quantity for ForwardDynamicsDerivatives {
             output("ddtheta", VECTOR, ACCELERATION),
             output("d_theta", MATRIX, D_ACCELERATION),
             output("d_dtheta", MATRIX, D_ACCELERATION),
-            output("d_tau", MATRIX, D_ACCELERATION),
+            symmetric("d_tau", MATRIX, D_ACCELERATION),
         ],
     )
     .uses(Uses::ALL)

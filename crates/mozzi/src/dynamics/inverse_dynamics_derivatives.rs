@@ -5,7 +5,9 @@ use super::derivatives::derivatives;
 use super::spring_forces::add_stiffness;
 use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model, Workspace};
-use crate::quantity::{Call, D_FORCE, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
+use crate::quantity::{
+    Call, D_FORCE, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output, symmetric,
+};
 use crate::scalar::Scalar;
 
 /// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n,
@@ -47,7 +49,7 @@ impl Quantity for InverseDynamicsDerivatives {
         &[
             output("d_theta", MATRIX, D_FORCE),
             output("d_dtheta", MATRIX, D_FORCE),
-            output("d_ddtheta", MATRIX, D_FORCE),
+            symmetric("d_ddtheta", MATRIX, D_FORCE),
         ],
     )
     .uses(Uses::ALL);

@@ -3,7 +3,7 @@
 use super::composite::{Does, Matrices, composite_pass};
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
-use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, output};
+use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, symmetric};
 use crate::scalar::Scalar;
 
 /// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ for each rotor
@@ -52,7 +52,7 @@ impl Quantity for MassMatrix {
         "mass_matrix",
         "M(θ), symmetric, with the rotors' inertia on its diagonal",
         &[THETA],
-        &[output("M", MATRIX, INERTIA)],
+        &[symmetric("M", MATRIX, INERTIA)],
     );
 }
 impl Kernel for MassMatrix {

@@ -3,7 +3,7 @@
 use super::mass_matrix::mass_matrix;
 use crate::linalg::ldlt;
 use crate::model::{Model, Workspace};
-use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, output};
+use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, symmetric};
 use crate::scalar::Scalar;
 
 /// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: the accelerations produced by a unit force at each joint. 1/(kg
@@ -38,7 +38,7 @@ impl Quantity for MassMatrixInverse {
         "mass_matrix_inverse",
         "M(θ)⁻¹, the accelerations that a unit of each joint force produces",
         &[THETA],
-        &[output("inverse", MATRIX, "1/(kg m²), 1/(kg m) or 1/kg")],
+        &[symmetric("inverse", MATRIX, "1/(kg m²), 1/(kg m) or 1/kg")],
     )
     .divides();
 }

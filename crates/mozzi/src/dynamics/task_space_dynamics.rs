@@ -5,7 +5,7 @@ use super::mass_matrix::mass_matrix;
 use crate::kinematics::{body_jacobian, body_jacobian_rate, space_jacobian, space_jacobian_rate, twist_of};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Task, TaskFrame, TaskMemory, Workspace};
-use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quantity, THETA, Uses, output};
+use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quantity, THETA, Uses, output, symmetric};
 use crate::scalar::Scalar;
 
 /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k, and η = Λ(J M⁻¹h − J̇θ̇), k, of the k rows of a task: 𝓕 = Λ𝒱̇ + η. h as
@@ -80,7 +80,7 @@ impl Quantity for TaskSpaceDynamics {
         "task_space_dynamics",
         "Λ and η of 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱), the dynamics as the rows of a frame's twist show them",
         &[THETA, DTHETA],
-        &[output("Lambda", &[Dim::Rows, Dim::Rows], "kg m², kg m, kg"), output("eta", &[Dim::Rows], "N m, N")],
+        &[symmetric("Lambda", &[Dim::Rows, Dim::Rows], "kg m², kg m, kg"), output("eta", &[Dim::Rows], "N m, N")],
     )
     .of(Of::Task)
     .uses(Uses::ALL)

@@ -197,6 +197,8 @@ pub struct Output {
     pub dims: &'static [Dim],
     /// Its unit, if it has one, for revolute joints, then for prismatic ones.
     pub unit: &'static str,
+    /// Is it a symmetric matrix? By rows and by columns it is then the same.
+    pub is_symmetric: bool,
 }
 
 impl Output {
@@ -211,7 +213,10 @@ impl Output {
 }
 
 pub(crate) const fn output(name: &'static str, dims: &'static [Dim], unit: &'static str) -> Output {
-    Output { name, dims, unit }
+    Output { name, dims, unit, is_symmetric: false }
+}
+pub(crate) const fn symmetric(name: &'static str, dims: &'static [Dim], unit: &'static str) -> Output {
+    Output { is_symmetric: true, ..output(name, dims, unit) }
 }
 
 pub(crate) const FORCE: &str = "N m or N";
