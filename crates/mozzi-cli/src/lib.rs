@@ -9,6 +9,7 @@ mod csv;
 mod exit;
 mod failure;
 mod goals;
+mod ground;
 mod input;
 mod inputs;
 mod interrupt;

@@ -1,7 +1,7 @@
 //! The outcome of `mozzi simulate`.
 
 use mozzi::Trajectory;
-use mozzi::simulation::{Account, Closing, Method, Occurrence, Stopped};
+use mozzi::simulation::{Account, Closing, ContactEvent, Method, Occurrence, OneSidedAccount, Stopped};
 use mozzi_motion::controllers::{Overload, TrackingError};
 
 /// A motion and its notes.
@@ -11,6 +11,11 @@ pub struct Outcome {
     /// The energy account over all of its rows.
     pub account: Account,
     pub method: Method,
+    /// The names of the contacts.
+    pub contacts: Vec<String>,
+    /// The solutions for dry friction, stops and contacts.
+    pub one_sided: Option<OneSidedAccount>,
+    pub contact_events: Vec<ContactEvent>,
     /// Step size in seconds; for an adaptive method, the time between two rows.
     pub step: f64,
     pub duration: f64,

@@ -6,6 +6,7 @@ use super::simulate_page::{object, page, told};
 use crate::conditions::{EventArguments, happened};
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
+use crate::ground::{GroundArguments, settle};
 use crate::motors::{Followed, Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
@@ -18,7 +19,7 @@ use crate::workload::{BINARY, TEXT, Workload};
 use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Account, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
+use mozzi::simulation::{Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
 use mozzi::{Model, Trajectory};
 use mozzi_batch::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
@@ -31,8 +32,10 @@ pub struct SimulateArguments {
     robot: RobotArguments,
     #[command(flatten)]
     start: StartArguments,
+    #[command(flatten)]
+    ground: GroundArguments,
     /// Integration method
-    #[arg(long, default_value = "rk4")]
+    #[arg(long, default_value = "auto")]
     method: Way,
     /// Step size, s; dopri: the time between two rows
     #[arg(long, value_name = "SECONDS", default_value = "0.001", allow_hyphen_values = true)]
@@ -77,6 +80,10 @@ pub struct SimulateArguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Way {
+    /// moreau if the robot has dry friction or contacts, else rk4
+    Auto,
+    /// Moreau-Jean, for dry friction, stops and contacts: order 2 as long as no contact changes
+    Moreau,
     /// Euler's method, as in the book: order 1
     Euler,
     /// Semi-implicit Euler, velocities first: order 1, energy stays bounded
@@ -129,6 +136,10 @@ impl SimulateArguments {
                 dtheta.clone_from(&start[1]);
             }
         }
+        let contacts = self.ground.contacts(&self.robot, model)?;
+        if let (false, None, None, None) = (contacts.is_empty(), &self.start.state, &self.start.theta, &followed) {
+            settle(model, &contacts, &mut theta);
+        }
         let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());
         let controller = self.motors.controller(&self.robot)?;
@@ -144,10 +155,15 @@ impl SimulateArguments {
         self.workload(model, end)?.check(self.allow_large)?;
         let options = self.options(end)?;
         let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
-        let (motion, account, Ending { events, stops, closing, .. }) =
-            self.integrate(model, [&theta, &dtheta], input, options, events, &mut tracking)?;
+        let names: Vec<String> = contacts.names().collect();
+        let (motion, account, ending) =
+            self.integrate(model, [&theta, &dtheta], input, options, (events, contacts), &mut tracking)?;
+        let Ending { events, stops, closing, method, one_sided, contact_events, .. } = ending;
         Ok(Outcome {
-            method: options.method,
+            method,
+            contacts: names,
+            one_sided,
+            contact_events,
             // a motion of zero duration has no shorter step
             step: if end == 0.0 { number("--step", &self.step)? } else { options.step() },
             duration: end,
@@ -198,6 +214,8 @@ impl SimulateArguments {
             Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
         };
         let method = match self.method {
+            Way::Auto => Method::Automatic,
+            Way::Moreau => Method::MoreauJean,
             Way::Euler => Method::Euler,
             Way::SemiImplicitEuler => Method::SemiImplicitEuler,
             Way::Rk4 => Method::RungeKutta4,
@@ -236,13 +254,13 @@ impl SimulateArguments {
         [theta, dtheta]: [&[f64]; 2],
         input: impl Input,
         options: Options,
-        events: Vec<Event>,
+        (events, contacts): (Vec<Event>, Contacts),
         tracking: &mut impl Recorder,
     ) -> Result<(Trajectory, Account, Ending)> {
         options.check()?;
         let robot = self.machine_code(model)?;
         let forward_dynamics = robot.as_ref().and_then(Compiled::simulator);
-        let simulation = Simulation { options, events, forward_dynamics };
+        let simulation = Simulation { options, events, forward_dynamics, contacts };
         let rows = 1 + options.steps.div_ceil(options.record_every);
         let mut log = self.out.as_deref().map(|file| log::Log::new(file, model, rows)).transpose()?;
         let kept = if self.robot.json { usize::MAX } else { self.page.rows(self.report.is_some()).max(KEPT) };

@@ -5,7 +5,7 @@ use crate::conditions::happened;
 use crate::json;
 use crate::robot::Units;
 use crate::text::{Decimals, Page, about, scalar, table};
-use mozzi::simulation::{Closing, Energy, Stopped};
+use mozzi::simulation::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
 use mozzi::{Model, Trajectory};
 use mozzi_motion::controllers::Overload;
 use serde_json::{Value, json};
@@ -40,6 +40,17 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
             "applied_work": applied,
             "largest_drift": outcome.account.largest_drift,
             "constraints": outcome.closing.map(|c| json!({ "corrected": c.corrected, "residual": c.residual })),
+            "one_sided": outcome.one_sided.map(|a| json!({
+                "largest_residual": a.largest_residual,
+                "last_residual": a.last_residual,
+                "unsolved": a.unsolved,
+                "most_rows": a.most_rows,
+            })),
+            "contacts": outcome.contacts,
+            "contact_forces": lists(&motion.contact_forces, motion.forces),
+            "contact_events": outcome.contact_events.iter().map(|e| json!({
+                "t": e.t, "contact": e.contact, "change": e.change.name(),
+            })).collect::<Value>(),
             "complete": motion.complete,
             "events": outcome.events.iter().map(|e| json!({
                 "condition": e.name, "t": e.t, "theta": json::vector(&e.theta), "dtheta": json::vector(&e.dtheta), "end": e.stop,
@@ -171,6 +182,33 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
         let (corrected, residual) = (about(closing.corrected), about(closing.residual));
         format!("constraints: violated by at most {corrected} after a step, {residual} once corrected (rad, m)")
     };
+    let account = |a: &OneSidedAccount| {
+        let unsolved = match a.unsolved {
+            0 => String::new(),
+            count => format!("; {count} steps above 1e-6: their problem may have no solution"),
+        };
+        format!("dry friction, stops, contacts: solved to {} m/s or rad/s{unsolved}", about(a.largest_residual))
+    };
+    let events = events.chain(contact_lines(outcome)).chain(outcome.one_sided.iter().map(account));
     let events = events.chain(outcome.closing.iter().map(closing));
     events.chain(outcome.stops.iter().map(stop)).chain(outcome.overloads.iter().map(overload)).collect()
+}
+
+/// The contacts at the end, and their events.
+fn contact_lines(outcome: &Outcome) -> Vec<String> {
+    let last = outcome.motion.last();
+    let carries = last.contact_forces.chunks(3).filter(|force| force.iter().any(|x| *x != 0.0)).count();
+    let mut lines = Vec::new();
+    if !outcome.contacts.is_empty() {
+        let sum = |k: usize| last.contact_forces.chunks(3).map(|force| force[k]).sum::<f64>();
+        let [x, y, z] = [0, 1, 2].map(|k| scalar(sum(k)));
+        let all = outcome.contacts.len();
+        lines.push(format!("contacts: {carries} of {all} carry at the end, force on the planes {x}, {y}, {z} N"));
+    }
+    let event = |e: &ContactEvent| format!("contact: `{}` {} at t = {} s", e.contact, e.change.name(), scalar(e.t));
+    lines.extend(outcome.contact_events.iter().take(SHOWN).map(event));
+    if let (true, Some(last)) = (outcome.contact_events.len() > SHOWN, outcome.contact_events.last()) {
+        lines.push(format!("{} changes of contacts in all, the last: {}", outcome.contact_events.len(), event(last)));
+    }
+    lines
 }

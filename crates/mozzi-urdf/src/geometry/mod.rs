@@ -1,10 +1,13 @@
-//! The shapes of links: `<visual>` and `<collision>` of URDF, `<geom>` of MJCF. They do not affect the dynamics here.
+//! The shapes of links: `<visual>` and `<collision>` of URDF, `<geom>` of MJCF. They do not affect the dynamics, except as contact points if asked: [`contact_points`].
 
+mod contact;
 mod files;
 mod mesh;
 mod read;
 mod shape;
+mod vertices;
 
+pub use contact::{ShapeContacts, contact_points};
 pub use files::{NotLocated, locate};
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};

@@ -11,6 +11,9 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
+/// A start may be this far within a plane, m: it is put right in the first step.
+const DEEPEST: f64 = 1e-3;
+
 /// A point, or a rounded end, of a robot that planes stop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPoint {
@@ -74,6 +77,42 @@ pub struct Contacts<'a> {
     pub points: Vec<ContactPoint>,
     /// The planes.
     pub planes: Vec<Plane<'a>>,
+}
+
+/// A contact that begins or ceases to carry or to slide.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactEvent {
+    /// Seconds; for methods with fixed steps the end of the step.
+    pub t: f64,
+    /// The contact: see [`Contacts::names`].
+    pub contact: String,
+    /// What happens.
+    pub change: ContactChange,
+}
+
+/// A change of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactChange {
+    /// It begins to carry.
+    TouchDown,
+    /// It ceases to carry.
+    LiftOff,
+    /// It carried, and ceases to slide.
+    Sticks,
+    /// It stuck, and begins to slide.
+    Slides,
+}
+
+impl ContactChange {
+    /// "touches down", "lifts off", "sticks" or "slides".
+    pub fn name(self) -> &'static str {
+        match self {
+            ContactChange::TouchDown => "touches down",
+            ContactChange::LiftOff => "lifts off",
+            ContactChange::Sticks => "sticks",
+            ContactChange::Slides => "slides",
+        }
+    }
 }
 
 /// A plane at a time.
@@ -167,12 +206,12 @@ impl Contacts<'_> {
 
     /// The names of the pairs: of each point, with the plane's if there are several.
     pub fn names(&self) -> impl Iterator<Item = String> + '_ {
-        self.points.iter().flat_map(move |point| {
-            self.planes.iter().map(move |plane| match self.planes.len() {
-                1 => point.name.clone(),
-                _ => format!("{} on {}", point.name, plane.name),
-            })
-        })
+        (0..self.points.len()).flat_map(move |point| (0..self.planes.len()).map(move |plane| self.name(point, plane)))
+    }
+
+    pub(super) fn name(&self, point: usize, plane: usize) -> String {
+        let point = &self.points[point].name;
+        if self.planes.len() == 1 { point.clone() } else { format!("{point} on {}", self.planes[plane].name) }
     }
 
     /// The distances of all pairs at a time, m: those of the first point to each plane, then of the second.
@@ -186,6 +225,17 @@ impl Contacts<'_> {
             surfaces.iter().map(|surface| point.touch(T, surface).gap).collect::<Vec<f64>>()
         };
         self.points.iter().flat_map(of_point).collect()
+    }
+
+    /// Checks that no contact point starts within a plane.
+    pub(super) fn check_start(&self, model: &Model, theta: &[f64]) -> Result<(), Error> {
+        for (gap, name) in self.gaps(model, 0.0, theta).into_iter().zip(self.names()) {
+            let found = || format!("contact point `{name}` {:.6} m within its plane", -gap);
+            if !(gap >= -DEEPEST) {
+                check(false, "the start", found(), "contact points outside of planes, or at most 1 mm within")?;
+            }
+        }
+        Ok(())
     }
 
     /// Checks coefficients, shapes and frames.

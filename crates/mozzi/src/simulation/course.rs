@@ -3,7 +3,7 @@
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
-use super::impulses::Impulses;
+use super::impulses::{Impulses, Key};
 use super::events::{Event, Occurrence, first_zero};
 use super::midpoint::Midpoint;
 use super::modes::Modes;
@@ -60,6 +60,8 @@ pub(super) struct Course<'r> {
     pub driven: Driven<'r>,
     /// Dry friction, contacts, and stops next to them.
     pub impulses: Option<Box<Impulses<'r>>>,
+    /// The contacts that carry, and whether they stick.
+    pub(super) touching: Vec<(Key, bool)>,
     pub stops: Stops,
     stall: Stall,
     pub(super) motion: Motion<f64, 3>,
@@ -104,6 +106,7 @@ impl<'r> Course<'r> {
         let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
         driven.close_start(&mut theta, &mut dtheta)?;
         let (theta, dtheta) = (&theta[..], &dtheta[..]);
+        contacts.check_start(model, theta)?;
         let integrator = Integrator::new(options.method, model)?;
         let stops = Stops::new(model, options.joint_limits, theta, has_impulses)?;
         let motion = Motion::start(model.configuration_space(), 0.0, theta, dtheta, |t, q, dq, ddq| {
@@ -122,6 +125,7 @@ impl<'r> Course<'r> {
             integrator,
             driven,
             impulses,
+            touching: Vec::new(),
             stops,
             stall: Stall::new(&options),
             from: State::of(&motion),

@@ -2,17 +2,21 @@
 
 use super::course::{Course, Integrator};
 use super::driven::Driven;
-use super::impulses::{Choice, Impulses, System};
+use super::contact::{ContactChange, ContactEvent};
+use super::impulses::{Choice, Impulses, Key, System};
 use super::moreau::Phase;
 use super::state::State;
 use super::Explicit;
 use crate::kinematics::{difference, integrate};
 use crate::model::Error;
 use alloc::vec;
+use alloc::vec::Vec;
 use nalgebra::DVector;
 
 /// Steps of another method than Moreau and Jean's are repeated at most this often, until the impulses agree.
 const ROUNDS: usize = 8;
+/// At most this many events of contacts are recorded.
+const MOST_EVENTS: usize = 10_000;
 /// Impulses agree if the velocities that they produce differ by this much, relative to 1 + the largest.
 const AGREES: f64 = 1e-14;
 
@@ -29,7 +33,7 @@ impl Course<'_> {
         }
         let (start, step) = (self.motion.clone(), self.options.step());
         self.free_step(step, step)?;
-        let mean: alloc::vec::Vec<f64> = self.motion.ddtheta.clone();
+        let mean: Vec<f64> = self.motion.ddtheta.clone();
         self.motion = start;
         self.motion.ddtheta.copy_from_slice(&mean);
         if let Some(impulses) = &mut self.impulses {
@@ -46,7 +50,38 @@ impl Course<'_> {
         for (k, side) in modes.impulses.struck.drain(..) {
             self.stops.note_impulse(state.t, k, side);
         }
+        self.note_contacts(state.t);
         Ok(())
+    }
+
+    /// Records which contacts have begun or ceased to carry or to slide.
+    fn note_contacts(&mut self, t: f64) {
+        let modes = self.driven.modes.as_ref().map(|modes| &modes.impulses);
+        let Some(impulses) = self.impulses.as_deref().or(modes) else { return };
+        let mut now: Vec<(Key, bool)> = Vec::new();
+        now.extend(impulses.carrying.iter().filter(|(key, _)| matches!(key, Key::Contact(..))));
+        if now == self.touching {
+            return;
+        }
+        let state = |list: &[(Key, bool)], key: Key| list.iter().find(|(other, _)| *other == key).map(|(_, s)| *s);
+        let mut keys: Vec<Key> = now.iter().chain(&self.touching).map(|(key, _)| *key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        for key in keys {
+            let change = match (state(&self.touching, key), state(&now, key)) {
+                (None, Some(_)) => ContactChange::TouchDown,
+                (Some(_), None) => ContactChange::LiftOff,
+                (Some(false), Some(true)) => ContactChange::Sticks,
+                (Some(true), Some(false)) => ContactChange::Slides,
+                _ => continue,
+            };
+            let Key::Contact(point, plane) = key else { continue };
+            let contact = impulses.contacts.name(point, plane);
+            if self.ending.contact_events.len() < MOST_EVENTS {
+                self.ending.contact_events.push(ContactEvent { t, contact, change });
+            }
+        }
+        self.touching = now;
     }
 
     /// The account of one-sided forces.
@@ -64,6 +99,7 @@ impl Course<'_> {
         for (k, side) in impulses.struck.drain(..) {
             self.stops.note_impulse(end, k, side);
         }
+        self.note_contacts(end);
         self.close()
     }
 

@@ -64,7 +64,7 @@ mod free_base;
 mod robots;
 
 pub use closing::{Closer, Closing};
-pub use contact::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
+pub use contact::{ContactChange, ContactEvent, ContactPoint, Contacts, Plane, PlaneMotion, Support};
 pub use dormand_prince::dormand_prince_by_equal_steps;
 pub use equation::{Equation, ForwardDynamics, Powers, forward_dynamics_of};
 pub use events::{Direction, Event, EventFunction, Occurrence};

@@ -1,7 +1,7 @@
 //! A simulation of one robot, and its results.
 
 use super::closing::Closing;
-use super::contact::Contacts;
+use super::contact::{ContactEvent, Contacts};
 use super::course::Course;
 use super::events::{Event, Occurrence};
 use super::impulses::OneSidedAccount;
@@ -55,6 +55,8 @@ pub struct Run {
     pub method: Method,
     /// The solutions for dry friction, stops and contacts; `None` if there are none.
     pub one_sided: Option<OneSidedAccount>,
+    /// Touch-downs, lift-offs, and where contacts begin or cease to slide: the first 10,000, in the order of time.
+    pub contact_events: Vec<ContactEvent>,
 }
 
 /// The result of a simulation whose rows went to a recorder.
@@ -74,6 +76,8 @@ pub struct Ending {
     pub method: Method,
     /// The solutions for dry friction, stops and contacts; `None` if there are none.
     pub one_sided: Option<OneSidedAccount>,
+    /// Touch-downs, lift-offs, and where contacts begin or cease to slide: the first 10,000, in the order of time.
+    pub contact_events: Vec<ContactEvent>,
 }
 
 impl Ending {
@@ -87,6 +91,7 @@ impl Ending {
             closing: Closing::default(),
             method,
             one_sided: None,
+            contact_events: Vec::new(),
         }
     }
 }
@@ -119,10 +124,10 @@ impl<'a> Simulation<'a> {
         progress: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Run, Error> {
         let mut motion = Trajectory::new(model);
-        let Ending { steps, complete, events, stops, closing, method, one_sided } =
+        let Ending { steps, complete, events, stops, closing, method, one_sided, contact_events } =
             self.stream(model, theta, dtheta, input, &mut motion, progress)?;
         (motion.steps, motion.complete) = (steps, complete);
-        Ok(Run { motion, events, stops, closing, method, one_sided })
+        Ok(Run { motion, events, stops, closing, method, one_sided, contact_events })
     }
 
     /// As [`run_with_progress`](Self::run_with_progress), but passes the rows to a recorder one by one: memory does not

@@ -1,0 +1,161 @@
+//! `--ground`, `--contact` and `--contacts FILE.json`: points of the robot and planes that stop them.
+
+use crate::failure::{self, Failure, Result};
+use crate::json_file::{JsonFile, Step};
+use crate::numbers::number;
+use crate::robot::RobotArguments;
+use clap::Args;
+use mozzi::simulation::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
+use mozzi::{Model, SE3, Vec3};
+use mozzi_urdf::geometry::{contact_points, geometry_with};
+use serde_json::Value;
+use std::path::Path;
+
+#[derive(Args, Debug, Default)]
+pub struct GroundArguments {
+    /// Put the robot on the ground, the plane z = 0: its collision shapes touch it, or the frames of --contact. A
+    /// floating base without --theta starts on the ground
+    #[arg(long)]
+    ground: bool,
+    /// A frame whose origin touches planes, instead of the collision shapes; may be repeated
+    #[arg(long, value_name = "FRAME")]
+    contact: Vec<String>,
+    /// Coefficient of friction of the contacts [default: 0.7]
+    #[arg(long, value_name = "MU")]
+    contact_friction: Option<String>,
+    /// Coefficient of restitution of the contacts, 0 to 1 [default: 0]
+    #[arg(long, value_name = "E")]
+    restitution: Option<String>,
+    /// Contact points and planes from a file: {"points": [{"frame": …, "at": [x,y,z], "radius": …, "friction": …,
+    /// "restitution": …}], "planes": [{"name": …, "pose": [qw,qx,qy,qz,x,y,z], "velocity": [x,y,z]}]}; the plane's z-axis
+    /// points towards the robot. Without points those of --contact or of the collision shapes; without planes the ground
+    #[arg(long, value_name = "FILE.json")]
+    contacts: Option<String>,
+}
+
+impl GroundArguments {
+    /// The contacts; none without the flags.
+    pub fn contacts(&self, robot: &RobotArguments, model: &Model) -> Result<Contacts<'static>> {
+        let coefficients = self.coefficients()?;
+        if !self.ground && self.contacts.is_none() {
+            let unused = [("--contact", !self.contact.is_empty()), ("--contact-friction", self.contact_friction.is_some()),
+                ("--restitution", self.restitution.is_some())];
+            return match unused.iter().find(|(_, is_given)| *is_given) {
+                Some((flag, _)) => Err(Failure::wrong(format!("{flag} needs --ground or --contacts"))),
+                None => Ok(Contacts::default()),
+            };
+        }
+        let mut found = Contacts::default();
+        if let Some(file) = &self.contacts {
+            found = read(file, model, coefficients)?;
+        }
+        if found.planes.is_empty() || self.ground {
+            found.planes.push(Plane::ground());
+        }
+        if found.points.is_empty() {
+            found.points = self.points(robot, model, coefficients)?;
+        }
+        Ok(found)
+    }
+
+    fn coefficients(&self) -> Result<[f64; 2]> {
+        let of = |flag, text: &Option<String>, default| text.as_ref().map_or(Ok(default), |text| number(flag, text));
+        Ok([of("--contact-friction", &self.contact_friction, 0.7)?, of("--restitution", &self.restitution, 0.0)?])
+    }
+
+    /// The frames of `--contact`; else the collision shapes; else the ends of the robot.
+    fn points(&self, robot: &RobotArguments, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Vec<ContactPoint>> {
+        let of_frame = |name: &str| -> Result<ContactPoint> {
+            let point = ContactPoint::new(name, model.frame(name)?, Vec3::zero(), mu);
+            Ok(ContactPoint { restitution, ..point })
+        };
+        if !self.contact.is_empty() {
+            return self.contact.iter().map(|name| of_frame(name)).collect();
+        }
+        if robot.model != "-" {
+            let shapes = geometry_with(&robot.model, &robot.settings().xacro)?.shapes;
+            let found = contact_points(model, &shapes, Path::new(&robot.model), None, [mu, restitution]);
+            found.left_out.iter().for_each(|reason| failure::note(&format!("--ground: {reason}")));
+            if !found.points.is_empty() {
+                return Ok(found.points);
+            }
+        }
+        let description = model.description();
+        let is_end = |name: &str| !description.joints.iter().any(|joint| joint.parent == name);
+        let ends: Vec<&str> =
+            description.links.iter().map(|link| &*link.name).filter(|name| is_end(name)).collect();
+        let listed = ends.join(", ");
+        failure::note(&format!("--ground: the robot has no collision shapes; the origins of its last links touch: {listed}"));
+        ends.into_iter().map(of_frame).collect()
+    }
+}
+
+/// Moves a floating base up or down, so that its lowest contact point is on the plane that is nearest.
+pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64]) {
+    let lowest = contacts.gaps(model, 0.0, theta).into_iter().fold(f64::INFINITY, f64::min);
+    if model.is_floating() && lowest.is_finite() {
+        theta[6] -= lowest;
+        failure::note(&format!("--ground: the base starts at z = {:.6} m, where its lowest contact point touches", theta[6]));
+    }
+}
+
+fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contacts<'static>> {
+    let file = JsonFile::read(name)?;
+    let list = |key: &'static str| file.value.get(key).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    if let Some(key) = file.value.as_object().and_then(|all| all.keys().find(|k| !["points", "planes"].contains(&&***k))) {
+        return Err(file.wrong(&[Step::Key(key)], format!("unknown `{key}`, expected points or planes")).into());
+    }
+    let mut found = Contacts::default();
+    for (k, entry) in list("points").iter().enumerate() {
+        let at = |key| [Step::Key("points"), Step::Index(k), Step::Key(key)];
+        let frame = entry.get("frame").and_then(Value::as_str);
+        let frame = frame.ok_or_else(|| file.wrong(&at("frame"), "`frame` is missing, expected the name of a frame"))?;
+        let value = |key, default| match entry.get(key) {
+            None => Ok(default),
+            Some(value) => value.as_f64().ok_or_else(|| file.wrong(&at(key), format!("`{key}` is not a number"))),
+        };
+        let center = match entry.get("at") {
+            None => [0.0; 3],
+            Some(value) => list_of::<3>(value).ok_or_else(|| file.wrong(&at("at"), "`at` is not [x, y, z]"))?,
+        };
+        let radius = value("radius", 0.0)?;
+        found.points.push(ContactPoint {
+            name: entry.get("name").and_then(Value::as_str).unwrap_or(frame).to_string(),
+            frame: model.frame(frame)?,
+            center: Vec3(center),
+            support: if radius == 0.0 { Support::Point } else { Support::Sphere { radius } },
+            mu: value("friction", mu)?,
+            restitution: value("restitution", restitution)?,
+        });
+    }
+    for (k, entry) in list("planes").iter().enumerate() {
+        let at = |key| [Step::Key("planes"), Step::Index(k), Step::Key(key)];
+        let pose = match entry.get("pose") {
+            None => SE3::identity(),
+            Some(value) => {
+                let wrong = || file.wrong(&at("pose"), "`pose` is not [qw, qx, qy, qz, x, y, z] with a unit quaternion");
+                let pose = list_of::<7>(value).ok_or_else(wrong)?;
+                let size = pose[..4].iter().map(|x| x * x).sum::<f64>();
+                if (size - 1.0).abs() > 2e-3 {
+                    return Err(wrong().into());
+                }
+                SE3::from_pose(pose)
+            }
+        };
+        let motion = match entry.get("velocity") {
+            None => PlaneMotion::Fixed(pose),
+            Some(value) => {
+                let v = list_of::<3>(value).ok_or_else(|| file.wrong(&at("velocity"), "`velocity` is not [x, y, z]"))?;
+                PlaneMotion::Belt(pose, Vec3(v))
+            }
+        };
+        let name = entry.get("name").and_then(Value::as_str).map_or_else(|| format!("plane {}", k + 1), str::to_string);
+        found.planes.push(Plane { name, motion });
+    }
+    Ok(found)
+}
+
+fn list_of<const K: usize>(value: &Value) -> Option<[f64; K]> {
+    let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_f64).collect();
+    numbers.try_into().ok()
+}

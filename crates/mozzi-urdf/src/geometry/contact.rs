@@ -1,0 +1,115 @@
+//! Points of shapes that a plane can touch.
+
+use super::vertices::extreme_vertices;
+use super::{Form, Purpose, Shape, locate};
+use mozzi::simulation::{ContactPoint, Support};
+use mozzi::{Model, Vec3};
+use std::path::Path;
+
+/// The contact points of a robot's shapes, and the shapes that have none, each with the reason.
+#[derive(Clone, Debug, Default)]
+pub struct ShapeContacts {
+    /// In the order of the shapes, named `LINK` or `LINK.k`.
+    pub points: Vec<ContactPoint>,
+    /// Shapes that planes do not touch.
+    pub left_out: Vec<String>,
+}
+
+/// The points at which planes touch `<collision>` shapes: the corners of boxes, spheres, the two ends of capsules, the
+/// rims of cylinders as discs, and the extreme vertices of meshes (STL and OBJ; of the 2,000 directions of a sphere, so
+/// at most that many). Ellipsoids are left out. All get the friction coefficient μ and the restitution e.
+pub fn contact_points(
+    model: &Model,
+    shapes: &[Shape],
+    robot_file: &Path,
+    root: Option<&Path>,
+    [mu, restitution]: [f64; 2],
+) -> ShapeContacts {
+    let mut found = ShapeContacts::default();
+    for shape in shapes.iter().filter(|shape| shape.purpose == Purpose::Collision) {
+        let Ok(frame) = model.frame(&shape.link) else { continue };
+        let places = match supports(shape, robot_file, root) {
+            Ok(places) => places,
+            Err(reason) => {
+                found.left_out.push(format!("collision shape of `{}`: {reason}", shape.link));
+                continue;
+            }
+        };
+        for (center, support) in places {
+            let count = found.points.iter().filter(|point| point.frame == frame).count();
+            let name = if count == 0 { shape.link.clone() } else { format!("{}.{count}", shape.link) };
+            found.points.push(ContactPoint { name, frame, center, support, mu, restitution });
+        }
+    }
+    found
+}
+
+/// The points of one shape, in the frame of its link.
+fn supports(shape: &Shape, robot_file: &Path, root: Option<&Path>) -> Result<Vec<(Vec3, Support)>, String> {
+    let T = shape.T;
+    let at = |x: f64, y: f64, z: f64| T * Vec3([x, y, z]);
+    let axis = T.R * Vec3([0.0, 0.0, 1.0]);
+    Ok(match &shape.form {
+        Form::Box { size } => {
+            let [x, y, z] = size.map(|edge| 0.5 * edge);
+            let signs = [-1.0, 1.0];
+            let corners = signs.iter().flat_map(|a| signs.iter().flat_map(move |b| signs.map(|c| (*a, *b, c))));
+            corners.map(|(a, b, c)| (at(a * x, b * y, c * z), Support::Point)).collect()
+        }
+        Form::Sphere { radius } => vec![(T.p, Support::Sphere { radius: *radius })],
+        Form::Capsule { radius, length } => {
+            [-0.5, 0.5].map(|s| (at(0.0, 0.0, s * length), Support::Sphere { radius: *radius })).to_vec()
+        }
+        Form::Cylinder { radius, length } => {
+            [-0.5, 0.5].map(|s| (at(0.0, 0.0, s * length), Support::Disc { axis, radius: *radius })).to_vec()
+        }
+        Form::Ellipsoid { .. } => return Err("planes do not touch ellipsoids".into()),
+        Form::Mesh { file, scale } => {
+            let path = locate(robot_file, file, root).map_err(|error| error.to_string())?;
+            let bytes = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+            let format = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+            let vertices = extreme_vertices(&format, &bytes)?;
+            let place = |v: Vec3| at(v.0[0] * scale[0], v.0[1] * scale[1], v.0[2] * scale[2]);
+            vertices.into_iter().map(|v| (place(v), Support::Point)).collect()
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+    use super::*;
+
+    const ROBOT: &str = r#"<robot name="foot">
+  <link name="base"/>
+  <link name="foot">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><origin xyz="0 0 0.5"/><geometry><box size="1 2 3"/></geometry></collision>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision>
+    <collision><origin rpy="1.5707963267948966 0 0"/><geometry><cylinder radius="0.2" length="1"/></geometry></collision>
+    <collision><geometry><capsule radius="0.3" length="2"/></geometry></collision>
+    <collision><geometry><mesh filename="nowhere.stl"/></geometry></collision>
+    <visual><geometry><sphere radius="9"/></geometry></visual>
+  </link>
+  <joint name="j" type="revolute"><parent link="base"/><child link="foot"/><limit effort="1" velocity="1"/></joint>
+</robot>"#;
+
+    #[test]
+    fn shapes_have_points_of_support() {
+        let model = crate::parse("foot.urdf", ROBOT).expect("sound").description.build().expect("sound");
+        let shapes = parse("foot.urdf", ROBOT).shapes;
+        let found = contact_points(&model, &shapes, Path::new("foot.urdf"), None, [0.5, 0.1]);
+        assert_eq!(found.points.len(), 8 + 1 + 2 + 2);
+        assert!(found.points.iter().all(|point| point.mu == 0.5 && point.restitution == 0.1));
+        assert_eq!((&*found.points[0].name, &*found.points[3].name), ("foot", "foot.3"));
+        // the farthest down: the capsule's lower end at −1.3, the box at −1, the lying cylinder at −0.2
+        let contacts =
+            mozzi::simulation::Contacts { points: found.points, planes: vec![mozzi::simulation::Plane::ground()] };
+        let gaps = contacts.gaps(&model, 0.0, &[0.0]);
+        let lowest = |range: std::ops::Range<usize>| gaps[range].iter().fold(f64::INFINITY, |a, b| a.min(*b));
+        for (range, z) in [(0..8, -1.0), (8..9, -0.1), (9..11, -0.2), (11..13, -1.3)] {
+            assert!((lowest(range.clone()) - z).abs() < 1e-12, "{range:?} {gaps:?}");
+        }
+        assert!(found.left_out.len() == 1 && found.left_out[0].contains("nowhere.stl"), "{:?}", found.left_out);
+    }
+}

@@ -1,0 +1,88 @@
+//! The vertices of a mesh that are farthest in some direction.
+
+use crate::bytes;
+use mozzi::{Scalar, Vec3};
+use std::collections::BTreeSet;
+
+/// Directions in which the farthest vertex is looked for.
+const DIRECTIONS: usize = 2000;
+
+/// The vertices of a mesh, "stl" or "obj", that are the farthest in one of 2,000 directions: vertices of its convex
+/// hull.
+pub(super) fn extreme_vertices(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
+    super::check_mesh(format, file)?;
+    let vertices = match format {
+        "stl" => stl(file)?,
+        "obj" => words(file, "v")?,
+        other => return Err(format!("contact points of `{other}` meshes are not read; expected stl or obj")),
+    };
+    let mut found = BTreeSet::new();
+    // Fibonacci's sphere
+    let turn = std::f64::consts::PI * (3.0 - Scalar::sqrt(5.0_f64));
+    for k in 0..DIRECTIONS {
+        let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
+        let (sine, cosine) = (turn * k as f64).sin_cos();
+        let r = Scalar::sqrt(1.0 - z * z);
+        let direction = Vec3([r * cosine, r * sine, z]);
+        let far = (0..vertices.len())
+            .max_by(|&a, &b| vertices[a].dot(direction).total_cmp(&vertices[b].dot(direction)).then(b.cmp(&a)));
+        found.extend(far);
+    }
+    Ok(found.into_iter().map(|k| vertices[k]).collect())
+}
+
+/// Binary: 80 bytes, a count, and for each triangle a normal and three corners of three `f32` each.
+fn stl(file: &[u8]) -> Result<Vec<Vec3>, String> {
+    let count = file.get(80..84).and_then(|bytes| bytes.first_chunk().copied()).map_or(0, u32::from_le_bytes);
+    if file.len() / 50 < count as usize || file.starts_with(b"solid") && words(file, "vertex").is_ok() {
+        return words(file, "vertex");
+    }
+    let mut found = Vec::new();
+    for triangle in file[84..].chunks_exact(50) {
+        let number = |k: usize| triangle[12 + 4 * k..].first_chunk().copied().map_or(0.0, f32::from_le_bytes);
+        found.extend((0..3).map(|corner| Vec3(std::array::from_fn(|k| f64::from(number(3 * corner + k))))));
+    }
+    Ok(found)
+}
+
+/// The three numbers after a word at the beginning of a line.
+fn words(file: &[u8], word: &str) -> Result<Vec<Vec3>, String> {
+    let text = bytes::to_text(file).map_err(|(_, finding)| finding.message)?;
+    let mut found = Vec::new();
+    for line in text.lines() {
+        let mut parts = line.split_whitespace();
+        if parts.next() == Some(word) {
+            let numbers: Vec<f64> = parts.take(3).filter_map(|part| part.parse().ok()).collect();
+            if let [x, y, z] = numbers[..] {
+                found.push(Vec3([x, y, z]));
+            }
+        }
+    }
+    if found.is_empty() { Err("it has no vertices".into()) } else { Ok(found) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cube_has_eight_extreme_vertices() {
+        let mut text = String::new();
+        for k in 0..27 {
+            let [x, y, z] = [k % 3, k / 3 % 3, k / 9].map(|i| f64::from(i) - 1.0);
+            text += &format!("v {x} {y} {z}\n");
+        }
+        text += "f 1 2 3\n";
+        let found = extreme_vertices("obj", text.as_bytes()).expect("a mesh");
+        assert_eq!(found.len(), 8);
+        assert!(found.iter().all(|v| v.0.iter().all(|x| x.abs() == 1.0)));
+        let mut stl = vec![0; 80];
+        stl.extend(1_u32.to_le_bytes());
+        for x in [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 0.0_f32] {
+            stl.extend(x.to_le_bytes());
+        }
+        stl.extend([0, 0]);
+        assert_eq!(extreme_vertices("stl", &stl).expect("a mesh").len(), 3);
+        assert!(extreme_vertices("dae", b"<COLLADA/>").is_err());
+    }
+}
