@@ -78,6 +78,9 @@ enum Command {
     /// Identify the robot from logs of its motion: masses, inertias, friction that predict the measured torques
     #[command(after_help = IDENTIFICATIONS)]
     Identify(commands::identify::IdentifyArguments),
+    /// Find a motion that determines the robot's parameters, within limits, and the confidence that it will give
+    #[command(after_help = EXCITATIONS)]
+    Excite(commands::excite::ExciteArguments),
     /// Plan a trajectory in joint space or along lines and screws, within limits of velocity, acceleration and torque
     #[command(after_help = TRAJECTORIES)]
     Trajectory(commands::trajectory::TrajectoryArguments),
@@ -173,6 +176,13 @@ Examples:
   mozzi identify ur5 a.csv b.csv --torque current --known-payload 2:tool0=4,0,0,0.1
 Logs are described in docs/identify.md: names of columns such as theta_elbow, q1, pos_elbow_deg, effort_elbow, current_1.";
 
+const EXCITATIONS: &str = "\
+Examples:
+  mozzi excite ur5 --duration 20 --out way.csv
+  mozzi excite panda --lock panda_finger_joint1=0.02 --max-velocity 1 --max-acceleration 4 --within panda_hand=-0.7,-0.7,0.1,0.7,0.7,1.2
+  mozzi excite ur5 --apart wrist_3_link,base_link=0.1,0.2 --goal condition --json
+The motion is smooth, and begins and ends at rest. Then: run it, log it, `mozzi identify`.";
+
 const SIMULATIONS: &str = "\
 Examples:
   mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
@@ -267,6 +277,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Bench(arguments)) => commands::bench::run(arguments),
         Some(Command::Ik(arguments)) => commands::ik::run(arguments),
         Some(Command::Identify(arguments)) => commands::identify::run(arguments),
+        Some(Command::Excite(arguments)) => commands::excite::run(arguments),
         Some(Command::Trajectory(arguments)) => commands::trajectory::run(arguments),
         Some(Command::Assemble(arguments)) => assemble::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),

@@ -7,6 +7,7 @@ pub mod codegen;
 pub mod compare;
 pub mod compute;
 pub mod convert;
+pub mod excite;
 pub mod explain;
 pub mod identify;
 pub mod ik;

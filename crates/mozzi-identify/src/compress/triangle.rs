@@ -60,8 +60,8 @@ impl Triangle {
             let (V, mut right) = B.columns_range_pair_mut(first..first + count, first + count..size);
             let mut top = self.R.view_mut((first, first + count), (count, rest));
             let mut W = top.clone_owned();
-            W.gemm_tr(1.0, &V, &right, 1.0);
-            let W = T.tr_mul(&W);
+            W.gemm(1.0, &V.transpose(), &right, 1.0); // not gemm_tr, which is a loop over columns
+            let W = T.transpose() * W;
             top -= &W;
             right.gemm(-1.0, &V, &W, 1.0);
         }

@@ -103,7 +103,7 @@ impl MotionLimits {
     pub fn collisions(&self, model: &Model, theta: &[f64], gradient: &mut [f64]) -> Result<f64, mozzi::Error> {
         const SIZE: f64 = 0.1;
         let mut sum = 0.0;
-        let mut push = |frame: FrameId, slope: Vec3, gradient: &mut [f64]| -> Result<(), mozzi::Error> {
+        let push = |frame: FrameId, slope: Vec3, gradient: &mut [f64]| -> Result<(), mozzi::Error> {
             let R = model.forward_kinematics(theta, frame)?.R;
             let wrench = Wrench { m: Vec3::zero(), f: R.inverse() * slope };
             let of_joints = model.body_jacobian(theta, frame)?.transpose_mul(wrench);

@@ -1,0 +1,246 @@
+//! `mozzi excite`: a motion that determines a robot's parameters.
+
+use crate::columns::{Columns, save};
+use crate::commands::convert::edits;
+use crate::failure::{self, Failure, Result};
+use crate::numbers::{array, number, numbers};
+use crate::robot::RobotArguments;
+use crate::tables::format::Format;
+use crate::text::{Page, table};
+use crate::{interrupt, json};
+use clap::{Args, ValueEnum};
+use mozzi::Model;
+use mozzi_identify::excite::{Box3, Excitation, ExciteOptions, Goal, Sphere, excite};
+use mozzi_identify::{Choice, Sensor};
+use serde_json::{Value, json};
+
+#[derive(Args, Debug)]
+pub struct ExciteArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    /// Duration, s
+    #[arg(long, value_name = "SECONDS", default_value = "20", allow_hyphen_values = true)]
+    duration: String,
+    /// Write the motion to a CSV file: t, theta_1 … tau_n
+    #[arg(long, value_name = "FILE.csv")]
+    out: Option<String>,
+    /// Time between two rows of OUT, s
+    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
+    step: String,
+    /// Harmonics of the Fourier series
+    #[arg(long, value_name = "COUNT", default_value = "5")]
+    harmonics: usize,
+    /// What is optimized
+    #[arg(long, value_name = "GOAL", default_value = "log-det")]
+    goal: GoalArgument,
+    /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's, else 1 rad/s]
+    #[arg(long, value_name = "LIST")]
+    max_velocity: Option<String>,
+    /// Acceleration limits, rad/s² or m/s² [default: to reach the velocity limit in 0.3 s]
+    #[arg(long, value_name = "LIST")]
+    max_acceleration: Option<String>,
+    /// Torque limits, N m or N [default: the robot's]
+    #[arg(long, value_name = "LIST")]
+    max_torque: Option<String>,
+    /// Position limits of a joint, instead of the robot's
+    #[arg(long, value_name = "JOINT=LOW,HIGH", allow_hyphen_values = true)]
+    range: Vec<String>,
+    /// A box in the base frame that a frame's origin stays in, m
+    #[arg(long, value_name = "FRAME=x,y,z,X,Y,Z", allow_hyphen_values = true)]
+    within: Vec<String>,
+    /// Spheres about two frames that stay apart: their radii, m
+    #[arg(long, value_name = "FRAME,FRAME=r,R")]
+    apart: Vec<String>,
+    /// Where the motion begins and ends [default: the middle of the limits, optimized]
+    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    start: Option<String>,
+    /// Standard deviation of the force's noise, one number or one for each joint [default: 1 % of the torque limit]
+    #[arg(long, value_name = "LIST")]
+    noise: Option<String>,
+    /// Independent samples per second of the later log
+    #[arg(long, value_name = "HZ", default_value = "100", allow_hyphen_values = true)]
+    rate: String,
+    /// Where forces will be measured
+    #[arg(long, value_name = "PLACE", default_value = "motor")]
+    torque: Place,
+    /// Lock a joint at this position, rad or m
+    #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
+    lock: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum GoalArgument {
+    /// The largest determinant of the information
+    LogDet,
+    /// The least condition number
+    Condition,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Place {
+    /// By the motor: armature is estimated
+    Motor,
+    /// Behind the gear
+    Link,
+}
+
+pub fn run(arguments: &ExciteArguments) -> Result<String> {
+    arguments.out.as_deref().map(Format::check_csv).transpose()?;
+    let whole = arguments.robot.load()?;
+    let locks = edits::locks(&arguments.lock)?;
+    let model = if locks.is_empty() { whole } else { whole.with_locked_joints(&locks)? };
+    let options = arguments.options(&model)?;
+    let step = number("--step", &arguments.step)?;
+    if !(step > 0.0 && options.duration / step < 1e7) {
+        return Err(Failure::wrong(format!(
+            "--step is {step}, expected a positive number of seconds that gives at most 10⁷ rows"
+        )));
+    }
+    interrupt::listen();
+    let found = excite(&model, &options, &interrupt::asked)?;
+    if let Some(file) = &arguments.out {
+        let text = rows(&model, &found, options.duration, step)?.text();
+        if file == "-" {
+            return Ok(text);
+        }
+        save(file, &text)?;
+    }
+    let text =
+        if arguments.robot.json { object(&model, &found) } else { page(&model, &found, arguments.out.as_deref()) };
+    if found.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }
+}
+
+impl ExciteArguments {
+    fn options(&self, model: &Model) -> Result<ExciteOptions> {
+        let mut options = ExciteOptions::new(model, number("--duration", &self.duration)?);
+        let n = model.n();
+        let list = |flag: &str, text: &Option<String>, to: &mut Vec<f64>| -> Result<()> {
+            let Some(text) = text else { return Ok(()) };
+            *to = match numbers(flag, text)?[..] {
+                [x] => vec![x; n],
+                ref all if all.len() == n => all.to_vec(),
+                ref all => return Err(Failure::wrong(format!("{flag} has {} entries, expected 1 or {n}", all.len()))),
+            };
+            Ok(())
+        };
+        list("--max-velocity", &self.max_velocity, &mut options.limits.velocity)?;
+        list("--max-acceleration", &self.max_acceleration, &mut options.limits.acceleration)?;
+        if self.max_torque.is_some() {
+            list("--max-torque", &self.max_torque, &mut options.limits.torque)?;
+            options.noise = options.limits.torque.iter().map(|t| 0.01 * t).collect();
+        }
+        list("--noise", &self.noise, &mut options.noise)?;
+        for text in &self.range {
+            let (name, pair) = edits::split("--range", text, "JOINT=LOW,HIGH")?;
+            let joint = model.joint_names().position(|known| known == name).ok_or_else(|| {
+                let known: Vec<&str> = model.joint_names().collect();
+                Failure::wrong(format!("--range: there is no joint `{name}`, expected one of {}", known.join(", ")))
+            })?;
+            let [low, high] = array(&format!("--range {name}"), pair, ["low", "high"])?;
+            if !(low < high) {
+                return Err(Failure::wrong(format!(
+                    "--range {name} is {low} to {high}, expected the lower number first"
+                )));
+            }
+            options.limits.position[joint] = [low, high];
+        }
+        for text in &self.within {
+            let (name, corners) = edits::split("--within", text, "FRAME=x,y,z,X,Y,Z")?;
+            let [x, y, z, X, Y, Z] = array(&format!("--within {name}"), corners, ["x", "y", "z", "X", "Y", "Z"])?;
+            options.limits.boxes.push(Box3 { frame: model.frame(name)?, corners: [[x, y, z], [X, Y, Z]] });
+        }
+        for text in &self.apart {
+            const EXPECTED: &str = "FRAME,FRAME=r,R";
+            let (names, radii) = edits::split("--apart", text, EXPECTED)?;
+            let (a, b) = names
+                .split_once(',')
+                .ok_or_else(|| Failure::wrong(format!("--apart is `{text}`, expected {EXPECTED}")))?;
+            let [r, R] = array(&format!("--apart {names}"), radii, ["r", "R"])?;
+            let sphere = |name: &str, radius| Ok::<_, Failure>(Sphere { frame: model.frame(name)?, radius });
+            options.limits.apart.push((sphere(a, r)?, sphere(b, R)?));
+        }
+        options.start = self.start.as_deref().map(|text| numbers("--start", text)).transpose()?;
+        options.rate = number("--rate", &self.rate)?;
+        options.harmonics = self.harmonics;
+        options.goal = match self.goal {
+            GoalArgument::LogDet => Goal::LogDet,
+            GoalArgument::Condition => Goal::Condition,
+        };
+        options.choice = Choice::all(match self.torque {
+            Place::Motor => Sensor::Motor,
+            Place::Link => Sensor::Link,
+        });
+        Ok(options)
+    }
+}
+
+/// The motion with the robot's own torques.
+fn rows(model: &Model, found: &Excitation, duration: f64, step: f64) -> Result<Columns> {
+    let count = (duration / step).round() as usize;
+    let (mut t, mut groups): (Vec<f64>, [Vec<Vec<f64>>; 4]) = Default::default();
+    for k in 0..=count {
+        let at = (k as f64 * step).min(duration);
+        let [theta, dtheta, ddtheta] = found.at(at);
+        let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment())?;
+        t.push(at);
+        groups
+            .iter_mut()
+            .zip([theta, dtheta, ddtheta, tau.as_slice().to_vec()])
+            .for_each(|(group, row)| group.push(row));
+    }
+    let mut columns = Columns::default();
+    columns.add("t", t);
+    for (name, rows) in ["theta", "dtheta", "ddtheta", "tau"].into_iter().zip(&groups) {
+        columns.add_group(model, name, rows);
+    }
+    Ok(columns)
+}
+
+fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
+    let mut page = Page::default();
+    page.line(format!(
+        "{}: a motion of {} s, {} harmonics",
+        model.description().name,
+        found.basis.duration,
+        found.basis.harmonics
+    ));
+    page.line(format!(
+        "condition number {:.1}; of a random motion within the same limits {:.1}",
+        found.condition, found.condition_of_random
+    ));
+    let weak = found.parameters.iter().filter(|(_, value, deviation)| !(deviation < &value.abs())).count();
+    page.line(format!(
+        "{weak} of {} base parameters will have a deviation larger than their value",
+        found.parameters.len()
+    ));
+    let mut rows = vec![["", "value", "deviation"].map(str::to_string).to_vec()];
+    for (name, value, deviation) in &found.parameters {
+        let name: String =
+            if name.chars().count() > 60 { name.chars().take(57).chain("…".chars()).collect() } else { name.clone() };
+        rows.push(vec![name, format!("{value:.4}"), format!("{deviation:.4}")]);
+    }
+    page.title("predicted confidence: base parameters of the robot's file").lines(&table(&rows, "lrr"));
+    match out {
+        Some(file) => {
+            drop(page.blank().line(format!("{file} is written; check the motion for collisions before you run it")))
+        }
+        None => failure::note("--out FILE.csv writes the motion"),
+    }
+    page.end()
+}
+
+fn object(model: &Model, found: &Excitation) -> String {
+    let parameters: Vec<Value> = found
+        .parameters
+        .iter()
+        .map(|(name, value, deviation)| json!({ "name": name, "value": value, "deviation": deviation }))
+        .collect();
+    json::print(&json::of_robot(
+        model,
+        json!({
+            "duration": found.basis.duration, "harmonics": found.basis.harmonics,
+            "coefficients": json::nested(&[model.n(), found.basis.count()], &found.coefficients),
+            "condition": found.condition, "condition_of_random": found.condition_of_random, "parameters": parameters,
+        }),
+    ))
+}
