@@ -7,7 +7,7 @@ use crate::robot::{Frame, ModelHandle, Robot};
 use crate::status::{Outcome, Status, guard, of_model, refuse};
 use crate::workspace::{Memory, WorkspaceHandle};
 use mozzi::fast::{self, Singular};
-use mozzi::quantities::{MOST_INPUTS, MOST_OUTPUTS, Of, Output, Query, Subject};
+use mozzi::quantities::{Dim, MOST_INPUTS, MOST_OUTPUTS, Of, Output, Query, Subject};
 use mozzi::{Environment, TaskFrame, Vec3};
 use std::sync::Arc;
 
@@ -233,9 +233,9 @@ unsafe fn checked(
     for ((numbers, input), &pointer) in state.iter_mut().zip(declaration.inputs).zip(inputs) {
         // SAFETY: the caller's promise.
         *numbers = unsafe { slice(pointer, input.dim.size(&robot.model, &query.subject), input.name)? };
-        match input.name {
-            "theta" => robot.check_theta(numbers)?,
-            name => check_finite(numbers, name)?,
+        match input.dim {
+            Dim::Nq => robot.check_theta(numbers)?,
+            _ => check_finite(numbers, input.name)?,
         }
     }
     let state = &state[..declaration.inputs.len()];

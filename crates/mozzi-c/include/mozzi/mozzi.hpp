@@ -323,7 +323,7 @@ class Frame {
   explicit Frame(mozzi_frame frame) noexcept : frame_(frame) {}
   mozzi_frame c() const noexcept { return frame_; }
   /// From 0: its place in `frame_poses`.
-  std::size_t number() const noexcept { return MOZZI_FRAME_NUMBER(frame_); }
+  std::size_t number() const noexcept { return static_cast<std::size_t>(frame_ & 0xffffffffu); }
 
  private:
   mozzi_frame frame_ = 0;
@@ -703,12 +703,12 @@ class Model {
     return result;
   }
   template <class F>
-  std::vector<std::string> names(F name, std::size_t count) const {
-    std::vector<std::string> names;
+  std::vector<std::string> names(F name_of, std::size_t count) const {
+    std::vector<std::string> list;
     for (std::size_t k = 0; k < count; ++k) {
-      names.push_back(detail::text(name(get(), k)));
+      list.push_back(detail::text(name_of(get(), k)));
     }
-    return names;
+    return list;
   }
 
   detail::Handle<mozzi_model, mozzi_model_free> handle_;
@@ -716,9 +716,9 @@ class Model {
 
 /// A quantity for a program: its number, MOZZI_INVERSE_DYNAMICS or another, and its frame, task or point.
 struct Quantity {
-  Quantity(std::int32_t number) noexcept : number(number) {}
-  Quantity(std::int32_t number, Frame frame) noexcept : number(number) { subject.task.frame = frame.c(); }
-  Quantity(std::int32_t number, const Task &task) noexcept : number(number), task(task) {}
+  Quantity(std::int32_t quantity) noexcept : number(quantity) {}
+  Quantity(std::int32_t quantity, Frame frame) noexcept : number(quantity) { subject.task.frame = frame.c(); }
+  Quantity(std::int32_t quantity, const Task &of) noexcept : number(quantity), task(of) {}
   std::int32_t number;
   mozzi_subject subject{};
   std::optional<Task> task;
@@ -1443,8 +1443,8 @@ class Batch {
 
 /// How to simulate: see mozzi.h.
 struct SimulationOptions : mozzi_simulation_options {
-  SimulationOptions(double duration, std::size_t steps) : mozzi_simulation_options{} {
-    mozzi_simulation_defaults(duration, steps, this);
+  SimulationOptions(double seconds, std::size_t count) : mozzi_simulation_options{} {
+    mozzi_simulation_defaults(seconds, count, this);
   }
 };
 
@@ -1483,10 +1483,10 @@ Result<mozzi_ending> simulate(const Model &model, const SimulationOptions &optio
   }
   using Callbacks = detail::Callbacks<std::remove_reference_t<Torque>, std::remove_reference_t<Record>>;
   Callbacks callbacks{torque, record, nullptr};
-  const mozzi_torque on_torque = [](void *user, double t, const double *theta, const double *dtheta, double *tau) {
+  const mozzi_torque on_torque = [](void *user, double t, const double *q, const double *v, double *tau) {
     auto &own = *static_cast<Callbacks *>(user);
     return own.guarded([&]() -> std::int32_t {
-      own.torque(t, theta, dtheta, tau);
+      own.torque(t, q, v, tau);
       return 0;
     });
   };
