@@ -40,8 +40,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (run, way) = on_slope(15_f64.to_radians(), [-1.0, 1.5], 1.2)?;
     println!("15°, thrown upwards and across: it rests at {:.6}, {:.6} m", way.0[0], way.0[1]);
-    println!("contacts change {} times; the laws hold to {:.0e} m/s", run.contact_events.len(),
-        run.one_sided.map_or(0.0, |account| account.largest_residual));
+    println!(
+        "contacts change {} times; the laws hold to {:.0e} m/s",
+        run.contact_events.len(),
+        run.one_sided.map_or(0.0, |account| account.largest_residual)
+    );
     assert!((way.0[0] + 0.098_304).abs() < 1e-5 && (way.0[1] - 0.261_755).abs() < 1e-5);
     Ok(())
 }

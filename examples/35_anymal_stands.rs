@@ -25,12 +25,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let hold = Hold::new(&pose, model.n());
     let mut standing = Standing::new(&model, &hold, Gains::critical(model.n(), 12.0), points, SE3::identity())?;
     // from 1.5 s on something pushes the base with 150 N along y for 0.1 s: the robot applies −150 N
-    let push = applied(model.frame("base")?, |t, _, _| {
-        Wrench { m: Vec3::zero(), f: Vec3([0.0, if (1.5..1.6).contains(&t) { -150.0 } else { 0.0 }, 0.0]) }
+    let push = applied(model.frame("base")?, |t, _, _| Wrench {
+        m: Vec3::zero(),
+        f: Vec3([0.0, if (1.5..1.6).contains(&t) { -150.0 } else { 0.0 }, 0.0]),
     });
     let options = Options { record_every: 125, ..Options::with_step(4.0, 2e-3)? };
-    let run = Simulation { contacts, ..Simulation::new(options) }
-        .run(&model, &start, &vec![0.0; model.n()], (&mut standing, push))?;
+    let run = Simulation { contacts, ..Simulation::new(options) }.run(
+        &model,
+        &start,
+        &vec![0.0; model.n()],
+        (&mut standing, push),
+    )?;
 
     println!("  t [s]   base y [m]   base z [m]   force on the ground [N]");
     for row in run.motion.samples() {

@@ -13,7 +13,7 @@ use mozzi::simulation::{ContactPoint, Input};
 use mozzi::{Environment, FrameId, Model, SE3, Vec3, Wrench};
 
 /// Weight of (contact force)² next to (error of an acceleration)².
-const FORCES: f64 = 1e-6;
+const FORCES: f64 = 1e-9;
 /// Rate at which a foot's velocity is brought to rest, 1/s.
 const BRAKE: f64 = 50.0;
 

@@ -21,7 +21,7 @@ fn it_stands_within_its_cones_and_is_pushed() {
     // at rest: the feet carry the weight, and the robot does not accelerate
     let weight: f64 = standing.forces.iter().map(|f| f[0]).sum();
     println!("carried {weight:.9} of {:.9} N, τ {tau:.3?}", mass(&model) * 9.81);
-    assert!((weight - mass(&model) * 9.81).abs() < 1e-6 && tau[..6].iter().all(|x| *x == 0.0));
+    assert!((weight - mass(&model) * 9.81).abs() < 1e-5 && tau[..6].iter().all(|x| *x == 0.0));
 
     // pushed sideways by 100 N for 0.1 s at the base: the robot applies −100 N
     let base = model.frame("base").expect("there");
@@ -38,7 +38,10 @@ fn it_stands_within_its_cones_and_is_pushed() {
     let last = run.motion.last();
     let left = (0..model.nq()).map(|i| (last.theta[i] - theta[i]).abs()).fold(0.0, f64::max);
     let account = run.one_sided.expect("contacts");
-    println!("pushed {most:.4} m aside, {left:.1e} from the pose at the end, {:?}, {account:?}", run.contact_events.len());
+    println!(
+        "pushed {most:.4} m aside, {left:.1e} from the pose at the end, {:?}, {account:?}",
+        run.contact_events.len()
+    );
     assert!(most > 1e-3 && left < 1e-4 && account.unsolved == 0);
     // forces stay within the cones
     for row in run.motion.samples() {

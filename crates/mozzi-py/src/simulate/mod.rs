@@ -46,17 +46,27 @@ impl<'a, 'py> Torque<'a, 'py> {
     }
 }
 
-fn method(name: &str, tolerance: f64) -> PyResult<Method> {
+/// A method of simulations; those of rollouts are the others than 'auto' and 'moreau'.
+fn simulation_method(name: &str, tolerance: f64) -> PyResult<Method> {
     match name {
         "auto" => Ok(Method::Automatic),
         "moreau" => Ok(Method::MoreauJean),
+        other => method(other, tolerance).map_err(|_| {
+            let expected = "'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
+            PyValueError::new_err(format!("method is '{name}', expected {expected}"))
+        }),
+    }
+}
+
+fn method(name: &str, tolerance: f64) -> PyResult<Method> {
+    match name {
         "rk4" => Ok(Method::RungeKutta4),
         "semi-implicit-euler" => Ok(Method::SemiImplicitEuler),
         "euler" => Ok(Method::Euler),
         "dopri" => Ok(Method::DormandPrince { tolerance }),
         "midpoint" => Ok(Method::Midpoint),
         _ => {
-            let expected = "'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
+            let expected = "'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
             Err(PyValueError::new_err(format!("method is '{name}', expected {expected}")))
         }
     }
@@ -175,7 +185,7 @@ impl PyModel {
             Ok(numbers)
         };
         let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta)?);
-        let (method, joint_limits) = (self::method(method, tolerance)?, policy(joint_limits)?);
+        let (method, joint_limits) = (simulation_method(method, tolerance)?, policy(joint_limits)?);
         let mut options = Options { method, record_every, joint_limits, ..Options::new(duration, steps) };
         let watched = Watched { until, events };
         if let Some(gravity) = gravity {

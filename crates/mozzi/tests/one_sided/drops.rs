@@ -39,6 +39,8 @@ fn a_thousand_drops_end_and_lose_energy() {
             worst = worst.max(-lost / size);
         }
     }
-    println!("{count} drops, {steps} steps: largest residual {largest:.1e} m/s, {unsolved} steps above 1e-6, largest gain {worst:.1e} of the kinetic energy");
+    println!(
+        "{count} drops, {steps} steps: largest residual {largest:.1e} m/s, {unsolved} steps above 1e-6, largest gain {worst:.1e} of the kinetic energy"
+    );
     assert!(worst < 1e-9 && unsolved == 0);
 }
