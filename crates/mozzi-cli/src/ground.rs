@@ -38,8 +38,11 @@ impl GroundArguments {
     pub fn contacts(&self, robot: &RobotArguments, model: &Model) -> Result<Contacts<'static>> {
         let coefficients = self.coefficients()?;
         if !self.ground && self.contacts.is_none() {
-            let unused = [("--contact", !self.contact.is_empty()), ("--contact-friction", self.contact_friction.is_some()),
-                ("--restitution", self.restitution.is_some())];
+            let unused = [
+                ("--contact", !self.contact.is_empty()),
+                ("--contact-friction", self.contact_friction.is_some()),
+                ("--restitution", self.restitution.is_some()),
+            ];
             return match unused.iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => Err(Failure::wrong(format!("{flag} needs --ground or --contacts"))),
                 None => Ok(Contacts::default()),
@@ -82,10 +85,11 @@ impl GroundArguments {
         }
         let description = model.description();
         let is_end = |name: &str| !description.joints.iter().any(|joint| joint.parent == name);
-        let ends: Vec<&str> =
-            description.links.iter().map(|link| &*link.name).filter(|name| is_end(name)).collect();
+        let ends: Vec<&str> = description.links.iter().map(|link| &*link.name).filter(|name| is_end(name)).collect();
         let listed = ends.join(", ");
-        failure::note(&format!("--ground: the robot has no collision shapes; the origins of its last links touch: {listed}"));
+        failure::note(&format!(
+            "--ground: the robot has no collision shapes; the origins of its last links touch: {listed}"
+        ));
         ends.into_iter().map(of_frame).collect()
     }
 }
@@ -95,21 +99,27 @@ pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64]) {
     let lowest = contacts.gaps(model, 0.0, theta).into_iter().fold(f64::INFINITY, f64::min);
     if model.is_floating() && lowest.is_finite() {
         theta[6] -= lowest;
-        failure::note(&format!("--ground: the base starts at z = {:.6} m, where its lowest contact point touches", theta[6]));
+        failure::note(&format!(
+            "--ground: the base starts at z = {:.6} m, where its lowest contact point touches",
+            theta[6]
+        ));
     }
 }
 
 fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contacts<'static>> {
     let file = JsonFile::read(name)?;
     let list = |key: &'static str| file.value.get(key).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    if let Some(key) = file.value.as_object().and_then(|all| all.keys().find(|k| !["points", "planes"].contains(&&***k))) {
+    if let Some(key) =
+        file.value.as_object().and_then(|all| all.keys().find(|k| !["points", "planes"].contains(&&***k)))
+    {
         return Err(file.wrong(&[Step::Key(key)], format!("unknown `{key}`, expected points or planes")).into());
     }
     let mut found = Contacts::default();
     for (k, entry) in list("points").iter().enumerate() {
         let at = |key| [Step::Key("points"), Step::Index(k), Step::Key(key)];
         let frame = entry.get("frame").and_then(Value::as_str);
-        let frame = frame.ok_or_else(|| file.wrong(&at("frame"), "`frame` is missing, expected the name of a frame"))?;
+        let frame =
+            frame.ok_or_else(|| file.wrong(&at("frame"), "`frame` is missing, expected the name of a frame"))?;
         let value = |key, default| match entry.get(key) {
             None => Ok(default),
             Some(value) => value.as_f64().ok_or_else(|| file.wrong(&at(key), format!("`{key}` is not a number"))),
@@ -133,7 +143,8 @@ fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contac
         let pose = match entry.get("pose") {
             None => SE3::identity(),
             Some(value) => {
-                let wrong = || file.wrong(&at("pose"), "`pose` is not [qw, qx, qy, qz, x, y, z] with a unit quaternion");
+                let wrong =
+                    || file.wrong(&at("pose"), "`pose` is not [qw, qx, qy, qz, x, y, z] with a unit quaternion");
                 let pose = list_of::<7>(value).ok_or_else(wrong)?;
                 let size = pose[..4].iter().map(|x| x * x).sum::<f64>();
                 if (size - 1.0).abs() > 2e-3 {
@@ -145,7 +156,8 @@ fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contac
         let motion = match entry.get("velocity") {
             None => PlaneMotion::Fixed(pose),
             Some(value) => {
-                let v = list_of::<3>(value).ok_or_else(|| file.wrong(&at("velocity"), "`velocity` is not [x, y, z]"))?;
+                let v =
+                    list_of::<3>(value).ok_or_else(|| file.wrong(&at("velocity"), "`velocity` is not [x, y, z]"))?;
                 PlaneMotion::Belt(pose, Vec3(v))
             }
         };

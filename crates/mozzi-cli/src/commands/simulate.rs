@@ -19,7 +19,9 @@ use crate::workload::{BINARY, TEXT, Workload};
 use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
+use mozzi::simulation::{
+    Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned,
+};
 use mozzi::{Model, Trajectory};
 use mozzi_batch::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};

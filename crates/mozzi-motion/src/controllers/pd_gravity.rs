@@ -39,4 +39,13 @@ impl<R: Reference> Input for PdGravity<'_, R> {
         }
         Ok(())
     }
+
+    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        let driven = self.model.places().iter().filter(|place| place.freedom == Freedom::One);
+        let motors = self.model.motors();
+        for j in driven.flat_map(|place| place.velocities()).filter(|j| motors.contains(j)) {
+            stiffness[j] += self.gains.p[j];
+            damping[j] += self.gains.d[j];
+        }
+    }
 }

@@ -92,4 +92,8 @@ impl<I: Input> Input for Saturated<I> {
     ) -> Result<(), Error> {
         self.input.applied(t, theta, dtheta, wrenches)
     }
+
+    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        self.input.gains(stiffness, damping);
+    }
 }

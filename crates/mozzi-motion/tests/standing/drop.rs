@@ -77,7 +77,10 @@ fn it_squats_on_feet_that_stay() {
             .flat_map(|k| places(&model, run.motion.sample(k).theta).into_iter().zip(first.clone()).collect::<Vec<_>>())
             .map(|(a, b)| (a - b).norm())
             .fold(0.0, f64::max);
-        println!("{step:e} s: feet move at most {moved:.1e} m in 5 s of squats, {:?}", run.one_sided.expect("contacts"));
+        println!(
+            "{step:e} s: feet move at most {moved:.1e} m in 5 s of squats, {:?}",
+            run.one_sided.expect("contacts")
+        );
         assert!(moved < 1e-6);
     }
 }

@@ -3,3 +3,4 @@
 
 mod anymal;
 mod drop;
+mod held;

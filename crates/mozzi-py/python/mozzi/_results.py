@@ -239,6 +239,24 @@ class Closing(NamedTuple):
     """Before it: what the method of integration left."""
 
 
+class ContactEvent(NamedTuple):
+    """A contact that begins or ceases to carry or to slide."""
+
+    t: float
+    contact: str
+    change: str
+    """'touches down', 'lifts off', 'sticks' or 'slides'."""
+
+
+class OneSided(NamedTuple):
+    """How well the laws of dry friction, stops and contacts were satisfied: residuals in m/s or rad/s."""
+
+    largest_residual: float
+    last_residual: float
+    unsolved: int
+    """Steps with a residual above 1e-6: their problem may have no solution."""
+
+
 class ConstraintRank(NamedTuple):
     """The rank of the constraints at a position: see ``Model.constraint_rank``."""
 
@@ -298,6 +316,14 @@ class Trajectory(NamedTuple):
     events: list[Occurrence]
     joint_limits: list[LimitReached]
     closing: Closing
+    method: str
+    """The method that took the steps."""
+    contact_names: list[str]
+    contact_forces: Array
+    """Shape (rows, contacts, 3): the forces that contact points apply to planes, in {s}, N."""
+    contact_events: list[ContactEvent]
+    one_sided: OneSided | None
+    """None for a robot without dry friction and contacts."""
 
     @property
     def energy(self) -> Array:

@@ -58,6 +58,7 @@ fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajec
             ddtheta: row(&ddtheta, k, n),
             tau: row(&tau, k, n),
             energy,
+            contact_forces: &[],
         });
     }
     Ok(trajectory)

@@ -1,5 +1,6 @@
 //! Simulation: the arguments, for one start and for many.
 
+mod contacts;
 mod many;
 mod one;
 mod rollout;
@@ -42,6 +43,18 @@ impl<'a, 'py> Torque<'a, 'py> {
         let tau = Numbers::new("tau", given)?;
         robot.robot().check_shape(&tau)?;
         Ok(Torque::Constant(tau))
+    }
+}
+
+/// A method of simulations; those of rollouts are the others than 'auto' and 'moreau'.
+fn simulation_method(name: &str, tolerance: f64) -> PyResult<Method> {
+    match name {
+        "auto" => Ok(Method::Automatic),
+        "moreau" => Ok(Method::MoreauJean),
+        other => method(other, tolerance).map_err(|_| {
+            let expected = "'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
+            PyValueError::new_err(format!("method is '{name}', expected {expected}"))
+        }),
     }
 }
 
@@ -88,8 +101,9 @@ impl PyModel {
     ///     g(θ) + k(θ − θ₀), what holds gravity and springs; or none. Of many
     ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers
     ///     (..., n).
-    /// method : {'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
-    ///     How a step is taken. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and
+    /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
+    ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'; many starts take
+    ///     'rk4', in which dry friction does not stick. 'moreau' is Moreau and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and
     ///     symplectic: the energy's error stays bounded. These two take one start.
     /// tolerance : float
     ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇.
@@ -107,7 +121,13 @@ impl PyModel {
     /// gravity : array_like, shape (3,), optional
     ///     In place of the model's own: m/s².
     /// slip_speed : float, optional
-    ///     Coulomb friction μ tanh(θ̇ / slip_speed) in place of μ sgn θ̇. One start only.
+    ///     Coulomb friction μ tanh(θ̇ / slip_speed) in place of dry friction that sticks. One start only.
+    /// contacts : list of str or dict, optional
+    ///     Points of the robot that planes stop: the origins of frames by name, or {'frame': …, 'at': (x, y, z),
+    ///     'radius': …, 'friction': 0.7, 'restitution': 0, 'name': …}. One start only.
+    /// planes : list of dict, optional
+    ///     {'name': …, 'pose': (qw, qx, qy, qz, x, y, z), 'velocity': (x, y, z)}: the z-axis points towards the robot, the
+    ///     surface moves with the velocity. By default the ground z = 0.
     /// threads : int, optional
     ///     As many at most; by default all cores. Many starts only.
     ///
@@ -137,7 +157,7 @@ impl PyModel {
     /// >>> falls = pendulum.simulate(starts, [0.0, 0.0], 1.0, 100, record_every=10)
     /// >>> falls.t.shape, falls.theta.shape
     /// ((11,), (50, 11, 2))
-    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="rk4", tolerance=1e-9, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, threads=None))]
+    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="auto", tolerance=1e-9, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, threads=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn simulate<'py>(
         slf: &Bound<'py, Self>,
@@ -154,6 +174,8 @@ impl PyModel {
         joint_limits: &str,
         gravity: Given<'_, 'py>,
         slip_speed: Option<f64>,
+        contacts: Given<'_, 'py>,
+        planes: Given<'_, 'py>,
         threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
@@ -163,7 +185,7 @@ impl PyModel {
             Ok(numbers)
         };
         let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta)?);
-        let (method, joint_limits) = (self::method(method, tolerance)?, policy(joint_limits)?);
+        let (method, joint_limits) = (simulation_method(method, tolerance)?, policy(joint_limits)?);
         let mut options = Options { method, record_every, joint_limits, ..Options::new(duration, steps) };
         let watched = Watched { until, events };
         if let Some(gravity) = gravity {
@@ -181,10 +203,12 @@ impl PyModel {
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;
         let start = [theta.slice()?, dtheta.slice()?];
         if leading.is_empty() {
-            return one::simulate(slf, start, torque, &options, watched);
+            let contacts = contacts::contacts(&this.robot().model, contacts, planes)?;
+            return one::simulate(slf, start, torque, &options, (watched, contacts));
         }
         let only_one = [
             ("slip_speed", slip_speed.map(|speed| speed.to_string()), "None"),
+            ("contacts", contacts.map(|_| "given".into()), "None"),
             ("until or events", (!watched.is_empty()).then(|| "given".into()), "None"),
             ("joint_limits", (joint_limits == Policy::Respect).then(|| "'respect'".into()), "'report' or 'ignore'"),
         ];

@@ -8,7 +8,9 @@ use crate::model::{PyModel, array};
 use crate::results::named;
 use crate::robot::Robot;
 use mozzi::Error;
-use mozzi::simulation::{Energy, GravityCompensation, Input, Options, Run, Simulation, Zero};
+use mozzi::simulation::{
+    ContactEvent, Contacts, Energy, GravityCompensation, Input, OneSidedAccount, Options, Run, Simulation, Zero,
+};
 use pyo3::prelude::*;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -60,11 +62,13 @@ pub fn simulate<'py>(
     [theta, dtheta]: [&[f64]; 2],
     torque: Torque<'_, 'py>,
     options: &Options,
-    watched: Watched<'_, 'py>,
+    (watched, contacts): (Watched<'_, 'py>, Contacts<'static>),
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, this) = (robot.py(), robot.get());
     let (model, raised) = (&this.robot().model, RefCell::new(None));
+    let names: Vec<String> = contacts.names().collect();
     let simulation = Simulation {
+        contacts,
         options: *options,
         events: watched.events(model, &raised)?,
         forward_dynamics: this.robot().compiled.as_ref().and_then(|machine| machine.code.simulator()),
@@ -78,7 +82,7 @@ pub fn simulate<'py>(
         }
         Torque::Function(function) => go(&mut Function { model: this, function, raised: &raised })?,
     };
-    trajectory(py, robot, found)
+    trajectory(py, robot, found, names)
 }
 
 /// Checks at intervals whether Python was interrupted or a function raised an exception.
@@ -107,8 +111,30 @@ fn run(
     }
 }
 
-fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, run: Run) -> PyResult<Bound<'py, PyAny>> {
-    let Run { motion: found, events, stops, closing } = run;
+fn trajectory<'py>(
+    py: Python<'py>,
+    robot: &Bound<'py, PyModel>,
+    run: Run,
+    contacts: Vec<String>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Run { motion: found, events, stops, closing, method, one_sided, contact_events } = run;
+    let of_event = |event: ContactEvent| {
+        let fields = vec![
+            event.t.into_pyobject(py)?.into_any(),
+            event.contact.into_pyobject(py)?.into_any(),
+            event.change.name().into_pyobject(py)?.into_any(),
+        ];
+        named(py, "ContactEvent", fields)
+    };
+    let contact_events = contact_events.into_iter().map(of_event).collect::<PyResult<Vec<_>>>()?;
+    let account = |account: OneSidedAccount| {
+        let fields = vec![
+            account.largest_residual.into_pyobject(py)?.into_any(),
+            account.last_residual.into_pyobject(py)?.into_any(),
+            account.unsolved.into_pyobject(py)?.into_any(),
+        ];
+        named(py, "OneSided", fields)
+    };
     let rows = found.len();
     let names = |names: Vec<&str>| names.into_pyobject(py);
     let number = |x: f64| -> PyResult<_> { Ok(x.into_pyobject(py)?.into_any()) };
@@ -131,6 +157,14 @@ fn trajectory<'py>(py: Python<'py>, robot: &Bound<'py, PyModel>, run: Run) -> Py
         happened(py, events)?,
         stopped(py, stops)?,
         named(py, "Closing", vec![number(closing.residual)?, number(closing.corrected)?])?,
+        method.name().into_pyobject(py)?.into_any(),
+        contacts.clone().into_pyobject(py)?,
+        array(py, &[rows, contacts.len(), 3], found.contact_forces.iter().copied())?,
+        contact_events.into_pyobject(py)?,
+        match one_sided {
+            Some(found) => account(found)?,
+            None => py.None().into_bound(py),
+        },
     ];
     named(py, "Trajectory", fields)
 }

@@ -3,8 +3,8 @@
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
-use super::impulses::{Impulses, Key};
 use super::events::{Event, Occurrence, first_zero};
+use super::impulses::{Impulses, Key};
 use super::midpoint::Midpoint;
 use super::modes::Modes;
 use super::moreau::Moreau;

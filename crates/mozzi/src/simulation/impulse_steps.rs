@@ -1,12 +1,12 @@
 //! Steps with dry friction, contacts and stops.
 
+use super::Explicit;
+use super::contact::{ContactChange, ContactEvent};
 use super::course::{Course, Integrator};
 use super::driven::Driven;
-use super::contact::{ContactChange, ContactEvent};
 use super::impulses::{Choice, Impulses, Key, System};
 use super::moreau::Phase;
 use super::state::State;
-use super::Explicit;
 use crate::kinematics::{difference, integrate};
 use crate::model::Error;
 use alloc::vec;

@@ -78,8 +78,7 @@ pub struct Zero;
 impl Input for Zero {}
 
 /// τ = g(θ) + k(θ − θ₀), which holds the robot against gravity and its springs and does not compensate friction: a
-/// robot at rest stays, a moving one coasts. (Non-smooth Coulomb friction makes it chatter instead of staying, see
-/// [`Friction::Coulomb`](super::Friction::Coulomb).) A floating base has no motors: it falls. If a robot with
+/// robot at rest stays, a moving one coasts. A floating base has no motors: it falls. If a robot with
 /// constraints has named [`motors`](crate::Description::motors), these alone produce the torques that hold it.
 #[derive(Clone, Debug)]
 pub struct GravityCompensation<'m> {

@@ -3,17 +3,23 @@
 //! > q̇₁ = q₂,  q̇₂ = FD(q₁, q₂, τ, F),  with q₁ = θ and q₂ = θ̇
 //!
 //! [`Model::simulate`] takes a start, an [`Input`] (τ and the wrenches on the environment, by functions or tables) and
-//! [`Options`], and returns a [`Trajectory`] with its energies. {s} is at rest. Coulomb friction acts on moving joints;
-//! sticking is not modelled, see [`Friction`].
+//! [`Options`], and returns a [`Trajectory`] with its energies. {s} is at rest. Dry friction
+//! sticks, see [`Friction`]; planes stop [`Contacts`].
 //!
 //! | [`Method`] | order | step | for |
 //! |---|---|---|---|
 //! | `Euler`, `SemiImplicitEuler`, `RungeKutta4` | 1, 1, 4 | fixed | the book's loop; real time |
 //! | `DormandPrince` | 5 | adaptive | smooth motions, to a tolerance |
 //! | `Midpoint` | 2 | fixed | long motions: the energy's error is bounded |
+//! | `MoreauJean` | 2 | fixed | dry friction, contacts; `Automatic` chooses it for them, else `RungeKutta4` |
 //!
 //! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
+//!
+//! Dry friction, stops next to it, and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)). A
+//! step of `MoreauJean` ends where a joint comes to rest. Other fixed steps are repeated with constant forces until the
+//! laws hold at their end, so that they are of order 1 there. `DormandPrince` stops at events: touch-down, lift-off, slip
+//! and stick. [`Ending::one_sided`] reports the residuals.
 //!
 //! Gradients of a loss through N steps, by start, torques and parameters: [`Rollout`].
 //!

@@ -60,7 +60,13 @@ impl<'r> Modes<'r> {
 
     /// θ̈ ← θ̈ − M⁻¹Jᵀf, with the f of the active rows. Returns the power that friction dissipates, and that given to
     /// moving planes.
-    pub fn accelerate(&mut self, t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]) -> Result<[f64; 2], Error> {
+    pub fn accelerate(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &mut [f64],
+    ) -> Result<[f64; 2], Error> {
         let model = self.impulses.model;
         let n = model.n();
         if self.active.is_empty() {
@@ -199,7 +205,9 @@ impl<I: Input> Driven<'_, I> {
                 falling = vec![i];
             }
             let is_broken = |&i: &usize| before.0[i] <= 0.0 && after.0[i] < -1e-9 && after.0[i] < before.0[i];
-            if falling.is_empty() && (after.1..after.0.len()).any(|i| is_broken(&i) && !self.starts_to_slide(i, after.1)) {
+            if falling.is_empty()
+                && (after.1..after.0.len()).any(|i| is_broken(&i) && !self.starts_to_slide(i, after.1))
+            {
                 return Ok(Some(dense.t));
             }
             if !falling.is_empty() {
@@ -326,9 +334,10 @@ impl Modes<'_> {
         let dry = self.impulses.dry.clone();
         let system = self.impulses.system(state.t, &state.theta, 1.0, &[], Choice::Near(&dry))?;
         let u = self.impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
-        let closes = system.rows.iter().any(|&(key, first, _)| {
-            matches!(key, Key::Contact(..) | Key::Stop(..)) && u[first] < -1e-12
-        });
+        let closes = system
+            .rows
+            .iter()
+            .any(|&(key, first, _)| matches!(key, Key::Contact(..) | Key::Stop(..)) && u[first] < -1e-12);
         if !closes {
             return Ok(());
         }

@@ -216,7 +216,8 @@ fn free_places(model: &Model) -> impl Iterator<Item = &Place> {
 /// θ ← θ ⊕ hθ̇, where the origins of floating bodies move straight, not on screws: a wheel that rolls has velocities
 /// that turn in its own axes.
 fn straight(model: &Model, theta: &mut [f64], dtheta: &[f64], h: f64) {
-    let starts: Vec<(usize, Vec3)> = free_places(model).map(|place| (place.q, origin(theta, place, dtheta, h))).collect();
+    let starts: Vec<(usize, Vec3)> =
+        free_places(model).map(|place| (place.q, origin(theta, place, dtheta, h))).collect();
     integrate(model, theta, dtheta, h);
     for (q, p) in starts {
         theta[q + 4..q + 7].copy_from_slice(&p.0);

@@ -9,7 +9,11 @@ pub const RADIUS: f64 = 0.1;
 
 /// A solid ball of 0.5 kg that floats.
 pub fn ball() -> Model {
-    Description::new("ball").link("ball", Solid::Sphere { radius: RADIUS }.inertia(0.5)).floating().build().expect("sound")
+    Description::new("ball")
+        .link("ball", Solid::Sphere { radius: RADIUS }.inertia(0.5))
+        .floating()
+        .build()
+        .expect("sound")
 }
 
 fn contact(model: &Model, link: &str, support: Support, mu: f64, restitution: f64) -> ContactPoint {
@@ -17,9 +21,18 @@ fn contact(model: &Model, link: &str, support: Support, mu: f64, restitution: f6
     ContactPoint { support, restitution, ..point }
 }
 
-pub fn rolling(model: &Model, plane: Plane<'static>, mu: f64, restitution: f64, start: [[f64; 3]; 3], options: Options) -> Run {
-    let contacts =
-        Contacts { points: vec![contact(model, "ball", Support::Sphere { radius: RADIUS }, mu, restitution)], planes: vec![plane] };
+pub fn rolling(
+    model: &Model,
+    plane: Plane<'static>,
+    mu: f64,
+    restitution: f64,
+    start: [[f64; 3]; 3],
+    options: Options,
+) -> Run {
+    let contacts = Contacts {
+        points: vec![contact(model, "ball", Support::Sphere { radius: RADIUS }, mu, restitution)],
+        planes: vec![plane],
+    };
     let [p, w, v] = start;
     let theta = [1.0, 0.0, 0.0, 0.0, p[0], p[1], p[2]];
     let dtheta = [w, v].concat();
@@ -110,7 +123,12 @@ fn a_wheel_rolls_down_inside_the_cone_and_slides_outside() {
         let twist = run.motion.last().dtheta;
         // the velocity of the wheel's lowest point, in the axes of the slope
         let speed = (twist[3].powi(2) + twist[5].powi(2)).sqrt();
-        println!("μ {mu}: way error {:.1e} m, height {:.1e}, slip {:.1e} m/s", way.0[0] - 0.5 * a, way.0[2] - RADIUS, speed - RADIUS * twist[1]);
+        println!(
+            "μ {mu}: way error {:.1e} m, height {:.1e}, slip {:.1e} m/s",
+            way.0[0] - 0.5 * a,
+            way.0[2] - RADIUS,
+            speed - RADIUS * twist[1]
+        );
         assert!((way.0[0] - 0.5 * a).abs() < 1e-9 && (way.0[2] - RADIUS).abs() < 1e-10);
         let slip = speed - RADIUS * twist[1];
         assert!(if mu == 0.2 { slip.abs() < 1e-10 } else { slip > 0.1 });
@@ -129,13 +147,20 @@ fn planes_move() {
     let run = rolling(&model, plane, 0.5, 0.0, start, by(Method::Automatic, 1.0, 1e-3));
     let last = run.motion.last();
     let weight = -last.contact_forces[2];
-    println!("lift: height error {:.1e} m, speed error {:.1e} m/s, force error {:.1e} N, work {:.6} J", last.theta[6] - RADIUS - 0.5, last.dtheta[5] - 1.0, weight - 0.5 * (G + 1.0), last.energy.applied_work);
+    println!(
+        "lift: height error {:.1e} m, speed error {:.1e} m/s, force error {:.1e} N, work {:.6} J",
+        last.theta[6] - RADIUS - 0.5,
+        last.dtheta[5] - 1.0,
+        weight - 0.5 * (G + 1.0),
+        last.energy.applied_work
+    );
     assert!((last.theta[6] - RADIUS - 0.5).abs() < 1e-9 && (weight - 0.5 * (G + 1.0)).abs() < 1e-6);
     // −½ v² m − m g z
     assert!((last.energy.applied_work + 0.25 + 0.5 * G * 0.5).abs() < 1e-4 && run.motion.largest_drift() < 1e-4);
 
     // a belt at 1 m/s below a box that does not roll: it slides until it moves along
-    let model = Description::new("box").link("ball", Solid::Box([0.2; 3]).inertia(0.5)).floating().build().expect("sound");
+    let model =
+        Description::new("box").link("ball", Solid::Box([0.2; 3]).inertia(0.5)).floating().build().expect("sound");
     let frame = model.frame("ball").expect("there");
     let points = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
     let points = points.map(|[x, y]| ContactPoint::new("corner", frame, Vec3([0.1 * x, 0.1 * y, -0.1]), 0.3));
@@ -145,6 +170,10 @@ fn planes_move() {
     let run = simulation.run(&model, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1], &[0.0; 6], Zero).expect("a motion");
     let last = run.motion.last();
     let slips = 1.0 / (0.3 * G);
-    println!("belt: way error {:.1e} m, speed error {:.1e} m/s", last.theta[4] - (2.0 - 0.5 * slips), last.dtheta[3] - 1.0);
+    println!(
+        "belt: way error {:.1e} m, speed error {:.1e} m/s",
+        last.theta[4] - (2.0 - 0.5 * slips),
+        last.dtheta[3] - 1.0
+    );
     assert!((last.theta[4] - (2.0 - 0.5 * slips)).abs() < 1e-6 && (last.dtheta[3] - 1.0).abs() < 1e-9);
 }

@@ -19,7 +19,7 @@ fn robot(seed: u64) -> (Model, Contacts<'static>) {
 #[test]
 fn a_thousand_drops_end_and_lose_energy() {
     let (mut worst, mut largest, mut unsolved, mut steps) = (0.0_f64, 0.0_f64, 0, 0);
-    let count = if cfg!(debug_assertions) { 100 } else { 1000 };
+    let count = 1000;
     for seed in 0..count {
         let (model, contacts) = robot(seed);
         let [mut theta, dtheta, _] = testing::state(&model, seed);
@@ -36,10 +36,11 @@ fn a_thousand_drops_end_and_lose_energy() {
         let size = run.motion.largest_kinetic_energy();
         for k in 1..run.motion.len() {
             let lost = run.motion.energy[k].friction_loss - run.motion.energy[k - 1].friction_loss;
-            if -lost / size > worst { println!("seed {seed} step {k}: {lost:e} of {size}"); }
             worst = worst.max(-lost / size);
         }
     }
-    println!("{count} drops, {steps} steps: largest residual {largest:.1e} m/s, {unsolved} steps above 1e-6, largest gain {worst:.1e} of the kinetic energy");
+    println!(
+        "{count} drops, {steps} steps: largest residual {largest:.1e} m/s, {unsolved} steps above 1e-6, largest gain {worst:.1e} of the kinetic energy"
+    );
     assert!(worst < 1e-9 && unsolved == 0);
 }

@@ -103,9 +103,10 @@ fn friction_in_every_joint_stays_at_rest_in_free_fall() {
         let [theta, mut dtheta, _] = testing::state(&model, seed);
         dtheta.fill(0.0);
         let run = run(&model, &theta, &dtheta, by(Method::Automatic, 0.5, 1e-3));
-        let moved = run.motion.samples().map(|row| {
-            (7..model.nq()).map(|i| (row.theta[i] - theta[i]).abs()).fold(0.0, f64::max)
-        });
+        let moved = run
+            .motion
+            .samples()
+            .map(|row| (7..model.nq()).map(|i| (row.theta[i] - theta[i]).abs()).fold(0.0, f64::max));
         let moved = moved.fold(0.0, f64::max);
         println!("seed {seed}: moved {moved:.1e}, residual {:.1e}", run.one_sided.expect("dry").largest_residual);
         assert!(moved < 1e-12);

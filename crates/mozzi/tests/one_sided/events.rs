@@ -1,6 +1,6 @@
 //! Adaptive steps that end at touch-downs, lift-offs, and where something begins or ceases to slide.
 
-use super::balls::{bounced, ball, rolling, RADIUS};
+use super::balls::{RADIUS, ball, bounced, rolling};
 use super::boxes::on_slope;
 use super::robots::{block, by, pendulum, run};
 use mozzi::simulation::{Method, Options, Plane, Policy, Simulation, torque};
@@ -22,7 +22,12 @@ fn a_block_slides_to_rest_between_events() {
     let (speed, model) = (1.50123, block(2.0, 0.0, 5.0, None));
     let run = run(&model, &[0.0], &[speed], by(DOPRI, 1.0, 0.01));
     let (last, expected) = (run.motion.last(), speed * speed / 5.0);
-    println!("{:.9} m, error {:.1e} m, loss error {:.1e} J", last.theta[0], last.theta[0] - expected, last.energy.friction_loss - speed * speed);
+    println!(
+        "{:.9} m, error {:.1e} m, loss error {:.1e} J",
+        last.theta[0],
+        last.theta[0] - expected,
+        last.energy.friction_loss - speed * speed
+    );
     assert!((last.theta[0] - expected).abs() < 1e-12 && last.dtheta[0] == 0.0);
 }
 
@@ -33,7 +38,12 @@ fn a_spring_loses_the_same_each_half_cycle_between_events() {
     // 1 − 0.046 a half cycle: 0.034 after 21 of them, which μ/k = 0.023 does not hold, then −(0.046 − 0.034)
     let expected = 0.012_f64;
     let last = run.motion.last();
-    println!("rest at {:.6} m, expected {expected:.6}, drift {:.1e}, {} steps", last.theta[0], run.motion.largest_drift(), run.motion.steps);
+    println!(
+        "rest at {:.6} m, expected {expected:.6}, drift {:.1e}, {} steps",
+        last.theta[0],
+        run.motion.largest_drift(),
+        run.motion.steps
+    );
     assert!((last.theta[0].abs() - expected).abs() < 1e-9);
     assert!(last.dtheta[0] == 0.0 && run.motion.largest_drift() < 1e-9);
 }
@@ -47,7 +57,12 @@ fn a_ball_bounces_between_events() {
         worst = worst.max((row.theta[6] - RADIUS - bounced(row.t, 0.8)).abs());
     }
     let last = run.motion.last();
-    println!("largest error {worst:.1e} m, at the end gap {:.1e} m, speed {:.1e}, {} steps", last.theta[6] - RADIUS, last.dtheta[5], run.motion.steps);
+    println!(
+        "largest error {worst:.1e} m, at the end gap {:.1e} m, speed {:.1e}, {} steps",
+        last.theta[6] - RADIUS,
+        last.dtheta[5],
+        run.motion.steps
+    );
     assert!(worst < 1e-9 && last.dtheta[5].abs() < 1e-12);
 }
 
@@ -56,7 +71,8 @@ fn a_ball_begins_to_roll_between_events() {
     let (v, mu, g) = (1.4, 0.2, 9.81);
     let start = [[0.0, 0.0, RADIUS], [0.0; 3], [v, 0.0, 0.0]];
     let rolls = 2.0 * v / (7.0 * mu * g);
-    let run = rolling(&ball(), Plane::ground(), mu, 0.0, start, by(Method::DormandPrince { tolerance: 1e-10 }, 1.0, 0.01));
+    let run =
+        rolling(&ball(), Plane::ground(), mu, 0.0, start, by(Method::DormandPrince { tolerance: 1e-10 }, 1.0, 0.01));
     let way = v * rolls - 0.5 * mu * g * rolls * rolls + 5.0 / 7.0 * v * (1.0 - rolls);
     let last = run.motion.last();
     println!("way error {:.1e} m in {} steps", last.theta[4] - way, run.motion.steps);
@@ -67,12 +83,20 @@ fn a_ball_begins_to_roll_between_events() {
 fn boxes_stick_and_slide_between_events() {
     for points in [4, 8] {
         let (run, way, gap) = on_slope(points, 20_f64.to_radians(), [0.0, 0.0], DOPRI, [1.0, 0.01]);
-        println!("{points} points stick: moved {:.1e} m, gap {gap:.1e} m, {} steps", way[0].hypot(way[1]), run.motion.steps);
+        println!(
+            "{points} points stick: moved {:.1e} m, gap {gap:.1e} m, {} steps",
+            way[0].hypot(way[1]),
+            run.motion.steps
+        );
         assert!(way[0].hypot(way[1]) < 1e-12 && gap < 1e-12);
         let angle = 35_f64.to_radians();
         let a = 9.81 * (angle.sin() - 0.5 * angle.cos());
         let (run, way, gap) = on_slope(points, angle, [0.0, 0.0], DOPRI, [1.0, 0.01]);
-        println!("{points} points slide: error {:.1e} m, gap {gap:.1e} m, {} steps", (way[0] - 0.5 * a).hypot(way[1]), run.motion.steps);
+        println!(
+            "{points} points slide: error {:.1e} m, gap {gap:.1e} m, {} steps",
+            (way[0] - 0.5 * a).hypot(way[1]),
+            run.motion.steps
+        );
         assert!((way[0] - 0.5 * a).hypot(way[1]) < 1e-9 && gap < 1e-12);
     }
 }

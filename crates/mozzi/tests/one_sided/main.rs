@@ -6,5 +6,6 @@ mod boxes;
 mod drops;
 mod dry_friction;
 mod events;
+mod pinocchio;
 mod robots;
 mod stops;

@@ -1,7 +1,7 @@
 //! Stops as impulses, next to dry friction.
 
 use super::robots::{FIXED, block, by, run};
-use mozzi::simulation::{Input, Method, Options, Policy, Simulation, torque};
+use mozzi::simulation::{Method, Options, Policy, Simulation, torque};
 
 #[test]
 fn a_block_is_pushed_against_its_stop_and_pulled_away() {
@@ -28,10 +28,9 @@ fn a_block_is_pushed_against_its_stop_and_pulled_away() {
         let [stop] = &run.stops[..] else { panic!("{:?}", run.stops) };
         assert!((stop.first - impact).abs() < 3e-3 && stop.limit == 0.3 && stop.times == 1);
         // the impact's energy is lost
-        let lost = 5.0 * 0.3 + 1.0 * (0.3 - expected) ;
+        let lost = 5.0 * 0.3 + 1.0 * (0.3 - expected);
         assert!((last.energy.friction_loss - lost).abs() < 0.02, "{:?} {lost}", last.energy);
     }
-    let _ = motor().gains(&mut [0.0], &mut [0.0]);
 }
 
 #[test]

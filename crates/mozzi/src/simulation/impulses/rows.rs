@@ -107,14 +107,7 @@ impl Impulses<'_> {
     }
 
     /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M, which stays factored.
-    pub fn system(
-        &mut self,
-        t: f64,
-        theta: &[f64],
-        h: f64,
-        diagonal: &[f64],
-        choice: Choice,
-    ) -> Result<System, Error> {
+    pub fn system(&mut self, t: f64, theta: &[f64], h: f64, diagonal: &[f64], choice: Choice) -> Result<System, Error> {
         let (model, n) = (self.model, self.model.n());
         let mut rows: Vec<RowDVector<f64>> = Vec::new();
         let (mut w, mut blocks, mut all_axes) = (Vec::new(), Vec::new(), Vec::new());
@@ -190,12 +183,7 @@ impl Impulses<'_> {
     }
 
     /// The body Jacobian of a frame, unless the columns are already its.
-    pub(super) fn columns(
-        &self,
-        theta: &[f64],
-        frame: FrameId,
-        (of, columns): &mut (Option<FrameId>, Vec<Twist>),
-    ) {
+    pub(super) fn columns(&self, theta: &[f64], frame: FrameId, (of, columns): &mut (Option<FrameId>, Vec<Twist>)) {
         if *of != Some(frame) {
             body_jacobian(self.model, theta, frame, columns);
             *of = Some(frame);
