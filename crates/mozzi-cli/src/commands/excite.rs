@@ -222,7 +222,7 @@ fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
     page.title("predicted confidence: base parameters of the robot's file").lines(&table(&rows, "lrr"));
     match out {
         Some(file) => {
-            drop(page.blank().line(format!("{file} is written; check the motion for collisions before you run it")))
+            page.blank().line(format!("{file} is written; check the motion for collisions before you run it"));
         }
         None => failure::note("--out FILE.csv writes the motion"),
     }
