@@ -22,9 +22,9 @@ pub struct RefineOptions {
 }
 
 impl Default for RefineOptions {
-    /// 60 windows of 0.3 s.
+    /// 30 windows of 0.3 s.
     fn default() -> Self {
-        RefineOptions { window: 0.3, windows: 60, iterations: 30 }
+        RefineOptions { window: 0.3, windows: 30, iterations: 20 }
     }
 }
 
@@ -135,7 +135,7 @@ struct Rollouts<'a, 'm> {
 }
 
 /// The largest number of steps between two samples.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 40;
 
 impl Rollouts<'_, '_> {
     /// Steps between two samples, so that Runge-Kutta's method is stable: its largest rate is that of friction.
