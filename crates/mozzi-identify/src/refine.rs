@@ -134,6 +134,15 @@ struct Rollouts<'a, 'm> {
     sizes: Option<[Vec<f64>; 2]>,
 }
 
+/// Rollouts compared with the logs.
+struct Compared {
+    loss: f64,
+    /// By the unknowns.
+    gradient: Vec<f64>,
+    /// Root mean squares of positions and velocities, by joint.
+    errors: [Vec<f64>; 2],
+}
+
 /// The largest number of steps between two samples.
 const MOST_STEPS: usize = 40;
 
@@ -154,8 +163,8 @@ impl Rollouts<'_, '_> {
         Ok(((3.0 * fastest / rate) as usize + 1).clamp(2, MOST_STEPS))
     }
 
-    /// The loss and its gradient by the unknowns, and the sums of squared errors.
-    fn evaluate(&self, x: &[f64]) -> Result<(f64, Vec<f64>, [Vec<f64>; 2]), Error> {
+    /// Runs all windows, and their adjoints.
+    fn evaluate(&self, x: &[f64]) -> Result<Compared, Error> {
         let columns = &self.found.setup.columns;
         let n = columns.model.n();
         let pi = parameters(columns, x)?;
@@ -215,15 +224,15 @@ impl Rollouts<'_, '_> {
             Kind::Stribeck(_) | Kind::Payload(_) | Kind::Gain(_) => 0.0,
         });
         let rms = squares.map(|list| list.into_iter().map(|sum: f64| (sum / count).sqrt()).collect());
-        Ok((loss, gradient.collect(), rms))
+        Ok(Compared { loss, gradient: gradient.collect(), errors: rms })
     }
 
     fn loss(&self, x: &[f64]) -> Result<(f64, Vec<f64>), Error> {
-        self.evaluate(x).map(|(loss, gradient, _)| (loss, gradient))
+        self.evaluate(x).map(|found| (found.loss, found.gradient))
     }
 
     fn errors(&self, x: &[f64]) -> Result<[Vec<f64>; 2], Error> {
-        self.evaluate(x).map(|(.., errors)| errors)
+        self.evaluate(x).map(|found| found.errors)
     }
 }
 

@@ -111,7 +111,9 @@ fn other_differences_are_refused() {
         change(&mut robot);
         edit("arm.urdf", ARM, &robot).expect_err("not edited").to_string()
     };
-    assert!(refused(&|robot| robot.joints[1].damping = 3.0).contains("joint `elbow` differs in other things"));
+    assert!(
+        refused(&|robot| robot.joints[1].limits.effort = Some(3.0)).contains("joint `elbow` differs in other things")
+    );
     assert!(refused(&|robot| robot.links[1].name = "x".into()).contains("its links are others"));
     assert!(refused(&|robot| robot.gravity = [0.0; 3]).contains("gravity"));
 }
