@@ -47,6 +47,9 @@ pub struct Unknown {
     pub prior: f64,
 }
 
+/// A kind of a parameter, by its entry.
+type KindOf = fn(usize) -> Kind;
+
 /// Joint parameters in [`parameters`](Model::parameters): armature, damping, friction, stiffness, preload.
 const OF_JOINT: usize = 5;
 
@@ -98,7 +101,7 @@ impl<'m> Columns<'m> {
                 false => fixed.push((k, values[k])),
             }
         }
-        let kinds: [(bool, fn(usize) -> Kind); 4] = [
+        let kinds: [(bool, KindOf); 4] = [
             (choice.armature, Kind::Armature),
             (choice.viscous, Kind::Viscous),
             (choice.coulomb, Kind::Coulomb),

@@ -185,6 +185,22 @@ impl<'m> Identification<'m> {
         Ok((errors(&self.setup, &self.evidence(), &self.estimates, &other)?, samples, findings))
     }
 
+    /// Replaces the consistent estimate, as after a [refinement](crate::refine()); the errors on the fitted and on the
+    /// held-out part become those of the new one. Those on blocks left out stay: they belong to other fits.
+    ///
+    /// # Errors
+    /// [`Error::NotExciting`].
+    pub fn replace(&mut self, x: Vec<f64>) -> Result<(), Error> {
+        self.estimates.consistent.x = x;
+        let (P, tenths, fitted) = (self.setup.columns.count(), self.tenths, self.evidence());
+        self.fitted = errors(&self.setup, &fitted, &self.estimates, &fitted)?;
+        if self.held_out.is_some() {
+            let rest = Evidence::new(&self.setup.pattern, P, &self.logs, |_, part| part >= tenths);
+            self.held_out = Some(errors(&self.setup, &fitted, &self.estimates, &rest)?);
+        }
+        Ok(())
+    }
+
     /// The equations that were fitted.
     pub fn evidence(&self) -> Evidence {
         Evidence::new(&self.setup.pattern, self.setup.columns.count(), &self.logs, |_, part| part < self.tenths)

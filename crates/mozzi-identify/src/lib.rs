@@ -12,6 +12,7 @@ pub mod judgement;
 mod log;
 mod payload;
 mod predict;
+mod refine;
 mod setup;
 pub mod signals;
 
@@ -25,4 +26,5 @@ pub use identify::{Errors, Identification, Options, identify};
 pub use log::{Log, Rows};
 pub use payload::Carried;
 pub use predict::{identified, parameters, predict};
+pub use refine::{RefineOptions, Refinement, refine};
 pub use setup::{Estimates, Limits, Setup};

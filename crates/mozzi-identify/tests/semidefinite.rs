@@ -39,11 +39,11 @@ fn problem(robot: &str, gamma: f64) -> (Problem, Triangle) {
 #[ignore = "writes the problems for oracles/identify_sdp.py"]
 fn write_problems() {
     let mut all = Vec::new();
-    for (robot, gamma) in [("double_pendulum", 0.3), ("double_pendulum", 0.01), ("furuta_pendulum", 0.3), ("ur5", 0.3)] {
+    for (robot, gamma) in [("double_pendulum", 0.3), ("double_pendulum", 0.01), ("furuta_pendulum", 0.3), ("ur5", 0.3)]
+    {
         let (problem, data) = problem(robot, gamma);
         let P = data.unknowns();
-        let sizes: Vec<f64> =
-            problem.positive.iter().map(|&k| 1.0 / data.R.view((0, k), (P, 1)).norm()).collect();
+        let sizes: Vec<f64> = problem.positive.iter().map(|&k| 1.0 / data.R.view((0, k), (P, 1)).norm()).collect();
         let rows: Vec<Vec<f64>> = (0..P).map(|i| (i..=P).map(|k| data.R[(i, k)]).collect()).collect();
         let bodies: Vec<Value> = problem
             .bodies
@@ -61,7 +61,8 @@ fn write_problems() {
 #[test]
 fn newton_finds_the_optimum_of_the_semidefinite_program() {
     let all: Value = serde_json::from_str(&std::fs::read_to_string(FILE).expect("a file")).expect("JSON");
-    let list = |value: &Value| -> Vec<f64> { value.as_array().expect("a list").iter().filter_map(Value::as_f64).collect() };
+    let list =
+        |value: &Value| -> Vec<f64> { value.as_array().expect("a list").iter().filter_map(Value::as_f64).collect() };
     for one in all.as_array().expect("problems") {
         let P = one["unknowns"].as_u64().expect("a number") as usize;
         let mut data = Triangle::new(P);
@@ -86,7 +87,10 @@ fn newton_finds_the_optimum_of_the_semidefinite_program() {
         // forces in units of their noise, per sample; and the cost, at its minimum flat
         let error = (R.columns(0, P) * difference).norm();
         let cost = one["cost"].as_f64().expect("a number");
-        eprintln!("{} γ {gamma}: {} steps, forces differ by {error:.1e} σ, cost {:.10} and {cost:.10}", one["robot"], found.steps, found.cost);
+        eprintln!(
+            "{} γ {gamma}: {} steps, forces differ by {error:.1e} σ, cost {:.10} and {cost:.10}",
+            one["robot"], found.steps, found.cost
+        );
         assert!(error < 2e-4, "{error:e}");
         assert!(found.cost < cost + 1e-7 * cost.abs().max(1.0), "{} is above {cost}", found.cost);
         assert!((found.cost - cost).abs() < 1e-5 * cost.abs().max(1.0));

@@ -9,6 +9,7 @@ mod describe;
 mod environment;
 mod failure;
 mod html;
+mod identify;
 mod jax;
 mod load;
 mod methods;
@@ -35,6 +36,9 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;
+    module.add_function(wrap_pyfunction!(identify::_identify, module)?)?;
+    module.add_function(wrap_pyfunction!(identify::_excite, module)?)?;
+    module.add_function(wrap_pyfunction!(identify::_edited_urdf, module)?)?;
     jax::add_to(module)?;
     motion::add_to(module)?;
     modern_robotics::add_to(module)?;

@@ -24,6 +24,7 @@ mod drawing;
 mod error;
 pub mod figure;
 mod fit;
+mod fit_json;
 mod motion;
 mod page;
 pub mod pictures;
@@ -34,6 +35,7 @@ mod testing;
 pub use drawing::{Drawing, Meshes};
 pub use error::Error;
 pub use fit::fit_html;
+pub use fit_json::fit_json;
 pub use motion::Motion;
 
 use mozzi::Model;

@@ -1,7 +1,7 @@
 //! A URDF's text is edited in place: lines that do not change stay as they are.
 
 use mozzi::{Description, Model, SpatialInertia, Vec3};
-use mozzi_urdf::{drives_of_fixed_joints, edit, parse};
+use mozzi_urdf::{drives_of_fixed_joints, edit, edit_with_old_values, parse};
 
 const ARM: &str = include_str!("convert/arm.urdf");
 
@@ -111,7 +111,33 @@ fn other_differences_are_refused() {
         change(&mut robot);
         edit("arm.urdf", ARM, &robot).expect_err("not edited").to_string()
     };
-    assert!(refused(&|robot| robot.joints[1].damping = 3.0).contains("joint `elbow` differs in other things"));
+    assert!(
+        refused(&|robot| robot.joints[1].limits.effort = Some(3.0)).contains("joint `elbow` differs in other things")
+    );
     assert!(refused(&|robot| robot.links[1].name = "x".into()).contains("its links are others"));
     assert!(refused(&|robot| robot.gravity = [0.0; 3]).contains("gravity"));
+}
+
+#[test]
+fn friction_and_armature_are_attributes_of_dynamics() {
+    let mut robot = arm().description().clone();
+    for joint in &mut robot.joints {
+        (joint.damping, joint.friction, joint.armature) = (0.5, 1.25, 0.02);
+    }
+    robot.links[1].inertia = robot.links[1].inertia.map(|x| 1.5 * x);
+    let moving = |kind: &str| kind != "fixed";
+    robot.joints.iter_mut().filter(|joint| !moving(joint.kind.name())).for_each(|joint| {
+        (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
+    });
+    let mimics: Vec<String> = robot.joints.iter().filter(|j| j.mimic.is_some()).map(|j| j.name.clone()).collect();
+    let text = edit("arm.urdf", ARM, &robot).expect("edited");
+    let again = parse("again.urdf", &text).expect("sound").description;
+    for (found, expected) in again.joints.iter().zip(&robot.joints).filter(|(joint, _)| !mimics.contains(&joint.name)) {
+        let of = |joint: &mozzi::model::description::Joint| [joint.damping, joint.friction, joint.armature];
+        assert_eq!(of(found), of(expected), "{}", found.name);
+    }
+    let commented = edit_with_old_values("arm.urdf", ARM, &robot).expect("edited");
+    assert!(commented.contains("<!-- before: mass ") && commented.contains("<!-- before: damping "), "{commented}");
+    let again = parse("again.urdf", &commented).expect("sound").description;
+    assert_eq!(again.links[1].inertia.mass, robot.links[1].inertia.mass);
 }

@@ -208,7 +208,8 @@ fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
         "condition number {:.1}; of a random motion within the same limits {:.1}",
         found.condition, found.condition_of_random
     ));
-    let weak = found.parameters.iter().filter(|(_, value, deviation)| !(deviation < &value.abs())).count();
+    let weak =
+        found.parameters.iter().filter(|(_, value, deviation)| *value != 0.0 && !(deviation < &value.abs())).count();
     page.line(format!(
         "{weak} of {} base parameters will have a deviation larger than their value",
         found.parameters.len()
@@ -222,7 +223,7 @@ fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
     page.title("predicted confidence: base parameters of the robot's file").lines(&table(&rows, "lrr"));
     match out {
         Some(file) => {
-            drop(page.blank().line(format!("{file} is written; check the motion for collisions before you run it")))
+            page.blank().line(format!("{file} is written; check the motion for collisions before you run it"));
         }
         None => failure::note("--out FILE.csv writes the motion"),
     }

@@ -87,7 +87,7 @@ impl Problem {
     }
 }
 
-struct Newton<'p> {
+pub(crate) struct Newton<'p> {
     problem: &'p Problem,
     P: usize,
     /// Whitened triangle, and what no x can reach.
@@ -97,7 +97,7 @@ struct Newton<'p> {
     /// 2RᵀR + a ridge.
     H: DMatrix<f64>,
     /// From whitened to plain unknowns.
-    T: DMatrix<f64>,
+    pub(crate) T: DMatrix<f64>,
     basis: [Matrix4<f64>; 10],
     /// Sizes of positive unknowns that matter to the data.
     sizes: Vec<f64>,
@@ -106,7 +106,7 @@ struct Newton<'p> {
 }
 
 impl<'p> Newton<'p> {
-    fn new(problem: &'p Problem, data: &Triangle) -> Self {
+    pub(crate) fn new(problem: &'p Problem, data: &Triangle) -> Self {
         let P = data.unknowns();
         let mut T = DMatrix::identity(P, P);
         for (first, prior, _) in &problem.bodies {
@@ -181,7 +181,8 @@ impl<'p> Newton<'p> {
             && self.problem.bodies.iter().all(|(first, ..)| self.body(y, *first).cholesky().is_some())
     }
 
-    fn cost(&self, y: &DVector<f64>, gamma: f64) -> f64 {
+    /// The cost; infinite outside of the cones.
+    pub(crate) fn cost(&self, y: &DVector<f64>, gamma: f64) -> f64 {
         let mut cost = (&self.R * y - &self.z).norm_squared();
         for (first, _, weight) in &self.problem.bodies {
             let W = self.body(y, *first);
@@ -207,7 +208,7 @@ impl<'p> Newton<'p> {
     }
 
     /// The gradient, and the Hessian without that of the data.
-    fn derivatives(&self, y: &DVector<f64>, gamma: f64) -> (DVector<f64>, DMatrix<f64>) {
+    pub(crate) fn derivatives(&self, y: &DVector<f64>, gamma: f64) -> (DVector<f64>, DMatrix<f64>) {
         let mut g = 2.0 * self.R.tr_mul(&(&self.R * y - &self.z));
         let mut H = DMatrix::zeros(self.P, self.P);
         for (first, _, weight) in &self.problem.bodies {
@@ -234,6 +235,25 @@ impl<'p> Newton<'p> {
             H.ger(BARRIER / (s * s), a, a, 1.0);
         }
         (g, H)
+    }
+
+    /// L⁻ᵀ of the cost's Hessian L Lᵀ: steps of its columns change the cost alike.
+    ///
+    /// # Errors
+    /// [`Error::NotExciting`] if the Hessian is singular.
+    pub(crate) fn directions(&self, y: &DVector<f64>, gamma: f64) -> Result<DMatrix<f64>, Error> {
+        let (_, prior) = self.derivatives(y, gamma);
+        let factor = self.factor(&self.H + prior)?;
+        let singular = || Error::NotExciting { reason: "the equations are singular".into() };
+        let L = factor.cholesky.l();
+        let mut S = L.transpose().solve_upper_triangular(&DMatrix::identity(self.P, self.P)).ok_or_else(singular)?;
+        S.row_iter_mut().zip(&factor.scale).for_each(|(mut row, scale)| row.scale_mut(*scale));
+        Ok(S)
+    }
+
+    /// Whitened unknowns from plain ones.
+    pub(crate) fn whitened(&self, x: &[f64]) -> Option<DVector<f64>> {
+        self.T.clone().lu().solve(&DVector::from_column_slice(x))
     }
 
     /// Solves with a positive definite matrix, its diagonal scaled to 1.

@@ -118,7 +118,7 @@ mod tests {
         for (m, r) in points {
             let r1 = nalgebra::Vector4::new(r[0], r[1], r[2], 1.0);
             J += m * r1 * r1.transpose();
-            G = G + mozzi::SpatialInertia::point_mass(m, mozzi::Vec3(r));
+            G += mozzi::SpatialInertia::point_mass(m, mozzi::Vec3(r));
         }
         assert!((pseudo_inertia(&G.to_parameters()) - J).amax() < 1e-14);
         let back = parameters(&J);

@@ -3,12 +3,13 @@
 /// Pairs that are kept.
 const MEMORY: usize = 12;
 
-/// Minimizes `f`, which returns its value and gradient, from `x`. Ends after `iterations`, if the value falls by less
+/// Minimizes `f`, which returns its value and gradient, from `x`; the first step is at most `first` long. Ends after `iterations`, if the value falls by less
 /// than `tolerance` of itself ten times in a row, or if `stop` says so. Returns the least value.
 pub fn minimize(
     x: &mut Vec<f64>,
     iterations: usize,
     tolerance: f64,
+    first: f64,
     mut f: impl FnMut(&[f64]) -> (f64, Vec<f64>),
     stop: &dyn Fn() -> bool,
 ) -> f64 {
@@ -26,7 +27,11 @@ pub fn minimize(
             step = gradient.iter().map(|g| -g).collect();
             slope = -dot(&gradient, &gradient);
         }
-        let mut t = if pairs.is_empty() { 0.1 / dot(&gradient, &gradient).sqrt().max(f64::MIN_POSITIVE) } else { 1.0 };
+        let mut t = if pairs.is_empty() {
+            (first / dot(&gradient, &gradient).sqrt().max(f64::MIN_POSITIVE)).min(1.0)
+        } else {
+            1.0
+        };
         let mut accepted = None;
         for _ in 0..40 {
             let next: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + t * s).collect();
@@ -93,7 +98,7 @@ mod tests {
             let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
             (a * a + 100.0 * b * b, vec![-2.0 * a - 400.0 * b * x[0], 200.0 * b])
         };
-        let least = minimize(&mut x, 200, 1e-16, f, &|| false);
+        let least = minimize(&mut x, 200, 1e-16, 0.1, f, &|| false);
         assert!(least < 1e-12 && (x[0] - 1.0).abs() < 1e-5, "{least:e} at {x:?}");
     }
 }

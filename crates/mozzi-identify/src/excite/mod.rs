@@ -133,7 +133,7 @@ pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -
                 }
                 (value, gradient)
             };
-            lbfgs::minimize(&mut c, options.iterations, 1e-5, f, stop);
+            lbfgs::minimize(&mut c, options.iterations, 1e-5, 0.1, f, stop);
         }
         objective.shrink(&mut c);
         let value = objective.value(&c, 0.0).0;

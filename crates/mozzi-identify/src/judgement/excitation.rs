@@ -18,14 +18,17 @@ pub struct Parameter {
     pub consistent: f64,
     /// The standard deviation of least squares; infinite if the motion does not determine it.
     pub deviation: f64,
+    /// What one deviation changes in the forces, relative to their root mean square.
+    pub effect: f64,
     /// What would determine it better, if it is not determined well.
     pub advice: Option<String>,
 }
 
 impl Parameter {
-    /// Whether the standard deviation is larger than the value.
+    /// Whether the standard deviation is larger than the value, and more than 1 % of the forces: a parameter that is 0
+    /// for certain is determined.
     pub fn is_weak(&self) -> bool {
-        !(self.deviation < self.least_squares.abs())
+        !(self.deviation < self.least_squares.abs()) && !(self.effect < 0.01)
     }
 }
 
@@ -39,6 +42,9 @@ pub fn parameters(found: &Identification<'_>) -> Result<Vec<Parameter>, Error> {
     let robot = setup.base.values(&columns.prior());
     let consistent = setup.base.values(&estimates.consistent.x);
     let advisor = Advisor::new(columns)?;
+    let evidence = found.evidence();
+    let force: Vec<f64> = evidence.rms().iter().map(|rms| rms.max(f64::MIN_POSITIVE.sqrt())).collect();
+    let relative = evidence.weighted(&force);
     let mut all = Vec::new();
     for (row, name) in setup.base.names().into_iter().enumerate() {
         let k = setup.base.columns[row];
@@ -48,6 +54,7 @@ pub fn parameters(found: &Identification<'_>) -> Result<Vec<Parameter>, Error> {
             least_squares: estimates.least_squares.values[row],
             consistent: consistent[row],
             deviation: estimates.least_squares.deviations[row],
+            effect: estimates.least_squares.deviations[row] * relative.R.column(k).norm(),
             advice: None,
         };
         if one.is_weak() {

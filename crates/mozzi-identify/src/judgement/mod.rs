@@ -48,7 +48,10 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     if weak > 0 {
         findings.push(Finding::note(
             "not_excited",
-            format!("{weak} of {} base parameters have a standard deviation larger than their value", parameters.len()),
+            format!(
+                "{weak} of {} base parameters have a standard deviation larger than their value and 1 % of the forces",
+                parameters.len()
+            ),
         ));
     }
     let condition = found.estimates.least_squares.condition;

@@ -5,6 +5,7 @@ Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What t
 
 from . import _quantities, controllers, conventions, models, modern_robotics, trajectories
 from ._compare import Comparison, compare
+from ._identify import Excitation, Forces, Identification, excite, identify
 from ._mozzi import (
     DivergedError,
     DynamicsWarning,
@@ -49,6 +50,9 @@ __all__ = [
     "DivergedError",
     "DynamicsWarning",
     "Engine",
+    "Excitation",
+    "Forces",
+    "Identification",
     "InverseKinematics",
     "LimitReached",
     "LoadError",
@@ -70,6 +74,8 @@ __all__ = [
     "compare",
     "controllers",
     "conventions",
+    "excite",
+    "identify",
     "models",
     "modern_robotics",
     "trajectories",

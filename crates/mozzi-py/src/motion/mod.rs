@@ -5,7 +5,7 @@ mod frame_path;
 mod goals;
 mod instants;
 mod inverse_kinematics;
-mod limits;
+pub mod limits;
 mod path;
 mod profile;
 mod reference;

@@ -5,20 +5,19 @@ mod joint_states;
 mod log_file;
 mod names;
 mod page;
-mod result;
 
 use crate::columns::save;
 use crate::commands::convert::{edits, urdf};
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number, numbers};
 use crate::robot::RobotArguments;
-use crate::{interrupt, robot_json};
+use crate::{interrupt, json, robot_json};
 use clap::{Args, ValueEnum};
 use log_file::read_log;
 use mozzi::Model;
 use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
-use mozzi_identify::{Choice, Limits, Log, Options, Sensor, describe, identify};
+use mozzi_identify::{Choice, Limits, Log, Options, RefineOptions, Sensor, describe, identify, refine};
 
 #[derive(Args, Debug)]
 pub struct IdentifyArguments {
@@ -73,6 +72,9 @@ pub struct IdentifyArguments {
     /// Width of Coulomb friction, μ tanh(θ̇/w), rad/s or m/s
     #[arg(long, value_name = "SPEED", default_value = "0.05", allow_hyphen_values = true)]
     width: String,
+    /// Then refine on rollouts: motions of 0.3 s, driven by the measured forces, by exact gradients
+    #[arg(long)]
+    refine: bool,
     /// Estimate springs
     #[arg(long)]
     springs: bool,
@@ -136,7 +138,12 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     }
     arguments.known_payloads(&model, &mut logs)?;
     interrupt::listen();
-    let found = identify(&model, &logs, &options, &interrupt::asked)?;
+    let mut found = identify(&model, &logs, &options, &interrupt::asked)?;
+    if arguments.refine {
+        let refined = refine(&found, &RefineOptions::default(), &interrupt::asked)?;
+        page::refinement(&model, &refined).iter().for_each(|line| failure::note(line));
+        found.replace(refined.x)?;
+    }
     let mut judged = judge(&found, &logs)?;
     let mut validations = Vec::new();
     for file in &arguments.validate {
@@ -163,7 +170,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
         save(file, mozzi_report::fit_html(&found, &judged, &validations))?;
     }
     let text = match arguments.robot.json {
-        true => result::object(&found, &judged, &validations),
+        true => json::print(&json::of_robot(&model, mozzi_report::fit_json(&found, &judged, &validations))),
         false => page::text(&found, &judged, &validations, arguments.out.as_deref()),
     };
     if found.estimates.consistent.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }

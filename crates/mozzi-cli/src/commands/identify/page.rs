@@ -1,8 +1,9 @@
 //! The result as text.
 
 use crate::text::{Page, table};
+use mozzi::Model;
 use mozzi_identify::judgement::Judgement;
-use mozzi_identify::{Errors, Identification, Kind};
+use mozzi_identify::{Errors, Identification, Kind, Refinement};
 
 pub fn text(
     found: &Identification<'_>,
@@ -105,4 +106,15 @@ fn weak(page: &mut Page, judged: &Judgement) {
         ]);
     }
     page.title("base parameters that the motion does not determine").lines(&table(&rows, "lrrl"));
+}
+
+/// Errors of rollouts before and after the refinement.
+pub fn refinement(model: &Model, refined: &Refinement) -> Vec<String> {
+    let line = |(j, name): (usize, &str)| {
+        format!(
+            "rollouts of {name}: position error {:.2e} before, {:.2e} after; velocity error {:.2e}, {:.2e}",
+            refined.before[0][j], refined.after[0][j], refined.before[1][j], refined.after[1][j]
+        )
+    };
+    model.velocity_names().enumerate().map(line).collect()
 }

@@ -1,11 +1,11 @@
-//! The result as JSON.
+//! The result of an identification as JSON.
 
-use crate::json::{self, vector};
 use mozzi_identify::judgement::Judgement;
 use mozzi_identify::{Errors, Identification};
 use serde_json::{Value, json};
 
-pub fn object(found: &Identification<'_>, judged: &Judgement, validations: &[(String, Errors)]) -> String {
+/// Parameters, base parameters, errors, residuals and findings, by name.
+pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(String, Errors)]) -> Value {
     let (setup, estimates) = (&found.setup, &found.estimates);
     let optimum = &estimates.consistent;
     let unknowns: Vec<Value> = setup
@@ -49,29 +49,26 @@ pub fn object(found: &Identification<'_>, judged: &Judgement, validations: &[(St
         .collect();
     let validations: Vec<Value> =
         validations.iter().map(|(file, errors)| json!({ "log": file, "errors": of_errors(errors) })).collect();
-    json::print(&json::of_robot(
-        setup.columns.model,
-        json!({
-            "condition": estimates.least_squares.condition,
-            "determined": estimates.least_squares.rank,
-            "steps": optimum.steps,
-            "sigma": vector(&estimates.least_squares.sigma),
-            "parameters": unknowns,
-            "base_parameters": base,
-            "fitted": of_errors(&found.fitted),
-            "left_out": found.left_out.as_ref().map(of_errors),
-            "held_out": found.held_out.as_ref().map(of_errors),
-            "validations": validations,
-            "residuals": residuals,
-            "findings": findings,
-        }),
-    ))
+    json!({
+        "condition": estimates.least_squares.condition,
+        "determined": estimates.least_squares.rank,
+        "steps": optimum.steps,
+        "sigma": estimates.least_squares.sigma,
+        "parameters": unknowns,
+        "base_parameters": base,
+        "fitted": of_errors(&found.fitted),
+        "left_out": found.left_out.as_ref().map(of_errors),
+        "held_out": found.held_out.as_ref().map(of_errors),
+        "validations": validations,
+        "residuals": residuals,
+        "findings": findings,
+    })
 }
 
 fn of_errors(errors: &Errors) -> Value {
     json!({
-        "force": vector(&errors.force), "robot": vector(&errors.robot), "friction": vector(&errors.friction),
-        "least_squares": vector(&errors.least_squares), "consistent": vector(&errors.consistent),
+        "force": errors.force, "robot": errors.robot, "friction": errors.friction,
+        "least_squares": errors.least_squares, "consistent": errors.consistent,
         "nrms": errors.normalized(&errors.consistent),
     })
 }

@@ -1,0 +1,242 @@
+"""Identify a robot from logs of its motion, and find motions that determine it."""
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from numpy.typing import NDArray
+
+from ._mozzi import Model, _edited_urdf, _excite, _identify
+
+Array = NDArray[Any]
+_Logs = Mapping[str, Any] | Sequence[Mapping[str, Any]]
+
+
+class Forces(NamedTuple):
+    """Measured and predicted forces of one log, filtered."""
+
+    t: Array
+    """Times, s, shape (N,)."""
+    measured: Array
+    """Shape (N, n)."""
+    predicted: Array
+    """Shape (N, n)."""
+
+
+class Identification:
+    """The result of ``mozzi.identify``.
+
+    Attributes
+    ----------
+    model : Model
+        The identified robot: links that can exist, friction, armature.
+    report : dict
+        As ``mozzi identify --json``: "parameters", "base_parameters", "fitted", "left_out", "held_out", "validations", "residuals",
+        "findings", "condition".
+    forces : list of Forces
+        Measured and predicted forces of each log.
+    """
+
+    def __init__(self, report: dict[str, Any], html: str, model: Model, forces: list[Forces]) -> None:
+        self.report = report
+        self.model = model
+        self.forces = forces
+        self._html = html
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The identified parameters by name."""
+        return {entry["name"]: entry["value"] for entry in self.report["parameters"]}
+
+    @property
+    def findings(self) -> list[str]:
+        """What was noticed: warnings first."""
+        found = sorted(self.report["findings"], key=lambda entry: entry["level"] != "warning")
+        return [f"{entry['level']}: {entry['text']}" for entry in found]
+
+    def html(self, path: str | os.PathLike[str]) -> None:
+        """Write the report as one HTML file."""
+        Path(path).write_text(self._html, encoding="utf-8")
+
+    def write_urdf(
+        self, source: str | os.PathLike[str], path: str | os.PathLike[str], *, old_values: bool = False
+    ) -> None:
+        """Write the robot's URDF, ``source``, with the identified numbers; other text stays.
+
+        Parameters
+        ----------
+        source : path
+            The robot's URDF.
+        path : path
+            The file that is written.
+        old_values : bool
+            Keep the old numbers in comments.
+        """
+        text = Path(source).read_text(encoding="utf-8")
+        Path(path).write_text(_edited_urdf(str(source), text, self.model, old_values), encoding="utf-8")
+
+    def __repr__(self) -> str:
+        errors = self.report["left_out"] or self.report["fitted"]
+        kind = "left out" if self.report["left_out"] else "fitted"
+        return f"<mozzi.Identification, {len(self.report['parameters'])} parameters, NRMS {100 * errors['nrms']:.2f} % ({kind})>"
+
+
+def identify(
+    model: Model,
+    logs: _Logs,
+    *,
+    torque: Literal["motor", "link"] = "motor",
+    only: Literal["payload", "friction"] | None = None,
+    payload: str | None = None,
+    cutoff: float | None = None,
+    acceleration: Literal["differences", "spline"] = "differences",
+    prior: float = 0.3,
+    robust: bool = False,
+    fit: float = 1.0,
+    stribeck: float | None = None,
+    width: float = 0.05,
+    springs: bool = False,
+    offsets: bool = True,
+    total_mass: tuple[float, float] | None = None,
+    lock: Mapping[str, float] | None = None,
+    validate: _Logs = (),
+) -> Identification:
+    """Identify masses, inertias, friction and armature from logs of the robot's motion.
+
+    Parameters
+    ----------
+    model : Model
+        The robot; its own values are the prior where the data is silent.
+    logs : mapping or sequence of mappings
+        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and "dtheta", "ddtheta" (N, n) if they are known.
+    torque : {'motor', 'link'}
+        Where forces are measured; behind the gear, armature is not estimated.
+    only : {'payload', 'friction'}, optional
+        Estimate these alone.
+    payload : str, optional
+        The frame that carries the payload; by default the end effector.
+    cutoff : float, optional
+        Cut-off of the zero-phase filter, Hz; ``inf`` for none; by default five times the velocities' band.
+    acceleration : {'differences', 'spline'}
+        How accelerations are computed.
+    prior : float
+        Weight of the robot's own values.
+    robust : bool
+        Let large residuals count less.
+    fit : float
+        Part of each log that is fitted, in tenths; the rest is predicted.
+    stribeck : float, optional
+        Add Stribeck friction with this velocity.
+    width : float
+        Width of Coulomb friction, μ tanh(θ̇/w).
+    springs, offsets : bool
+        Estimate springs, and constant forces.
+    total_mass : (float, float), optional
+        The mass of all moving links, kg, and its standard deviation.
+    lock : mapping, optional
+        Joints that the logs do not contain, with their positions.
+    validate : mapping or sequence of mappings
+        Other logs, whose forces are predicted.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    ValueError
+        A log is too short or does not excite the robot, or an option is wrong.
+    """
+    options = {
+        "torque": torque,
+        "only": only,
+        "payload": payload,
+        "cutoff": cutoff,
+        "spline": acceleration == "spline",
+        "prior": float(prior),
+        "robust": robust,
+        "fit": float(fit),
+        "stribeck": stribeck,
+        "width": float(width),
+        "springs": springs,
+        "offsets": offsets,
+        "total_mass": total_mass,
+        "lock": list(lock.items()) if lock else None,
+    }
+    report, html, found, forces = _identify(model, _listed(logs), _listed(validate), options)
+    return Identification(json.loads(report), html, found, [Forces(*one) for one in forces])
+
+
+def _listed(logs: _Logs) -> list[Mapping[str, Any]]:
+    return [logs] if isinstance(logs, Mapping) else list(logs)
+
+
+class Excitation(NamedTuple):
+    """A motion that determines a robot's parameters."""
+
+    t: Array
+    """Times, s, shape (N,)."""
+    theta: Array
+    """Shape (N, n)."""
+    dtheta: Array
+    """Shape (N, n)."""
+    ddtheta: Array
+    """Shape (N, n)."""
+    condition: float
+    """The condition number of the base regressor with unit columns."""
+    condition_of_random: float
+    """The same of a random motion within the same limits."""
+    parameters: dict[str, tuple[float, float]]
+    """Base parameters: the robot's value, and the standard deviation that a log of the motion will give."""
+
+
+def excite(
+    model: Model,
+    duration: float = 20.0,
+    *,
+    step: float = 0.01,
+    harmonics: int = 5,
+    velocity: Any = None,
+    acceleration: Any = None,
+    torque_limit: Any = None,
+    noise: Any = None,
+    rate: float = 100.0,
+    torque: Literal["motor", "link"] = "motor",
+) -> Excitation:
+    """Find a motion that determines the robot's parameters, within limits.
+
+    Parameters
+    ----------
+    model : Model
+        A robot on a fixed base whose joints have one axis each.
+    duration, step : float
+        Duration, and time between two rows, s.
+    harmonics : int
+        Harmonics of the Fourier series.
+    velocity, acceleration, torque_limit : array_like, optional
+        Limits, one number or one for each joint; by default the robot's.
+    noise : array_like, optional
+        Standard deviation of the forces' noise; by default 1 % of the torque limits.
+    rate : float
+        Independent samples per second of the later log.
+    torque : {'motor', 'link'}
+        Where forces will be measured.
+
+    Returns
+    -------
+    Excitation
+    """
+    options = {
+        "velocity": velocity,
+        "acceleration": acceleration,
+        "torque": torque,
+        "noise": noise,
+        "harmonics": harmonics,
+        "rate": float(rate),
+        "torque_limit": torque_limit,
+    }
+    arrays, condition, of_random, parameters = _excite(model, float(duration), float(step), options)
+    values = {name: (value, deviation) for name, value, deviation in parameters}
+    return Excitation(*arrays, condition, of_random, values)

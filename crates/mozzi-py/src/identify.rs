@@ -1,0 +1,212 @@
+//! Identification from logs: `mozzi.identify`, `mozzi.excite`.
+
+use crate::array::list;
+use crate::failure::of_model;
+use crate::model::{PyModel, array};
+use crate::motion::limits::one_or_each;
+use mozzi::Model;
+use mozzi_identify::excite::{ExciteOptions, excite};
+use mozzi_identify::judgement::judge;
+use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
+use mozzi_identify::{Choice, Error, Limits, Log, Options, Sensor, describe, identify, predict};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+fn of_identification(error: Error) -> PyErr {
+    match error {
+        Error::Model(error) => of_model(error),
+        other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+/// A log from a mapping of arrays: t, theta, tau, and dtheta or ddtheta if they are there.
+fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> {
+    let need = |name: &str| {
+        given
+            .get_item(name)
+            .map_err(|_| PyValueError::new_err(format!("log {number} has no '{name}', expected t, theta and tau")))
+    };
+    let t = need("t")?;
+    let rows = t.len()?;
+    let optional = |name: &'static str| -> PyResult<Option<Vec<f64>>> {
+        match given.contains(name)? {
+            true => list(name, &given.get_item(name)?, &[rows, model.n()]).map(Some),
+            false => Ok(None),
+        }
+    };
+    Ok(Log {
+        name: format!("log {number}"),
+        t: list("t", &t, &[rows])?,
+        theta: list("theta", &need("theta")?, &[rows, model.nq()])?,
+        dtheta: optional("dtheta")?,
+        ddtheta: optional("ddtheta")?,
+        tau: list("tau", &need("tau")?, &[rows, model.n()])?,
+        ..Log::default()
+    })
+}
+
+/// The value of an option; None if it is missing or None.
+fn option<'py, T>(options: &Bound<'py, PyDict>, name: &str) -> PyResult<Option<T>>
+where
+    T: for<'a> FromPyObject<'a, 'py, Error = PyErr>,
+{
+    match options.get_item(name)? {
+        Some(value) if !value.is_none() => value.extract().map(Some),
+        _ => Ok(None),
+    }
+}
+
+fn choice(model: &Model, options: &Bound<'_, PyDict>) -> PyResult<Choice> {
+    let torque: String = option(options, "torque")?.unwrap_or_else(|| "motor".into());
+    let sensor = match torque.as_str() {
+        "motor" => Sensor::Motor,
+        "link" => Sensor::Link,
+        other => return Err(PyValueError::new_err(format!("torque is '{other}', expected 'motor' or 'link'"))),
+    };
+    let only: Option<String> = option(options, "only")?;
+    let mut choice = match only.as_deref() {
+        None => Choice::all(sensor),
+        Some("friction") => Choice::only_friction(),
+        Some("payload") => {
+            let frame = match option::<String>(options, "payload")? {
+                Some(name) => model.frame(&name),
+                None => model.end_effector(),
+            };
+            Choice::only_payload(frame.map_err(of_model)?)
+        }
+        Some(other) => {
+            return Err(PyValueError::new_err(format!("only is '{other}', expected 'payload' or 'friction'")));
+        }
+    };
+    choice.width = option(options, "width")?.unwrap_or(choice.width);
+    choice.stribeck = option(options, "stribeck")?;
+    choice.stiffness = option(options, "springs")?.unwrap_or(false);
+    choice.offset = option(options, "offsets")?.unwrap_or(true);
+    Ok(choice)
+}
+
+/// The report as JSON and as HTML, the identified robot, and the predicted forces of each log, N × n of those samples
+/// that were used, with their times.
+#[pyfunction]
+pub fn _identify<'py>(
+    py: Python<'py>,
+    model: &Bound<'py, PyModel>,
+    logs: Vec<Bound<'py, PyAny>>,
+    validate: Vec<Bound<'py, PyAny>>,
+    options: &Bound<'py, PyDict>,
+) -> PyResult<(String, String, PyModel, Vec<[Bound<'py, PyAny>; 3]>)> {
+    let whole = &model.get().robot().model;
+    let locks: Vec<(String, f64)> = option(options, "lock")?.unwrap_or_default();
+    let locks: Vec<(&str, f64)> = locks.iter().map(|(name, position)| (name.as_str(), *position)).collect();
+    let robot = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks).map_err(of_model)? };
+    let read = |all: &[Bound<'py, PyAny>]| -> PyResult<Vec<Log>> {
+        all.iter().enumerate().map(|(k, given)| log(&robot, given, k + 1)).collect()
+    };
+    let (logs, validate) = (read(&logs)?, read(&validate)?);
+    let cutoff = match option::<f64>(options, "cutoff")? {
+        Some(f) if f.is_infinite() => Cutoff::None,
+        Some(f) => Cutoff::Hz(f),
+        None => Cutoff::Automatic,
+    };
+    let spline: bool = option(options, "spline")?.unwrap_or(false);
+    let acceleration = if spline { Acceleration::Spline } else { Acceleration::Differences };
+    let total_mass: Option<(f64, f64)> = option(options, "total_mass")?;
+    let tenths: f64 = 10.0 * option(options, "fit")?.unwrap_or(1.0);
+    let settings = Options {
+        choice: choice(&robot, options)?,
+        filter: Filter { cutoff, acceleration, ..Filter::default() },
+        prior: option(options, "prior")?.unwrap_or(0.3),
+        robust: option(options, "robust")?.unwrap_or(false),
+        limits: Limits { total_mass: total_mass.map(|(m, d)| [m, d]), ..Limits::default() },
+        tenths: tenths.round() as usize,
+    };
+    let stop = || Python::attach(|py| py.check_signals().is_err());
+    let work = || -> Result<_, Error> {
+        let found = identify(&robot, &logs, &settings, &stop)?;
+        let mut judged = judge(&found, &logs)?;
+        let mut validations = Vec::new();
+        for (k, log) in validate.iter().enumerate() {
+            let (errors, _, findings) = found.validate(log, &settings.filter)?;
+            judged.findings.extend(findings);
+            validations.push((format!("validation {}", k + 1), errors));
+        }
+        let x = &found.estimates.consistent.x;
+        let (description, findings) = describe(&found.setup.columns, x, whole.description())?;
+        judged.findings.extend(findings);
+        let json = mozzi_report::fit_json(&found, &judged, &validations).to_string();
+        let html = mozzi_report::fit_html(&found, &judged, &validations);
+        let mut series = Vec::new();
+        for samples in &found.samples {
+            series.push((samples.t.clone(), samples.tau.clone(), predict(&found.setup.columns, x, samples)?));
+        }
+        Ok((json, html, description, series))
+    };
+    let (json, html, description, series) = py.detach(work).map_err(of_identification)?;
+    let n = robot.n();
+    let mut tables = Vec::new();
+    for (t, measured, predicted) in series {
+        let N = t.len();
+        tables.push([array(py, &[N], t)?, array(py, &[N, n], measured)?, array(py, &[N, n], predicted)?]);
+    }
+    Ok((json, html, PyModel::built(description.build())?, tables))
+}
+
+/// t, θ, θ̇ and θ̈ of a motion, its condition number and that of a random one, and base parameters with the deviations
+/// that its log will give.
+#[pyfunction]
+#[allow(clippy::type_complexity)] // a tuple for Python, which names its parts
+pub fn _excite<'py>(
+    py: Python<'py>,
+    model: &Bound<'py, PyModel>,
+    duration: f64,
+    step: f64,
+    options: &Bound<'py, PyDict>,
+) -> PyResult<([Bound<'py, PyAny>; 4], f64, f64, Vec<(String, f64, f64)>)> {
+    let robot = &model.get().robot().model;
+    let mut settings = ExciteOptions::new(robot, duration);
+    if !(step > 0.0 && duration / step < 1e7) {
+        return Err(PyValueError::new_err(format!("step is {step}, expected a positive number of seconds")));
+    }
+    let n = robot.n();
+    let limits = &mut settings.limits;
+    for (name, place) in [
+        ("velocity", &mut limits.velocity),
+        ("acceleration", &mut limits.acceleration),
+        ("torque_limit", &mut limits.torque),
+        ("noise", &mut settings.noise),
+    ] {
+        if let Some(given) = options.get_item(name)?.filter(|given| !given.is_none()) {
+            *place = one_or_each(name, &given, n)?;
+        }
+    }
+    settings.harmonics = option(options, "harmonics")?.unwrap_or(settings.harmonics);
+    settings.rate = option(options, "rate")?.unwrap_or(settings.rate);
+    settings.choice = choice(robot, options)?;
+    let stop = || Python::attach(|py| py.check_signals().is_err());
+    let found = py.detach(|| excite(robot, &settings, &stop)).map_err(of_identification)?;
+    let count = (duration / step).round() as usize;
+    let mut tables: [Vec<f64>; 4] = Default::default();
+    for k in 0..=count {
+        let t = (k as f64 * step).min(duration);
+        tables[0].push(t);
+        tables[1..].iter_mut().zip(found.at(t)).for_each(|(table, row)| table.extend(row));
+    }
+    let [t, theta, dtheta, ddtheta] = tables;
+    let shape = [count + 1, n];
+    let arrays = [
+        array(py, &shape[..1], t)?,
+        array(py, &shape, theta)?,
+        array(py, &shape, dtheta)?,
+        array(py, &shape, ddtheta)?,
+    ];
+    Ok((arrays, found.condition, found.condition_of_random, found.parameters))
+}
+
+/// A URDF's text with this robot's numbers.
+#[pyfunction]
+pub fn _edited_urdf(name: &str, text: &str, model: &Bound<'_, PyModel>, old_values: bool) -> PyResult<String> {
+    let robot = model.get().robot().model.description();
+    let edited = if old_values { mozzi_urdf::edit_with_old_values } else { mozzi_urdf::edit };
+    edited(name, text, robot).map_err(|error| PyValueError::new_err(error.to_string()))
+}
