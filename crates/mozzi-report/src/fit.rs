@@ -19,10 +19,10 @@ pub fn fit_html(found: &Identification<'_>, judged: &Judgement, validations: &[(
     let mut body = format!("<h1>{name}, identified</h1>\n");
     let least_squares = &found.estimates.least_squares;
     let samples: usize = found.samples.iter().map(|samples| samples.count()).sum();
-    let _ = write!(
+    let _ = writeln!(
         body,
         "<p>{samples} samples; {} of {} base parameters determined; condition number {:.0}. Differences below 3 % mean \
-         nothing on one trajectory.</p>\n",
+         nothing on one trajectory.</p>",
         least_squares.rank,
         found.setup.base.count(),
         least_squares.condition
