@@ -44,3 +44,28 @@ fn a_thousand_drops_end_and_lose_energy() {
     );
     assert!(worst < 1e-9 && unsolved == 0);
 }
+
+#[test]
+fn drops_end_by_every_method() {
+    let dopri = Method::DormandPrince { tolerance: 1e-6 };
+    for method in [dopri, Method::RungeKutta4, Method::SemiImplicitEuler, Method::Midpoint] {
+        let (mut ended, mut refused, mut worst, mut steps) = (0, vec![], 0.0_f64, 0);
+        for seed in 0..12 {
+            let (model, contacts) = robot(seed);
+            let [mut theta, dtheta, _] = testing::state(&model, seed);
+            let lowest = contacts.gaps(&model, 0.0, &theta).into_iter().fold(f64::INFINITY, f64::min);
+            theta[6] += 0.05 - lowest;
+            let options = Options { joint_limits: Policy::Ignore, ..by(method, 0.2, 2e-3) };
+            match (Simulation { contacts, ..Simulation::new(options) }).run(&model, &theta, &dtheta, Zero) {
+                Ok(run) => {
+                    ended += usize::from(run.motion.complete);
+                    steps += run.motion.steps;
+                    worst = worst.max(run.one_sided.expect("contacts").largest_residual);
+                }
+                Err(error) => refused.push(format!("{seed}: {error}")),
+            }
+        }
+        println!("{:20} {ended} of 12 end, {steps} steps, residual {worst:.1e}; {refused:?}", method.name());
+        assert!(ended >= 11);
+    }
+}
