@@ -194,6 +194,26 @@ pub unsafe fn call(
     guard(|| unsafe { checked(index, model, workspace, inputs, given, outputs) })
 }
 
+#[cold]
+#[inline(never)]
+fn foreign(robot: &Robot, other: &Robot) -> Outcome {
+    let [found, expected] = [other, robot].map(|robot| &robot.model.description().name);
+    refuse!(Status::FOREIGN, "the workspace is of a model '{found}', expected one of this '{expected}'")
+}
+
+#[cold]
+#[inline(never)]
+fn is_singular(robot: &Robot, singular: Singular) -> Outcome {
+    match singular {
+        Singular::MassMatrix(j) => {
+            let joint = robot.names.velocities[j].to_str().unwrap_or_default();
+            let why = "it moves no inertia, or other joints produce the same motion";
+            refuse!(Status::SINGULAR, "the mass matrix is singular at joint '{joint}': {why}")
+        }
+        Singular::Task => refuse!(Status::SINGULAR, "the task is singular: the rows of its Jacobian are dependent"),
+    }
+}
+
 /// # Safety
 /// As [`call`].
 #[inline(always)]
@@ -208,9 +228,7 @@ unsafe fn checked(
     // SAFETY: the caller's promise.
     let (robot, workspace) = unsafe { (borrow(model)?, borrow(workspace)?) };
     if !Arc::ptr_eq(robot, &workspace.robot) {
-        let found = &workspace.robot.model.description().name;
-        let expected = &robot.model.description().name;
-        return refuse!(Status::FOREIGN, "the workspace is of a model '{found}', expected one of this '{expected}'");
+        return foreign(robot, &workspace.robot);
     }
     let mut locked = workspace.lock()?;
     let Memory { fast, program, applied, scratch, M } = &mut *locked;
@@ -295,17 +313,7 @@ unsafe fn checked(
         // SAFETY: the caller's promise.
         unsafe { scatter(places[k], &shapes[k], &outputs[k]) };
     }
-    match singular {
-        None => Ok(()),
-        Some(Singular::MassMatrix(j)) => {
-            let joint = robot.names.velocities[j].to_str().unwrap_or_default();
-            let why = "it moves no inertia, or other joints produce the same motion";
-            refuse!(Status::SINGULAR, "the mass matrix is singular at joint '{joint}': {why}")
-        }
-        Some(Singular::Task) => {
-            refuse!(Status::SINGULAR, "the task is singular: the rows of its Jacobian are dependent")
-        }
-    }
+    singular.map_or(Ok(()), |singular| is_singular(robot, singular))
 }
 
 #[cfg(test)]
