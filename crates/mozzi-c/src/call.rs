@@ -3,11 +3,11 @@
 use crate::border::{check_finite, slice};
 use crate::environment::CEnvironment;
 use crate::handle::{borrow, check_pointer};
-use crate::robot::{Frame, ModelHandle, Robot};
+use crate::robot::{Frame, ModelHandle, Robot, shapes};
 use crate::status::{Outcome, Status, guard, of_model, refuse};
 use crate::workspace::{Memory, WorkspaceHandle};
 use mozzi::fast::{self, Singular};
-use mozzi::quantities::{Dim, MOST_INPUTS, MOST_OUTPUTS, Of, Output, Query, Subject};
+use mozzi::quantities::{Dim, MOST_INPUTS, MOST_OUTPUTS, Of, Query};
 use mozzi::{Environment, TaskFrame, Vec3};
 use std::sync::Arc;
 
@@ -146,17 +146,6 @@ impl Given {
     }
 }
 
-/// The shape of an output, its last axis last, 1 for axes that it lacks.
-#[inline(always)]
-pub fn shape(output: &Output, robot: &Robot, subject: &Subject) -> [usize; 3] {
-    let mut shape = [1; 3];
-    let first = 3 - output.dims.len();
-    for (size, dim) in shape[first..].iter_mut().zip(output.dims) {
-        *size = dim.size(&robot.model, subject);
-    }
-    shape
-}
-
 /// Are numbers by rows, without gaps, in these strides?
 #[inline(always)]
 fn is_by_rows(&[blocks, rows, columns]: &[usize; 3], &[block, row, column]: &[isize; 3]) -> bool {
@@ -205,6 +194,26 @@ pub unsafe fn call(
     guard(|| unsafe { checked(index, model, workspace, inputs, given, outputs) })
 }
 
+#[cold]
+#[inline(never)]
+fn foreign(robot: &Robot, other: &Robot) -> Outcome {
+    let [found, expected] = [other, robot].map(|robot| &robot.model.description().name);
+    refuse!(Status::FOREIGN, "the workspace is of a model '{found}', expected one of this '{expected}'")
+}
+
+#[cold]
+#[inline(never)]
+fn is_singular(robot: &Robot, singular: Singular) -> Outcome {
+    match singular {
+        Singular::MassMatrix(j) => {
+            let joint = robot.names.velocities[j].to_str().unwrap_or_default();
+            let why = "it moves no inertia, or other joints produce the same motion";
+            refuse!(Status::SINGULAR, "the mass matrix is singular at joint '{joint}': {why}")
+        }
+        Singular::Task => refuse!(Status::SINGULAR, "the task is singular: the rows of its Jacobian are dependent"),
+    }
+}
+
 /// # Safety
 /// As [`call`].
 #[inline(always)]
@@ -219,45 +228,47 @@ unsafe fn checked(
     // SAFETY: the caller's promise.
     let (robot, workspace) = unsafe { (borrow(model)?, borrow(workspace)?) };
     if !Arc::ptr_eq(robot, &workspace.robot) {
-        let found = &workspace.robot.model.description().name;
-        let expected = &robot.model.description().name;
-        return refuse!(Status::FOREIGN, "the workspace is of a model '{found}', expected one of this '{expected}'");
+        return foreign(robot, &workspace.robot);
     }
     let mut locked = workspace.lock()?;
-    let memory = &mut *locked;
-    // SAFETY: the caller's promise.
-    let query = unsafe { given.query(robot, index)? };
-    let declaration = query.declaration();
-
-    let mut state: [&[f64]; MOST_INPUTS] = [&[]; MOST_INPUTS];
-    for ((numbers, input), &pointer) in state.iter_mut().zip(declaration.inputs).zip(inputs) {
+    let Memory { fast, program, applied, scratch, M } = &mut *locked;
+    let plan = &robot.plans[index];
+    let declaration = plan.declaration;
+    let (own, own_shapes);
+    let (query, shapes) = if declaration.of == Of::Robot && !declaration.needs_mass {
+        (&plan.query, &plan.outputs)
+    } else {
         // SAFETY: the caller's promise.
-        *numbers = unsafe { slice(pointer, input.dim.size(&robot.model, &query.subject), input.name)? };
-        match input.dim {
-            Dim::Nq => robot.check_theta(numbers)?,
-            _ => check_finite(numbers, input.name)?,
-        }
-    }
-    let state = &state[..declaration.inputs.len()];
+        own = unsafe { given.query(robot, index)? };
+        own_shapes = shapes(declaration, &robot.model, &own.subject);
+        (&own, &own_shapes)
+    };
 
-    let Memory { fast, program, applied, scratch, M } = memory;
+    // Pointers first, numbers after them: so many instructions later the slices can be loaded at once.
+    let mut state: [&[f64]; MOST_INPUTS] = [&[]; MOST_INPUTS];
+    let given_inputs = declaration.inputs.len().min(inputs.len());
+    for k in 0..given_inputs {
+        // SAFETY: the caller's promise.
+        state[k] = unsafe { slice(inputs[k], plan.inputs[k], declaration.inputs[k].name)? };
+    }
+    let state = &state[..given_inputs];
+
     let mut places: [&mut [f64]; MOST_OUTPUTS] = Default::default();
-    let mut shapes = [[0; 3]; MOST_OUTPUTS];
     let mut is_direct = [true; MOST_OUTPUTS];
     let mut rest = &mut scratch[..];
-    for (k, (output, out)) in declaration.outputs.iter().zip(outputs).enumerate() {
-        shapes[k] = shape(output, robot, &query.subject);
-        let length = shapes[k].iter().product();
+    let count = declaration.outputs.len().min(outputs.len());
+    for k in 0..count {
+        let (output, out, shape) = (&declaration.outputs[k], &outputs[k], &shapes[k]);
+        let length = shape[0] * shape[1] * shape[2];
         if length == 0 {
             continue;
         }
         check_pointer(out.data.cast_const(), output.name)?;
-        let data = out.data.cast_const();
-        let [block, row, column] = out.strides;
-        is_direct[k] = (is_by_rows(&shapes[k], &out.strides)
-            || output.is_symmetric && is_by_rows(&shapes[k], &[block, column, row]))
+        let (data, [block, row, column]) = (out.data.cast_const(), out.strides);
+        is_direct[k] = (is_by_rows(shape, &out.strides)
+            || output.is_symmetric && is_by_rows(shape, &[block, column, row]))
             && !state.iter().any(|input| overlap(data, length, input.as_ptr(), input.len()))
-            && !(0..k).any(|other| overlap(data, length, places[other].as_ptr(), places[other].len()));
+            && !places[..k].iter().any(|other| overlap(data, length, other.as_ptr(), other.len()));
         places[k] = if is_direct[k] {
             // SAFETY: the caller's promise, and no other slice of this call has a part of it.
             unsafe { std::slice::from_raw_parts_mut(out.data, length) }
@@ -267,10 +278,16 @@ unsafe fn checked(
             part
         };
     }
-    let count = declaration.outputs.len();
+
+    for (numbers, input) in state.iter().zip(declaration.inputs) {
+        match input.dim {
+            Dim::Nq => robot.check_theta(numbers)?,
+            _ => check_finite(numbers, input.name)?,
+        }
+    }
 
     let by_code = if given.environment.is_null() { program.as_ref() } else { None };
-    let by_code = by_code.and_then(|program| program.evaluate_code(&query, state, &mut places[..count]));
+    let by_code = by_code.and_then(|program| program.evaluate_code(query, state, &mut places[..count]));
     let singular = match by_code {
         Some(true) => None,
         _ => {
@@ -282,10 +299,10 @@ unsafe fn checked(
                 around = unsafe { CEnvironment::read(given.environment, robot, applied)? };
                 &around
             };
-            fast::evaluate(&query, &robot.model, state, environment, fast, &mut places[..count]);
-            match fast.are_pivots_clear(&query) {
+            fast::evaluate(query, &robot.model, state, environment, fast, &mut places[..count]);
+            match !declaration.divides || fast.are_pivots_clear(query) {
                 true => None,
-                false => fast.singular(&query, &robot.model, state[0], M),
+                false => fast.singular(query, &robot.model, state[0], M),
             }
         }
     };
@@ -296,17 +313,7 @@ unsafe fn checked(
         // SAFETY: the caller's promise.
         unsafe { scatter(places[k], &shapes[k], &outputs[k]) };
     }
-    match singular {
-        None => Ok(()),
-        Some(Singular::MassMatrix(j)) => {
-            let joint = robot.names.velocities[j].to_str().unwrap_or_default();
-            let why = "it moves no inertia, or other joints produce the same motion";
-            refuse!(Status::SINGULAR, "the mass matrix is singular at joint '{joint}': {why}")
-        }
-        Some(Singular::Task) => {
-            refuse!(Status::SINGULAR, "the task is singular: the rows of its Jacobian are dependent")
-        }
-    }
+    singular.map_or(Ok(()), |singular| is_singular(robot, singular))
 }
 
 #[cfg(test)]

@@ -35,22 +35,28 @@ pub(crate) use kind;
 /// Checks that a pointer is not null and aligned.
 #[inline(always)]
 pub fn check_pointer<T>(pointer: *const T, name: &str) -> Outcome {
-    if pointer.is_null() || !pointer.is_aligned() {
-        let found = if pointer.is_null() { "null" } else { "not aligned" };
-        return refuse!(Status::NULL_POINTER, "{name} is {found}, expected a valid pointer");
-    }
-    Ok(())
+    if pointer.is_null() || !pointer.is_aligned() { invalid_pointer(pointer.is_null(), name) } else { Ok(()) }
+}
+
+#[cold]
+#[inline(never)]
+fn invalid_pointer(is_null: bool, name: &str) -> Outcome {
+    let found = if is_null { "null" } else { "not aligned" };
+    refuse!(Status::NULL_POINTER, "{name} is {found}, expected a valid pointer")
 }
 
 #[inline(always)]
 fn check<T: Kind>(handle: *const Handle<T>) -> Outcome {
     check_pointer(handle, T::NAME)?;
     // SAFETY: not null and aligned; every handle, of whatever kind, begins with its tag.
-    if unsafe { (*handle).tag } != T::tag() {
-        let why = "it is of another kind, freed, or made by another copy of the library";
-        return refuse!(Status::INVALID_HANDLE, "this is no {}: {why}", T::NAME);
-    }
-    Ok(())
+    if unsafe { (*handle).tag } == T::tag() { Ok(()) } else { invalid_handle(T::NAME) }
+}
+
+#[cold]
+#[inline(never)]
+fn invalid_handle(name: &str) -> Outcome {
+    let why = "it is of another kind, freed, or made by another copy of the library";
+    refuse!(Status::INVALID_HANDLE, "this is no {name}: {why}")
 }
 
 /// The object of a handle.

@@ -1,10 +1,10 @@
 //! Quantities by name or number: what they are, and calls with checked lengths.
 
 use crate::border::{check_length, slice, text};
-use crate::call::{Given, Out, Task, call, shape};
+use crate::call::{Given, Out, Task, call};
 use crate::environment::CEnvironment;
 use crate::handle::{borrow, check_pointer};
-use crate::robot::{ModelHandle, Robot};
+use crate::robot::{ModelHandle, Robot, shapes};
 use crate::status::{Outcome, Status, guard, guard_or, of_model, refuse};
 use crate::workspace::WorkspaceHandle;
 use mozzi::quantities::{Declaration, LIST, MOST_INPUTS, MOST_OUTPUTS, Query, Subject};
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn mozzi_quantity_output_shape(
         let Some(output) = declaration.outputs.get(k) else {
             return refuse!(Status::NOT_FOUND, "{} has no output {k}", declaration.name);
         };
-        let mut shape = shape(output, robot, &subject_of(task_rows)?);
+        let mut shape = shapes(declaration, &robot.model, &subject_of(task_rows)?)[k];
         shape.rotate_left(3 - output.dims.len());
         check_pointer(axes.cast_const(), "axes")?;
         axes.write(output.dims.len());
@@ -215,8 +215,9 @@ pub unsafe extern "C" fn mozzi_compute(
             *pointer = input.data;
         }
         let outputs = slice(outputs, output_count, "outputs")?;
-        for ((output, declared), place) in outputs.iter().zip(declaration.outputs).zip(&mut places) {
-            let shape = shape(declared, robot, &query.subject);
+        let shapes = shapes(declaration, &robot.model, &query.subject);
+        for (((output, declared), place), shape) in outputs.iter().zip(declaration.outputs).zip(&mut places).zip(shapes)
+        {
             check_length(declared.name, output.length, shape.iter().product())?;
             let mut strides = output.strides;
             if strides == [0; 3] {

@@ -4,7 +4,7 @@ use crate::border::c_string;
 use crate::handle::{Handle, kind, put};
 use crate::status::{Outcome, Status, of_model, refuse};
 use mozzi::model::Bounds;
-use mozzi::quantities::{LIST, Query};
+use mozzi::quantities::{Declaration, LIST, MOST_INPUTS, MOST_OUTPUTS, Query, Subject};
 use mozzi::{Environment, FrameId, Model};
 use std::ffi::CString;
 use std::sync::Arc;
@@ -20,6 +20,8 @@ pub struct Robot {
     pub frames: Vec<FrameId>,
     pub bounds: Bounds,
     pub names: Names,
+    /// One for each quantity.
+    pub plans: Vec<Plan>,
     /// The most numbers that the outputs of a quantity have together.
     pub most_numbers: usize,
     /// Does θ have quaternions?
@@ -30,6 +32,37 @@ kind!(Arc<Robot>, "mozzi_model");
 
 /// `struct mozzi_model`.
 pub type ModelHandle = Handle<Arc<Robot>>;
+
+/// What a call of a quantity needs to know, with all six rows of a task.
+pub struct Plan {
+    pub query: Query<'static>,
+    pub declaration: &'static Declaration,
+    /// Lengths of the inputs.
+    pub inputs: [usize; MOST_INPUTS],
+    pub outputs: Shapes,
+}
+
+/// Shapes of the outputs, the last axis last, 1 for axes that they lack.
+pub type Shapes = [[usize; 3]; MOST_OUTPUTS];
+
+impl Plan {
+    fn new(model: &Model, index: usize) -> Self {
+        let (query, mut inputs) = (Query::at(index), [0; MOST_INPUTS]);
+        inputs.iter_mut().zip(query.input_lengths(model)).for_each(|(length, found)| *length = found);
+        let declaration = query.declaration();
+        Plan { query, declaration, inputs, outputs: shapes(declaration, model, &query.subject) }
+    }
+}
+
+/// The shapes of a quantity's outputs.
+pub fn shapes(declaration: &Declaration, model: &Model, subject: &Subject) -> Shapes {
+    let mut shapes = [[1; 3]; MOST_OUTPUTS];
+    for (shape, output) in shapes.iter_mut().zip(declaration.outputs) {
+        let first = 3 - output.dims.len();
+        shape[first..].iter_mut().zip(output.dims).for_each(|(size, dim)| *size = dim.size(model, subject));
+    }
+    shapes
+}
 
 /// Names as C's texts.
 pub struct Names {
@@ -71,6 +104,7 @@ impl Robot {
             frames: model.frames().map(|(frame, _)| frame).collect(),
             bounds: Bounds::of(&model),
             names: Names::new(&model),
+            plans: (0..LIST.len()).map(|index| Plan::new(&model, index)).collect(),
             most_numbers: (0..LIST.len()).map(most).max().unwrap_or(0),
             has_quaternions: !model.configuration_space().is_flat(),
             model,

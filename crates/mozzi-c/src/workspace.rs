@@ -82,12 +82,15 @@ impl Workspace {
     /// The memory, unless a call uses it.
     #[inline(always)]
     pub fn lock(&self) -> Outcome<Locked<'_>> {
-        if self.is_busy.swap(true, Ordering::Acquire) {
-            let expected = "a workspace of its own for each thread";
-            return refuse!(Status::BUSY, "the workspace is in use by another call, expected {expected}");
-        }
-        Ok(Locked(self))
+        if self.is_busy.swap(true, Ordering::Acquire) { busy() } else { Ok(Locked(self)) }
     }
+}
+
+#[cold]
+#[inline(never)]
+fn busy<T>() -> Outcome<T> {
+    let expected = "a workspace of its own for each thread";
+    refuse!(Status::BUSY, "the workspace is in use by another call, expected {expected}")
 }
 
 impl Memory {
