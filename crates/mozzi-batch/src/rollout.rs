@@ -6,9 +6,7 @@ mod each;
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsVjp};
-use mozzi::simulation::{
-    ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables,
-};
+use mozzi::simulation::{ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables};
 use mozzi::{Model, Vec3};
 use std::convert::identity;
 
@@ -117,11 +115,17 @@ impl Batch<f64> {
         let [a, b, c, d] = outputs.map(|(table, width)| pieces(table, width, robots, together));
         let outputs = a.into_iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| [a, b, c, d]).collect();
         if together == 1 {
-            return self.each_rollout(options, p > 0, [theta, dtheta, tau], outputs, |rollout, start, robot, outputs| {
-                let [theta, dtheta, tau, parameters] = outputs;
-                let bars = [theta_bar, dtheta_bar].map(|table| part(table, robot, 1, rows * n));
-                BatchGradient { theta, dtheta, tau, parameters }.of_one(rollout, start, bars)
-            });
+            return self.each_rollout(
+                options,
+                p > 0,
+                [theta, dtheta, tau],
+                outputs,
+                |rollout, start, robot, outputs| {
+                    let [theta, dtheta, tau, parameters] = outputs;
+                    let bars = [theta_bar, dtheta_bar].map(|table| part(table, robot, 1, rows * n));
+                    BatchGradient { theta, dtheta, tau, parameters }.of_one(rollout, start, bars)
+                },
+            );
         }
         self.by_pieces(options, robots, outputs, |steps, first, count, [to_theta, to_dtheta, to_tau, to_parameters]| {
             let part = |table, width| part(table, first, count, width);
