@@ -19,10 +19,10 @@ pub fn fit_html(found: &Identification<'_>, judged: &Judgement, validations: &[(
     let mut body = format!("<h1>{name}, identified</h1>\n");
     let least_squares = &found.estimates.least_squares;
     let samples: usize = found.samples.iter().map(|samples| samples.count()).sum();
-    let _ = write!(
+    let _ = writeln!(
         body,
         "<p>{samples} samples; {} of {} base parameters determined; condition number {:.0}. Differences below 3 % mean \
-         nothing on one trajectory.</p>\n",
+         nothing on one trajectory.</p>",
         least_squares.rank,
         found.setup.base.count(),
         least_squares.condition
@@ -120,7 +120,7 @@ fn forces(found: &Identification<'_>, judged: &Judgement) -> String {
             });
         }
         let figure = Figure { title: String::new(), panels, columns: 2 };
-        let _ = write!(text, "<h2>Forces of log {}</h2>\n{}\n", log + 1, figure.svg());
+        let _ = writeln!(text, "<h2>Forces of log {}</h2>\n{}", log + 1, figure.svg());
     }
     text
 }
