@@ -5,9 +5,10 @@
 //! > L = ½ w ‖p(θ[N]) − p*‖² + ½ w_v ‖θ̇[N]‖² + ½ r h Σ ‖x[k]‖²,  τ[k] = g + D x[k]
 //!
 //! with g the torques that hold the start and D the diagonal of M there: x is about an acceleration, so that a step
-//! moves a wrist of 0.001 kg m² no further than a shoulder of 1 kg m². `Rollout::gradient` takes ∂L/∂x[N] back through the steps, x̄[k] =
-//! (∂Φ/∂x)ᵀx̄[k+1], and returns (∂Φ/∂τ)ᵀx̄[k+1] of each step: exact for the discrete steps, as a difference of losses
-//! shows. L-BFGS (Nocedal 1980) descends along it. At the end: what a gradient costs, compared with its rollout.
+//! moves a wrist of 0.001 kg m² no further than a shoulder of 1 kg m². `Rollout::gradient` takes ∂L/∂x[N] back through
+//! the steps, x̄[k] = (∂Φ/∂x)ᵀx̄[k+1], and returns (∂Φ/∂τ)ᵀx̄[k+1] of each step: exact for the discrete steps, as a
+//! difference of losses shows. L-BFGS (Nocedal 1980) descends along it. At the end: what a gradient costs, compared
+//! with its rollout.
 
 use mozzi::simulation::{Method, Rollout};
 use mozzi::{Error, FrameId, Model};

@@ -1,4 +1,5 @@
-//! The generated pages of `docs/`, the stubs of the Python package, and the C and C++ headers, written by the tests that otherwise check them.
+//! The generated pages of `docs/`, the stubs of the Python package, and the C and C++ headers, written by the tests
+//! that otherwise check them.
 
 use crate::command;
 use crate::oracles;

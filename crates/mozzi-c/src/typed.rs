@@ -1,5 +1,5 @@
-//! A function for each quantity, typed: `mozzi_inverse_dynamics(model, workspace, theta, …, tau)`. Their list is written
-//! from that of the quantities, with their declarations in mozzi.h, by `tests/header.rs`.
+//! A function for each quantity, typed: `mozzi_inverse_dynamics(model, workspace, theta, …, tau)`. Their list is
+//! written from that of the quantities, with their declarations in mozzi.h, by `tests/header.rs`.
 
 use crate::call::{Given, Matrix, Out, Task, Tensor, call};
 use crate::environment::CEnvironment;

@@ -27,8 +27,9 @@ pub struct GroundArguments {
     #[arg(long, value_name = "E")]
     restitution: Option<String>,
     /// Contact points and planes from a file: {"points": [{"frame": …, "at": [x,y,z], "radius": …, "friction": …,
-    /// "restitution": …}], "planes": [{"name": …, "pose": [qw,qx,qy,qz,x,y,z], "velocity": [x,y,z]}]}; the plane's z-axis
-    /// points towards the robot. Without points those of --contact or of the collision shapes; without planes the ground
+    /// "restitution": …}], "planes": [{"name": …, "pose": [qw,qx,qy,qz,x,y,z], "velocity": [x,y,z]}]}; the plane's
+    /// z-axis points towards the robot. Without points those of --contact or of the collision shapes; without planes
+    /// the ground
     #[arg(long, value_name = "FILE.json")]
     contacts: Option<String>,
 }

@@ -152,6 +152,10 @@ fn bad_input_is_refused_by_name() {
     (still.dtheta, still.ddtheta, still.tau) = (Some(zeros.clone()), Some(zeros.clone()), zeros);
     still.t.iter().enumerate().for_each(|_| {});
     assert!(matches!(error(&still, &options), Error::TooShort { .. } | Error::NotExciting { .. }));
+    let mut falls = log.clone();
+    falls.tau.fill(0.0);
+    let unfiltered = Options { filter: Filter { cutoff: Cutoff::None, ..Filter::default() }, ..Options::default() };
+    assert!(error(&falls, &unfiltered).to_string().contains("all forces are 0"));
     let wrong = Options { prior: -1.0, ..Options::default() };
     assert!(error(&log, &wrong).to_string().contains("the prior's weight is -1"));
     let wrong = Options { tenths: 11, ..Options::default() };

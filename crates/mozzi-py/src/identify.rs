@@ -89,6 +89,7 @@ fn choice(model: &Model, options: &Bound<'_, PyDict>) -> PyResult<Choice> {
 /// The report as JSON and as HTML, the identified robot, and the predicted forces of each log, N × n of those samples
 /// that were used, with their times.
 #[pyfunction]
+#[allow(clippy::type_complexity)] // a tuple for Python, which names its parts
 pub fn _identify<'py>(
     py: Python<'py>,
     model: &Bound<'py, PyModel>,

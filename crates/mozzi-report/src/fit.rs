@@ -120,7 +120,7 @@ fn forces(found: &Identification<'_>, judged: &Judgement) -> String {
             });
         }
         let figure = Figure { title: String::new(), panels, columns: 2 };
-        let _ = write!(text, "<h2>Forces of log {}</h2>\n{}\n", log + 1, figure.svg());
+        let _ = writeln!(text, "<h2>Forces of log {}</h2>\n{}", log + 1, figure.svg());
     }
     text
 }

@@ -38,8 +38,8 @@ impl fmt::Display for EditError {
 impl std::error::Error for EditError {}
 
 /// The text of a URDF, edited so that it describes another robot: one that differs in inertias, in friction, armature
-/// and springs of joints, in joints that became fixed, and in a base that became floating. Only the attributes and elements that differ are rewritten; without
-/// differences the text is returned unchanged.
+/// and springs of joints, in joints that became fixed, and in a base that became floating. Only the attributes and
+/// elements that differ are rewritten; without differences the text is returned unchanged.
 ///
 /// # Errors
 /// [`EditError`]: the text cannot be read, or the robots differ in other things.

@@ -60,7 +60,7 @@ impl Workspace {
     }
 
     /// True if every pivot of this quantity's last call is well above rounding error. If false, [`Model::compute`]
-    /// checks each pivot and names what is singular. See [`Pivots`](crate::Pivots).
+    /// checks each pivot and names what is singular. See [`Pivots`].
     pub fn are_pivots_clear(&self, query: &Query) -> bool {
         match &self.0 {
             Inner::Plain(memory) => are_clear(query.declaration(), memory),
@@ -79,7 +79,7 @@ pub enum Singular {
 }
 
 impl Workspace {
-    /// What is singular according to this quantity's last call at θ, by the rule of [`Pivots`](crate::Pivots); for
+    /// What is singular according to this quantity's last call at θ, by the rule of [`Pivots`]; for
     /// calls after which [`are_pivots_clear`](Self::are_pivots_clear) is false. M, n × n, is overwritten. No
     /// allocation.
     ///

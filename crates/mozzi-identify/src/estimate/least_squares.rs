@@ -34,7 +34,7 @@ impl LeastSquares {
     /// Minimizes Σ_j ‖A_j x − b_j‖²/σ_j² over the base parameters; σ_j is each force's own residual, found in turns.
     ///
     /// # Errors
-    /// [`Error::NotExciting`] if the equations are 0, or fewer than the base parameters.
+    /// [`Error::NotExciting`] if the equations or all forces are 0, or if there are fewer than base parameters.
     pub fn new(evidence: &Evidence, base: &BaseParameters) -> Result<Self, Error> {
         let rows: usize = evidence.forces.iter().map(|force| force.rows).sum();
         let r = base.count();
@@ -42,8 +42,14 @@ impl LeastSquares {
             let reason = format!("{rows} equations that are not 0, for {r} base parameters");
             return Err(Error::NotExciting { reason });
         }
-        let least = evidence.rms().into_iter().fold(0.0, f64::max) * 1e-12 + f64::MIN_POSITIVE;
-        let mut sigma: Vec<f64> = evidence.rms().into_iter().map(|rms| rms.max(least)).collect();
+        let most = evidence.rms().into_iter().fold(0.0, f64::max);
+        if !(most > 0.0 && most.is_finite()) {
+            return Err(Error::NotExciting { reason: "all forces are 0".into() });
+        }
+        let least = 1e-12 * most;
+        // a force that is 0, such as a floating base's, begins with the weight of the largest
+        let start = |rms: f64| if rms > 1e-9 * most { rms } else { most };
+        let mut sigma: Vec<f64> = evidence.rms().into_iter().map(start).collect();
         // each force's share of the unknowns, as if they were spread evenly
         let freedom = (1.0 - r as f64 / rows as f64).sqrt();
         let mut x = vec![0.0; evidence.unknowns];

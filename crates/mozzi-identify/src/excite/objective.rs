@@ -125,8 +125,8 @@ impl<'a, 'm> Objective<'a, 'm> {
         (value, gradient)
     }
 
-    /// Adds Σ_j g_jᵀ ∂y_j by θ, θ̇ and θ̈, y_j being the rows of the weighted base regressor. The row of a force is that
-    /// of the inverse dynamics of a robot with the parameters g_j.
+    /// Adds Σ_j g_jᵀ ∂y_j by θ, θ̇ and θ̈, y_j being the rows of the weighted base regressor. The row of a force is
+    /// that of the inverse dynamics of a robot with the parameters g_j.
     fn add_slopes(&mut self, at: &[Vec<f64>; 3], g: &DMatrix<f64>, slopes: &mut [Vec<f64>; 3]) {
         let model = self.columns.model;
         let n = model.n();

@@ -20,10 +20,10 @@ const BRAKE: f64 = 50.0;
 /// Holds a pose, or follows a reference, on feet that stay: in each state the accelerations θ̈ and the forces f of the
 /// feet on the ground of
 ///
-/// > min ‖θ̈ − a‖² + ε‖f‖²,  a = θ̈_d + K_d ė + K_p e,  with 0 = (Mθ̈ + h + Jᵀf)_u,  Jθ̈ + J̇θ̇ = −b Jθ̇,  f in the cones
+/// > min ‖θ̈ − a‖² + ε‖f‖², a = θ̈_d + K_d ė + K_p e, with 0 = (Mθ̈ + h + Jᵀf)_u, Jθ̈ + J̇θ̇ = −b Jθ̇, f in the cones
 ///
-/// where u are the velocities without a motor, such as a floating base's. Then τ = Mθ̈ + h + Jᵀf. A foot presses with at
-/// least `least` and ‖f_t‖ ≤ μ f_n. If friction at the feet is less than the controller's μ, they slip.
+/// where u are the velocities without a motor, such as a floating base's. Then τ = Mθ̈ + h + Jᵀf. A foot presses with
+/// at least `least` and ‖f_t‖ ≤ μ f_n. If friction at the feet is less than the controller's μ, they slip.
 pub struct Standing<'m, R> {
     model: &'m Model,
     /// The reference to follow.

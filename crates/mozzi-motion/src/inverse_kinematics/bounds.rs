@@ -13,8 +13,8 @@ pub(crate) trait Within {
     /// Puts each joint that is beyond a bound onto it.
     fn clamp(&self, theta: &mut [f64]);
 
-    /// Moves the guess in θ to anywhere within the bounds; for a joint without, half a turn or a metre around the guess.
-    /// A floating base and free joints stay.
+    /// Moves the guess in θ to anywhere within the bounds; for a joint without, half a turn or a metre around the
+    /// guess. A floating base and free joints stay.
     fn randomize(&self, theta: &mut [f64], random: &mut Random);
 }
 

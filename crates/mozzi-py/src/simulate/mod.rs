@@ -103,8 +103,9 @@ impl PyModel {
     ///     (..., n).
     /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
     ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'; many starts take
-    ///     'rk4', in which dry friction does not stick. 'moreau' is Moreau and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and
-    ///     symplectic: the energy's error stays bounded. These two take one start.
+    ///     'rk4', in which dry friction does not stick. 'moreau' is Moreau and Jean's step for one-sided forces.
+    ///     'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and symplectic: the energy's
+    ///     error stays bounded. These two take one start.
     /// tolerance : float
     ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇.
     /// record_every : int
@@ -126,8 +127,8 @@ impl PyModel {
     ///     Points of the robot that planes stop: the origins of frames by name, or {'frame': …, 'at': (x, y, z),
     ///     'radius': …, 'friction': 0.7, 'restitution': 0, 'name': …}. One start only.
     /// planes : list of dict, optional
-    ///     {'name': …, 'pose': (qw, qx, qy, qz, x, y, z), 'velocity': (x, y, z)}: the z-axis points towards the robot, the
-    ///     surface moves with the velocity. By default the ground z = 0.
+    ///     {'name': …, 'pose': (qw, qx, qy, qz, x, y, z), 'velocity': (x, y, z)}: the z-axis points towards the robot,
+    ///     the surface moves with the velocity. By default the ground z = 0.
     /// threads : int, optional
     ///     As many at most; by default all cores. Many starts only.
     ///

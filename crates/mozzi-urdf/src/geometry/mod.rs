@@ -1,4 +1,5 @@
-//! The shapes of links: `<visual>` and `<collision>` of URDF, `<geom>` of MJCF. They do not affect the dynamics, except as contact points if asked: [`contact_points`].
+//! The shapes of links: `<visual>` and `<collision>` of URDF, `<geom>` of MJCF. They do not affect the dynamics, except
+//! as contact points if asked: [`contact_points`].
 
 mod contact;
 mod files;

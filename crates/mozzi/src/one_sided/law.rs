@@ -14,8 +14,8 @@ pub enum Law {
         /// μ Δt, N s or N m s, at least 0.
         most: f64,
     },
-    /// A point contact with Coulomb friction, rows (n, t₁, t₂), n into the surroundings: p is in the cone ‖p_t‖ ≤ μ p_n;
-    /// p = 0 and u_n ≥ 0, or u = 0, or u_n = 0 and p_t = −μ p_n u_t/‖u_t‖.
+    /// A point contact with Coulomb friction, rows (n, t₁, t₂), n into the surroundings: p is in the cone ‖p_t‖ ≤ μ
+    /// p_n; p = 0 and u_n ≥ 0, or u = 0, or u_n = 0 and p_t = −μ p_n u_t/‖u_t‖.
     Contact {
         /// μ, at least 0.
         mu: f64,

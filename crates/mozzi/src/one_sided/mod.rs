@@ -4,8 +4,8 @@
 //!
 //! > M(θ̇⁺ − θ̇) = Δt F − Jᵀp,  u = −J θ̇⁺ = G p + b,  G = J M⁻¹Jᵀ,  b = −J θ̇_free
 //!
-//! u is the velocity of the surroundings as seen from the robot; for a contact u_n is the rate of the gap. Each block of
-//! rows has a [`Law`] between its p and its u. G (the Delassus matrix) may be singular: p is then not unique, u is.
+//! u is the velocity of the surroundings as seen from the robot; for a contact u_n is the rate of the gap. Each block
+//! of rows has a [`Law`] between its p and its u. G (the Delassus matrix) may be singular: p is then not unique, u is.
 //!
 //! [`solve`] takes semi-smooth Newton steps from a guess (Alart and Curnier 1991), then sweeps of projected
 //! Gauss-Seidel that solve each contact exactly, then the alternating direction method of multipliers (Carpentier, Le
@@ -90,8 +90,8 @@ impl Problem {
     }
 }
 
-/// The natural residual of impulses, a velocity: max g ‖p − Π_K(p − (u + s)/g)‖ over the rows, with s = μ‖u_t‖ along the
-/// normal of a contact (De Saxcé and Feng 1998) and g the mean of the block's diagonal of G. It is 0 exactly for a
+/// The natural residual of impulses, a velocity: max g ‖p − Π_K(p − (u + s)/g)‖ over the rows, with s = μ‖u_t‖ along
+/// the normal of a contact (De Saxcé and Feng 1998) and g the mean of the block's diagonal of G. It is 0 exactly for a
 /// solution.
 pub fn residual(problem: &Problem, p: &DVector<f64>) -> f64 {
     residual_with(problem, &problem.scales(), p)

@@ -6,8 +6,8 @@ use nalgebra::Matrix3;
 /// The impulse (n, t₁, t₂) that satisfies Coulomb's law for u = G p + c. Several may; the order is take-off, sticking,
 /// sliding.
 ///
-/// Sliding: with the normal row eliminated, p_t(λ) = −(Ĝ + λ1)⁻¹ĉ is opposite to the slip λp_t, and λ > 0 is the zero of
-/// ‖p_t‖ − μ p_n, found by Newton's method within a bracket.
+/// Sliding: with the normal row eliminated, p_t(λ) = −(Ĝ + λ1)⁻¹ĉ is opposite to the slip λp_t, and λ > 0 is the zero
+/// of ‖p_t‖ − μ p_n, found by Newton's method within a bracket.
 pub(super) fn point_contact(G: &Matrix3<f64>, c: [f64; 3], mu: f64) -> [f64; 3] {
     let [c_n, c_1, c_2] = c;
     let g_nn = G[(0, 0)];

@@ -69,8 +69,8 @@ pub enum PlaneMotion<'a> {
     Moving(Box<dyn Fn(f64) -> (SE3, Twist) + 'a>),
 }
 
-/// The contact points of a robot and the planes of its environment. Each point can touch each plane. Shapes do not touch
-/// each other.
+/// The contact points of a robot and the planes of its environment. Each point can touch each plane. Shapes do not
+/// touch each other.
 #[derive(Default)]
 pub struct Contacts<'a> {
     /// The points.

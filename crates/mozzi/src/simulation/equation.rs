@@ -182,8 +182,8 @@ impl<'m, I: Input> Equation<'m, I> {
         }
     }
 
-    /// τ − h − Mθ̈ − k(θ − θ₀) − dθ̇: the forces that act on the joints, without dry friction and constraints. Returns the
-    /// power given to the environment.
+    /// τ − h − Mθ̈ − k(θ − θ₀) − dθ̇: the forces that act on the joints, without dry friction and constraints. Returns
+    /// the power given to the environment.
     pub(super) fn smooth_force(
         &mut self,
         t: f64,

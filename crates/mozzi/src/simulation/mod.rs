@@ -16,10 +16,10 @@
 //! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
 //!
-//! Dry friction, stops next to it, and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)). A
-//! step of `MoreauJean` ends where a joint comes to rest. Other fixed steps are repeated with constant forces until the
-//! laws hold at their end, so that they are of order 1 there. `DormandPrince` stops at events: touch-down, lift-off, slip
-//! and stick. [`Ending::one_sided`] reports the residuals.
+//! Dry friction, stops next to it, and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)).
+//! A step of `MoreauJean` ends where a joint comes to rest. Other fixed steps are repeated with constant forces until
+//! the laws hold at their end, so that they are of order 1 there. `DormandPrince` stops at events: touch-down,
+//! lift-off, slip and stick. [`Ending::one_sided`] reports the residuals.
 //!
 //! Gradients of a loss through N steps, by start, torques and parameters: [`Rollout`].
 //!

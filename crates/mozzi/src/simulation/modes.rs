@@ -1,8 +1,8 @@
 //! Motions with one-sided forces between events: which joints and contacts hold, which slide, and how long.
 //!
-//! Between two events the rows that hold do not accelerate and sliding ones have known friction, so the motion is smooth
-//! and an adaptive method can follow it. At an event (a touch-down, a force that falls to 0, friction that reaches its
-//! bound, a slip that ends) velocities may jump, and new modes are those of a step of 1 µs.
+//! Between two events the rows that hold do not accelerate and sliding ones have known friction, so the motion is
+//! smooth and an adaptive method can follow it. At an event (a touch-down, a force that falls to 0, friction that
+//! reaches its bound, a slip that ends) velocities may jump, and new modes are those of a step of 1 µs.
 
 use super::dense::Dense;
 use super::driven::Driven;

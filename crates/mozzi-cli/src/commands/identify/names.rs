@@ -66,7 +66,7 @@ const TIMES: [(&str, f64); 14] = [
 ];
 
 /// Endings that name a unit, and the unit in SI.
-const UNITS: [(&str, f64); 12] = [
+const UNITS: [(&str, f64); 10] = [
     ("_deg/s", core::f64::consts::PI / 180.0),
     ("_deg_s", core::f64::consts::PI / 180.0),
     ("_deg", core::f64::consts::PI / 180.0),
@@ -77,8 +77,6 @@ const UNITS: [(&str, f64); 12] = [
     ("_nm", 1.0),
     ("_mm", 1e-3),
     ("_ma", 1e-3),
-    ("_a", 1.0),
-    ("_m", 1.0),
 ];
 
 /// A column and the factor that makes it SI.

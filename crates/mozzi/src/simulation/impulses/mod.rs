@@ -65,9 +65,9 @@ pub(super) struct Solved {
     pub residual: f64,
 }
 
-/// Is the friction of a block opposite to the mean of its velocities before and after the step? So it is for what slides
-/// throughout (second order instead of first), and for what would gain energy otherwise. Only the direction of u_t counts
-/// for sliding friction, so the mean's law is that of b_t + u_t.
+/// Is the friction of a block opposite to the mean of its velocities before and after the step? So it is for what
+/// slides throughout (second order instead of first), and for what would gain energy otherwise. Only the direction of
+/// u_t counts for sliding friction, so the mean's law is that of b_t + u_t.
 fn is_at_middle(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
     let rows = law.tangential(first);
     let sum = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>();
