@@ -7,7 +7,7 @@ use crate::robot::{Frame, ModelHandle, Robot, shapes};
 use crate::status::{Outcome, Status, guard, of_model, refuse};
 use crate::workspace::{Memory, WorkspaceHandle};
 use mozzi::fast::{self, Singular};
-use mozzi::quantities::{Dim, MOST_INPUTS, MOST_OUTPUTS, Of, Query};
+use mozzi::quantities::{Dim, Of, Query};
 use mozzi::{Environment, TaskFrame, Vec3};
 use std::sync::Arc;
 
@@ -167,28 +167,34 @@ pub fn overlap(a: *const f64, a_length: usize, b: *const f64, b_length: usize) -
 /// The place may be written.
 unsafe fn scatter(numbers: &[f64], &[_, rows, columns]: &[usize; 3], out: &Out) {
     let [block, row, column] = out.strides;
-    for (b, numbers) in numbers.chunks_exact((rows * columns).max(1)).enumerate() {
-        for (r, numbers) in numbers.chunks_exact(columns.max(1)).enumerate() {
-            for (c, &number) in numbers.iter().enumerate() {
+    let mut start = out.data;
+    for numbers in numbers.chunks_exact((rows * columns).max(1)) {
+        // column by column: Eigen's order
+        for c in 0..columns {
+            let mut to = start.wrapping_offset(c as isize * column);
+            for number in numbers[c..].iter().step_by(columns) {
                 // SAFETY: the caller's promise.
-                unsafe { out.data.offset(b as isize * block + r as isize * row + c as isize * column).write(number) };
+                unsafe { to.write(*number) };
+                to = to.wrapping_offset(row);
             }
         }
+        start = start.wrapping_offset(block);
     }
 }
 
-/// Computes the quantity of this index.
+/// Computes the quantity of this index, which has I inputs and O outputs: constants, so that the loops over them are
+/// none.
 ///
 /// # Safety
 /// Handles, inputs and outputs are null or as mozzi.h promises; there are as many as the quantity has.
 #[inline(never)]
-pub unsafe fn call(
+pub unsafe fn call<const I: usize, const O: usize>(
     index: usize,
     model: *const ModelHandle,
     workspace: *const WorkspaceHandle,
-    inputs: &[*const f64],
+    inputs: &[*const f64; I],
     given: &Given,
-    outputs: &[Out],
+    outputs: &[Out; O],
 ) -> Status {
     // SAFETY: the caller's promise.
     guard(|| unsafe { checked(index, model, workspace, inputs, given, outputs) })
@@ -214,16 +220,45 @@ fn is_singular(robot: &Robot, singular: Singular) -> Outcome {
     }
 }
 
+/// [`call`] with numbers of inputs and outputs that are known when it runs.
+///
 /// # Safety
 /// As [`call`].
-#[inline(always)]
-unsafe fn checked(
+pub unsafe fn call_of_any(
     index: usize,
     model: *const ModelHandle,
     workspace: *const WorkspaceHandle,
     inputs: &[*const f64],
     given: &Given,
     outputs: &[Out],
+) -> Status {
+    macro_rules! of {
+        ($($I:literal $O:literal)*) => {
+            $(if let (Some(inputs), Some(outputs)) = (exactly::<_, $I>(inputs), exactly::<_, $O>(outputs)) {
+                // SAFETY: the caller's promise.
+                return unsafe { call::<$I, $O>(index, model, workspace, inputs, given, outputs) };
+            })*
+        };
+    }
+    of!(1 1 1 2 1 3 1 4 2 1 2 2 2 3 2 4 3 1 3 2 3 3 3 4 4 1 4 2 4 3 4 4);
+    Status::INTERNAL
+}
+
+/// The list as an array, if it has as many entries.
+fn exactly<T, const K: usize>(list: &[T]) -> Option<&[T; K]> {
+    list.try_into().ok()
+}
+
+/// # Safety
+/// As [`call`].
+#[inline(always)]
+unsafe fn checked<const I: usize, const O: usize>(
+    index: usize,
+    model: *const ModelHandle,
+    workspace: *const WorkspaceHandle,
+    inputs: &[*const f64; I],
+    given: &Given,
+    outputs: &[Out; O],
 ) -> Outcome {
     // SAFETY: the caller's promise.
     let (robot, workspace) = unsafe { (borrow(model)?, borrow(workspace)?) };
@@ -245,19 +280,17 @@ unsafe fn checked(
     };
 
     // Pointers first, numbers after them: so many instructions later the slices can be loaded at once.
-    let mut state: [&[f64]; MOST_INPUTS] = [&[]; MOST_INPUTS];
-    let given_inputs = declaration.inputs.len().min(inputs.len());
-    for k in 0..given_inputs {
+    assert!(declaration.inputs.len() == I && declaration.outputs.len() == O);
+    let mut state: [&[f64]; I] = [&[]; I];
+    for k in 0..I {
         // SAFETY: the caller's promise.
         state[k] = unsafe { slice(inputs[k], plan.inputs[k], declaration.inputs[k].name)? };
     }
-    let state = &state[..given_inputs];
 
-    let mut places: [&mut [f64]; MOST_OUTPUTS] = Default::default();
-    let mut is_direct = [true; MOST_OUTPUTS];
+    let mut places: [&mut [f64]; O] = std::array::from_fn(|_| Default::default());
+    let mut is_direct = [true; O];
     let mut rest = &mut scratch[..];
-    let count = declaration.outputs.len().min(outputs.len());
-    for k in 0..count {
+    for k in 0..O {
         let (output, out, shape) = (&declaration.outputs[k], &outputs[k], &shapes[k]);
         let length = shape[0] * shape[1] * shape[2];
         if length == 0 {
@@ -287,7 +320,7 @@ unsafe fn checked(
     }
 
     let by_code = if given.environment.is_null() { program.as_ref() } else { None };
-    let by_code = by_code.and_then(|program| program.evaluate_code(query, state, &mut places[..count]));
+    let by_code = by_code.and_then(|program| program.evaluate_code(query, &state, &mut places));
     let singular = match by_code {
         Some(true) => None,
         _ => {
@@ -299,7 +332,7 @@ unsafe fn checked(
                 around = unsafe { CEnvironment::read(given.environment, robot, applied)? };
                 &around
             };
-            fast::evaluate(query, &robot.model, state, environment, fast, &mut places[..count]);
+            fast::evaluate(query, &robot.model, &state, environment, fast, &mut places);
             match !declaration.divides || fast.are_pivots_clear(query) {
                 true => None,
                 false => fast.singular(query, &robot.model, state[0], M),
@@ -309,7 +342,7 @@ unsafe fn checked(
     if singular.is_some() {
         places.iter_mut().for_each(|numbers| numbers.fill(f64::NAN));
     }
-    for k in (0..count).filter(|&k| !is_direct[k]) {
+    for k in (0..O).filter(|&k| !is_direct[k]) {
         // SAFETY: the caller's promise.
         unsafe { scatter(places[k], &shapes[k], &outputs[k]) };
     }

@@ -1,7 +1,7 @@
 //! Quantities by name or number: what they are, and calls with checked lengths.
 
 use crate::border::{check_length, slice, text};
-use crate::call::{Given, Out, Task, call};
+use crate::call::{Given, Out, Task, call_of_any};
 use crate::environment::CEnvironment;
 use crate::handle::{borrow, check_pointer};
 use crate::robot::{ModelHandle, Robot, shapes};
@@ -231,7 +231,9 @@ pub unsafe extern "C" fn mozzi_compute(
         return status;
     }
     // SAFETY: as above; the numbers of inputs and outputs were checked.
-    unsafe { call(index, model, workspace.cast_const(), &pointers[..input_count], &given, &places[..output_count]) }
+    unsafe {
+        call_of_any(index, model, workspace.cast_const(), &pointers[..input_count], &given, &places[..output_count])
+    }
 }
 
 /// Reports a wrong length that a wrapper found.
