@@ -57,7 +57,7 @@ fn known(list: &str) -> Result<Vec<String>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::Options;
+    use super::{Options, PEERS};
 
     #[test]
     fn a_part_is_no_whole() -> Result<(), String> {
