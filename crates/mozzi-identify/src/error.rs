@@ -30,7 +30,8 @@ pub enum Error {
     },
     /// Too many rows are not numbers.
     #[error(
-        "{log}: {count} of {rows} rows contain NaN or infinite numbers, first `{column}` at row {row} (counted from 0), \
+        "{log}: {count} of {rows} rows contain NaN or infinite numbers, first `{column}` at row {row} \
+         (counted from 0), \
          expected at most 5 %"
     )]
     NotFinite {

@@ -144,7 +144,8 @@ impl Log {
             findings.push(Finding::note(
                 "jitter",
                 format!(
-                    "{}: steps of time vary between {:.3e} and {:.3e} s (5 % and 95 %); the log is resampled every {median:.3e} s",
+                    "{}: steps of time vary between {:.3e} and {:.3e} s (5 % and 95 %); the log is \
+                     resampled every {median:.3e} s",
                     self.name,
                     at(0.05),
                     at(0.95)
@@ -203,7 +204,8 @@ impl Log {
                 findings.push(Finding::warning(
                     "saturation",
                     format!(
-                        "{}: the force of {} stays at its extreme value in {count} rows ({low} or {high}); they are left out",
+                        "{}: the force of {} stays at its extreme value in {count} rows ({low} or \
+                         {high}); they are left out",
                         self.name,
                         model.velocity_names().nth(j).unwrap_or_default()
                     ),

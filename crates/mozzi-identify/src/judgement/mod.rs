@@ -85,7 +85,8 @@ fn lag(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
         Finding::warning(
             "causal_filter",
             format!(
-                "{log}: forces come {:.1} ms {when} than predicted: a causal filter or a clock, or friction with memory; \
+                "{log}: forces come {:.1} ms {when} than predicted: a causal filter or a clock, or \
+                 friction with memory; \
                  log them unfiltered",
                 1e3 * mean.abs()
             ),
@@ -103,7 +104,8 @@ fn colour(log: &str, residuals: &[Residual]) -> Option<Finding> {
         Finding::note(
             "coloured_residuals",
             format!(
-                "{log}: residuals of {} are no noise but effects that the model lacks (autocorrelation up to {most:.2}): \
+                "{log}: residuals of {} are no noise but effects that the model lacks (autocorrelation \
+                 up to {most:.2}): \
                  standard deviations are too small, by up to {:.0} times",
                 names.join(", "),
                 ((1.0 + most) / (1.0 - most)).sqrt()
