@@ -21,7 +21,7 @@ const CUBE: &str = r#"<robot name="cube"><link name="cube">
 fn dry_friction_holds_an_arm_by_every_method() {
     let arm = file(&folder("dry_friction"), "stuck.urdf", ARM);
     for method in ["auto", "moreau", "euler", "semi-implicit-euler", "rk4", "dopri", "midpoint"] {
-        let found = json(&["simulate", &arm, "--theta", "0.3", "--time", "2", "--method", method, "--json"]);
+        let found = json(&["simulate", &arm, "--theta", "0.3", "--time", "2", "--method", method]);
         let moved = rows(&found["theta"]).iter().map(|row| (row[0] - 0.3).abs()).fold(0.0, f64::max);
         println!("{method}: {} moves {moved:.1e} rad", found["method"]);
         assert!(moved < 1e-12);
@@ -31,8 +31,7 @@ fn dry_friction_holds_an_arm_by_every_method() {
 #[test]
 fn a_cube_falls_on_the_ground() {
     let cube = file(&folder("ground"), "cube.urdf", CUBE);
-    let found =
-        json(&["simulate", &cube, "--floating", "--ground", "--theta", "1,0,0,0,0,0,0.1", "--time", "1", "--json"]);
+    let found = json(&["simulate", &cube, "--floating", "--ground", "--theta", "1,0,0,0,0,0,0.1", "--time", "1"]);
     let last = rows(&found["theta"]).pop().expect("rows");
     assert!((last[6] - 0.05).abs() < 1e-12 && found["method"] == "Moreau-Jean", "{last:?}");
     let force = rows(&found["contact_forces"]).pop().expect("rows");

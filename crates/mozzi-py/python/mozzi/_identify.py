@@ -239,4 +239,5 @@ def excite(
     }
     arrays, condition, of_random, parameters = _excite(model, float(duration), float(step), options)
     values = {name: (value, deviation) for name, value, deviation in parameters}
-    return Excitation(*arrays, condition, of_random, values)
+    t, theta, dtheta, ddtheta = arrays
+    return Excitation(t, theta, dtheta, ddtheta, condition, of_random, values)
