@@ -1,8 +1,12 @@
 """A UR5 that is not what its file says: excite, measure, identify, and check what was never fitted."""
 
+from typing import Any
+
 import mozzi
 import numpy as np
+import numpy.typing as npt
 
+Array = npt.NDArray[Any]
 file = mozzi.models.ur5()  # what the file says
 random = np.random.default_rng(1763)
 
@@ -11,10 +15,11 @@ robot = file.with_payload("tool0", 1.2)
 viscous, coulomb = np.array([8.0, 8.0, 5.0, 1.0, 1.0, 0.8]), np.array([6.0, 6.0, 4.0, 1.0, 1.0, 0.8])
 
 
-def measured(theta, dtheta, ddtheta):
+def measured(theta: Array, dtheta: Array, ddtheta: Array) -> Array:
     """τ = M(θ)θ̈ + h + d θ̇ + μ sgn θ̇, with noise of 0.1 N m."""
     friction = viscous * dtheta + coulomb * np.tanh(dtheta / 0.05)
-    return robot.inverse_dynamics(theta, dtheta, ddtheta) + friction + 0.1 * random.normal(size=dtheta.shape)
+    tau: Array = robot.inverse_dynamics(theta, dtheta, ddtheta) + friction + 0.1 * random.normal(size=dtheta.shape)
+    return tau
 
 
 # a motion that tells most, within limits, and the confidence that it will give

@@ -6,6 +6,7 @@ differentiable by parameters, in forward mode, and twice.
 
 # mypy: ignore-errors
 # pyright: reportMissingImports=false, reportFunctionMemberAccess=false, reportCallIssue=false
+# pyright: reportIncompatibleMethodOverride=false, reportReturnType=false, reportAssignmentType=false
 
 import torch
 from torch import Tensor

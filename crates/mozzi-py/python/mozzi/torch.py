@@ -14,6 +14,7 @@ states and are broadcast. All of `torch.autograd` and `torch.func` works, to sec
 
 # mypy: ignore-errors
 # pyright: reportMissingImports=false, reportFunctionMemberAccess=false, reportCallIssue=false
+# pyright: reportIncompatibleMethodOverride=false, reportReturnType=false, reportAssignmentType=false
 
 import hashlib
 import math
