@@ -142,6 +142,21 @@ fn an_empty_sequence_is_repeated_at_once() {
     }
 }
 
+/// Found by fuzzing: more than the 65535 decimals that Rust's formatting takes. Lengths and ends are Python's.
+#[test]
+fn floats_have_any_number_of_decimals() {
+    for (format, length, end) in [
+        ("%.70000f", 70_002, "000000"),
+        ("%.70000e", 70_006, "00e-01"),
+        ("%#.70000g", 70_002, "000000"),
+        ("%.70000g", 57, "015625"),
+    ] {
+        let file = expression(&format!("(len('{format}' % 0.1), ('{format}' % 0.1)[-6:])"));
+        let found = one("a.xacro", &file).expect("an expansion").text;
+        assert!(found.contains(&format!("({length}, '{end}')")), "{format}: {found}");
+    }
+}
+
 #[test]
 fn bombs_end_at_a_bound() {
     let double = |body: &str| format!("{}{body}{}", ROOT[0], ROOT[1]);

@@ -215,17 +215,29 @@ pub(crate) fn real_digits(kind: char, size: f64, precision: Option<usize>, is_al
     } else {
         match kind.to_ascii_lowercase() {
             'e' => exponential(size, precision, is_alternate),
-            'f' => format!("{size:.precision$}") + if is_alternate && precision == 0 { "." } else { "" },
+            'f' => fixed(size, precision) + if is_alternate && precision == 0 { "." } else { "" },
             _ => general(size, precision.max(1), is_alternate, false),
         }
     };
     if kind.is_ascii_uppercase() { text.to_uppercase() } else { text }
 }
 
+/// More decimals than any float has: further ones are zeros. Rust's own formatting takes at most 65535.
+const MOST_DECIMALS: usize = 1100;
+
+fn zeros_after(precision: usize) -> String {
+    "0".repeat(precision.saturating_sub(MOST_DECIMALS))
+}
+
+fn fixed(size: f64, decimals: usize) -> String {
+    format!("{size:.*}", decimals.min(MOST_DECIMALS)) + &zeros_after(decimals)
+}
+
 fn exponential(size: f64, precision: usize, is_alternate: bool) -> String {
-    let text = format!("{size:.precision$e}");
+    let text = format!("{size:.*e}", precision.min(MOST_DECIMALS));
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let exponent: i32 = exponent.parse().unwrap_or_default();
+    let mantissa = mantissa.to_string() + &zeros_after(precision);
     let point = if is_alternate && precision == 0 { "." } else { "" };
     format!("{mantissa}{point}e{}{:02}", if exponent < 0 { '-' } else { '+' }, exponent.abs())
 }
@@ -236,7 +248,7 @@ fn general(size: f64, precision: usize, is_alternate: bool, is_repr: bool) -> St
     if !size.is_finite() {
         return float::repr(size);
     }
-    let text = format!("{size:.*e}", precision - 1);
+    let text = format!("{size:.*e}", (precision - 1).min(MOST_DECIMALS));
     let exponent: i64 = text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or_default();
     let most = if is_repr { precision as i64 - 1 } else { precision as i64 };
     let trim = |text: &str| match text.contains('.') && !is_alternate {
@@ -249,6 +261,6 @@ fn general(size: f64, precision: usize, is_alternate: bool, is_repr: bool) -> St
         return format!("{}e{exponent}", trim(mantissa));
     }
     let decimals = (precision as i64 - 1 - exponent).max(0) as usize;
-    let text = trim(&format!("{size:.decimals$}"));
+    let text = trim(&fixed(size, decimals));
     if is_repr && !text.contains('.') { text + ".0" } else { text }
 }
