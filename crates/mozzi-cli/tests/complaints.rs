@@ -200,8 +200,8 @@ fn a_cart_that_dry_friction_stops_is_no_stall() {
         <joint name='slope' type='prismatic'><parent link='rail'/><child link='cart'/><axis xyz='0.8 0 0.6'/>\
         <limit lower='-9' upper='9' effort='0' velocity='0'/><dynamics damping='0' friction='15'/></joint></robot>";
     let robot = file(&folder, "slide.urdf", slide);
-    // the slope pulls with 2 · 9.81 · 0.6 = 11.8 N, friction with 15 N: v²/(2a) = 0.5²/(2 (15 − 11.772)/2) = 0.0775 m down
-    // the slope, or up it 0.0093 m, and then it sticks; it made adaptive steps stall
+    // the slope pulls with 2 · 9.81 · 0.6 = 11.8 N, friction with 15 N: v²/(2a) = 0.5²/(2 (15 − 11.772)/2) = 0.0775 m
+    // down the slope, or up it 0.0093 m, and then it sticks; it made adaptive steps stall
     let start = ["simulate", &robot, "--method", "dopri", "--dtheta", "0.5"];
     let found = mozzi(&start);
     let said = String::from_utf8_lossy(&found.stdout).into_owned();
