@@ -1,6 +1,7 @@
 // Which curves stand in which plot: joints of one axis by their units, the parts of a ball, a free joint and a floating base each on its
-// own, energies.
+// own, energies, contacts.
 
+import { contactPlots } from "./contacts.js";
 import { hasQuaternion, positionsOf, slides, velocitiesOf } from "./joints.js";
 
 const COLOURS = ["#e5484d", "#30a46c", "#3e7bfa", "#8a63d2"];
@@ -47,6 +48,7 @@ export function plotsOf(robot, motion, jointColour) {
   const named = ([name, values, colour]) => ({ name, values, colour });
   if (energy.length > 0) plots.push({ title: "energy", unit: "J", legend: true, curves: energy.map(named) });
   if (motion.drift) plots.push({ title: "drift", unit: "J, energy that the method made", curves: [{ name: "drift", values: motion.drift, colour: "#c9486a" }] });
+  if (motion.contacts) plots.push(...contactPlots(motion.contacts));
   const ofJoint = (joint) => known.flatMap((quantity) => ofParts(robot, motion, quantity, joint));
   return [...plots, ...robot.allJoints.filter(hasQuaternion).flatMap(ofJoint)];
 }

@@ -57,7 +57,15 @@ export function readMotion(raw, robot) {
     kinetic: list(raw.kinetic_energy),
     potential: list(raw.potential_energy),
     drift: list(raw.drift),
+    contacts: raw.contacts ? readContacts(raw.contacts, rows) : null,
   };
+}
+
+// Points and forces of each row, three numbers for each pair of a point and a plane; planes with one configuration or one a row.
+function readContacts(raw, rows) {
+  const planes = raw.planes.map((plane) => ({ ...plane, poses: rows(plane.poses, 12) }));
+  const width = 3 * raw.pairs.length;
+  return { ...raw, planes, points: rows(raw.points, width), forces: rows(raw.forces, width) };
 }
 
 // Two rows of θ, of each quaternion in the second the sign that is nearer to the first: both signs are one rotation.
@@ -83,6 +91,12 @@ export function stateAt(motion, time) {
   const mixed = (from, to) => from.map((x, k) => x + part * (to[k] - x));
   const between = (rows) => rows && mixed(rows[low], rows[high]);
   const theta = normalized(robot, mixed(motion.theta[low], nearer(robot, motion.theta[low], motion.theta[high])));
+  const { contacts } = motion;
+  const touch = contacts && {
+    points: between(contacts.points),
+    forces: between(contacts.forces),
+    planes: contacts.planes.map(({ poses }) => fromRows(poses.length > 1 ? between(poses) : poses[0])),
+  };
   const [dtheta, ddtheta, tau, tip, loops] = [motion.dtheta, motion.ddtheta, motion.tau, motion.tip, motion.loops].map(between);
-  return { theta, dtheta, ddtheta, tau, tip, loops, low, part };
+  return { time, theta, dtheta, ddtheta, tau, tip, loops, touch, low, part };
 }

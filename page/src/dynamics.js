@@ -85,8 +85,8 @@ export function twists(robot, T, dtheta) {
 
 // The wrench that each joint transmits to its body, in {s}, and on the base: F_i = Σ 𝒢V̇ − ad_Vᵀ𝒢V + F over all that it carries,
 // gravity as an upward acceleration of the base. `tip` is what the end effector applies, in its own frame, `loops` what anchor b of
-// each constraint applies to a, in {s}.
-export function wrenches(robot, T, dtheta, ddtheta, tip, loops) {
+// each constraint applies to a, in {s}; `pushes` what the robot applies to planes: { frame, at, force }, in {s}.
+export function wrenches(robot, T, dtheta, ddtheta, tip, loops, pushes = []) {
   const V = twists(robot, T, dtheta);
   const upward = [0, 0, 0, ...scaled(robot.gravity, -1)];
   const [relative, dV] = [along(robot, T, dtheta), along(robot, T, ddtheta)];
@@ -105,6 +105,10 @@ export function wrenches(robot, T, dtheta, ddtheta, tip, loops) {
     if (b.body !== null) F[b.body] = add(F[b.body], W);
     if (a.body !== null) F[a.body] = add(F[a.body], scaled(W, -1));
   });
+  for (const { frame, at, force } of pushes) {
+    const { body } = robot.frames[frame];
+    F[body] = add(F[body], [...cross(at, force), ...force]);
+  }
   for (let k = robot.bodies.length; k > 0; k--) F[parentOf(robot, k)] = add(F[parentOf(robot, k)], F[k]);
   return F;
 }

@@ -10,6 +10,7 @@ export const KINDS = {
   twists: { name: "twists", key: "t", colour: "#2f9e6e", about: "of each body: ω (light green), v of its centre of mass (green)" },
   wrenches: { name: "wrenches", key: "w", colour: "#d0433f", about: "that each joint transmits to its link: moment (orange), force (red)" },
   constraints: { name: "constraints", key: "o", colour: "#b0309a", about: "lines between the points that they hold together; in a motion the force that each carries" },
+  contacts: { name: "contacts", key: "x", colour: "#4f46e5", about: "in a motion: points that touch planes (grey: they do not), the force that the robot applies to the plane, and the cone of friction of half-angle atan μ, as deep as that force's normal part; orange: the force is on the cone, the point slides" },
   inertia: { name: "inertia", key: "i", colour: "#b8962e", about: "homogeneous ellipsoids with the bodies' mass and inertia" },
   manipulability: { name: "manipulability", key: "m", colour: "#1f9bb0", about: "velocities of the end effector's origin at ‖θ̇‖ = 1, {v: v = J_v θ̇}; 1 m/s is drawn 0.25 m long" },
   torque: { name: "torques", key: "e", colour: "#e07b39", about: "forces at the end effector that ‖τ‖ = 1 holds, {f: ‖J_vᵀf‖ = 1}: long where manipulability is short" },

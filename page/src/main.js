@@ -2,6 +2,7 @@
 
 import * as THREE from "three";
 import { seriesColour } from "./colours.js";
+import { lastEvent } from "./contacts.js";
 import { plotsOf } from "./curves.js";
 import { readMotion, readRobot, stateAt } from "./data.js";
 import { centerOfMass, massMatrix, poses } from "./dynamics.js";
@@ -12,7 +13,7 @@ import { onKeys } from "./keys.js";
 import { MatrixPicture } from "./matrix.js";
 import { Overlays } from "./overlays.js";
 import { Player, SPEEDS } from "./player.js";
-import { Plot } from "./plots.js";
+import { Plot, short } from "./plots.js";
 import { Scene } from "./scene.js";
 import { addShapes, seeThrough } from "./shapes.js";
 import { addSkeleton } from "./skeleton.js";
@@ -35,7 +36,7 @@ find("about").textContent = motion ? motion.title : `${robot.n} velocities, ${ro
 
 const scene = new Scene(find("scene"), robot);
 const reach = reachOf();
-const overlays = new Overlays(robot, scene, reach, jointColour);
+const overlays = new Overlays(robot, scene, reach, jointColour, motion?.contacts);
 const skeleton = addSkeleton(robot, scene, reach, jointColour);
 const matrix = new MatrixPicture(find("matrix"), robot.velocities);
 const plots = [];
@@ -52,8 +53,22 @@ function reachOf() {
 function place() {
   const T = poses(robot, state.theta);
   scene.place(T);
+  if (state.touch) scene.placePlanes(state.touch.planes, state.time);
   overlays.update(state, T);
   if (shown.mass) matrix.show(massMatrix(robot, state.theta));
+  hint();
+}
+
+// Below the scene: what was left out, the scale of contact forces, what last happened to contacts.
+let omitted = 0;
+function hint() {
+  const said = omitted > 0 ? [`${omitted} shapes were left out: see ?`] : [];
+  if (motion?.contacts && shown.contacts) {
+    const usual = overlays.touches.usual;
+    if (usual > 0) said.push(`contacts: forces that the robot applies to planes, ${short(usual)} N is drawn ${short(0.3 * reach)} m long`);
+    said.push(lastEvent(motion.contacts, state.time));
+  }
+  find("hint").textContent = said.filter((text) => text !== "").join("\n");
 }
 
 // What is shown, by kind.
@@ -66,6 +81,7 @@ const possible = {
   // with loops also what they carry has to be known
   wrenches: robot.constraints.length > 0 ? Boolean(motion?.loops) : !motion || Boolean(motion.dtheta && motion.ddtheta),
   constraints: robot.constraints.length > 0,
+  contacts: Boolean(motion?.contacts),
   path: Boolean(motion),
   mass: robot.n > 0,
 };
@@ -196,6 +212,7 @@ function look() {
     const T = poses(robot, theta);
     robot.frames.forEach(({ body, T: at }) => points.push(new THREE.Vector3(...at.p).applyMatrix4(scene.matrixOf(T[body]))));
   }
+  if (shown.contacts) points.push(...overlays.touches.ends(state).map((end) => new THREE.Vector3(...end)));
   if (new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3()).length() < 0.1 * reach)
     for (const sign of [-1, 1]) points.push(new THREE.Vector3(sign * reach, sign * reach, sign * reach));
   scene.fit(points);
@@ -221,7 +238,7 @@ function savePicture() {
 
 const theme = startTheme(find("theme"), () => {
   plots.forEach((plot) => plot.redraw());
-  if (scene.floor) scene.ground(scene.groundSize, scene.groundHeight);
+  if (scene.floors) scene.ground(scene.groundSize, scene.planes);
   place();
 });
 
@@ -244,17 +261,19 @@ async function start() {
   fillHelp(find("about-page"), Boolean(motion), notes);
   find("help").addEventListener("click", () => find("about-page").showModal());
   find("picture").addEventListener("click", savePicture);
-  find("hint").textContent = notes.length > 0 ? `${notes.length} shapes were left out: see ?` : "";
+  omitted = notes.length;
   onKeys({ player, player_speed: find("speed"), loop: find("loop"), theme, look, savePicture, help: find("about-page"), motion,
     toggle: (kind) => buttons[kind] && show(kind, !shown[kind]) });
 
   const hasShapes = layers.visual.length + layers.collision.length > 0;
-  const first = asked.has("show") ? asked.get("show").split(",") : hasShapes ? ["shapes", "mass"] : ["skeleton", "axes", "masses", "mass"];
+  const usual = hasShapes ? ["shapes", "contacts", "mass"] : ["skeleton", "axes", "masses", "contacts", "mass"];
+  const first = asked.has("show") ? asked.get("show").split(",") : usual;
   for (const kind of Object.keys(KINDS)) show(kind, first.includes(kind) && possible[kind] !== false);
   place();
   look();
   const bottom = bounds().min.z;
-  scene.ground(reach, robot.isFloating || bottom < -0.15 * reach ? bottom : 0);
+  scene.ground(reach, motion?.contacts ? motion.contacts.planes.map(({ velocity }, k) => ({ pose: state.touch.planes[k], velocity })) :
+    [{ height: robot.isFloating || bottom < -0.15 * reach ? bottom : 0 }]);
   if (motion) player.seek(asked.has("t") ? Number(asked.get("t")) : motion.t[0]);
   place();
   scene.drawNow();
@@ -276,5 +295,12 @@ window.mozzi = {
   massMatrix: () => massMatrix(robot, state.theta),
   centerOfMass: () => centerOfMass(robot, poses(robot, state.theta)),
   semiAxes: () => overlays.singularValues(poses(robot, state.theta)).map(({ sigma }) => sigma),
+  contacts: () => overlays.touches?.drawn() ?? [],
+  // Each plane's origin and z-axis, as the scene has them.
+  planes: () => scene.floors.map((floor) => {
+    floor.updateMatrixWorld(true);
+    const { elements } = floor.matrixWorld;
+    return { origin: elements.slice(12, 15), z: elements.slice(8, 11) };
+  }),
   vectors: () => overlays.vectors(state, poses(robot, state.theta)),
 };

@@ -1,6 +1,7 @@
 // What the buttons show over the robot: screw axes, frames, centres of mass, twists, wrenches, ellipsoids, the end effector's path.
 
 import * as THREE from "three";
+import { ContactMarks } from "./contacts.js";
 import { centerOfMass, linearGram, poses, twists, wrenches } from "./dynamics.js";
 import { add, angular, cross, eigen, linear, moved, norm, scaled } from "./lie.js";
 import { linesOf, pointOf } from "./joints.js";
@@ -21,8 +22,8 @@ function centralInertia([m, hx, hy, hz, xx, xy, xz, yy, yz, zz]) {
 }
 
 export class Overlays {
-  constructor(robot, scene, reach, jointColour) {
-    Object.assign(this, { robot, scene, reach });
+  constructor(robot, scene, reach, jointColour, contacts) {
+    Object.assign(this, { robot, scene, reach, pairs: contacts?.pairs ?? [] });
     this.layers = Object.fromEntries(Object.keys(KINDS).map((kind) => [kind, new THREE.Group()]));
     for (const layer of Object.values(this.layers)) {
       layer.visible = false;
@@ -44,6 +45,7 @@ export class Overlays {
       return this.put("constraints", new THREE.Line(new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]), material));
     });
     this.carried = robot.constraints.map(() => this.put("constraints", new Arrow(KINDS.constraints.colour, thickness)));
+    this.touches = contacts && new ContactMarks(contacts, this.layers.contacts, reach);
     this.longest = { carried: 1, spin: 1, speed: 1, moment: 1, force: 1 };
   }
 
@@ -125,12 +127,14 @@ export class Overlays {
   }
 
   // ω and v at each centre of mass, m and f at each joint.
-  vectors({ dtheta, ddtheta, tip, loops }, T) {
+  vectors({ dtheta, ddtheta, tip, loops, touch }, T) {
     const { robot } = this;
     const still = new Array(robot.n).fill(0);
     const centers = this.inertias.map((inertia, k) => moved(T[k], center(inertia)));
     const V = twists(robot, T, dtheta ?? still);
-    const F = wrenches(robot, T, dtheta ?? still, ddtheta ?? still, tip, loops);
+    const three = (list, k) => list.slice(3 * k, 3 * k + 3);
+    const pushes = touch ? this.pairs.map(({ frame }, k) => ({ frame, at: three(touch.points, k), force: three(touch.forces, k) })) : [];
+    const F = wrenches(robot, T, dtheta ?? still, ddtheta ?? still, tip, loops, pushes);
     const anchors = robot.constraints.map(({ a, b }) => [a, b].map(({ body, p }) => (body === null ? p : moved(T[body], p))));
     const joints = T.map((pose, k) => (k === 0 ? pose.p : moved(pose, pointOf(robot.bodies[k - 1]))));
     return {
@@ -155,6 +159,7 @@ export class Overlays {
         this[kind].forEach((arrow, k) => arrow.set(from[k], scaled(found[kind][k], scale)));
       }
     }
+    if (layers.contacts.visible && state.touch) this.touches.update(state);
     if (layers.masses.visible) {
       const c = centerOfMass(this.robot, T);
       this.total.visible = c !== null;

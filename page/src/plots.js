@@ -32,10 +32,11 @@ function range(curves) {
 }
 
 export class Plot {
-  // `curves`: { name, joint, colour, values }, one value for each time; `joint` is the joint's name, if it is of one.
-  constructor(host, { title, unit, t, curves, seek, legend }) {
+  // `curves`: { name, joint, colour, values }, one value for each time; `joint` is the joint's name, if it is of one. `marks`: { t, colour },
+  // events. `top`: what is above is cut off.
+  constructor(host, { title, unit, t, curves, seek, legend, marks = [], top = null }) {
     const figure = document.createElement("figure");
-    Object.assign(this, { t, curves, legend, figure, hidden: new Set() });
+    Object.assign(this, { t, curves, legend, marks, top, figure, hidden: new Set() });
     figure.className = "plot";
     const caption = figure.appendChild(document.createElement("figcaption"));
     caption.appendChild(document.createElement("b")).textContent = title;
@@ -85,7 +86,8 @@ export class Plot {
     for (const canvas of [this.canvas, this.still]) [canvas.width, canvas.height] = [width * scale, height * scale];
     const draw = this.still.getContext("2d");
     draw.scale(scale, scale);
-    const [low, high] = range(this.shown);
+    const [lowest, highest] = range(this.shown);
+    const [low, high] = this.top === null ? [lowest, highest] : [-0.06 * this.top, this.top];
     const [start, end] = [this.t[0], this.t.at(-1)];
     const box = { x: MARGIN.left, y: MARGIN.top, w: width - MARGIN.left - MARGIN.right, h: height - MARGIN.top - MARGIN.bottom };
     this.x = (t) => box.x + (end > start ? (t - start) / (end - start) : 0.5) * box.w;
@@ -111,6 +113,15 @@ export class Plot {
     draw.beginPath();
     draw.rect(box.x, box.y - 1, box.w, box.h + 2);
     draw.clip();
+    for (const { t, colour: stroke } of this.marks) {
+      draw.strokeStyle = stroke;
+      draw.globalAlpha = 0.5;
+      draw.beginPath();
+      draw.moveTo(this.x(t), box.y);
+      draw.lineTo(this.x(t), box.y + 0.16 * box.h);
+      draw.stroke();
+    }
+    draw.globalAlpha = 1;
     draw.lineJoin = "round";
     draw.lineWidth = this.shown.length > 12 ? 1 : 1.5;
     for (const { values, colour: stroke } of this.shown) {

@@ -51,27 +51,47 @@ export class Scene {
     this.world.add(this.sky, this.sun, this.sun.target);
   }
 
-  // Grid and shadow.
-  ground(size, height) {
-    [this.groundSize, this.groundHeight] = [size, height];
-    if (this.floor) {
-      this.world.remove(this.floor);
-      this.floor.traverse((part) => part.geometry?.dispose());
+  // Grids and shadows on planes, each { pose, velocity }; without a pose a plane lies at a height and stays where it is.
+  ground(size, planes) {
+    [this.groundSize, this.planes] = [size, planes];
+    for (const floor of this.floors ?? []) {
+      this.world.remove(floor);
+      floor.traverse((part) => part.geometry?.dispose());
     }
-    const cell = 10 ** Math.floor(Math.log10(size / 2));
-    const cells = 2 * Math.ceil((2.2 * size) / cell);
-    const grid = new THREE.GridHelper(cells * cell, cells, colour("grid-axis"), colour("grid"));
-    grid.rotation.x = Math.PI / 2;
-    grid.material.transparent = true;
-    grid.material.opacity = 0.7;
-    grid.material.depthWrite = false;
-    const shadow = new THREE.Mesh(new THREE.PlaneGeometry(cells * cell, cells * cell), new THREE.ShadowMaterial({ opacity: 0.28 }));
-    shadow.receiveShadow = true;
-    shadow.position.z = -1e-3 * size;
-    this.floor = new THREE.Group().add(grid, shadow);
-    this.floor.position.z = height - 1e-3 * size;
-    this.world.add(this.floor);
+    this.cell = 10 ** Math.floor(Math.log10(size / 2));
+    const cells = 2 * Math.ceil((2.2 * size) / this.cell);
+    const side = cells * this.cell;
+    this.floors = planes.map(({ pose, height }) => {
+      const grid = new THREE.GridHelper(side, cells, colour(pose ? "grid" : "grid-axis"), colour("grid"));
+      grid.rotation.x = Math.PI / 2;
+      grid.material.transparent = true;
+      grid.material.opacity = 0.7;
+      grid.material.depthWrite = false;
+      const shadow = new THREE.Mesh(new THREE.PlaneGeometry(side, side), new THREE.ShadowMaterial({ opacity: 0.28 }));
+      shadow.receiveShadow = true;
+      shadow.position.z = -1e-3 * size;
+      const floor = new THREE.Group().add(grid, shadow);
+      floor.position.z = (height ?? 0) - 1e-3 * size;
+      floor.matrixAutoUpdate = !pose;
+      this.world.add(floor);
+      return floor;
+    });
     this.placeSun(size);
+  }
+
+  // The planes of contacts, at a time: below the robot's base, by whole cells of their grids; a belt's grid moves with it.
+  placePlanes(poses, time) {
+    if (!this.floors) return;
+    this.floors.forEach((floor, k) => {
+      if (!poses[k]) return;
+      const T = matrixOf(poses[k]);
+      const along = (x, y, z) => new THREE.Vector3(x, y, z).applyMatrix4(T.clone().setPosition(0, 0, 0).transpose());
+      const carried = along(...(this.planes[k].velocity ?? [0, 0, 0])).multiplyScalar(time);
+      const below = this.followed.clone().applyMatrix4(T.clone().invert());
+      const whole = (x, from) => from + this.cell * Math.round((x - from) / this.cell);
+      const center = new THREE.Matrix4().makeTranslation(whole(below.x, carried.x), whole(below.y, carried.y), -1e-3 * this.groundSize);
+      floor.matrix.copy(T.multiply(center));
+    });
   }
 
   placeSun(size) {

@@ -6,9 +6,9 @@ use crate::input;
 use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use clap::{Args, ValueEnum};
-use mozzi::simulation::Input;
+use mozzi::simulation::{ContactEvent, Contacts, Input};
 use mozzi::{Model, Trajectory, Wrench};
-use mozzi_report::{Drawing, Meshes, Motion};
+use mozzi_report::{Drawing, Meshes, Motion, Touches};
 use mozzi_urdf::expanded;
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
@@ -140,6 +140,17 @@ pub fn simulated(title: String, motion: &Trajectory, mut wrench: impl Input) -> 
     }
     let is_any = applied.iter().any(|F| *F != Wrench::zero());
     Ok(Motion { tip_wrench: is_any.then_some(applied), ..Motion::simulated(title, motion) })
+}
+
+/// The contacts of a simulated motion, if it has any.
+pub fn touches(
+    model: &Model,
+    contacts: &Contacts,
+    motion: &Trajectory,
+    events: &[ContactEvent],
+) -> Result<Option<Touches>> {
+    let touches = || Touches::new(model, contacts, motion, events).map_err(|error| Failure::wrong(error.to_string()));
+    (!contacts.is_empty()).then(touches).transpose()
 }
 
 /// A table's motion; the energies are computed from it.

@@ -14,6 +14,11 @@ pub fn encode(bytes: &[u8]) -> String {
     text
 }
 
+/// 32-bit floats, little-endian, as text.
+pub fn singles(values: &[f64]) -> String {
+    encode(&values.iter().flat_map(|&x| (x as f32).to_le_bytes()).collect::<Vec<_>>())
+}
+
 #[cfg(test)]
 mod tests {
     use super::encode;

@@ -18,7 +18,7 @@
 //! - `robot`: bodies with their joints' screws and inertias, named frames, shapes, as [`Model`] has them, in the frames
 //!   of the robot's file; its start, in which it is shown at first, and its named states;
 //! - `meshes`: the files of meshes, gzipped;
-//! - `motion`: rows of a trajectory, as 32-bit floats (times: 64).
+//! - `motion`: rows of a trajectory, as 32-bit floats (times: 64), and its contacts ([`Touches`]).
 mod base64;
 mod drawing;
 mod error;
@@ -31,12 +31,14 @@ pub mod pictures;
 mod robot;
 #[cfg(test)]
 mod testing;
+mod touches;
 
 pub use drawing::{Drawing, Meshes};
 pub use error::Error;
 pub use fit::fit_html;
 pub use fit_json::fit_json;
 pub use motion::Motion;
+pub use touches::Touches;
 
 use mozzi::Model;
 

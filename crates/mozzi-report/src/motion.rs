@@ -1,7 +1,8 @@
 //! A motion, by rows.
 
-use crate::base64;
+use crate::base64::{self, singles};
 use crate::error::Error;
+use crate::touches::Touches;
 use mozzi::{Environment, Model, Trajectory, Wrench};
 use serde_json::{Value, json};
 
@@ -28,6 +29,8 @@ pub struct Motion {
     pub potential_energy: Option<Vec<f64>>,
     /// Energy error of the method, J: [`Trajectory::drift`].
     pub drift: Option<Vec<f64>>,
+    /// The contacts of a simulation, with their forces and events.
+    pub contacts: Option<Touches>,
 }
 
 impl Motion {
@@ -44,6 +47,7 @@ impl Motion {
             kinetic_energy: Some(motion.energy.iter().map(|energy| energy.kinetic).collect()),
             potential_energy: Some(motion.energy.iter().map(|energy| energy.potential).collect()),
             drift: Some((0..motion.len()).map(|k| motion.drift(k)).collect()),
+            contacts: None,
         }
     }
 
@@ -59,6 +63,7 @@ impl Motion {
             let energies = [&mut self.kinetic_energy, &mut self.potential_energy, &mut self.drift];
             lists.into_iter().chain(energies).flatten().for_each(|list| thin(list, rows, is_kept));
             self.tip_wrench.iter_mut().for_each(|list| thin(list, rows, is_kept));
+            self.contacts.iter_mut().for_each(|contacts| contacts.thin(rows, is_kept));
         }
         self
     }
@@ -105,6 +110,13 @@ impl Motion {
         if wrenches != rows {
             return Err(Error::Motion { what: "tip wrench", found: 6 * wrenches, expected: 6 * rows, rows, width: 6 });
         }
+        if let Some((width, found)) = self.contacts.as_ref().map(Touches::widths) {
+            for (what, found) in ["contact points", "contact forces"].into_iter().zip(found) {
+                if found != rows * width {
+                    return Err(Error::Motion { what, found, expected: rows * width, rows, width });
+                }
+            }
+        }
         Ok(())
     }
 
@@ -150,22 +162,18 @@ impl Motion {
             "kinetic_energy": list(&self.kinetic_energy),
             "potential_energy": list(&self.potential_energy),
             "drift": list(&self.drift),
+            "contacts": self.contacts.as_ref().map(|contacts| contacts.to_json(model)),
         }))
     }
 }
 
 /// Selected rows of a table.
-fn thin<T>(table: &mut Vec<T>, rows: usize, is_kept: impl Fn(usize) -> bool) {
+pub(crate) fn thin<T>(table: &mut Vec<T>, rows: usize, is_kept: impl Fn(usize) -> bool) {
     let (width, mut entry) = (table.len() / rows.max(1), 0);
     table.retain(|_| {
         entry += 1;
         is_kept((entry - 1) / width)
     });
-}
-
-/// 32-bit floats, little-endian, as text.
-fn singles(values: &[f64]) -> String {
-    base64::encode(&values.iter().flat_map(|&x| (x as f32).to_le_bytes()).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

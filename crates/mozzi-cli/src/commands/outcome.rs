@@ -3,6 +3,7 @@
 use mozzi::Trajectory;
 use mozzi::simulation::{Account, Closing, ContactEvent, Method, Occurrence, OneSidedAccount, Stopped};
 use mozzi_motion::controllers::{Overload, TrackingError};
+use mozzi_report::Touches;
 
 /// A motion and its notes.
 pub struct Outcome {
@@ -13,6 +14,8 @@ pub struct Outcome {
     pub method: Method,
     /// The names of the contacts.
     pub contacts: Vec<String>,
+    /// The contacts by the rows of the motion, for a page.
+    pub touches: Option<Touches>,
     /// The solutions for dry friction, stops and contacts.
     pub one_sided: Option<OneSidedAccount>,
     pub contact_events: Vec<ContactEvent>,

@@ -26,6 +26,7 @@ use mozzi::{Model, Trajectory};
 use mozzi_batch::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
 use mozzi_motion::trajectories::Hold;
+use mozzi_report::{Motion, Touches};
 use std::ops::ControlFlow;
 
 #[derive(Args, Debug)]
@@ -158,12 +159,13 @@ impl SimulateArguments {
         let options = self.options(end)?;
         let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
         let names: Vec<String> = contacts.names().collect();
-        let (motion, account, ending) =
+        let (motion, account, ending, touches) =
             self.integrate(model, [&theta, &dtheta], input, options, (events, contacts), &mut tracking)?;
         let Ending { events, stops, closing, method, one_sided, contact_events, .. } = ending;
         Ok(Outcome {
             method,
             contacts: names,
+            touches,
             one_sided,
             contact_events,
             // a motion of zero duration has no shorter step
@@ -207,6 +209,7 @@ impl SimulateArguments {
         let (time, happened) = (scalar(motion.last().t), happened.join("; "));
         let title = format!("{method}, {time} s in {} steps, motors: {motors}{happened}", motion.steps);
         let motion = report::simulated(title, motion, self.motors.wrench(model, outcome.duration)?)?;
+        let motion = Motion { contacts: outcome.touches.clone(), ..motion };
         self.page.write(file, &self.robot, model, Some((motion, outcome.account.rows)))
     }
 
@@ -258,7 +261,7 @@ impl SimulateArguments {
         options: Options,
         (events, contacts): (Vec<Event>, Contacts),
         tracking: &mut impl Recorder,
-    ) -> Result<(Trajectory, Account, Ending)> {
+    ) -> Result<(Trajectory, Account, Ending, Option<Touches>)> {
         options.check()?;
         let robot = self.machine_code(model)?;
         let forward_dynamics = robot.as_ref().and_then(Compiled::simulator);
@@ -278,6 +281,8 @@ impl SimulateArguments {
         log.map(log::Log::finish).transpose()?;
         let mut motion = kept.into_trajectory();
         (motion.steps, motion.complete) = (ending.steps, ending.complete);
-        Ok((motion, account, ending))
+        let touches = || report::touches(model, &simulation.contacts, &motion, &ending.contact_events);
+        let touches = self.report.is_some().then(touches).transpose()?.flatten();
+        Ok((motion, account, ending, touches))
     }
 }

@@ -1,7 +1,7 @@
 //! Points of a robot, and the planes that stop them.
 
 use super::options::check;
-use crate::lie::SE3;
+use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
 use crate::model::{Error, FrameId, Model};
 use crate::scalar::Scalar;
@@ -104,6 +104,9 @@ pub enum ContactChange {
 }
 
 impl ContactChange {
+    /// Each change.
+    pub const ALL: [Self; 4] = [Self::TouchDown, Self::LiftOff, Self::Sticks, Self::Slides];
+
     /// "touches down", "lifts off", "sticks" or "slides".
     pub fn name(self) -> &'static str {
         match self {
@@ -219,10 +222,24 @@ impl Contacts<'_> {
     /// # Panics
     /// When θ is not nq long.
     pub fn gaps(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<f64> {
+        self.touches(model, t, theta).into_iter().map(|(touch, _)| touch.gap).collect()
+    }
+
+    /// For each pair, in the order of [`gaps`](Self::gaps), a frame in {s}: its origin is the point of the robot that is
+    /// nearest to the plane, its axes are the plane's.
+    ///
+    /// # Panics
+    /// When θ is not nq long.
+    pub fn frames(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<SE3> {
+        self.touches(model, t, theta).into_iter().map(|(touch, R)| SE3 { R, p: touch.at }).collect()
+    }
+
+    /// Each pair, with the orientation of its plane.
+    fn touches(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<(Touch, SO3)> {
         let surfaces: Vec<Surface> = self.planes.iter().map(|plane| plane.at(t)).collect();
         let of_point = |point: &ContactPoint| {
             let T = crate::kinematics::forward_kinematics(model, theta, point.frame);
-            surfaces.iter().map(|surface| point.touch(T, surface).gap).collect::<Vec<f64>>()
+            surfaces.iter().map(|surface| (point.touch(T, surface), surface.T.R)).collect::<Vec<_>>()
         };
         self.points.iter().flat_map(of_point).collect()
     }
