@@ -61,7 +61,10 @@ unsafe fn settings(options: *const LoadOptions) -> Outcome<(Settings, bool)> {
         (pairs(options.xacro_arguments, options.xacro_argument_count, "options.xacro_arguments")?, packages)
     };
     let packages = packages.into_iter().map(|(name, folder)| (name, folder.into())).collect();
-    Ok((Settings { policy, xacro: XacroArguments { values, packages } }, options.floating != 0))
+    Ok((
+        Settings { policy, xacro: XacroArguments { values, packages, ..XacroArguments::default() } },
+        options.floating != 0,
+    ))
 }
 
 /// Reads by this function, then writes the model and the diagnostics.

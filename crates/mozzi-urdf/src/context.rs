@@ -17,6 +17,8 @@ pub(crate) struct Context {
     pub version: Version,
     /// Places of invalid numbers: a default may be used often, but is reported once.
     pub unreadable: BTreeSet<usize>,
+    /// Texts that replace those of included files, by name.
+    pub replaced: BTreeMap<String, String>,
     /// The first places of attributes that do not affect the dynamics of the tree, by element and attribute.
     pub left_out: BTreeMap<(String, &'static str), Range<usize>>,
     kinds: BTreeMap<(String, String, &'static str), Option<String>>,

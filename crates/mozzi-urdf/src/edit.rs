@@ -1,13 +1,16 @@
-//! Edits a URDF's text in place for changed inertias, friction, armature and springs, locked joints or a floating base,
-//! so that visuals, comments and unknown elements remain.
+//! Edits a robot's texts in place for changed inertias, friction, armature and springs; those of URDF also for locked
+//! joints or a floating base. Visuals, comments and unknown elements remain.
 
 mod element;
 mod joint;
 mod link;
+mod mjcf;
+mod numbers;
 mod transmission;
+mod xacro;
 
 use crate::write::{NotUrdf, escaped, free};
-use crate::{LoadError, Policy, parse_with};
+use crate::{LoadError, Policy, Settings, expansion, parse_with};
 use element::{Editor, Tag};
 use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description};
@@ -21,8 +24,8 @@ pub use transmission::drives_of_fixed_joints;
 pub enum EditError {
     /// The text cannot be read.
     Load(LoadError),
-    /// The edited robot differs from the text in more than inertias, friction, armature, springs, locked joints and a
-    /// floating base.
+    /// The edited robot differs from the text in other things than those that are edited, or numbers of the text are
+    /// computed.
     Unsupported(NotUrdf),
 }
 
@@ -36,6 +39,45 @@ impl fmt::Display for EditError {
 }
 
 impl std::error::Error for EditError {}
+
+/// A text that changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EditedFile {
+    /// The file's name: as given, or that by which another file includes it.
+    pub name: String,
+    /// Its edited text.
+    pub text: String,
+}
+
+/// The texts of a robot in URDF, MJCF or xacro, edited as by [`edit`]: those that change, which may be included files
+/// and YAML files of xacro. Without differences there are none.
+///
+/// MJCF: a value that comes from a default class is written on the element itself; an `<inertial>` is added to a body
+/// whose inertia MuJoCo computes from geoms. Xacro: a number is edited where it is written, as a literal, a property, an
+/// argument of a macro or an entry of a YAML file; the edited files are expanded again and compared.
+///
+/// # Errors
+/// As [`edit`]. Of xacro: a number that is computed, or would have to get two values; each with its place.
+pub fn edit_files(
+    file_name: &str,
+    text: &str,
+    edited: &Description,
+    keeps_old: bool,
+    settings: &Settings,
+) -> Result<Vec<EditedFile>, EditError> {
+    if let Some(expansion) = expansion::of(file_name, text, settings).map_err(EditError::Load)? {
+        return xacro::edit(file_name, text, &expansion, edited, keeps_old, settings);
+    }
+    if crate::mjcf::is_mjcf(text) {
+        return mjcf::edit(file_name, text, edited, keeps_old);
+    }
+    let new = edited_text(file_name, text, edited, keeps_old)?;
+    Ok(if new == text { Vec::new() } else { vec![EditedFile { name: file_name.to_string(), text: new }] })
+}
+
+fn refused(reasons: Vec<String>) -> EditError {
+    EditError::Unsupported(NotUrdf { reasons })
+}
 
 /// The text of a URDF, edited so that it describes another robot: one that differs in inertias, in friction, armature
 /// and springs of joints, in joints that became fixed, and in a base that became floating. Only the attributes and
@@ -56,6 +98,26 @@ pub fn edit_with_old_values(file_name: &str, text: &str, edited: &Description) -
 }
 
 fn edited_text(file_name: &str, text: &str, edited: &Description, keeps_old: bool) -> Result<String, EditError> {
+    let body = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let document = match Document::parse(body) {
+        Ok(document) => document,
+        Err(error) => {
+            parse_with(file_name, text, Policy::Lenient).map_err(EditError::Load)?;
+            return Err(refused(vec![format!("its XML is not valid: {error}")]));
+        }
+    };
+    let editor = editor(file_name, &document, edited, keeps_old)?;
+    Ok(format!("{}{}", &text[..text.len() - body.len()], editor.apply()))
+}
+
+/// The changes of a URDF.
+fn editor<'a>(
+    file_name: &str,
+    document: &'a Document<'a>,
+    edited: &Description,
+    keeps_old: bool,
+) -> Result<Editor<'a>, EditError> {
+    let text = document.input_text();
     // if the text is valid only after repairs, the repaired robot is compared, and all inertias are those of `edited`
     let (original, is_repaired) = match parse_with(file_name, text, Policy::Default) {
         Ok(loaded) => (loaded.description, false),
@@ -63,21 +125,18 @@ fn edited_text(file_name: &str, text: &str, edited: &Description, keeps_old: boo
     };
     let reasons = unsupported(&original, edited);
     if !reasons.is_empty() {
-        return Err(EditError::Unsupported(NotUrdf { reasons }));
+        return Err(refused(reasons));
     }
-    let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut reasons = Vec::new();
-    let mut editor = Editor::new(body);
-    let document = Document::parse(body)
-        .map_err(|error| EditError::Unsupported(NotUrdf { reasons: vec![format!("its XML is not valid: {error}")] }))?;
-    let root = Tag::new(document.root_element(), body);
+    let mut editor = Editor::new(text);
+    let root = Tag::new(document.root_element(), text);
     let differ = |(old, new): &(&Link, &Link)| is_repaired || old.inertia != new.inertia;
     for (old, new) in original.links.iter().zip(&edited.links).filter(differ) {
         match root.named("link", &old.name) {
             Some(tag) => {
                 link::set_inertia(tag, new.inertia, &mut editor);
                 if keeps_old {
-                    link::comment(tag, old.inertia, &mut editor);
+                    editor.insert_first(tag, &link::comment_of(old.inertia));
                 }
             }
             None => reasons.push(format!("link `{}` has no element of its own", old.name)),
@@ -97,11 +156,49 @@ fn edited_text(file_name: &str, text: &str, edited: &Description, keeps_old: boo
     if original.base != edited.base {
         editor.insert_last(root, &free_base(edited));
     }
-    if !reasons.is_empty() {
-        return Err(EditError::Unsupported(NotUrdf { reasons }));
-    }
-    Ok(format!("{}{}", &text[..text.len() - body.len()], editor.apply()))
+    if reasons.is_empty() { Ok(editor) } else { Err(refused(reasons)) }
 }
+
+/// What differs between the robot of an edited text and the wanted one, beyond rounding.
+fn differences(found: &Description, wanted: &Description) -> Vec<String> {
+    let mut reasons = unsupported(found, wanted);
+    let mut compare = |name: String, found: &[f64], wanted: &[f64], least: f64| {
+        let scale = wanted.iter().fold(least, |most, x| most.max(x.abs()));
+        if let Some((found, wanted)) = found.iter().zip(wanted).find(|(a, b)| (*a - *b).abs() > READ_AGAIN * scale) {
+            reasons.push(format!("{name} of the edited text would be {found:?}, expected {wanted:?}"));
+        }
+    };
+    for (a, b) in found.links.iter().zip(&wanted.links) {
+        let moments = |I: mozzi::linalg::Sym3| [I.xx, I.xy, I.xz, I.yy, I.yz, I.zz];
+        compare(format!("link `{}`: the mass", a.name), &[a.inertia.mass], &[b.inertia.mass], 0.0);
+        let (c, d) = (a.inertia.center_of_mass(), b.inertia.center_of_mass());
+        compare(format!("link `{}`: the centre of mass", a.name), &c.0, &d.0, 1e-3);
+        let (I, J) = (a.inertia.about_center_of_mass(), b.inertia.about_center_of_mass());
+        compare(
+            format!("link `{}`: a moment", a.name),
+            &moments(I),
+            &moments(J),
+            b.inertia.mass * d.0.iter().map(|x| x * x).sum::<f64>(),
+        );
+    }
+    for (one, other) in found.joints.iter().zip(&wanted.joints) {
+        for (what, a, b) in [
+            ("damping", one.damping, other.damping),
+            ("friction", one.friction, other.friction),
+            ("armature", one.armature, other.armature),
+            ("stiffness", one.stiffness, other.stiffness),
+        ] {
+            compare(format!("joint `{}`: the {what}", one.name), &[a], &[b], 0.0);
+        }
+    }
+    for (a, b) in found.rotors.iter().zip(&wanted.rotors) {
+        compare(format!("rotor `{}`: the armature", a.name), &[a.armature], &[b.armature], 0.0);
+    }
+    reasons
+}
+
+/// Inertias that are read again differ by rounding.
+const READ_AGAIN: f64 = 1e-9;
 
 fn unsupported(a: &Description, b: &Description) -> Vec<String> {
     let mut reasons = Vec::new();

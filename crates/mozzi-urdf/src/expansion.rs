@@ -65,6 +65,12 @@ pub fn expanded(
     Ok(source.expansion.map(|expansion| expansion.text.clone()))
 }
 
+/// The expansion of a xacro text with its places; None for any other text.
+pub(crate) fn of(file_name: &str, text: &str, settings: &Settings) -> Result<Option<Arc<Expansion>>, LoadError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    Ok(prepare(Source::new(file_name, text), &settings.xacro)?.0.expansion)
+}
+
 fn refused(error: &Error, source: &Source, dialect: Dialect) -> Diagnostic {
     let Some(origin) = error.place() else {
         let finding = Finding::error("xacro", 0..0, error.message());

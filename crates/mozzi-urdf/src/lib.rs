@@ -99,7 +99,7 @@ mod xacro;
 
 pub use consequence::{Consequence, consequence, unused};
 pub use diagnostic::Diagnostic;
-pub use edit::{EditError, drives_of_fixed_joints, edit, edit_with_old_values};
+pub use edit::{EditError, EditedFile, drives_of_fixed_joints, edit, edit_files, edit_with_old_values};
 pub use error::LoadError;
 pub use expansion::expanded;
 pub use explain::{codes, explain, nearest_code, remedy};

@@ -92,9 +92,18 @@ impl Expander<'_> {
 
     /// Reads a file, and returns its index.
     pub fn read(&self, path: &Path) -> Result<u32> {
-        let text = read_text(path)?;
+        let text = self.text_of(path)?;
         self.budget.spend(1 + text.len() as u64 / 64)?;
         self.add_file(&path.to_string_lossy(), &text)
+    }
+
+    /// The text of a file, or its replacement.
+    pub fn text_of(&self, path: &Path) -> Result<String> {
+        let name = path.to_string_lossy();
+        match self.given.texts.iter().find(|(known, _)| *known == name) {
+            Some((_, text)) => Ok(text.clone()),
+            None => read_text(path),
+        }
     }
 
     pub fn add_file(&self, name: &str, text: &str) -> Result<u32> {

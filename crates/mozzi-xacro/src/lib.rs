@@ -65,6 +65,8 @@ pub struct Arguments {
     /// Folders of packages, for `$(find name)`; other packages are searched in the folders of `AMENT_PREFIX_PATH`,
     /// `CMAKE_PREFIX_PATH` and `ROS_PACKAGE_PATH`, and in those around the file.
     pub packages: Vec<(String, PathBuf)>,
+    /// Texts of files that are included or loaded, by their names in [`Expansion::files`], instead of their content.
+    pub texts: Vec<(String, String)>,
 }
 
 /// Expands a file.

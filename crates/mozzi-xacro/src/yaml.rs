@@ -5,7 +5,6 @@ use crate::expander::Expander;
 use crate::expander::Names;
 use crate::expression::{Dictionary, Evaluator, Host, Value, parse};
 use crate::fault::{Fault, Result};
-use crate::include::read_text;
 use crate::scope::Scope;
 use crate::yaml_scalar::plain;
 use saphyr_parser::{Event, Parser, ScalarStyle, Tag};
@@ -25,7 +24,7 @@ impl Expander<'_> {
     /// The content of a file next to the one that is being processed; its dictionaries allow dotted access.
     pub fn load_yaml(&self, file: &str) -> Result<Value> {
         let path = self.beside(file);
-        let text = read_text(&path)?;
+        let text = self.text_of(&path)?;
         self.add_file(&path.to_string_lossy(), "")?;
         self.budget.spend(1 + text.len() as u64 / 8)?;
         let within = |mut fault: Box<Fault>| {

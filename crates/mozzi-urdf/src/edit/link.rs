@@ -45,12 +45,11 @@ pub(super) fn set_inertia<'a>(link: Tag<'a>, G: SpatialInertia, editor: &mut Edi
 }
 
 /// A comment with the numbers that a link had before.
-pub(super) fn comment<'a>(link: Tag<'a>, G: SpatialInertia, editor: &mut Editor<'a>) {
+pub(super) fn comment_of(G: SpatialInertia) -> String {
     let (c, I) = (G.center_of_mass(), G.about_center_of_mass());
     let values = [I.xx, I.xy, I.xz, I.yy, I.yz, I.zz];
     let moments: Vec<String> = MOMENTS.iter().zip(values).map(|(name, value)| format!("{name} {value:?}")).collect();
-    let text = format!("<!-- before: mass {:?}, centre {}, {} -->", G.mass, triple(c), moments.join(" "));
-    editor.insert_first(link, &text);
+    format!("<!-- before: mass {:?}, centre {}, {} -->", G.mass, triple(c), moments.join(" "))
 }
 
 fn insert<'a>(link: Tag<'a>, G: SpatialInertia, editor: &mut Editor<'a>) {

@@ -45,7 +45,11 @@ pub(crate) fn gather(
         };
         for include in includes {
             let base = sources.last().map_or(0, |last| last.base + last.text.len() + 1);
-            match open(&include, folder, &mut known) {
+            let opened = open(&include, folder, &mut known).map(|(name, content)| {
+                let content = cx.replaced.get(&name).map_or(content, |text| text.clone().into_bytes());
+                (name, content)
+            });
+            match opened {
                 Ok((name, content)) if sources.len() < MOST_FILES && bytes + content.len() <= MOST_BYTES => {
                     bytes += content.len();
                     let mut findings = Findings::default();

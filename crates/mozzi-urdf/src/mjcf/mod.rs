@@ -66,6 +66,7 @@ mod vocabulary;
 
 pub(crate) use explain::CODES;
 pub use explain::codes;
+pub(crate) use orientation::quaternion;
 
 use crate::context::Context;
 use crate::dialect::Dialect;
