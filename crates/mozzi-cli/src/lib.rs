@@ -27,6 +27,7 @@ mod robot;
 mod robot_json;
 mod sarif;
 mod serve;
+mod sqlite;
 mod state;
 mod table;
 mod tables;
@@ -220,7 +221,7 @@ Files with N states:
   .npz             arrays theta (N, nq), dtheta, ddtheta, tau, x (N, n), wrench (N, 6) of the tip; also
                    gravity (N, 3), parameters (N, p) and wrench_FRAME (N, 6), different in each state
   .arrow .feather  Arrow's IPC file (pandas.to_feather, polars.write_ipc) with columns as in CSV
-  .csv             columns theta_1 …, see below
+  .csv             columns theta_1 …, see below; wrench_FRAME_m_x … wrench_FRAME_f_z of a frame's wrench
   .parquet         columns as in CSV, if built with this feature and not compressed
 Numbers are float64, float32 or integers. Wrenches given by flags are the same in all states.
 Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)

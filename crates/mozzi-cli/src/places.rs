@@ -2,7 +2,7 @@
 //!
 //! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…`, `w_…` with the number of an entry,
 //! from 1, or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y
-//! m_z f_x f_y f_z` of the tip's wrench. Each group must be complete or absent; the order is free. Only the six columns
+//! m_z f_x f_y f_z` of the tip's wrench, or `wrench_FRAME_m_x` … `wrench_FRAME_f_z` of a frame's. Each group must be complete or absent; the order is free. Only the six columns
 //! of a floating base's wrench may be missing on their own, and are then 0: no motor drives it.
 
 use crate::columns;
@@ -32,7 +32,47 @@ pub struct Places {
     t: Option<usize>,
     /// As [`GROUPS`]. An entry is None if its column is missing: it is then 0.
     groups: [Option<Vec<Option<usize>>>; GROUPS.len()],
-    wrench: Option<[usize; 6]>,
+    /// By the table's name: `wrench` of the tip, `wrench_FRAME`.
+    wrenches: Vec<(String, [usize; 6])>,
+}
+
+/// The name of a wrench's table, and the entry of a column: `m_x`, or `wrench_FRAME_m_x`, also with `.` before `m_x`.
+pub fn wrench_of(column: &str) -> Option<(String, usize)> {
+    if let Some(entry) = WRENCH.iter().position(|known| *known == column) {
+        return Some(("wrench".to_string(), entry));
+    }
+    column.strip_prefix("wrench_")?;
+    WRENCH.iter().enumerate().find_map(|(entry, known)| {
+        let table = column.strip_suffix(known)?.strip_suffix(['_', '.', '/'])?;
+        (table.len() > "wrench_".len()).then(|| (table.to_string(), entry))
+    })
+}
+
+/// Collects the columns of wrenches; `missing` makes the error of an incomplete one, by its column and count.
+pub fn whole_wrenches(
+    found: Vec<(String, [Option<usize>; 6])>,
+    missing: impl Fn(&str, usize) -> Failure,
+) -> Result<Vec<(String, [usize; 6])>> {
+    let whole = |(name, columns): (String, [Option<usize>; 6])| {
+        if let Some(k) = columns.iter().position(Option::is_none) {
+            let column = if name == "wrench" { WRENCH[k].to_string() } else { format!("{name}_{}", WRENCH[k]) };
+            return Err(missing(&column, columns.iter().flatten().count()));
+        }
+        Ok((name, columns.map(Option::unwrap_or_default)))
+    };
+    found.into_iter().map(whole).collect()
+}
+
+/// The place of a wrench's entry, in the list of those found so far.
+pub fn wrench_place<'w>(
+    found: &'w mut Vec<(String, [Option<usize>; 6])>,
+    (table, entry): (String, usize),
+) -> Option<&'w mut Option<usize>> {
+    let k = found.iter().position(|(known, _)| *known == table).unwrap_or_else(|| {
+        found.push((table, [None; 6]));
+        found.len() - 1
+    });
+    found.get_mut(k)?.1.get_mut(entry)
 }
 
 impl Places {
@@ -40,12 +80,12 @@ impl Places {
     pub fn find(place: &str, header: &[String], model: &Model) -> Result<Self> {
         let names = GROUPS.map(|group| columns::entries(model, group));
         let mut groups: [Vec<Option<usize>>; GROUPS.len()] = names.each_ref().map(|names| vec![None; names.len()]);
-        let (mut t, mut wrench) = ([None], [None; 6]);
+        let (mut t, mut wrenches) = ([None], Vec::new());
         for (column, name) in header.iter().enumerate() {
             let entry: Option<&mut Option<usize>> = if name == "t" {
                 t.first_mut()
-            } else if let Some(k) = WRENCH.iter().position(|known| known == name) {
-                wrench.get_mut(k)
+            } else if let Some(found) = wrench_of(name) {
+                wrench_place(&mut wrenches, found)
             } else if ENERGIES.contains(&name.as_str()) || name == "method" {
                 continue;
             } else {
@@ -57,7 +97,7 @@ impl Places {
             };
             let Some(entry) = entry else {
                 return Err(Failure::wrong(format!(
-                    "{place}: column {} is called `{name}`, expected t, {}, or {}, with {}",
+                    "{place}: column {} is called `{name}`, expected t, {}, {}, or wrench_FRAME_m_x …, with {}",
                     column + 1,
                     GROUPS.map(|group| format!("{group}_1 …")).join(", "),
                     WRENCH.join(" "),
@@ -88,13 +128,8 @@ impl Places {
                 return Err(missing(&columns::names(model, group)[at], places.len(), count));
             }
         }
-        let columns: Vec<usize> = wrench.iter().flatten().copied().collect();
-        let wrench = match wrench.iter().position(Option::is_none) {
-            Some(k) if !columns.is_empty() => return Err(missing(WRENCH[k], WRENCH.len(), columns.len())),
-            Some(_) => None,
-            None => columns.try_into().ok(),
-        };
-        Ok(Places { t: t[0], groups: found, wrench })
+        let wrenches = whole_wrenches(wrenches, |column, found| missing(column, WRENCH.len(), found))?;
+        Ok(Places { t: t[0], groups: found, wrenches })
     }
 
     /// The contents of the columns; `number` takes a row and a column.
@@ -108,8 +143,9 @@ impl Places {
         };
         let groups = GROUPS.into_iter().zip(&self.groups);
         let groups = groups.filter_map(|(name, columns)| Some((name, table(columns.as_ref()?))));
-        let wrench = self.wrench.map(|columns| ("wrench", table(&columns.map(Some))));
-        let tables = groups.chain(wrench).map(|(name, table)| (name.to_string(), table)).collect();
+        let groups = groups.map(|(name, table)| (name.to_string(), table));
+        let wrenches = self.wrenches.iter().map(|(name, columns)| (name.clone(), table(&columns.map(Some))));
+        let tables = groups.chain(wrenches).collect();
         let t = self.t.map(|column| table(&[Some(column)]));
         Samples { file: file.to_string(), count, t, tables, ..Samples::default() }
     }
@@ -126,7 +162,7 @@ impl Places {
 
     fn all(&self) -> impl Iterator<Item = usize> {
         let groups = self.groups.iter().flatten().flatten().flatten();
-        self.t.into_iter().chain(groups.copied()).chain(self.wrench.into_iter().flatten())
+        self.t.into_iter().chain(groups.copied()).chain(self.wrenches.iter().flat_map(|(_, columns)| columns).copied())
     }
 }
 

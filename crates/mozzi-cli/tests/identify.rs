@@ -73,7 +73,7 @@ fn bad_input_is_refused() {
     let (_, why) = complaint(&["identify", "double_pendulum", &file]);
     assert!(why.contains("no position of `2`") || why.contains("expected"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--out", "robot.txt"]);
-    assert!(why.contains("expected a name that ends in .urdf or .json"), "{why}");
+    assert!(why.contains("expected a name that ends in .urdf, .json, .xml (MJCF)"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--fit", "55"]);
     assert!(why.contains("--fit is 55"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--payload", "rod2"]);

@@ -1,33 +1,169 @@
-//! `sensor_msgs/msg/JointState` messages of an MCAP file, as a table.
+//! `sensor_msgs/msg/JointState` messages as a table: of an MCAP file, of a SQLite file of rosbag2, or of a rosbag2
+//! folder.
 
 use crate::failure::{Failure, Result};
 use crate::input::cannot;
+use crate::sqlite::Database;
 use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The type's names in ROS 2 and ROS 1.
+const TYPES: [&str; 2] = ["sensor_msgs/msg/JointState", "sensor_msgs/JointState"];
+
+/// More joints are refused.
+const MOST_JOINTS: usize = 1000;
+
+/// Whether messages are read from this file or folder.
+pub fn is_bag(file: &str) -> bool {
+    let ending = Path::new(file).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    matches!(ending.as_deref(), Some("mcap" | "db3" | "zstd")) || Path::new(file).is_dir()
+}
+
+/// The messages by topic.
+#[derive(Default)]
+struct Topics(BTreeMap<String, Vec<State>>);
+
+impl Topics {
+    /// Adds a message that was received at this time, ns.
+    fn add(&mut self, file: &str, topic: &str, received: i64, bytes: &[u8]) -> Result<()> {
+        let state = state(bytes, received).ok_or_else(|| {
+            Failure::wrong(format!("{file}: a message of {topic} is damaged, expected a JointState in CDR"))
+        })?;
+        self.0.entry(topic.to_string()).or_default().push(state);
+        Ok(())
+    }
+}
 
 /// The names of columns, and rows of numbers; joints that a message lacks are NaN. Of several topics, the one with most
 /// messages is read.
 pub fn read(file: &str) -> Result<(Vec<String>, Vec<f64>)> {
-    let bytes = std::fs::read(file).map_err(|error| cannot(file, &error))?;
-    let messages = mcap::MessageStream::new(&bytes).map_err(|error| cannot(file, &error))?;
-    let mut topics: BTreeMap<String, Vec<State>> = BTreeMap::new();
-    for message in messages {
-        let message = message.map_err(|error| cannot(file, &error))?;
-        let is_state = message.channel.schema.as_ref().is_some_and(|schema| {
-            ["sensor_msgs/msg/JointState", "sensor_msgs/JointState"].contains(&schema.name.as_str())
-        });
-        if is_state {
-            let state = state(&message.data).ok_or_else(|| {
-                Failure::wrong(format!(
-                    "{file}: a message of {} is damaged, expected a JointState in CDR",
-                    message.channel.topic
-                ))
-            })?;
-            topics.entry(message.channel.topic.clone()).or_default().push(state);
+    let mut topics = Topics::default();
+    for part in parts(file)? {
+        match part.to_lowercase() {
+            name if name.ends_with(".mcap") => of_mcap(&part, &mut topics)?,
+            name if name.ends_with(".db3") => of_sqlite(&part, &mut topics)?,
+            _ => {
+                let help = "`ros2 bag convert` writes it uncompressed, or `zstd -d` if whole files are compressed";
+                return Err(Failure::wrong(format!("{part} is compressed; {help}")));
+            }
         }
     }
-    let Some((_, states)) = topics.into_iter().max_by_key(|(_, states)| states.len()) else {
-        return Err(Failure::wrong(format!("{file} has no messages of sensor_msgs/msg/JointState")));
+    let Some((_, states)) = topics.0.into_iter().max_by_key(|(_, states)| states.len()) else {
+        return Err(Failure::wrong(format!("{file} has no messages of {}", TYPES[0])));
     };
+    let joints: std::collections::BTreeSet<&str> =
+        states.iter().flat_map(|state| &state.names).map(String::as_str).collect();
+    if joints.len() > MOST_JOINTS {
+        let found = joints.len();
+        return Err(Failure::wrong(format!("{file} names {found} joints, expected at most {MOST_JOINTS}")));
+    }
+    Ok(table(&states))
+}
+
+/// The files of a bag, in the order in which they were written: `bag_2.db3` precedes `bag_10.db3`.
+fn parts(file: &str) -> Result<Vec<String>> {
+    if !Path::new(file).is_dir() {
+        return Ok(vec![file.to_string()]);
+    }
+    let entries = std::fs::read_dir(file).map_err(|error| cannot(file, &error))?;
+    let mut found = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|error| cannot(file, &error))?.path();
+        if path.is_file() && is_bag(&path.to_string_lossy()) {
+            found.push(path.to_string_lossy().into_owned());
+        }
+    }
+    let number = |name: &str| {
+        let stem = name.split(['/', '\\']).next_back().unwrap_or_default().split('.').next().unwrap_or_default();
+        stem.rsplit('_').next().and_then(|digits| digits.parse::<u64>().ok())
+    };
+    found.sort_by(|a, b| (number(a), a).cmp(&(number(b), b)));
+    if found.is_empty() {
+        return Err(Failure::wrong(format!(
+            "{file} is a folder without .db3 or .mcap, expected a log or a bag of rosbag2"
+        )));
+    }
+    Ok(found)
+}
+
+#[cfg(not(feature = "mcap"))]
+fn of_mcap(file: &str, _: &mut Topics) -> Result<()> {
+    Err(Failure::wrong(format!("{file}: this program was built without the feature mcap, which reads it")))
+}
+
+#[cfg(feature = "mcap")]
+fn of_mcap(file: &str, topics: &mut Topics) -> Result<()> {
+    let bytes = std::fs::read(file).map_err(|error| cannot(file, &error))?;
+    let messages = mcap::MessageStream::new(&bytes).map_err(|error| cannot(file, &error))?;
+    for message in messages {
+        let message = message.map_err(|error| cannot(file, &error))?;
+        let channel = &message.channel;
+        if !channel.schema.as_ref().is_some_and(|schema| TYPES.contains(&schema.name.as_str())) {
+            continue;
+        }
+        if channel.message_encoding != "cdr" {
+            let (topic, encoding) = (&channel.topic, &channel.message_encoding);
+            return Err(Failure::wrong(format!(
+                "{file}: {topic} is encoded as `{encoding}`, expected `cdr`, as ROS 2"
+            )));
+        }
+        let received = i64::try_from(message.log_time).unwrap_or(i64::MAX);
+        topics.add(file, &channel.topic, received, &message.data)?;
+    }
+    Ok(())
+}
+
+/// The tables `topics` and `messages` of rosbag2's default storage until ROS 2 Humble.
+fn of_sqlite(file: &str, topics: &mut Topics) -> Result<()> {
+    let wrong = |why: String| cannot(file, &why);
+    let mut database = Database::open(file).map_err(wrong)?;
+    let mut known: BTreeMap<i64, String> = BTreeMap::new();
+    let table = database.table("topics").map_err(wrong)?;
+    let columns = ["id", "name", "type", "serialization_format"].map(|name| table.column(name));
+    let [id, name, kind, format] = columns;
+    let (id, name, kind, format) =
+        (id.map_err(wrong)?, name.map_err(wrong)?, kind.map_err(wrong)?, format.map_err(wrong)?);
+    let mut other: Option<(String, String)> = None;
+    let read = database.rows(&table, |row| {
+        let text = |value: crate::sqlite::Value| value.text().unwrap_or_default().to_string();
+        let (kind, format, name) = (text(row.value(kind)?), text(row.value(format)?), text(row.value(name)?));
+        if TYPES.contains(&kind.as_str()) {
+            match format.as_str() {
+                "cdr" => drop(known.insert(row.value(id)?.integer().unwrap_or_default(), name)),
+                _ => other = Some((name, format)),
+            }
+        }
+        Ok(())
+    });
+    read.map_err(wrong)?;
+    if let Some((topic, format)) = other.filter(|_| known.is_empty()) {
+        return Err(Failure::wrong(format!("{file}: {topic} is encoded as `{format}`, expected `cdr`, as ROS 2")));
+    }
+    let table = database.table("messages").map_err(wrong)?;
+    let columns = ["topic_id", "timestamp", "data"].map(|name| table.column(name));
+    let [topic, time, data] = columns;
+    let (topic, time, data) = (topic.map_err(wrong)?, time.map_err(wrong)?, data.map_err(wrong)?);
+    let mut damaged = None;
+    let read = database.rows(&table, |row| {
+        let Some(topic) = row.value(topic)?.integer().and_then(|topic| known.get(&topic)) else { return Ok(()) };
+        let received = row.value(time)?.integer().unwrap_or_default();
+        let bytes = match row.value(data)? {
+            crate::sqlite::Value::Blob(bytes) => bytes,
+            _ => Vec::new(),
+        };
+        if let Err(failure) = topics.add(file, topic, received, &bytes) {
+            damaged = Some(failure);
+            return Err(String::new());
+        }
+        Ok(())
+    });
+    match (damaged, read) {
+        (Some(failure), _) => Err(failure),
+        (None, read) => read.map_err(wrong),
+    }
+}
+
+fn table(states: &[State]) -> (Vec<String>, Vec<f64>) {
     let mut joints: Vec<String> = Vec::new();
     for name in states.iter().flat_map(|state| &state.names) {
         if !joints.contains(name) {
@@ -40,10 +176,15 @@ pub fn read(file: &str) -> Result<(Vec<String>, Vec<f64>)> {
     for (group, _) in groups.iter().zip(is_there).filter(|(_, there)| *there) {
         header.extend(joints.iter().map(|joint| format!("{group}_{joint}")));
     }
-    let start = states[0].t;
+    // publishers that leave the stamp empty have the time at which the message was received
+    let is_stamped = states.iter().any(|state| state.stamp != 0);
+    let time = |state: &State| if is_stamped { state.stamp } else { state.received };
+    let mut states: Vec<&State> = states.iter().collect();
+    states.sort_by_key(|state| state.received);
+    let start = states.first().map_or(0, |state| time(state));
     let mut rows = Vec::new();
-    for state in &states {
-        rows.push((state.t - start) as f64 * 1e-9);
+    for state in states {
+        rows.push((time(state).saturating_sub(start)) as f64 * 1e-9);
         for k in (0..3).filter(|&k| is_there[k]) {
             rows.extend(joints.iter().map(|joint| {
                 let at = state.names.iter().position(|name| name == joint);
@@ -51,19 +192,21 @@ pub fn read(file: &str) -> Result<(Vec<String>, Vec<f64>)> {
             }));
         }
     }
-    Ok((header, rows))
+    (header, rows)
 }
 
 struct State {
-    /// Nanoseconds.
-    t: i64,
+    /// The header's time, ns.
+    stamp: i64,
+    /// The time at which it was recorded, ns.
+    received: i64,
     names: Vec<String>,
     /// Positions, velocities, efforts.
     values: [Vec<f64>; 3],
 }
 
 /// A JointState in CDR, little-endian: header, names, positions, velocities, efforts.
-fn state(bytes: &[u8]) -> Option<State> {
+fn state(bytes: &[u8], received: i64) -> Option<State> {
     if bytes.get(1) != Some(&1) {
         return None; // big-endian, or something else
     }
@@ -80,7 +223,8 @@ fn state(bytes: &[u8]) -> Option<State> {
             *list = (0..count).map(|_| from.float64()).collect::<Option<Vec<_>>>()?;
         }
     }
-    Some(State { t: i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds), names, values })
+    let stamp = i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds);
+    Some(State { stamp, received, names, values })
 }
 
 struct Cdr<'b> {

@@ -1,6 +1,7 @@
 //! A log of any format.
 
-use super::names::{Column, assign};
+use super::joint_states::is_bag;
+use super::names::{Column, assign, frame_of};
 use crate::csv;
 use crate::failure::{self, Failure, Result};
 use crate::input;
@@ -9,9 +10,10 @@ use crate::tables::read;
 use mozzi::Model;
 use mozzi_identify::Log;
 
-/// Reads a log: CSV with names in the usual ways, other formats with mozzi's names, MCAP with `JointState` messages.
+/// Reads a log: CSV with names in the usual ways, other formats with mozzi's names, MCAP and rosbag2 with `JointState`
+/// messages.
 pub fn read_log(file: &str, model: &Model, order: &[String]) -> Result<Log> {
-    if file.ends_with(".mcap") {
+    if is_bag(file) {
         return of_messages(file, model, order);
     }
     match Format::of_input(file)? {
@@ -28,7 +30,9 @@ fn of_samples(file: &str, model: &Model) -> Result<Log> {
     let (t, theta, tau) =
         (samples.times()?.to_vec(), samples.need("theta", model)?.to_vec(), samples.need("tau", model)?.to_vec());
     let (dtheta, ddtheta) = (samples.tables.remove("dtheta"), samples.tables.remove("ddtheta"));
-    Ok(Log { name: file.to_string(), t, theta, dtheta, ddtheta, tau, ..Log::default() })
+    let wrenches = samples.tables.into_iter().filter(|(name, _)| name == "wrench" || name.starts_with("wrench_"));
+    let wrenches = wrenches.map(|(name, table)| Ok((frame_of(file, &name, model)?, table))).collect::<Result<_>>()?;
+    Ok(Log { name: file.to_string(), t, theta, dtheta, ddtheta, tau, wrenches, ..Log::default() })
 }
 
 /// Rows of numbers with names; empty cells are NaN.
@@ -85,17 +89,16 @@ fn table(name: &str, header: &[String], rows: &[f64], model: &Model, order: &[St
         dtheta: found.dtheta.as_deref().map(gather),
         ddtheta: found.ddtheta.as_deref().map(gather),
         tau: tau.collect(),
+        wrenches: found
+            .wrenches
+            .iter()
+            .map(|(frame, columns)| (*frame, gather(&columns.map(|column| (column, 1.0)))))
+            .collect(),
         ..Log::default()
     })
 }
 
-#[cfg(feature = "mcap")]
 fn of_messages(file: &str, model: &Model, order: &[String]) -> Result<Log> {
     let (header, rows) = super::joint_states::read(file)?;
     table(file, &header, &rows, model, order)
-}
-
-#[cfg(not(feature = "mcap"))]
-fn of_messages(file: &str, _: &Model, _: &[String]) -> Result<Log> {
-    Err(Failure::wrong(format!("{file}: this program was built without the feature mcap, which reads it")))
 }

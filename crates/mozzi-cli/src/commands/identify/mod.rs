@@ -1,33 +1,35 @@
 //! `mozzi identify`: the robot's parameters from logs of its motion.
 
-#[cfg(feature = "mcap")]
 mod joint_states;
 mod log_file;
 mod names;
+mod output;
 mod page;
 
 use crate::columns::save;
-use crate::commands::convert::{edits, urdf};
+use crate::commands::convert::edits;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number, numbers};
 use crate::robot::RobotArguments;
-use crate::{interrupt, json, robot_json};
+use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use log_file::read_log;
 use mozzi::Model;
 use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
 use mozzi_identify::{Choice, Limits, Log, Options, RefineOptions, Sensor, describe, identify, refine};
+use output::Out;
 
 #[derive(Args, Debug)]
 pub struct IdentifyArguments {
     #[command(flatten)]
     robot: RobotArguments,
     /// Logs: .csv with columns t, theta_JOINT, dtheta_JOINT, tau_JOINT (q1, qd1, effort_JOINT, … are understood, too),
-    /// .npz, .npy, .arrow, .mcap
+    /// .npz, .npy, .arrow; JointState messages of .mcap, .db3 or a folder of rosbag2
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<String>,
-    /// Write the identified robot: .urdf (the text of a URDF is edited in place) or .json
+    /// Write the identified robot: .urdf, .xml (MJCF), .xacro or .yaml (properties), each by editing the robot's own
+    /// text; a folder for all files that change; or .json
     #[arg(long, value_name = "FILE")]
     out: Option<String>,
     /// Keep the old numbers in comments of OUT
@@ -125,9 +127,8 @@ enum How {
 }
 
 pub fn run(arguments: &IdentifyArguments) -> Result<String> {
-    if let Some(out) = arguments.out.as_deref().filter(|out| !out.ends_with(".urdf") && !out.ends_with(".json")) {
-        return Err(Failure::wrong(format!("--out is `{out}`, expected a name that ends in .urdf or .json")));
-    }
+    let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
+    let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
     let locks = edits::locks(&arguments.lock)?;
     let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
@@ -156,22 +157,16 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     judged.findings.extend(more);
     let findings: Vec<_> = found.findings.iter().chain(&judged.findings).collect();
     findings.iter().for_each(|finding| failure::write(&format!("{finding}\n")));
-    if let Some(out) = &arguments.out {
-        let text = match out.ends_with(".json") {
-            true => robot_json::write(&robot.clone().build()?),
-            false => {
-                let input = &arguments.robot.model;
-                urdf::edited(input, out, &robot, arguments.old_values, arguments.robot.settings())?
-            }
-        };
-        save(out, &text)?;
-    }
+    let written = match &out {
+        Some(out) => out.write(&robot, arguments.old_values, settings())?,
+        None => Vec::new(),
+    };
     if let Some(file) = &arguments.report {
         save(file, mozzi_report::fit_html(&found, &judged, &validations))?;
     }
     let text = match arguments.robot.json {
         true => json::print(&json::of_robot(&model, mozzi_report::fit_json(&found, &judged, &validations))),
-        false => page::text(&found, &judged, &validations, arguments.out.as_deref()),
+        false => page::text(&found, &judged, &validations, &written),
     };
     if found.estimates.consistent.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }
 }

@@ -1,7 +1,8 @@
 //! Which column of a log is what: by its name, in the ways in which logs are written.
 
 use crate::failure::{Failure, Result};
-use mozzi::Model;
+use crate::places::{whole_wrenches, wrench_of, wrench_place};
+use mozzi::{FrameId, Model};
 
 /// A group of columns, one for each entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,12 +92,19 @@ pub struct Assigned {
     pub ddtheta: Option<Vec<Column>>,
     /// None for a floating base's six, which no motor drives.
     pub tau: Vec<Option<Column>>,
+    /// The wrenches that frames apply to the environment.
+    pub wrenches: Vec<(FrameId, [usize; 6])>,
     pub notes: Vec<String>,
+}
+
+/// A name in the log's and the robot's common spelling.
+fn spelled(name: &str) -> String {
+    name.trim().to_lowercase().replace([' ', '.', '/', '[', '('], "_").replace([']', ')'], "")
 }
 
 /// A column's group, the name of its entry, and its factor.
 fn parts(name: &str) -> Option<(Group, String, f64)> {
-    let name = name.trim().to_lowercase().replace([' ', '.', '/', '[', '('], "_").replace([']', ')'], "");
+    let name = spelled(name);
     let name = name.replace("_deg_s", "_deg/s").replace("_rad_s", "_rad/s");
     let (name, factor) = UNITS
         .iter()
@@ -128,8 +136,12 @@ pub fn assign(file: &str, header: &[String], model: &Model, order: &[String]) ->
     let t = t.ok_or_else(|| {
         wrong(format!("no column is the time, expected one called t or time; there are {}", header.join(", ")))
     })?;
-    let columns: Vec<(usize, (Group, String, f64))> =
-        header.iter().enumerate().filter_map(|(column, name)| Some((column, parts(name)?))).collect();
+    let wrenches = wrenches(file, header, model)?;
+    let is_wrench = |column: &usize| wrenches.iter().any(|(_, columns)| columns.contains(column));
+    let columns: Vec<(usize, (Group, String, f64))> = (0..header.len())
+        .filter(|column| !is_wrench(column))
+        .filter_map(|column| Some((column, parts(&header[column])?)))
+        .collect();
     let mut notes = Vec::new();
     let mut entries: Vec<String> = Vec::new();
     for (_, (group, entry, _)) in &columns {
@@ -137,8 +149,8 @@ pub fn assign(file: &str, header: &[String], model: &Model, order: &[String]) ->
             entries.push(entry.clone());
         }
     }
-    let names: Vec<String> = model.position_names().map(str::to_lowercase).collect();
-    let velocities: Vec<String> = model.velocity_names().map(str::to_lowercase).collect();
+    let names: Vec<String> = model.position_names().map(spelled).collect();
+    let velocities: Vec<String> = model.velocity_names().map(spelled).collect();
     let is_flat = model.configuration_space().is_flat();
     let number = |entry: &str| entry.parse::<usize>().ok();
     // the log's name of each of the robot's entries
@@ -147,7 +159,7 @@ pub fn assign(file: &str, header: &[String], model: &Model, order: &[String]) ->
         if order.len() != names.len() || !is_flat {
             return Err(Failure::wrong(format!("--order has {} names, expected {}", order.len(), names.len())));
         }
-        order.iter().map(|name| name.to_lowercase()).collect()
+        order.iter().map(|name| spelled(name)).collect()
     } else if known(&names) {
         names.clone()
     } else if entries.iter().any(|entry| number(entry).is_some()) {
@@ -201,8 +213,37 @@ pub fn assign(file: &str, header: &[String], model: &Model, order: &[String]) ->
         dtheta: whole(group(Group::Dtheta, &own_velocities, "velocity", 0)?),
         ddtheta: whole(group(Group::Ddtheta, &own_velocities, "acceleration", 0)?),
         tau: group(Group::Tau, &own_velocities, "force", base)?.ok_or_else(|| need("forces"))?,
+        wrenches,
         notes,
     })
+}
+
+/// The columns of wrenches: `m_x` … `f_z` of the end effector's, `wrench_FRAME_m_x` … of a frame's.
+fn wrenches(file: &str, header: &[String], model: &Model) -> Result<Vec<(FrameId, [usize; 6])>> {
+    let mut found = Vec::new();
+    for (column, name) in header.iter().enumerate() {
+        let Some(entry) = wrench_of(name.trim()) else { continue };
+        if let Some(first) = wrench_place(&mut found, entry).and_then(|place| place.replace(column)) {
+            let (first, second) = (first + 1, column + 1);
+            return Err(Failure::wrong(format!("{file}: columns {first} and {second} both give `{}`", name.trim())));
+        }
+    }
+    let missing = |column: &str, count: usize| {
+        Failure::wrong(format!(
+            "{file}: column {column} is missing; the log has {count} of the 6 columns of its wrench"
+        ))
+    };
+    let whole = whole_wrenches(found, missing)?;
+    whole.into_iter().map(|(table, columns)| Ok((frame_of(file, &table, model)?, columns))).collect()
+}
+
+/// The frame of a table `wrench` or `wrench_FRAME`.
+pub fn frame_of(file: &str, table: &str, model: &Model) -> Result<FrameId> {
+    let frame = match table.strip_prefix("wrench_") {
+        Some(frame) => model.frame(frame),
+        None => model.end_effector(),
+    };
+    frame.map_err(|error| Failure::wrong(format!("{file}: `{table}`: {error}")))
 }
 
 #[cfg(test)]
@@ -225,6 +266,30 @@ mod tests {
         assert_eq!(parts("i2"), expected(Group::Tau, "2", 1.0));
         assert_eq!(parts("temperature"), None);
         assert_eq!(parts("ddtheta_2"), expected(Group::Ddtheta, "2", 1.0));
+    }
+
+    #[test]
+    fn floating_bases_and_wrenches_have_columns() {
+        let arm = mozzi_urdf::open("two_link_planar").expect("embedded").description;
+        let link = arm.links.last().expect("a link").name.clone();
+        let model = arm.floating().build().expect("sound");
+        let names: Vec<String> = ["t".to_string()]
+            .into_iter()
+            .chain(model.position_names().map(|name| format!("theta_{name}")))
+            .chain(model.velocity_names().map(|name| format!("dtheta_{name}")))
+            .chain(model.velocity_names().skip(6).map(|name| format!("tau_{name}")))
+            .chain(["m_x", "m_y", "m_z", "f_x", "f_y", "f_z"].map(|entry| format!("wrench_{link}_{entry}")))
+            .collect();
+        let found = assign("log", &names, &model, &[]).expect("columns");
+        assert_eq!(found.theta.len(), model.nq());
+        assert_eq!(found.tau.iter().flatten().count(), model.n() - 6);
+        assert_eq!(found.wrenches.len(), 1);
+        assert_eq!(found.wrenches[0].1[0], names.len() - 6);
+        let error = |names: &[String]| format!("{:?}", assign("log", names, &model, &[]).expect_err("wrong"));
+        assert!(error(&names[..names.len() - 1]).contains(&format!("column wrench_{link}_f_z is missing")));
+        let other: Vec<String> =
+            names.iter().map(|name| name.replace(&format!("wrench_{link}"), "wrench_toe")).collect();
+        assert!(error(&other).contains("`wrench_toe`"), "{}", error(&other));
     }
 
     #[test]

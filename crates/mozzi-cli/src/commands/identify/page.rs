@@ -9,7 +9,7 @@ pub fn text(
     found: &Identification<'_>,
     judged: &Judgement,
     validations: &[(String, Errors)],
-    out: Option<&str>,
+    written: &[String],
 ) -> String {
     let model = found.setup.columns.model;
     let mut page = Page::default();
@@ -37,8 +37,8 @@ pub fn text(
     page.line("Differences below 3 % mean nothing on one trajectory.");
     parameters(&mut page, found);
     weak(&mut page, judged);
-    if let Some(out) = out {
-        page.blank().line(format!("{out} is written"));
+    if !written.is_empty() {
+        page.blank().line(format!("{} {} written", written.join(", "), if written.len() == 1 { "is" } else { "are" }));
     }
     page.end()
 }
