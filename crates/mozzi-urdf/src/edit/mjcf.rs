@@ -258,6 +258,9 @@ fn set_inertia<'a>(body: Tag<'a>, before: SpatialInertia, G: SpatialInertia, edi
     }
 }
 
+/// Axes are kept if products of inertia relative to them are smaller than this, relative to the largest moment.
+const UNTURNED: f64 = 1e-12;
+
 fn list(values: &[f64]) -> String {
     values.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ")
 }
@@ -269,7 +272,7 @@ fn principal(I: Sym3, R: SO3) -> ([f64; 3], Option<[f64; 4]>) {
     let rows = in_R.to_mat3().rows();
     let diagonal = [rows[0][0], rows[1][1], rows[2][2]];
     let largest = diagonal.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    if [rows[0][1], rows[0][2], rows[1][2]].iter().all(|x| x.abs() <= super::joint::ROUNDING * largest) {
+    if [rows[0][1], rows[0][2], rows[1][2]].iter().all(|x| x.abs() <= UNTURNED * largest) {
         return (diagonal, None);
     }
     let eigen = SymmetricEigen::new(Matrix3::from_fn(|i, j| rows[i][j]));
