@@ -1,5 +1,6 @@
 //! Which parameters are estimated; the others keep the robot's values.
 
+use crate::signals::Shape;
 use mozzi::FrameId;
 
 /// Where forces are measured.
@@ -70,5 +71,10 @@ impl Choice {
     /// A payload at a frame, with friction and offsets.
     pub fn only_payload(frame: FrameId) -> Self {
         Choice { payload: Some(frame), ..Choice::only_friction() }
+    }
+
+    /// The shape of dry friction.
+    pub fn shape(&self) -> Shape {
+        Shape { width: self.width, stribeck: self.stribeck }
     }
 }

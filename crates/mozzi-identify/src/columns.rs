@@ -233,7 +233,9 @@ impl<'c, 'm> Equations<'c, 'm> {
             let w: [f64; 6] = core::array::from_fn(|i| table[6 * k + i]);
             (*frame, Wrench::from_array(w))
         }));
-        self.at([theta, dtheta, ddtheta, tau], A, b);
+        let of_row = |table: &Option<Vec<f64>>| table.as_ref().map(|table| table[k * n..(k + 1) * n].to_vec());
+        let friction = [of_row(&samples.coulomb), of_row(&samples.stribeck)];
+        self.with_friction([theta, dtheta, ddtheta, tau], friction, A, b);
         if !self.applied.is_empty() {
             // JᵀF depends on no parameter
             let environment = Environment { applied: &self.applied, ..Environment::with_gravity(mozzi::Vec3::zero()) };
@@ -244,7 +246,18 @@ impl<'c, 'm> Equations<'c, 'm> {
     }
 
     /// The equations at a state θ, θ̇, θ̈, τ.
-    pub fn at(&mut self, [theta, dtheta, ddtheta, tau]: [&[f64]; 4], A: &mut [f64], b: &mut [f64]) {
+    pub fn at(&mut self, state: [&[f64]; 4], A: &mut [f64], b: &mut [f64]) {
+        self.with_friction(state, [None, None], A, b);
+    }
+
+    /// The same with Coulomb and Stribeck friction of unit size, otherwise those of θ̇.
+    fn with_friction(
+        &mut self,
+        [theta, dtheta, ddtheta, tau]: [&[f64]; 4],
+        [coulomb, stribeck]: [Option<Vec<f64>>; 2],
+        A: &mut [f64],
+        b: &mut [f64],
+    ) {
         let columns = self.columns;
         let (model, choice, P) = (columns.model, &columns.choice, columns.count());
         let (n, p) = (model.n(), model.parameter_count());
@@ -254,19 +267,22 @@ impl<'c, 'm> Equations<'c, 'm> {
         let Y = &self.Y;
         A.fill(0.0);
         b.copy_from_slice(tau);
-        let coulomb = |j: usize| (dtheta[j] / choice.width).tanh();
+        let shape = choice.shape();
+        let of = |given: Option<Vec<f64>>, of_one: &dyn Fn(f64) -> f64| {
+            given.unwrap_or_else(|| dtheta.iter().map(|x| of_one(*x)).collect::<Vec<f64>>())
+        };
+        let coulomb = of(coulomb, &|x| shape.coulomb(x));
+        let stribeck = of(stribeck, &|x| shape.stribeck(x));
         for (column, unknown) in columns.unknowns.iter().enumerate() {
             match unknown.kind {
                 Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) => {
                     (0..n).for_each(|j| A[j * P + column] = Y[j * p + k]);
                 }
                 Kind::Coulomb(k) => {
-                    columns.rows[columns.place_of(k)].clone().for_each(|j| A[j * P + column] = coulomb(j));
+                    columns.rows[columns.place_of(k)].clone().for_each(|j| A[j * P + column] = coulomb[j]);
                 }
                 Kind::Stribeck(place) => {
-                    let v = choice.stribeck.unwrap_or(1.0);
-                    let rows = columns.rows[place].clone();
-                    rows.for_each(|j| A[j * P + column] = (-(dtheta[j] / v).powi(2)).exp() * coulomb(j));
+                    columns.rows[place].clone().for_each(|j| A[j * P + column] = stribeck[j]);
                 }
                 Kind::Offset(j) => A[j * P + column] = 1.0,
                 Kind::Gain(j) => {
@@ -285,7 +301,7 @@ impl<'c, 'm> Equations<'c, 'm> {
         }
         for (rows, &mu) in columns.rows.iter().zip(&columns.fixed_coulomb) {
             if mu != 0.0 {
-                rows.clone().for_each(|j| b[j] -= mu * coulomb(j));
+                rows.clone().for_each(|j| b[j] -= mu * coulomb[j]);
             }
         }
         if let Some((carried, parameters)) = &self.known {

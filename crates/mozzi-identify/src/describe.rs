@@ -34,7 +34,7 @@ pub fn describe(
         if change <= 1e-6 * before[first..first + 10].iter().fold(0.0_f64, |most, x| most.max(x.abs())) {
             continue;
         }
-        let total: [f64; 10] = core::array::from_fn(|k| pi[first + k]);
+        let total = kept(&before[first..first + 10], &pi[first..first + 10]);
         let fixed = fixed_to(model.description(), link);
         let to_link = pose(link).inverse();
         let inertia = |name: &str| robot.links.iter().find(|one| one.name == name).map(|one| one.inertia);
@@ -93,6 +93,20 @@ pub fn describe(
         }
     }
     Ok((robot, findings))
+}
+
+/// A link's new parameters, with the old digits of those that hardly changed.
+fn kept(before: &[f64], after: &[f64]) -> [f64; 10] {
+    const HARDLY: f64 = 1e-9;
+    let scale = |k: usize| match k {
+        0 => 0..1,
+        1..=3 => 1..4,
+        _ => 4..10,
+    };
+    core::array::from_fn(|k| {
+        let size = scale(k).map(|i| after[i].abs()).fold(0.0, f64::max);
+        if (after[k] - before[k]).abs() <= HARDLY * size { before[k] } else { after[k] }
+    })
 }
 
 /// The link that no joint moves.

@@ -107,7 +107,8 @@ pub fn identify<'m>(
     let setup = Setup::new(model, options.choice.clone(), options.prior, &options.limits)?;
     let (mut samples, mut findings) = (Vec::new(), Vec::new());
     for log in logs {
-        let (of_log, more) = prepare(model, log, &options.filter)?;
+        let filter = Filter { friction: options.choice.shape(), ..options.filter };
+        let (of_log, more) = prepare(model, log, &filter)?;
         samples.push(of_log);
         findings.extend(more);
     }
@@ -155,22 +156,12 @@ impl<'m> Identification<'m> {
     /// # Errors
     /// [`Error::NotExciting`] if the other blocks do not determine the unknowns.
     pub fn cross_validate(&self, blocks: usize, stop: &dyn Fn() -> bool) -> Result<Errors, Error> {
-        let (P, tenths) = (self.setup.columns.count(), self.tenths);
-        let block = |part: usize| part * blocks / tenths;
-        let mut pooled: Option<Errors> = None;
-        for left_out in 0..blocks.min(tenths) {
-            let others =
-                Evidence::new(&self.setup.pattern, P, &self.logs, |_, part| part < tenths && block(part) != left_out);
-            let own =
-                Evidence::new(&self.setup.pattern, P, &self.logs, |_, part| part < tenths && block(part) == left_out);
-            let estimates = self.setup.fit(&others, stop)?;
-            let of_block = errors(&self.setup, &others, &estimates, &own)?;
-            pooled = Some(match pooled {
-                None => of_block,
-                Some(all) => all.pooled(&of_block, left_out as f64),
-            });
-        }
-        pooled.ok_or_else(|| Error::NotExciting { reason: "there are no blocks".into() })
+        cross_validated(&self.setup, &self.logs, self.tenths, blocks, stop)
+    }
+
+    /// The first part of each log that is fitted, in tenths.
+    pub fn tenths(&self) -> usize {
+        self.tenths
     }
 
     /// Errors of this robot on other logs.
@@ -178,7 +169,8 @@ impl<'m> Identification<'m> {
     /// # Errors
     /// As [`identify`].
     pub fn validate(&self, log: &Log, filter: &Filter) -> Result<(Errors, Samples, Vec<Finding>), Error> {
-        let (samples, findings) = prepare(self.setup.columns.model, log, filter)?;
+        let filter = Filter { friction: self.setup.columns.choice.shape(), ..*filter };
+        let (samples, findings) = prepare(self.setup.columns.model, log, &filter)?;
         let P = self.setup.columns.count();
         let compressed = [Compressed::new(&self.setup.columns, &self.setup.pattern, &samples, None)?];
         let other = Evidence::new(&self.setup.pattern, P, &compressed, |_, _| true);
@@ -205,6 +197,30 @@ impl<'m> Identification<'m> {
     pub fn evidence(&self) -> Evidence {
         Evidence::new(&self.setup.pattern, self.setup.columns.count(), &self.logs, |_, part| part < self.tenths)
     }
+}
+
+/// Errors on blocks in time, each predicted by fits on the other blocks, pooled.
+pub(crate) fn cross_validated(
+    setup: &Setup<'_>,
+    logs: &[Compressed],
+    tenths: usize,
+    blocks: usize,
+    stop: &dyn Fn() -> bool,
+) -> Result<Errors, Error> {
+    let P = setup.columns.count();
+    let block = |part: usize| part * blocks / tenths;
+    let mut pooled: Option<Errors> = None;
+    for left_out in 0..blocks.min(tenths) {
+        let others = Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths && block(part) != left_out);
+        let own = Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths && block(part) == left_out);
+        let estimates = setup.fit(&others, stop)?;
+        let of_block = errors(setup, &others, &estimates, &own)?;
+        pooled = Some(match pooled {
+            None => of_block,
+            Some(all) => all.pooled(&of_block, left_out as f64),
+        });
+    }
+    pooled.ok_or_else(|| Error::NotExciting { reason: "there are no blocks".into() })
 }
 
 impl Errors {

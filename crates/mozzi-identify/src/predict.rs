@@ -74,7 +74,7 @@ pub fn predict(columns: &Columns<'_>, x: &[f64], samples: &Samples) -> Result<Ve
             _ => {}
         }
     }
-    let (width, v) = (columns.choice.width, columns.choice.stribeck.unwrap_or(1.0));
+    let shape = columns.choice.shape();
     let (query, mut workspace) = (Query::from(InverseDynamics), fast::Workspace::new(&robot));
     let mut all = vec![0.0; samples.count() * n];
     let mut applied = Vec::new();
@@ -91,8 +91,9 @@ pub fn predict(columns: &Columns<'_>, x: &[f64], samples: &Samples) -> Result<Ve
         let environment = Environment { applied: &applied, ..robot.environment() };
         fast::evaluate(&query, &robot, &[theta, dtheta, ddtheta], &environment, &mut workspace, &mut [tau]);
         for j in 0..n {
-            let sign = (dtheta[j] / width).tanh();
-            let friction = (mu[j] + stribeck[j] * (-(dtheta[j] / v).powi(2)).exp()) * sign;
+            let of = |given: &Option<Vec<f64>>, of_one: f64| given.as_ref().map_or(of_one, |table| table[k * n + j]);
+            let coulomb = of(&samples.coulomb, shape.coulomb(dtheta[j]));
+            let friction = mu[j] * coulomb + stribeck[j] * of(&samples.stribeck, shape.stribeck(dtheta[j]));
             tau[j] = (tau[j] + friction + offset[j]) / gain[j];
         }
     }

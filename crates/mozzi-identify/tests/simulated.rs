@@ -5,13 +5,18 @@ mod common;
 use common::{floating_motion, humanoid, motion, normal, with_forces};
 use mozzi::random::Random;
 use mozzi::{Environment, Model, SpatialInertia, Vec3, Wrench};
-use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
+use mozzi_identify::signals::{Acceleration, Cutoff, Filter, Shape};
 use mozzi_identify::{
     Choice, Columns, Compressed, Evidence, Kind, Limits, Log, Options, RefineOptions, Sensor, Setup, identified,
     identify, predict, refine,
 };
 
-const UNFILTERED: Filter = Filter { cutoff: Cutoff::None, order: 4, acceleration: Acceleration::Differences };
+const UNFILTERED: Filter = Filter {
+    cutoff: Cutoff::None,
+    order: 4,
+    acceleration: Acceleration::Differences,
+    friction: Shape { width: 0.05, stribeck: None },
+};
 
 fn robot(name: &str) -> Model {
     mozzi_urdf::open(name).expect("embedded").description.build().expect("sound")

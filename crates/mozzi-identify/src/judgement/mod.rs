@@ -2,6 +2,7 @@
 
 pub mod excitation;
 pub mod residuals;
+pub mod sensor;
 pub mod suspicion;
 
 use crate::{Error, Finding, Identification, Log};
@@ -54,6 +55,8 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
             ),
         ));
     }
+    // a fit without armature may fail, which is no finding
+    findings.extend(sensor::behind_the_gears(found).ok().flatten());
     let condition = found.estimates.least_squares.condition;
     if condition > 300.0 {
         findings.push(Finding::warning(

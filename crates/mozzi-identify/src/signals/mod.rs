@@ -42,11 +42,41 @@ pub struct Filter {
     pub order: usize,
     /// How accelerations are computed.
     pub acceleration: Acceleration,
+    /// The shape of dry friction, whose jumps pass the filter as those of the forces do.
+    pub friction: Shape,
 }
 
 impl Default for Filter {
     fn default() -> Self {
-        Filter { cutoff: Cutoff::Automatic, order: 4, acceleration: Acceleration::Differences }
+        let friction = Shape::default();
+        Filter { cutoff: Cutoff::Automatic, order: 4, acceleration: Acceleration::Differences, friction }
+    }
+}
+
+/// Dry friction of unit size as a function of velocity: tanh(θ̇/w), and with Stribeck's velocity exp(−(θ̇/v)²) tanh(θ̇/w).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// w, rad/s or m/s.
+    pub width: f64,
+    /// v, rad/s or m/s.
+    pub stribeck: Option<f64>,
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Shape { width: 0.05, stribeck: None }
+    }
+}
+
+impl Shape {
+    /// tanh(θ̇/w).
+    pub fn coulomb(&self, dtheta: f64) -> f64 {
+        (dtheta / self.width).tanh()
+    }
+
+    /// exp(−(θ̇/v)²) tanh(θ̇/w), 0 without v.
+    pub fn stribeck(&self, dtheta: f64) -> f64 {
+        self.stribeck.map_or(0.0, |v| (-(dtheta / v).powi(2)).exp() * self.coulomb(dtheta))
     }
 }
 
@@ -63,6 +93,10 @@ pub struct Samples {
     pub ddtheta: Vec<f64>,
     /// N × n.
     pub tau: Vec<f64>,
+    /// N × n: tanh(θ̇/w) of unfiltered velocities, filtered as the forces; None if velocities were not measured.
+    pub coulomb: Option<Vec<f64>>,
+    /// N × n: the same of Stribeck's friction.
+    pub stribeck: Option<Vec<f64>>,
     /// N × n: whether the force may be used.
     pub is_valid: Vec<bool>,
     /// N × 6 for each frame.
@@ -117,6 +151,9 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let trim = cutoff.map_or(0, |f| (2.0 * rate / f).ceil() as usize);
     let mut samples =
         Samples { rate, cutoff, payload: log.payload, removed: vec![0.0; model.n()], ..Samples::default() };
+    if log.dtheta.is_some() {
+        (samples.coulomb, samples.stribeck) = (Some(Vec::new()), filter.friction.stribeck.map(|_| Vec::new()));
+    }
     samples.wrenches = log.wrenches.iter().map(|(frame, _)| (*frame, Vec::new())).collect();
     for run in rows.runs.iter().filter(|run| run.len() > 2 * trim + 10) {
         let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
@@ -207,6 +244,14 @@ impl Part<'_> {
             Some(table) => columns(table, n),
             None => self.velocities(&times, &theta, &positions),
         };
+        let shape = &self.filter.friction;
+        let shaped = |shape: &dyn Fn(f64) -> f64, dtheta: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            let mut all: Vec<Vec<f64>> = dtheta.iter().map(|x| x.iter().map(|x| shape(*x)).collect()).collect();
+            all.iter_mut().for_each(|x| self.smooth(&times, x));
+            all
+        };
+        let coulomb = samples.coulomb.is_some().then(|| shaped(&|x| shape.coulomb(x), &dtheta));
+        let stribeck = samples.stribeck.is_some().then(|| shaped(&|x| shape.stribeck(x), &dtheta));
         if self.log.dtheta.is_some() {
             dtheta.iter_mut().for_each(|x| self.smooth(&times, x));
         }
@@ -233,6 +278,11 @@ impl Part<'_> {
             push(&mut samples.dtheta, &dtheta);
             push(&mut samples.ddtheta, &ddtheta);
             push(&mut samples.tau, &tau);
+            for (to, from) in [(&mut samples.coulomb, &coulomb), (&mut samples.stribeck, &stribeck)] {
+                if let (Some(to), Some(from)) = (to, from) {
+                    push(to, from);
+                }
+            }
             for ((_, to), from) in samples.wrenches.iter_mut().zip(&wrenches) {
                 push(to, from);
             }

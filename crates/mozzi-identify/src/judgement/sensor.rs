@@ -1,0 +1,64 @@
+//! Where torques are measured, as the estimated armature shows.
+
+use crate::compress::Compressed;
+use crate::identify::cross_validated;
+use crate::setup::{Limits, Setup};
+use crate::{Choice, Error, Finding, Identification, Kind};
+
+/// An armature is clear above this many standard deviations, and if the data has most of the say.
+const CLEAR: f64 = 3.0;
+
+/// A warning if the armature of every joint is at its bound 0, although forces were taken to be the motors', and if
+/// the forces are predicted as well without it. A rotor behind a gear is felt at the motor as a large inertia of its own.
+///
+/// # Errors
+/// Those of the fits without armature.
+pub fn behind_the_gears(found: &Identification<'_>) -> Result<Option<Finding>, Error> {
+    let columns = &found.setup.columns;
+    let Some(errors) = found.left_out.as_ref().filter(|_| columns.choice.armature && !columns.choice.gains) else {
+        return Ok(None);
+    };
+    let armatures = armatures(found);
+    let optimum = &found.estimates.consistent;
+    let is_clear = |k: usize| {
+        let is_armature = matches!(columns.unknowns[k].kind, Kind::Armature(_));
+        is_armature && optimum.prior_share[k] < 0.5 && optimum.x[k] > CLEAR * optimum.deviations[k]
+    };
+    if armatures.is_empty() || (0..columns.count()).any(is_clear) {
+        return Ok(None);
+    }
+    let choice = Choice { armature: false, ..columns.choice.clone() };
+    let setup = Setup::new(columns.model, choice, found.setup.problem.gamma, &Limits::default())?;
+    let compress = |samples| Compressed::new(&setup.columns, &setup.pattern, samples, None);
+    let logs: Vec<Compressed> = found.samples.iter().map(compress).collect::<Result<_, _>>()?;
+    let without = cross_validated(&setup, &logs, found.tenths(), 5, &|| false)?;
+    let [with, without] = [errors, &without].map(|errors| 100.0 * errors.normalized(&errors.consistent));
+    if without > 1.01 * with {
+        return Ok(None);
+    }
+    let least = armatures.iter().map(|(name, value, deviation)| format!("{name} {value:.3} ± {deviation:.3}"));
+    Ok(Some(Finding::warning(
+        "behind_the_gears",
+        format!(
+            "every joint's armature is at its bound 0 (least squares, kg m²: {}), and left-out forces are predicted to \
+             {without:.2} % without it, {with:.2} % with it: the forces seem to be measured behind the gears, where \
+             rotors are not felt, or the rotors are light; `--torque link` leaves armature out. Otherwise friction that \
+             lags at reversals hides it",
+            least.collect::<Vec<_>>().join(", ")
+        ),
+    )))
+}
+
+/// The armatures that some motion can determine by themselves: joint, value by least squares, standard deviation.
+fn armatures<'f>(found: &'f Identification<'_>) -> Vec<(&'f str, f64, f64)> {
+    let (unknowns, least) = (&found.setup.columns.unknowns, &found.estimates.least_squares);
+    let of_base = found.setup.base.columns.iter().zip(least.values.iter().zip(&least.deviations));
+    let armatures = of_base.filter(|(k, _)| matches!(unknowns[**k].kind, Kind::Armature(_)));
+    armatures
+        .filter(|(_, (_, deviation))| deviation.is_finite())
+        .map(|(&k, (&value, &deviation))| {
+            let name = &unknowns[k].name;
+            (name.strip_suffix(".armature").unwrap_or(name), value, deviation)
+        })
+        .collect()
+}
