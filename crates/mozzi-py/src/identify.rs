@@ -20,7 +20,8 @@ fn of_identification(error: Error) -> PyErr {
     }
 }
 
-/// A log from a mapping of arrays: t, theta, tau, and dtheta or ddtheta if they are there.
+/// A log from a mapping of arrays: t, theta, tau, and dtheta, ddtheta, `wrench` of the end effector or `wrench_FRAME`
+/// if they are there. Of a floating base, tau may have the joints' columns alone.
 fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> {
     let need = |name: &str| {
         given
@@ -35,13 +36,34 @@ fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> 
             false => Ok(None),
         }
     };
+    let mut wrenches = Vec::new();
+    for name in given.call_method0("keys")?.try_iter()? {
+        let name: String = name?.extract()?;
+        let frame = match name.strip_prefix("wrench_") {
+            Some(frame) => model.frame(frame),
+            None if name == "wrench" => model.end_effector(),
+            None => continue,
+        };
+        wrenches.push((frame.map_err(of_model)?, list("wrench", &given.get_item(&name)?, &[rows, 6])?));
+    }
+    let (n, base) = (model.n(), model.base().velocities());
+    let tau = need("tau")?;
+    let width = tau.getattr("shape").and_then(|shape| shape.extract::<(usize, usize)>());
+    let tau = match base > 0 && width.is_ok_and(|(_, width)| width == n - base) {
+        true => {
+            let (joints, zeros) = (list("tau", &tau, &[rows, n - base])?, vec![0.0; base]);
+            joints.chunks_exact((n - base).max(1)).flat_map(|row| [&zeros[..], row].concat()).collect()
+        }
+        false => list("tau", &tau, &[rows, n])?,
+    };
     Ok(Log {
         name: format!("log {number}"),
         t: list("t", &t, &[rows])?,
         theta: list("theta", &need("theta")?, &[rows, model.nq()])?,
         dtheta: optional("dtheta")?,
         ddtheta: optional("ddtheta")?,
-        tau: list("tau", &need("tau")?, &[rows, model.n()])?,
+        tau,
+        wrenches,
         ..Log::default()
     })
 }
@@ -204,10 +226,16 @@ pub fn _excite<'py>(
     Ok((arrays, found.condition, found.condition_of_random, found.parameters))
 }
 
-/// A URDF's text with this robot's numbers.
+/// The files that hold this robot's numbers, edited: their names and texts.
 #[pyfunction]
-pub fn _edited_urdf(name: &str, text: &str, model: &Bound<'_, PyModel>, old_values: bool) -> PyResult<String> {
+pub fn _edited_files(
+    name: &str,
+    text: &str,
+    model: &Bound<'_, PyModel>,
+    old_values: bool,
+) -> PyResult<Vec<(String, String)>> {
     let robot = model.get().robot().model.description();
-    let edited = if old_values { mozzi_urdf::edit_with_old_values } else { mozzi_urdf::edit };
-    edited(name, text, robot).map_err(|error| PyValueError::new_err(error.to_string()))
+    let files = mozzi_urdf::edit_files(name, text, robot, old_values, &mozzi_urdf::Settings::default());
+    let files = files.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(files.into_iter().map(|file| (file.name, file.text)).collect())
 }

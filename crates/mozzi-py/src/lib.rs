@@ -38,7 +38,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;
     module.add_function(wrap_pyfunction!(identify::_identify, module)?)?;
     module.add_function(wrap_pyfunction!(identify::_excite, module)?)?;
-    module.add_function(wrap_pyfunction!(identify::_edited_urdf, module)?)?;
+    module.add_function(wrap_pyfunction!(identify::_edited_files, module)?)?;
     jax::add_to(module)?;
     motion::add_to(module)?;
     modern_robotics::add_to(module)?;

@@ -64,3 +64,59 @@ def test_a_motion_excites_within_limits(arm):
     assert found.condition < found.condition_of_random
     assert np.abs(found.dtheta).max() <= 2.02 and np.abs(found.ddtheta).max() <= 8.1
     assert np.allclose(found.dtheta[[0, -1]], 0, atol=1e-9)
+
+
+MJCF = """<mujoco model="pendulum">
+  <default><joint damping="0.2"/></default>
+  <worldbody>
+    <body name="rod1">
+      <inertial pos="0 0 -0.25" mass="1" diaginertia="0.02 0.02 0.001"/>
+      <joint name="joint1" axis="0 -1 0"/>
+      <body name="rod2" pos="0 0 -0.5">
+        <inertial pos="0 0 -0.25" mass="1" diaginertia="0.02 0.02 0.001"/>
+        <joint name="joint2" axis="0 -1 0"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_mjcf_is_written_as_mjcf(log, tmp_path):
+    source, target = tmp_path / "arm.xml", tmp_path / "identified.xml"
+    source.write_text(MJCF)
+    found = mozzi.identify(mozzi.Model.from_mjcf(source), log, torque="link")
+    assert found.write(source, target, old_values=True) == [str(target)]
+    text = target.read_text()
+    assert '<default><joint damping="0.2"/></default>' in text and "<!-- before: mass 1.0" in text
+    again = mozzi.Model.from_mjcf(target)
+    theta = np.random.default_rng(2).uniform(-3, 3, (20, 2))
+    assert np.allclose(again.mass_matrix(theta), found.model.mass_matrix(theta), rtol=1e-9)
+    with pytest.raises(ValueError, match="the robot's own file"):
+        found.write(source, source)
+
+
+def test_a_floating_base_is_identified_by_its_contact_wrench(arm):
+    robot = arm.with_floating_base()
+    t = np.arange(0.0, 5.0, 0.005)
+    j = np.arange(robot.n)
+    a, w, p = 0.6 + 0.05 * j, 2.0 + 0.37 * j, 0.9 * j
+    dtheta = a * np.cos(w * t[:, None] + p)
+    ddtheta = -a * w * np.sin(w * t[:, None] + p)
+    # positions need not be those of the velocities: nothing is differentiated
+    quaternion = np.column_stack([np.ones_like(t), *(0.6 * np.sin((1.1 + 0.4 * k) * t + k) for k in range(3))])
+    quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
+    theta = np.hstack([quaternion, np.sin(np.outer(t, 1.7 + 0.3 * np.arange(robot.nq - 4)))])
+    # the robot of the log carries 0.5 kg at its tip, where it is held
+    heavy = robot.with_payload("tip", 0.5)
+    tau = heavy.inverse_dynamics(theta, dtheta, ddtheta)
+    J = robot.body_jacobian(theta, frame="tip")
+    F = np.linalg.solve(np.swapaxes(J[:, :, :6], 1, 2), -tau[:, :6, None])[:, :, 0]
+    tau = tau + np.einsum("kij,ki->kj", J, F)
+    assert np.abs(tau[:, :6]).max() < 1e-9
+    log = {"t": t, "theta": theta, "dtheta": dtheta, "ddtheta": ddtheta, "tau": tau[:, 6:], "wrench_tip": F}
+    found = mozzi.identify(robot, log, torque="link", cutoff=float("inf"))
+    masses = sum(value for name, value in found.parameters.items() if name.endswith(".m"))
+    assert masses == pytest.approx(robot.mass + 0.5, rel=0.01)
+    with pytest.raises(ValueError, match="wrench_toe|toe"):
+        mozzi.identify(robot, {**log, "wrench_toe": F})

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 from numpy.typing import NDArray
 
-from ._mozzi import Model, _edited_urdf, _excite, _identify
+from ._mozzi import Model, _edited_files, _excite, _identify
 
 Array = NDArray[Any]
 _Logs = Mapping[str, Any] | Sequence[Mapping[str, Any]]
@@ -60,22 +60,43 @@ class Identification:
         """Write the report as one HTML file."""
         Path(path).write_text(self._html, encoding="utf-8")
 
-    def write_urdf(
-        self, source: str | os.PathLike[str], path: str | os.PathLike[str], *, old_values: bool = False
-    ) -> None:
-        """Write the robot's URDF, ``source``, with the identified numbers; other text stays.
+    def write(self, source: str | os.PathLike[str], path: str | os.PathLike[str], *, old_values: bool = False) -> list[str]:
+        """Write the robot's file, ``source``, with the identified numbers; other text stays.
 
         Parameters
         ----------
         source : path
-            The robot's URDF.
+            The robot's URDF, MJCF or xacro.
         path : path
-            The file that is written.
+            The file that is written; a folder if it is one, which gets every file that changes: numbers may be in
+            included files, and in the YAML files of xacro.
         old_values : bool
             Keep the old numbers in comments.
+
+        Returns
+        -------
+        list of str
+            The files that were written.
+
+        Raises
+        ------
+        ValueError
+            The file cannot express the robot, a number of xacro is computed, or several files change and ``path`` is
+            no folder.
         """
         text = Path(source).read_text(encoding="utf-8")
-        Path(path).write_text(_edited_urdf(str(source), text, self.model, old_values), encoding="utf-8")
+        files = _edited_files(str(source), text, self.model, old_values) or [(str(source), text)]
+        if Path(path).is_dir():
+            targets = [Path(path) / Path(name).name for name, _ in files]
+        elif len(files) == 1:
+            targets = [Path(path)]
+        else:
+            raise ValueError(f"numbers of {', '.join(name for name, _ in files)} change, expected a folder as path")
+        for target, (name, content) in zip(targets, files):
+            if target.exists() and target.samefile(name):
+                raise ValueError(f"{target} is the robot's own file, expected another path")
+            target.write_text(content, encoding="utf-8")
+        return [str(target) for target in targets]
 
     def __repr__(self) -> str:
         errors = self.report["left_out"] or self.report["fitted"]
@@ -110,7 +131,9 @@ def identify(
     model : Model
         The robot; its own values are the prior where the data is silent.
     logs : mapping or sequence of mappings
-        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and "dtheta", "ddtheta" (N, n) if they are known.
+        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and "dtheta", "ddtheta" (N, n) if they are known; of floating
+        bases also "wrench_FRAME" (N, 6), the measured wrench (m, f) that a frame applies to the environment, in the
+        frame's coordinates. "tau" of floating bases may have the joints' columns alone.
     torque : {'motor', 'link'}
         Where forces are measured; behind the gear, armature is not estimated.
     only : {'payload', 'friction'}, optional
