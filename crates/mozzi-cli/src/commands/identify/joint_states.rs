@@ -96,7 +96,12 @@ fn of_mcap(file: &str, topics: &mut Topics) -> Result<()> {
     let bytes = std::fs::read(file).map_err(|error| cannot(file, &error))?;
     let messages = mcap::MessageStream::new(&bytes).map_err(|error| cannot(file, &error))?;
     for message in messages {
-        let message = message.map_err(|error| cannot(file, &error))?;
+        let message = message.map_err(|error| match error {
+            mcap::McapError::UnsupportedCompression(_) => {
+                cannot(file, &format!("{error}; `mcap decompress {file} -o OUT.mcap` writes it uncompressed"))
+            }
+            _ => cannot(file, &error),
+        })?;
         let channel = &message.channel;
         if !channel.schema.as_ref().is_some_and(|schema| TYPES.contains(&schema.name.as_str())) {
             continue;
