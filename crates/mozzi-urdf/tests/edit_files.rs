@@ -285,11 +285,9 @@ fn numbers_that_xacro_computes_or_shares_are_named() {
     with_moment(&mut robot, "left_arm", 0.022);
     with_moment(&mut robot, "right_arm", 0.024);
     let why = edited(&files[0], &robot, false).expect_err("shared");
-    assert!(
-        why.contains("numbers.yaml:1:11 (`0.02`) would be 0.022 as the ixx of <inertia> of link `left_arm`"),
-        "{why}"
-    );
-    assert!(why.contains("0.024 as the ixx of <inertia> of link `right_arm`"), "{why}");
+    assert!(why.contains("numbers.yaml:1:11 (`0.02`) would be 0.02"), "{why}");
+    assert!(why.contains(" as the ixx of <inertia> of link `left_arm` and 0.024"), "{why}");
+    assert!(why.contains(" as the ixx of <inertia> of link `right_arm`"), "{why}");
     // of two that share a number, one alone changes
     with_moment(&mut robot, "right_arm", 0.02);
     let why = edited(&files[0], &robot, false).expect_err("shared");
