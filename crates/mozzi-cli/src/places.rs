@@ -64,10 +64,10 @@ pub fn whole_wrenches(
 }
 
 /// The place of a wrench's entry, in the list of those found so far.
-pub fn wrench_place<'w>(
-    found: &'w mut Vec<(String, [Option<usize>; 6])>,
+pub fn wrench_place(
+    found: &mut Vec<(String, [Option<usize>; 6])>,
     (table, entry): (String, usize),
-) -> Option<&'w mut Option<usize>> {
+) -> Option<&mut Option<usize>> {
     let k = found.iter().position(|(known, _)| *known == table).unwrap_or_else(|| {
         found.push((table, [None; 6]));
         found.len() - 1
