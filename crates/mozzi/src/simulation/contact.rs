@@ -133,6 +133,8 @@ pub(super) struct Touch {
     /// The touching point in its frame, and in {s}.
     pub of_frame: Vec3,
     pub at: Vec3,
+    /// The orientation of its frame.
+    pub R: SO3,
     /// n (into the plane), t₁ and t₂ in {s}.
     pub axes: [Vec3; 3],
     /// The velocity of the plane's material there along these axes.
@@ -169,7 +171,7 @@ impl ContactPoint {
         let from = at - surface.T.p;
         let v = surface.V.v + surface.V.w.cross(from);
         let axes = [n, axes[0], axes[1]];
-        Touch { gap: -n.dot(from), of_frame, at, axes, speeds: axes.map(|axis| axis.dot(v)) }
+        Touch { gap: -n.dot(from), of_frame, at, R: T.R, axes, speeds: axes.map(|axis| axis.dot(v)) }
     }
 }
 

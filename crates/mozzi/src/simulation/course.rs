@@ -1,5 +1,6 @@
 //! The simulation loop: steps, events and stops within them, and recorded rows.
 
+use super::across::Crowd;
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
@@ -64,9 +65,11 @@ pub(super) struct Course<'r> {
     pub(super) touching: Vec<(Key, bool)>,
     pub stops: Stops,
     stall: Stall,
+    /// Events of an adaptive method.
+    pub(super) crowd: Crowd,
     pub(super) motion: Motion<f64, 3>,
     /// The state at the beginning of the step; kept only if something may happen within it.
-    from: State,
+    pub(super) from: State,
     /// Can events, stops or rows lie within a step?
     is_watched: bool,
     /// The step number of the next row, if steps are watched.
@@ -101,7 +104,8 @@ impl<'r> Course<'r> {
         let has_impulses = impulses.is_some();
         driven.equation.has_impulses = has_impulses;
         if options.method.is_adaptive() {
-            driven.modes = impulses.take().map(|impulses| Box::new(Modes::new(model, *impulses)));
+            let gravity = options.gravity.unwrap_or(model.gravity()).norm();
+            driven.modes = impulses.take().map(|impulses| Box::new(Modes::new(model, *impulses, gravity)));
         }
         let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
         driven.close_start(&mut theta, &mut dtheta)?;
@@ -128,6 +132,7 @@ impl<'r> Course<'r> {
             touching: Vec::new(),
             stops,
             stall: Stall::new(&options),
+            crowd: Crowd::new(&options, contacts.pairs()),
             from: State::of(&motion),
             motion,
             next: options.record_every,
@@ -204,8 +209,11 @@ impl<'r> Course<'r> {
         let (model, step) = (self.driven.model, self.options.step());
         self.from.copy_from(&self.motion);
         self.driven.at_step(done, if method.is_adaptive() { duration } else { step });
-        let dense = self.step(step)?;
         self.ending.steps = done;
+        let dense = match self.step(step) {
+            Err(Error::Stalled { .. }) if self.driven.modes.is_some() => return self.step_across(),
+            dense => dense?,
+        };
 
         let reached = self.motion.t;
         let respected = self.stops.are_located();
@@ -241,8 +249,12 @@ impl<'r> Course<'r> {
             Some(_) => self.switch(&mut state)?,
             None => self.driven.keep_modes(&mut state)?,
         }
-        self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
         state.copy_to(&mut self.motion);
+        if self.driven.modes.is_some() && self.crowd.note(state.t, change.is_some()) && !over && state.t < duration {
+            self.from.copy_from(&self.motion);
+            return self.step_across();
+        }
+        self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
         if end != dense.t + dense.h || happens {
             self.integrator.restart();
         }
@@ -281,7 +293,7 @@ impl<'r> Course<'r> {
 
     /// Records the events within the step. If one of them ends the simulation, `end` becomes its time and the result is
     /// true.
-    fn events_until(&mut self, dense: &Dense, end: &mut f64) -> bool {
+    pub(super) fn events_until(&mut self, dense: &Dense, end: &mut f64) -> bool {
         let model = self.driven.model;
         let mut found = Vec::new();
         for (k, event) in self.events.iter().enumerate() {
@@ -302,7 +314,7 @@ impl<'r> Course<'r> {
     }
 
     /// Records the rows before `end`, up to which the step counts.
-    fn rows_until(&mut self, dense: &Dense, end: f64) -> Result<(), Error> {
+    pub(super) fn rows_until(&mut self, dense: &Dense, end: f64) -> Result<(), Error> {
         let end = end - self.tolerance();
         while !self.is_closed && self.next < self.options.steps && self.options.time(self.next) < end {
             let mut row = dense.at(self.driven.model, self.options.time(self.next));
@@ -381,6 +393,6 @@ fn forces<'a>(impulses: &'a Option<Box<Impulses>>, driven: &'a Driven) -> &'a [f
 
 /// A step from t, and its end: the full length, or to `until` if at most a rounding error would be left for a last
 /// step.
-fn step_to(step: f64, t: f64, until: f64) -> (f64, f64) {
+pub(super) fn step_to(step: f64, t: f64, until: f64) -> (f64, f64) {
     if t + 1.001 * step >= until { (until - t, until) } else { (step, t + step) }
 }

@@ -56,6 +56,11 @@ impl DormandPrince {
         DormandPrince { tolerance, h: 1e-3, trouble: Trouble::new(n), k, y: zeros, theta: vec![0.0; nq] }
     }
 
+    /// The next step may be this long again.
+    pub fn restart(&mut self, h: f64) {
+        self.h = self.h.max(h);
+    }
+
     /// A step to `until` at most.
     pub fn step(&mut self, from: &State, until: f64, driven: &mut Driven) -> Result<(State, Dense), Error> {
         let (model, n) = (driven.model, from.dtheta.len());

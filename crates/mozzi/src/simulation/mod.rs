@@ -27,6 +27,7 @@
 //! zeros of functions of (t, θ, θ̇), on the polynomial between two steps, treats the joints' limits by a [`Policy`],
 //! and passes each row to a [`Recorder`], so that a long motion need not be kept in memory.
 
+mod across;
 mod closing;
 mod condition;
 mod contact;

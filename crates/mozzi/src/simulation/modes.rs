@@ -24,10 +24,14 @@ use nalgebra::{DMatrix, DVector};
 const AT_REST: f64 = 1e-9;
 /// Impacts slower than this do not rebound, m/s.
 const REBOUND: f64 = 1e-6;
+/// Contacts at most this far act, m.
+pub(super) const REACH: f64 = 1e-9;
 /// The length of the step that finds the modes, s.
 const INSTANT: f64 = 1e-6;
 /// For rates of rows, by central differences, s.
 const DIFFERENCE: f64 = 1e-4;
+/// What slides may move against its direction (m/s, rad/s), or pull (N), by this much.
+const BACKWARDS: f64 = 1e-6;
 /// Parts of a step at whose ends margins are compared.
 const PARTS: usize = 4;
 
@@ -41,7 +45,9 @@ enum Mode {
 /// The modes of a motion.
 pub(super) struct Modes<'r> {
     pub impulses: Impulses<'r>,
-    moreau: Moreau,
+    pub(super) moreau: Moreau,
+    /// ‖g‖, m/s²: contacts within ‖g‖h² act in a step of h seconds.
+    pub(super) gravity: f64,
     active: Vec<(Key, Mode)>,
     keys: Vec<Key>,
     /// The forces of the active rows at the last evaluation, and the velocities of the surroundings.
@@ -51,11 +57,11 @@ pub(super) struct Modes<'r> {
 }
 
 impl<'r> Modes<'r> {
-    pub fn new(model: &Model, mut impulses: Impulses<'r>) -> Self {
-        (impulses.reach, impulses.slowest) = (1e-9, REBOUND);
+    pub fn new(model: &Model, mut impulses: Impulses<'r>, gravity: f64) -> Self {
+        (impulses.reach, impulses.slowest) = (REACH, REBOUND);
         let none = || DVector::zeros(0);
         let (moreau, active, keys) = (Moreau::new(model), Vec::new(), Vec::new());
-        Modes { impulses, moreau, active, keys, force: none(), u: none(), rows: Vec::new() }
+        Modes { impulses, moreau, gravity, active, keys, force: none(), u: none(), rows: Vec::new() }
     }
 
     /// θ̈ ← θ̈ − M⁻¹Jᵀf, with the f of the active rows. Returns the power that friction dissipates, and that given to
@@ -204,10 +210,12 @@ impl<I: Input> Driven<'_, I> {
                 }
                 falling = vec![i];
             }
-            let is_broken = |&i: &usize| before.0[i] <= 0.0 && after.0[i] < -1e-9 && after.0[i] < before.0[i];
-            if falling.is_empty()
-                && (after.1..after.0.len()).any(|i| is_broken(&i) && !self.starts_to_slide(i, after.1))
-            {
+            // what begins to slide may be slower than rounding; against its direction or pulling it would gain energy
+            let is_broken = |i: usize| match self.slides(i, after.1) {
+                true => after.0[i] < -BACKWARDS,
+                false => after.0[i] < -1e-9 && after.0[i] < before.0[i],
+            };
+            if falling.is_empty() && (after.1..after.0.len()).any(|i| before.0[i] <= 0.0 && is_broken(i)) {
                 return Ok(Some(dense.t));
             }
             if !falling.is_empty() {
@@ -228,23 +236,20 @@ impl<I: Input> Driven<'_, I> {
         Ok(None)
     }
 
-    /// Is this margin the speed of something that slides?
-    fn starts_to_slide(&self, margin: usize, distances: usize) -> bool {
+    /// Is this the margin of something that slides?
+    fn slides(&self, margin: usize, distances: usize) -> bool {
         let Some(modes) = &self.modes else { return false };
         let mut next = distances;
         for &(key, ..) in &modes.rows {
-            let mode = modes.active.iter().find(|(other, _)| *other == key).map(|(_, mode)| *mode);
-            let slides = matches!(mode, Some(Mode::Slides(_)));
-            let (count, speed) = match key {
-                Key::Dry(_) => (1, 0),
-                Key::Stop(..) => (1, 1),
-                Key::Contact(..) => (2, 1),
-                Key::Constraint(_) => (0, 0),
+            next += match key {
+                Key::Dry(_) | Key::Stop(..) => 1,
+                Key::Contact(..) => 2,
+                Key::Constraint(_) => 0,
             };
-            if slides && margin == next + speed {
-                return true;
+            if margin < next {
+                let mode = modes.active.iter().find(|(other, _)| *other == key).map(|(_, mode)| *mode);
+                return matches!(mode, Some(Mode::Slides(_)));
             }
-            next += count;
         }
         false
     }

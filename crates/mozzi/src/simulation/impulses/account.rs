@@ -14,6 +14,8 @@ pub struct OneSidedAccount {
     pub last_residual: f64,
     /// Steps whose residual is above 10⁻⁶: their problem may have no solution.
     pub unsolved: usize,
+    /// Steps of Moreau and Jean's method that an adaptive method took across events that it could not separate.
+    pub steps_across: usize,
     /// The largest number of rows.
     pub most_rows: usize,
     /// Newton steps, Gauss-Seidel sweeps and iterations of the last method, in all solutions.

@@ -1,12 +1,13 @@
 //! Positions after a step: contacts and stops that carry have no gap, feet that stick stay where they are.
 
+use super::rows::point_row;
 use super::{Impulses, Key};
 use crate::constraints::constraint_jacobian;
 use crate::kinematics::integrate;
 use crate::linalg::Vec3;
-use crate::model::Error;
+use crate::model::{Error, FrameId};
 use crate::one_sided::least_squares;
-use crate::simulation::contact::{PlaneMotion, Support};
+use crate::simulation::contact::{PlaneMotion, Support, Touch};
 use crate::spatial::Twist;
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -16,6 +17,15 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 /// Gaps below this are rounding, m.
 const CLOSED: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
+
+/// A row whose position is to be put right.
+enum OpenRow {
+    Constraint(RowDVector<f64>),
+    /// A joint and the side of its limit.
+    Stop(usize, usize),
+    /// A point of a frame, along one of its axes.
+    Point(FrameId, Touch, usize),
+}
 
 impl Impulses<'_> {
     /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
@@ -29,7 +39,7 @@ impl Impulses<'_> {
         let n = self.model.n();
         let (mut last, mut is_factored) = (f64::INFINITY, false);
         for _ in 0..CORRECTIONS {
-            let (rows, errors) = self.open_rows(t, theta);
+            let (open, errors) = self.open_rows(t, theta);
             let size = errors.amax();
             if size < CLOSED || !(size < 0.5 * last) {
                 break;
@@ -39,7 +49,7 @@ impl Impulses<'_> {
                 self.factor(theta, &[])?;
                 is_factored = true;
             }
-            let J = DMatrix::from_rows(&rows);
+            let J = self.jacobian(theta, open);
             let Some(impulse) = least_squares(self.delassus(&J), errors) else { break };
             let mut change = J.tr_mul(&impulse);
             self.divide(change.as_mut_slice());
@@ -51,29 +61,27 @@ impl Impulses<'_> {
     }
 
     /// Rows of the contacts, stops and constraints that hold, and how far to move along them.
-    fn open_rows(&mut self, t: f64, theta: &[f64]) -> (Vec<RowDVector<f64>>, DVector<f64>) {
+    fn open_rows(&mut self, t: f64, theta: &[f64]) -> (Vec<OpenRow>, DVector<f64>) {
         let (model, n) = (self.model, self.model.n());
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
-        let mut columns = (None, vec![Twist::zero(); n]);
         let touches = self.touches(t, theta);
         let surfaces = self.surfaces(t);
         for &(key, sticks) in &self.carrying {
             match key {
                 Key::Stop(k, side) => {
-                    rows.push(self.stop_row(theta, k, side));
+                    rows.push(OpenRow::Stop(k, side));
                     errors.push(self.room(theta, k, side));
                 }
                 Key::Contact(point, plane) => {
                     let frame = self.contacts.points[point].frame;
                     let (.., touch) = touches[point * self.contacts.planes.len() + plane];
-                    self.columns(theta, frame, &mut columns);
-                    rows.push(self.point_row(theta, frame, &columns.1, &touch, touch.axes[0]));
+                    rows.push(OpenRow::Point(frame, touch, 0));
                     errors.push(touch.gap);
                     let Some(anchor) = self.anchors.get(&(point, plane)).filter(|_| sticks) else { continue };
                     let way = surfaces[plane].T * *anchor - touch.at;
-                    for axis in &touch.axes[1..] {
-                        rows.push(self.point_row(theta, frame, &columns.1, &touch, *axis));
-                        errors.push(axis.dot(way));
+                    for axis in 1..3 {
+                        rows.push(OpenRow::Point(frame, touch, axis));
+                        errors.push(touch.axes[axis].dot(way));
                     }
                 }
                 _ => {}
@@ -83,10 +91,24 @@ impl Impulses<'_> {
         if m > 0 {
             let (mut A, mut phi, still) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; n]);
             constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut phi);
-            rows.extend(A.chunks_exact(n).map(RowDVector::from_row_slice));
+            rows.extend(A.chunks_exact(n).map(|row| OpenRow::Constraint(RowDVector::from_row_slice(row))));
             errors.extend(phi.iter().map(|x| -x));
         }
         (rows, DVector::from_vec(errors))
+    }
+
+    /// These rows of velocities.
+    fn jacobian(&self, theta: &[f64], open: Vec<OpenRow>) -> DMatrix<f64> {
+        let mut columns = (None, vec![Twist::zero(); self.model.n()]);
+        let row = |open: OpenRow| match open {
+            OpenRow::Constraint(row) => row,
+            OpenRow::Stop(k, side) => self.stop_row(theta, k, side),
+            OpenRow::Point(frame, touch, axis) => {
+                self.columns(theta, frame, &mut columns);
+                point_row(&columns.1, &touch, touch.axes[axis])
+            }
+        };
+        DMatrix::from_rows(&open.into_iter().map(row).collect::<Vec<_>>())
     }
 
     /// The anchors on belts move with them.

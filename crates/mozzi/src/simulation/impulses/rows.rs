@@ -146,7 +146,7 @@ impl Impulses<'_> {
             blocks.push((key, rows.len(), Law::Contact { mu: of.mu }));
             self.columns(theta, of.frame, &mut columns);
             for k in 0..3 {
-                rows.push(self.point_row(theta, of.frame, &columns.1, &touch, touch.axes[k]));
+                rows.push(point_row(&columns.1, &touch, touch.axes[k]));
                 w.push(touch.speeds[k]);
             }
             all_axes.push((key, touch.axes));
@@ -190,21 +190,6 @@ impl Impulses<'_> {
         }
     }
 
-    /// The velocity of the material at a touching point along an axis in {s}.
-    pub(super) fn point_row(
-        &self,
-        theta: &[f64],
-        frame: FrameId,
-        columns: &[Twist],
-        touch: &Touch,
-        axis: Vec3,
-    ) -> RowDVector<f64> {
-        let T = forward_kinematics(self.model, theta, frame);
-        let axis = T.R.inverse_mul(axis);
-        let moment = touch.of_frame.cross(axis);
-        RowDVector::from_iterator(columns.len(), columns.iter().map(|V| V.v.dot(axis) + V.w.dot(moment)))
-    }
-
     /// The limits that act as stops.
     pub fn sides(&self) -> Vec<(usize, usize)> {
         self.stops.as_ref().map_or(Vec::new(), |(_, sides)| sides.clone())
@@ -230,4 +215,11 @@ impl Impulses<'_> {
         }
         row
     }
+}
+
+/// The velocity of the material at a touching point along an axis in {s}, from the body Jacobian of its frame.
+pub(super) fn point_row(columns: &[Twist], touch: &Touch, axis: Vec3) -> RowDVector<f64> {
+    let axis = touch.R.inverse_mul(axis);
+    let moment = touch.of_frame.cross(axis);
+    RowDVector::from_iterator(columns.len(), columns.iter().map(|V| V.v.dot(axis) + V.w.dot(moment)))
 }
