@@ -67,7 +67,11 @@ fn drop_all(method: Method, count: u64, duration: f64) {
         let gained = |pair: &[Energy]| (pair[0].friction_loss - pair[1].friction_loss) / size;
         let gained = run.motion.energy.windows(2).map(gained).fold(0.0, f64::max);
         if gained > 1e-6 {
-            println!("{seed} gains {gained:.1e}, {} steps across, drift {:.1e}", account.steps_across, run.motion.largest_drift() / size);
+            println!(
+                "{seed} gains {gained:.1e}, {} steps across, drift {:.1e}",
+                account.steps_across,
+                run.motion.largest_drift() / size
+            );
         }
         gain = gain.max(gained);
     }
