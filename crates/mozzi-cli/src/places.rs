@@ -2,8 +2,9 @@
 //!
 //! A column is `t` (seconds), or `theta_…`, `dtheta_…`, `ddtheta_…`, `tau_…`, `x_…`, `w_…` with the number of an entry,
 //! from 1, or its name (a joint's, or `base.qw` … `base.z` and `base.wx` … `base.vz` of a floating base), or `m_x m_y
-//! m_z f_x f_y f_z` of the tip's wrench, or `wrench_FRAME_m_x` … `wrench_FRAME_f_z` of a frame's. Each group must be complete or absent; the order is free. Only the six columns
-//! of a floating base's wrench may be missing on their own, and are then 0: no motor drives it.
+//! m_z f_x f_y f_z` of the tip's wrench, or `wrench_FRAME_m_x` … `wrench_FRAME_f_z` of a frame's. Each group must be
+//! complete or absent; the order is free. Only the six columns of a floating base's wrench may be missing on their own,
+//! and are then 0: no motor drives it.
 
 use crate::columns;
 use crate::failure::{Failure, Result};

@@ -195,11 +195,12 @@ fn a_floating_robot_is_identified_from_a_file() {
         let script = "import sys, numpy, pyarrow, pyarrow.feather, csv\n\
                       rows = list(csv.reader(open(sys.argv[1])))\n\
                       names, data = rows[0], numpy.array(rows[1:], float)\n\
-                      pyarrow.feather.write_feather(pyarrow.table(dict(zip(names, data.T))), sys.argv[2], compression='uncompressed')\n\
+                      table = pyarrow.table(dict(zip(names, data.T)))\n\
+                      pyarrow.feather.write_feather(table, sys.argv[2], compression='uncompressed')\n\
                       of = lambda g: data[:, [k for k, n in enumerate(names) if n.startswith(g + '_')]]\n\
                       tau = numpy.hstack([numpy.zeros((len(data), 6)), of('tau')])\n\
-                      numpy.savez(sys.argv[3], t=data[:, 0], theta=of('theta'), dtheta=of('dtheta'), ddtheta=of('ddtheta'), \
-                      tau=tau, wrench_tip=of('wrench_tip'))\n";
+                      groups = {g: of(g) for g in ['theta', 'dtheta', 'ddtheta', 'wrench_tip']}\n\
+                      numpy.savez(sys.argv[3], t=data[:, 0], tau=tau, **groups)\n";
         let [arrow, npz] = ["held.arrow", "held.npz"].map(|name| path(&folder, name));
         let output = Command::new(python).args(["-c", script, &log, &arrow, &npz]).output().expect("Python starts");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -4,8 +4,8 @@
     python figaroh_fit.py ROBOT.urdf LOG.csv CUTOFF_HZ [--lock JOINT]... [--armature] [--tanh]
 
 Fits the first 70 % of the log, prints the root mean square errors of the torques of the last 30 %, as
-`mozzi identify --fit 70 --cutoff CUTOFF_HZ` does. Signals are filtered as in mozzi: Butterworth of order 4, forwards and
-backwards, accelerations by central differences.
+`mozzi identify --fit 70 --cutoff CUTOFF_HZ` does. Signals are filtered as in mozzi: Butterworth of order 4,
+forwards and backwards, accelerations by central differences.
 """
 
 import argparse

@@ -1,10 +1,10 @@
 """The same log in MuJoCo's sysid (PyPI): rollouts of 0.3 s, driven by the measured torques.
 
     pip install "mujoco[sysid]" scipy
-    python mujoco_sysid.py ROBOT.urdf LOG.csv CUTOFF_HZ [--lock JOINT]... [--iterations 20]
+    python mujoco_sysid.py ROBOT.urdf LOG.csv CUTOFF_HZ [--lock JOINT]... [--iterations 20] [--stride 1]
 
-Mass and centre of mass of each body, damping, dry friction and armature of each joint are fitted to the first 70 % of the log;
-printed are the root mean square errors of the torques of the last 30 %, by inverse dynamics.
+Mass and centre of mass of each body, damping, dry friction and armature of each joint are fitted to the first 70 % of
+the log; printed are the root mean square errors of the torques of the last 30 %, by inverse dynamics.
 """
 
 import argparse
@@ -17,8 +17,8 @@ from mujoco import sysid
 from scipy.signal import butter, sosfiltfilt
 
 
-# sysid.InertiaType.Pseudo fails in MuJoCo 4.0.0 ("mass and inertia of moving bodies must be larger than mjMINVAL"), also
-# for one body with an <inertial>; moments are scaled with the mass instead
+# sysid.InertiaType.Pseudo fails in MuJoCo 4.0.0 ("mass and inertia of moving bodies must be larger than mjMINVAL"),
+# also for one body with an <inertial>; moments are scaled with the mass instead
 KIND = sysid.InertiaType.MassIpos
 
 
@@ -45,7 +45,8 @@ def robot(urdf: str, locked: list[str]) -> mujoco.MjSpec:
     for name in locked:
         text = re.sub(rf'(<joint name="{name}" type=)"\w+"', r'\1"fixed"', text)
         text = re.sub(rf'<mimic joint="{name}"[^>]*/>', "", text)
-    text = re.sub(r"(<robot\b[^>]*>)", r'\1<mujoco><compiler balanceinertia="true" boundmass="1e-6"/></mujoco>', text, count=1)
+    compiler = '<mujoco><compiler balanceinertia="true" boundmass="1e-6"/></mujoco>'
+    text = re.sub(r"(<robot\b[^>]*>)", rf"\1{compiler}", text, count=1)
     spec = mujoco.MjSpec.from_string(text)
     spec.option.timestep = 0.002
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -56,7 +57,8 @@ def robot(urdf: str, locked: list[str]) -> mujoco.MjSpec:
         actuator.set_to_motor()
     for kind, name in [(mujoco.mjtSensor.mjSENS_JOINTPOS, "pos"), (mujoco.mjtSensor.mjSENS_JOINTVEL, "vel")]:
         for joint in spec.joints:
-            spec.add_sensor(name=f"{joint.name}_{name}", type=kind, objname=joint.name, objtype=mujoco.mjtObj.mjOBJ_JOINT)
+            of_joint = mujoco.mjtObj.mjOBJ_JOINT
+            spec.add_sensor(name=f"{joint.name}_{name}", type=kind, objname=joint.name, objtype=of_joint)
     spec.compile()
     # as MJCF, in which each body has its inertia
     return mujoco.MjSpec.from_string(spec.to_xml())
@@ -69,6 +71,7 @@ def main() -> None:
     parser.add_argument("cutoff", type=float)
     parser.add_argument("--lock", action="append", default=[])
     parser.add_argument("--iterations", type=int, default=20)
+    parser.add_argument("--stride", type=int, default=1, help="use every n-th window")
     given = parser.parse_args()
     spec = robot(given.urdf, given.lock)
     model = spec.compile()
@@ -89,7 +92,7 @@ def main() -> None:
             params.add(sysid.Parameter(f"{name}_{attribute}", 0.1, 0.0, most, modifier=modifier))
 
     count = max(2, int(round(0.3 / step)))
-    windows = range(0, split - count, count)
+    windows = range(0, split - count, given.stride * count)
     states, controls, sensors, names = [], [], [], []
     for first in windows:
         part = slice(first, first + count + 1)

@@ -53,8 +53,8 @@ pub struct EditedFile {
 /// and YAML files of xacro. Without differences there are none.
 ///
 /// MJCF: a value that comes from a default class is written on the element itself; an `<inertial>` is added to a body
-/// whose inertia MuJoCo computes from geoms. Xacro: a number is edited where it is written, as a literal, a property, an
-/// argument of a macro or an entry of a YAML file; the edited files are expanded again and compared.
+/// whose inertia MuJoCo computes from geoms. Xacro: a number is edited where it is written, as a literal, a property,
+/// an argument of a macro or an entry of a YAML file; the edited files are expanded again and compared.
 ///
 /// # Errors
 /// As [`edit`]. Of xacro: a number that is computed, or would have to get two values; each with its place.

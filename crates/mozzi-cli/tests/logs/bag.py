@@ -56,15 +56,17 @@ def main():
             " data BLOB NOT NULL);"
             "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
         )
-        bag.execute("INSERT INTO topics VALUES (7, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr', ?)", ("qos " * 2000,))
+        topic = "INSERT INTO topics VALUES (7, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr', ?)"
+        bag.execute(topic, ("qos " * 2000,))
         bag.execute("INSERT INTO topics VALUES (8, '/camera', 'sensor_msgs/msg/Image', 'cdr', '')")
         for row in part:
             t = 1.7e9 + row[0]
             message = joint_state(t, names, [[row[c] for c in group] for group in columns])
-            bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (7, ?, ?)", (round(t * 1e9) + 1000, message))
+            insert = "INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)"
+            bag.execute(insert, (7, round(t * 1e9) + 1000, message))
             if row[0] < 0.5:
                 image = bytes(range(256)) * 40
-                bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (8, ?, ?)", (round(t * 1e9), image))
+                bag.execute(insert, (8, round(t * 1e9), image))
         bag.commit()
         bag.close()
 

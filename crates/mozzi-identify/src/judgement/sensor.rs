@@ -9,7 +9,8 @@ use crate::{Choice, Error, Finding, Identification, Kind};
 const CLEAR: f64 = 3.0;
 
 /// A warning if the armature of every joint is at its bound 0, although forces were taken to be the motors', and if
-/// the forces are predicted as well without it. A rotor behind a gear is felt at the motor as a large inertia of its own.
+/// the forces are predicted as well without it. A rotor behind a gear is felt at the motor as a large inertia of its
+/// own.
 ///
 /// # Errors
 /// Those of the fits without armature.

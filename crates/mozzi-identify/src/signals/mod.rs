@@ -53,7 +53,8 @@ impl Default for Filter {
     }
 }
 
-/// Dry friction of unit size as a function of velocity: tanh(θ̇/w), and with Stribeck's velocity exp(−(θ̇/v)²) tanh(θ̇/w).
+/// Dry friction of unit size as a function of velocity: tanh(θ̇/w), and with Stribeck's velocity exp(−(θ̇/v)²)
+/// tanh(θ̇/w).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// w, rad/s or m/s.

@@ -60,7 +60,9 @@ class Identification:
         """Write the report as one HTML file."""
         Path(path).write_text(self._html, encoding="utf-8")
 
-    def write(self, source: str | os.PathLike[str], path: str | os.PathLike[str], *, old_values: bool = False) -> list[str]:
+    def write(
+        self, source: str | os.PathLike[str], path: str | os.PathLike[str], *, old_values: bool = False
+    ) -> list[str]:
         """Write the robot's file, ``source``, with the identified numbers; other text stays.
 
         Parameters
