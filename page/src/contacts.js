@@ -120,7 +120,8 @@ export class ContactMarks {
       const force = arrow.visible ? tip.sub(arrow.position).divideScalar(this.scale) : new THREE.Vector3();
       const rim = cone.skin.geometry.attributes.position;
       const corner = (i) => new THREE.Vector3().fromBufferAttribute(rim, i).applyMatrix4(cone.matrixWorld).sub(cone.position);
-      const ring = Array.from({ length: rim.count }, (_, i) => corner(i)).filter((v) => v.length() > 1e-9);
+      const ring = Array.from({ length: rim.count }, (_, i) => corner(i))
+        .filter((v) => v.length() > 1e-9).slice(1); // the first and the last are one
       const axis = ring.reduce((sum, v) => sum.add(v), new THREE.Vector3()).normalize();
       return {
         name: this.contacts.pairs[k].name,
