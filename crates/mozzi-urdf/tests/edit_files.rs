@@ -292,6 +292,7 @@ fn numbers_that_xacro_computes_or_shares_are_named() {
     with_moment(&mut robot, "right_arm", 0.02);
     let why = edited(&files[0], &robot, false).expect_err("shared");
     assert!(why.contains("link `right_arm`: a moment of the edited text would be"), "{why}");
+    assert!(why.contains("it shares a number of the files with one that changes"), "{why}");
     // a macro's joint cannot have two dampings
     let mut robot = description(&files[0]);
     joint(&mut robot, "left_shoulder").damping = 0.1;

@@ -79,6 +79,23 @@ pub(super) fn of_yaml(text: &str) -> Vec<Number> {
     found
 }
 
+/// The words of a part of a text.
+pub(super) fn words(text: &str, part: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let start = part.start;
+    let inside = &text[part];
+    inside.split_ascii_whitespace().map(move |word| {
+        let at = start + (word.as_ptr() as usize - inside.as_ptr() as usize);
+        at..at + word.len()
+    })
+}
+
+/// The words of all attributes.
+pub(super) fn all_words(document: &Document<'_>) -> Vec<Range<usize>> {
+    let text = document.input_text();
+    let attributes = document.descendants().filter(Node::is_element).flat_map(|node| node.attributes());
+    attributes.flat_map(|attribute| words(text, attribute.range_value()).collect::<Vec<_>>()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

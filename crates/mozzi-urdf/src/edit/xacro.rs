@@ -4,7 +4,7 @@
 
 use super::element::{Change, Editor, Tag, replaced};
 use super::joint::is_near;
-use super::numbers::{Number, of_xacro, of_yaml};
+use super::numbers::{Number, all_words, of_xacro, of_yaml, words};
 use super::{EditError, EditedFile, differences, refused};
 use crate::{LoadError, Settings, parse_in};
 use mozzi::Description;
@@ -92,7 +92,9 @@ pub(super) fn edit(
     }
     refuse_if(reasons)?;
     let texts = files.edited(&values, structures, keeps_old)?;
-    refuse_if(differences(&files.read(&texts).map_err(EditError::Load)?, edited))?;
+    let others = differences(&files.read(&texts).map_err(EditError::Load)?, edited);
+    let shared = |reason| format!("{reason}: it shares a number of the files with one that changes");
+    refuse_if(others.into_iter().map(shared).collect())?;
     Ok(texts)
 }
 
@@ -136,23 +138,6 @@ fn subject(tag: Tag<'_>, attribute: &str) -> String {
         "" => of,
         _ => format!("{attribute} of <{}> of {of}", tag.node.tag_name().name()),
     }
-}
-
-/// The words of a part of a text.
-fn words(text: &str, part: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    let start = part.start;
-    let inside = &text[part];
-    inside.split_ascii_whitespace().map(move |word| {
-        let at = start + (word.as_ptr() as usize - inside.as_ptr() as usize);
-        at..at + word.len()
-    })
-}
-
-/// The words of all attributes.
-fn all_words(document: &Document<'_>) -> Vec<Range<usize>> {
-    let text = document.input_text();
-    let attributes = document.descendants().filter(Node::is_element).flat_map(|node| node.attributes());
-    attributes.flat_map(|attribute| words(text, attribute.range_value()).collect::<Vec<_>>()).collect()
 }
 
 /// The files of an expansion.
