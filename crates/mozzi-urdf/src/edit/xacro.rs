@@ -14,8 +14,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-/// The most numbers that are tried.
+/// The most numbers that are tried, and the most steps of all their expansions, about a minute's.
 const MOST_TRIED: usize = 4000;
+const MOST_STEPS: u64 = 200_000_000;
 
 /// The most reasons in a message.
 const SHOWN: usize = 8;
@@ -69,12 +70,13 @@ pub(super) fn edit(
             },
         }
     }
-    let places = files.places(&wanted);
+    let (places, is_whole) = files.places(&wanted);
     let mut values: BTreeMap<Place, Vec<&Wanted>> = BTreeMap::new();
     for (one, place) in wanted.iter().zip(&places) {
         match place {
             Some(place) => values.entry(*place).or_default().push(one),
-            None => reasons.push(files.computed(one)),
+            None if is_whole => reasons.push(files.computed(one)),
+            None => reasons.push(format!("{}; not all were tried", files.computed(one))),
         }
     }
     for (place, all) in &values {
@@ -202,21 +204,26 @@ impl<'f> Files<'f> {
         )
     }
 
-    /// Where each number is written; None if it is computed.
-    fn places(&self, wanted: &[Wanted]) -> Vec<Option<Place>> {
+    /// Where each number is written, None if it is computed; and whether all numbers of the files were tried.
+    fn places(&self, wanted: &[Wanted]) -> (Vec<Option<Place>>, bool) {
         let mut places: Vec<Option<Place>> = wanted.iter().map(|one| self.literal(&one.word)).collect();
-        let Ok(document) = Document::parse(&self.expansion.text) else { return places };
+        let Ok(document) = Document::parse(&self.expansion.text) else { return (places, true) };
         let before = all_words(&document);
         let index: Vec<Option<usize>> =
             wanted.iter().map(|one| before.iter().position(|word| *word == one.word)).collect();
-        let mut tried = 0;
+        let most = MOST_TRIED.min((MOST_STEPS / self.expansion.work.max(1)) as usize);
+        let (mut tried, mut is_whole) = (0, true);
         for file in (0..self.files.len()).filter(|&file| self.first(file) == file) {
             let text = &self.files[file].1;
             let numbers = if self.is_yaml(file) { of_yaml(text) } else { of_xacro(text) };
             for Number { span, value } in numbers {
                 let is_missing = |k: usize| places[k].is_none() && wanted[k].old == value;
-                if tried == MOST_TRIED || !(0..wanted.len()).any(is_missing) {
+                if !(0..wanted.len()).any(is_missing) {
                     continue;
+                }
+                is_whole &= tried < most;
+                if !is_whole {
+                    break;
                 }
                 tried += 1;
                 // a value that nothing else has
@@ -231,7 +238,7 @@ impl<'f> Files<'f> {
                 }
             }
         }
-        places
+        (places, is_whole)
     }
 
     /// The place of a word that is copied from a file.
