@@ -56,7 +56,7 @@ pub(super) fn articulated_derivatives<S: Scalar + From<C>, C: Scalar>(
     for matrix in [&*X, &*Y, &*inverse] {
         check_size(model, matrix);
     }
-    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
+    outward_pass(model, theta, dtheta, ddtheta, environment, None, workspace);
     let rates = base_rates(model, theta, environment, workspace);
 
     // the blocks of the joints' own terms, at their places in ∂τ

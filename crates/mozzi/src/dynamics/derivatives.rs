@@ -57,7 +57,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     mut d_dtheta: Option<&mut [S]>,
     M: Option<&mut [S]>,
 ) {
-    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
+    outward_pass(model, theta, dtheta, ddtheta, environment, None, workspace);
     let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: false, is_composite: false };
     let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
     let by_theta = Some(Filled { X: d_theta, base: by_theta });
@@ -92,27 +92,34 @@ pub(super) fn add_damping<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, d_dt
     }
 }
 
-/// The rates of the axes, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ).
+/// The rates of the axes, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ). With a motion `along`, which is X of the base
+/// and the joints' rates x, X of each link and 𝒢X and 𝓑ᵀX in place of 𝒢 and 𝓑: see [`vjp.rs`](super::vjp).
 #[cfg_attr(not(test), inline(always))]
 #[rustfmt::skip] // one equation a line
 pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>, workspace: &mut Workspace<S>,
+    model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>,
+    along: Option<(Twist<S>, &[S])>, workspace: &mut Workspace<S>,
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
     let slots = model.links.len() + 1;
-    let Workspace { V, dV, F, G_c, B, .. } = workspace;
+    let Workspace { V, dV, F, .. } = workspace;
 
     // base: its own motion
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
     let G = model.base_inertia.map(S::from);
     let P = G * V[0];
-    (G_c[0], B[0]) = (G, CoriolisFactor::new(G, V[0], P));
+    let B = CoriolisFactor::new(G, V[0], P);
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
+    match along {
+        None => (workspace.G_c[0], workspace.B[0]) = (G, B),
+        Some((X, _)) => (workspace.X[0], workspace.U[0], workspace.B[0].f) = (X, G * X, B.transpose_mul_twist(X)),
+    }
 
     // base to tips: rates of the axes, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
+    let x = along.map(|(_, x)| x);
     match model.structure.of_one_axis {
-        true => motions::<true, S, C>(model, dtheta, ddtheta, workspace),
-        false => motions::<false, S, C>(model, dtheta, ddtheta, workspace),
+        true => motions::<true, S, C>(model, dtheta, ddtheta, x, workspace),
+        false => motions::<false, S, C>(model, dtheta, ddtheta, x, workspace),
     }
     let F = &mut workspace.F[..slots];
     for &(frame, F_b) in environment.applied {
@@ -121,17 +128,18 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// Outward from the base: the rates of the axes, twists and accelerations, and 𝒢, 𝓑 and 𝓕 of each link.
+/// Outward from the base: the rates of the axes, twists and accelerations, 𝓕, and 𝒢 and 𝓑 or X, 𝒢X and 𝓑ᵀX of each
+/// link.
 #[inline(always)]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
+    model: &Model<C>, dtheta: &[S], ddtheta: &[S], x: Option<&[S]>, workspace: &mut Workspace<S>,
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, by_theta, by_rates, G_c, B, .. } = workspace;
+    let Workspace { T, V, dV, X, F, U: Q, carrier, by_theta, by_rates, G_c, B, .. } = workspace;
     let (T, V, dV, F) = (&T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
     let (by_theta, by_rates) = (&mut by_theta[..slots], &mut by_rates[..slots]);
-    let (G_c, B) = (&mut G_c[..slots], &mut B[..slots]);
+    let (G_c, B, X, Q) = (&mut G_c[..slots], &mut B[..slots], &mut X[..slots], &mut Q[..slots]);
     for (i, link) in model.outward::<S>() {
         let link = link.among::<ONE_AXIS>();
         let (p, j, Ad) = (link.parent, link.j, T[i].Ad());
@@ -139,9 +147,9 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
         let [mut V_c, mut dV_c] = [V_p, dV_p];                               // of the link that carries the joint
         if !link.has_one_axis() {
             if link.is_next() {
-                [V_c, dV_c] = carrier[p].map(|V| Ad * V);
+                [V_c, dV_c] = [Ad * carrier[p][0], Ad * carrier[p][1]];
             }
-            carrier[i] = [V_c, dV_c];
+            (carrier[i][0], carrier[i][1]) = (V_c, dV_c);
         }
         let A    = link.A();
         let dA   = (V_c.ad() * A).rate();
@@ -156,8 +164,18 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
         }
         let G = link.G();
         let P = G * V_i;
-        (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V_i, P));
         F[i]  = G * dV_i - V_i.ad().transpose() * P;
+        let B_i = CoriolisFactor::new(G, V_i, P);
+        let Some(x) = x else {
+            (G_c[i], B[i]) = (G, B_i);
+            continue;
+        };
+        let X_p = Ad * X[p];
+        if !link.has_one_axis() {
+            carrier[i][2] = if link.is_next() { Ad * carrier[p][2] } else { X_p };
+        }
+        let X_i = X_p + link.A() * x[link.j];
+        (X[i], Q[i], B[i].f) = (X_i, G * X_i, B_i.transpose_mul_twist(X_i));
     }
 }
 

@@ -50,7 +50,7 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     }
     joint_transforms(model, theta, workspace);
     let zero = take_zeros(workspace);
-    outward_pass(model, theta, dtheta, &zero, environment, workspace);
+    outward_pass(model, theta, dtheta, &zero, environment, None, workspace);
     workspace.vector = zero;
 
     // M θ̈ = τ − h − f

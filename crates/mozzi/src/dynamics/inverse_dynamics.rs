@@ -127,7 +127,7 @@ pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
     T: SE3<S>,
     V_i: Twist<S>,
     V: &[Twist<S>],
-    carrier: &mut [[Twist<S>; 2]],
+    carrier: &mut [[Twist<S>; 3]],
     i: usize,
 ) -> Twist<S> {
     if link.has_one_axis() {

@@ -3,7 +3,7 @@
 
 use super::armature::{add_rotor_forces, add_velocity_product_vjp};
 use super::derivatives::outward_pass;
-use super::vjp::{add_motion, add_products, of_base};
+use super::vjp::{add_products, of_base};
 use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
@@ -51,7 +51,7 @@ pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     [d_theta, d_dtheta, d_ddtheta]: [&mut [S]; 3],
 ) {
-    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
+    outward_pass(model, theta, dtheta, ddtheta, environment, Some((of_base(model, x), x)), workspace);
     for j in 0..model.n() {
         d_theta[j] = S::zero();
         d_dtheta[j] = S::from(model.damping[j]) * x[j];
@@ -62,7 +62,6 @@ pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     }
     add_velocity_product_vjp(model, dtheta, x, d_dtheta);
     add_rotor_forces(model, x, d_ddtheta);
-    add_motion(model, of_base(model, x), x, workspace);
     add_products(model, theta, None, environment, workspace, [d_theta, d_dtheta, d_ddtheta]);
 }
 

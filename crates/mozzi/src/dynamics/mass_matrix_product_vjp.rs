@@ -3,7 +3,7 @@
 use super::armature::add_rotor_forces;
 use super::bias_forces::take_zeros;
 use super::derivatives::outward_pass;
-use super::vjp::{add_motion, add_products, from_rest, of_base};
+use super::vjp::{add_products, from_rest, of_base};
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::quantity::{
@@ -34,14 +34,13 @@ pub fn mass_matrix_product_vjp<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [ddtheta.len(), x.len(), unused.len(), d_theta.len(), d_ddtheta.len()]);
     let (zero, environment) = (take_zeros(workspace), from_rest(Twist::zero()));
     joint_transforms(model, theta, workspace);
-    outward_pass(model, theta, &zero, ddtheta, &environment, workspace);
+    outward_pass(model, theta, &zero, ddtheta, &environment, Some((of_base(model, x), x)), workspace);
     workspace.vector = zero;
     d_theta.fill(S::zero());
     for j in 0..model.n() {
         (unused[j], d_ddtheta[j]) = (S::zero(), S::from(model.armature[j]) * x[j]);
     }
     add_rotor_forces(model, x, d_ddtheta);
-    add_motion(model, of_base(model, x), x, workspace);
     add_products(model, theta, None, &environment, workspace, [d_theta, unused, d_ddtheta]);
 }
 

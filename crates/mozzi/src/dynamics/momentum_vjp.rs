@@ -5,7 +5,7 @@
 
 use super::bias_forces::take_zeros;
 use super::derivatives::outward_pass;
-use super::vjp::{add_motion, add_products, from_rest, in_base};
+use super::vjp::{add_products, from_rest, in_base};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
@@ -82,8 +82,7 @@ fn of_momentum<S: Scalar + From<C>, C: Scalar>(
     let X_s = in_base(model, theta, Twist { w: w.w, v: w.v + p.cross(w.w) });
     let environment = from_rest(Twist::zero());
     joint_transforms(model, theta, workspace);
-    outward_pass(model, theta, dtheta, ddtheta, &environment, workspace);
-    add_motion(model, X_s, zero, workspace);
+    outward_pass(model, theta, dtheta, ddtheta, &environment, Some((X_s, zero)), workspace);
     add_products(model, theta, Some(X_s), &environment, workspace, products);
 }
 

@@ -18,7 +18,7 @@ use super::composite::BaseRates;
 use super::derivatives::outward_pass;
 use super::forward_dynamics_vjp::solved;
 use super::regressor::joint_entries;
-use super::vjp::{add_motion, of_base};
+use super::vjp::of_base;
 use crate::kinematics::{base_pose, joint_transforms};
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
@@ -95,8 +95,7 @@ fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     environment: &Environment<S>, workspace: &mut Workspace<S>, [by_pi, by_placements, by_axes, by_gravity]: [&mut [S]; 4],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), x.len()]);
-    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
-    add_motion(model, of_base(model, x), x, workspace);
+    outward_pass(model, theta, dtheta, ddtheta, environment, Some((of_base(model, x), x)), workspace);
     let Workspace { T, V, dV, X, F, U: Q, B, .. } = workspace;
 
     by_pi.fill(S::zero());

@@ -49,45 +49,8 @@ pub(super) fn of_base<S: Scalar, C: Scalar>(model: &Model<C>, x: &[S]) -> Twist<
     }
 }
 
-/// Outward: X of each link from X of the base and the joints' rates x; Q = 𝒢X in U, R = 𝓑ᵀX in place of f. The
-/// workspace holds T_{i,i−1}, 𝒢 and 𝓑 of each link.
-#[cfg_attr(not(test), inline(always))]
-pub(super) fn add_motion<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    X_0: Twist<S>,
-    x: &[S],
-    workspace: &mut Workspace<S>,
-) {
-    match model.structure.of_one_axis {
-        true => outward::<true, S, C>(model, X_0, x, workspace),
-        false => outward::<false, S, C>(model, X_0, x, workspace),
-    }
-}
-
-#[inline(always)]
-#[rustfmt::skip] // one equation a line
-fn outward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, X_0: Twist<S>, x: &[S], workspace: &mut Workspace<S>,
-) {
-    let slots = model.links.len() + 1;
-    let Workspace { T, X, U, carrier, G_c, B, .. } = workspace;
-    let (T, X, Q, G, B) = (&T[..slots], &mut X[..slots], &mut U[..slots], &G_c[..slots], &mut B[..slots]);
-    X[0] = X_0;
-    (Q[0], B[0].f) = (G[0] * X_0, B[0].transpose_mul_twist(X_0));
-    for (i, link) in model.outward::<S>() {
-        let link = link.among::<ONE_AXIS>();
-        let (p, Ad) = (link.parent, T[i].Ad());
-        let X_p = Ad * X[p];
-        if !link.has_one_axis() {
-            carrier[i][0] = if link.is_next() { Ad * carrier[p][0] } else { X_p };
-        }
-        X[i] = X_p + link.A() * x[link.j];
-        (Q[i], B[i].f) = (G[i] * X[i], B[i].transpose_mul_twist(X[i]));
-    }
-}
-
-/// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward passes leave: T_{i,i−1},
-/// the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
+/// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward pass along X leaves:
+/// T_{i,i−1}, the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
 #[cfg_attr(not(test), inline(always))]
 pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -131,7 +94,7 @@ fn inward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
         let link = link.among::<ONE_AXIS>();
         let (p, j, A, Ad) = (link.parent, link.j, link.A(), T[i].Ad().transpose());
         let (Q_i, R_i, F_i) = (Q[i], B[i].f, F[i]);
-        let X_c = if link.has_one_axis() { X[i] } else { carrier[i][0] };    // the joint's own part is along A
+        let X_c = if link.has_one_axis() { X[i] } else { carrier[i][2] };    // the joint's own part is along A
         d_theta[j]   += by_theta[i].dot(Q_i, R_i) + (X_c.ad() * A).rate().dot(F_i);
         d_dtheta[j]  += by_rates[i].dot(Q_i, R_i);
         d_ddtheta[j] += A * Q_i;
@@ -154,7 +117,7 @@ pub(super) fn add_products_of<S: Scalar + From<C>, C: Scalar>(
     sources: impl FnOnce(&mut Workspace<S>),
     products: [&mut [S]; 3],
 ) {
-    outward_pass(model, theta, dtheta, ddtheta, environment, workspace);
+    outward_pass(model, theta, dtheta, ddtheta, environment, None, workspace);
     for X in workspace.X.iter_mut().chain(workspace.carrier.iter_mut().flatten()) {
         *X = Twist::zero();
     }

@@ -19,8 +19,8 @@ pub struct Workspace<S = f64> {
     pub(crate) path: Vec<usize>,
     pub(crate) V: Vec<Twist<S>>,
     pub(crate) dV: Vec<Twist<S>>,
-    /// 𝒱 and 𝒱̇ of the parent of a ball or a free joint, in the frame of each of its axes.
-    pub(crate) carrier: Vec<[Twist<S>; 2]>,
+    /// 𝒱, 𝒱̇ and X of the parent of a ball or a free joint, in the frame of each of its axes.
+    pub(crate) carrier: Vec<[Twist<S>; 3]>,
     /// How a vector of rates moves each link.
     pub(crate) X: Vec<Twist<S>>,
     pub(crate) F: Vec<Wrench<S>>,
@@ -70,7 +70,7 @@ impl<S: Scalar> Workspace<S> {
             path: Vec::with_capacity(slots),
             V: vec![Twist::zero(); slots],
             dV: vec![Twist::zero(); slots],
-            carrier: vec![[Twist::zero(); 2]; slots],
+            carrier: vec![[Twist::zero(); 3]; slots],
             X: vec![Twist::zero(); slots],
             F: vec![Wrench::zero(); slots],
             by_theta: vec![ByTheta::zero(); slots],
@@ -108,7 +108,7 @@ impl<S: Scalar> Workspace<S> {
         self.V.fill(V);
         self.dV.fill(V);
         self.X.fill(V);
-        self.carrier.fill([V; 2]);
+        self.carrier.fill([V; 3]);
         self.F.fill(F);
         self.U.fill(F);
         self.by_theta.fill(ByTheta { r: V, s: [nan; 2] });
