@@ -4,6 +4,7 @@ use crate::estimate::is_deep;
 use crate::program::Program;
 use crate::rates::with_rates;
 use crate::record::record;
+use crate::robot_number::RobotNumber;
 use crate::traced::Traced;
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsByMassMatrix, Memory, Of, Query};
 use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};
@@ -116,15 +117,14 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
         let zero = Traced::from(0.0);
         let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
         let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        // without parameters, the model's own numbers are used, so that each is recorded where it is first used: the
-        // speed of the machine code depends on that
-        match parameters {
+        let model = match parameters {
             Some(parameters) => {
-                let model = model.with_parameters(parameters);
-                kernel.evaluate(&model, &state, &environment, &mut memory, &mut slices);
+                let recorded: Vec<RobotNumber> = parameters.iter().map(|&x| RobotNumber::Recorded(x)).collect();
+                model.with_parameters(&recorded)
             }
-            None => kernel.evaluate(model, &state, &environment, &mut memory, &mut slices),
-        }
+            None => model.map(RobotNumber::Constant),
+        };
+        kernel.evaluate(&model, &state, &environment, &mut memory, &mut slices);
         let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
         names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
     })

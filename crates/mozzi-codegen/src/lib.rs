@@ -34,6 +34,7 @@ mod jit;
 mod program;
 mod rates;
 mod record;
+mod robot_number;
 mod tape;
 mod text;
 mod traced;

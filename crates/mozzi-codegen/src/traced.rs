@@ -33,6 +33,7 @@ impl Traced {
 }
 
 impl From<f64> for Traced {
+    #[inline(never)]
     fn from(x: f64) -> Self {
         tape::with(|tape| tape.constant(x))
     }
@@ -48,6 +49,7 @@ impl Neg for Traced {
 macro_rules! operators {
     ($($Op:ident $op:ident),*) => { $(impl $Op for Traced {
         type Output = Self;
+        #[inline(never)] // recorded kernels are long, and are not in a hurry
         fn $op(self, other: Self) -> Self { tape::with(|tape| tape.$op(self, other)) }
     })* };
 }
@@ -81,6 +83,7 @@ impl Scalar for Traced {
     fn sgn(self) -> Self {
         tape::with(|tape| tape.sgn(self))
     }
+    #[inline(never)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         tape::with(|tape| tape.mul_add(self, a, b))
     }
