@@ -115,6 +115,7 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     report.step("reference numbers", || oracles::make(workspace));
     report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
+    let release = main_job::start_build(workspace);
     report.step("Python package", || package::test(workspace, &mut count));
     report.step("wheel", || wheel::test(workspace));
     report.step("fuzzing", || fuzz::run(workspace, None));
@@ -124,7 +125,7 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     for example in examples::list(workspace) {
         report.step(&format!("example {}", example.name()), || example.run(workspace, &programs));
     }
-    report.step("main job", || main_job::run(workspace));
+    report.step("main job", || main_job::run(workspace, release));
     let exit = report.finish();
     println!("{count}"); // CI reads this line
     exit
