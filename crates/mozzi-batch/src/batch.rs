@@ -32,6 +32,8 @@ pub struct Batch<T: Number = f64> {
     set: InstructionSet,
     layout: Layout,
     threads: Threads,
+    /// Does dry friction stick in simulations?
+    sticks: bool,
     /// Workers left by earlier calls.
     pool: Pool,
     /// The quantities compiled to machine code.
@@ -56,6 +58,7 @@ impl<T: Number> Batch<T> {
             set: InstructionSet::best(),
             layout: Layout::Rows,
             threads: Threads::All,
+            sticks: true,
             pool: Pool::default(),
             compiled: Arc::default(),
             programs: Cache::default(),
@@ -87,6 +90,17 @@ impl<T: Number> Batch<T> {
     /// Sets the layout of the tables.
     pub fn with_layout(self, layout: Layout) -> Self {
         Batch { layout, ..self }
+    }
+
+    /// Chooses whether dry friction sticks in [`simulate`](Self::simulate). By default it does, and robots that have it
+    /// are moved one by one. With `false` it is μ sgn θ̇, under which joints creep and chatter; all robots are then moved
+    /// together in registers.
+    pub fn with_sticking(self, sticks: bool) -> Self {
+        Batch { sticks, ..self }
+    }
+
+    pub(crate) fn sticks(&self) -> bool {
+        self.sticks
     }
 
     /// The tables' layout.

@@ -1,10 +1,12 @@
-//! Simulation of many robots of one model.
+//! Simulation of many robots of one model: together in registers, or [one by one](each).
+
+mod each;
 
 use crate::chunk::Table;
 use crate::request::Request;
 use crate::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Layout, Number};
-use mozzi::simulation::{Closer, Method, Motion, forward_dynamics_of};
+use mozzi::simulation::{Closer, Method, Motion, Options, forward_dynamics_of};
 
 /// The number of robots that one thread moves together, so that their states and the method's stages stay in its cache.
 const TOGETHER: usize = 512;
@@ -15,8 +17,11 @@ impl<T: Number> Batch<T> {
     /// moved in pieces that fit the cache. The state of a robot with constraints is projected onto them after each
     /// step. See [`mozzi::simulation`].
     ///
+    /// Robots with dry friction are moved one by one, each as [`mozzi::Model::simulate`] moves it alone, by any method,
+    /// unless [`with_sticking(false)`](Batch::with_sticking) was set.
+    ///
     /// # Errors
-    /// A table has the wrong length, the method is not [explicit](Method::explicit), or a state fails (the error
+    /// A table has the wrong length, the method of robots without dry friction is not [explicit](Method::explicit), or a state fails (the error
     /// carries its index): its mass matrix is singular, it violates the constraints, or became infinite or NaN.
     /// Neighbouring states are computed before the error is returned.
     #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
@@ -37,7 +42,7 @@ impl<T: Number> Batch<T> {
         inputs.extend(Request::new(query, self.model(), environment).further());
         let frames = environment.wrenches.iter().map(|&(frame, _)| frame);
         let states = self.check(&inputs, [].into_iter(), &environment.environment, frames)?;
-        let explicit = method.explicit()?;
+        let is_alone = self.sticks() && self.has_dry_friction(environment);
         let h = duration / steps as f64;
         if !(h.is_finite() && h >= 0.0) {
             let found = format!("{steps} steps in {duration} s");
@@ -65,6 +70,11 @@ impl<T: Number> Batch<T> {
         }
 
         self.check_closed(theta, dtheta)?;
+        if is_alone {
+            let options = Options { method, record_every: steps, ..Options::new(duration, steps) };
+            return self.simulate_alone([theta, dtheta], tau, environment, &options);
+        }
+        let explicit = method.explicit()?;
         let alone = self.on(Threads::One);
         let m = self.model().constraint_rows();
         let pieces: Vec<_> = theta.chunks_mut(TOGETHER * nq).zip(dtheta.chunks_mut(TOGETHER * n)).enumerate().collect();

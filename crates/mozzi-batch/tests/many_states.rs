@@ -133,7 +133,7 @@ fn many_turns_are_reduced_exactly() {
 #[test]
 fn many_robots_move_as_each_alone() {
     for model in [tree(5, 3, 0), floating_tree(3, 3, 0), four_bar()] {
-        // dry friction of a robot alone sticks; that of many robots does not
+        // robots without dry friction move together in registers
         let mut robot = model.description().clone();
         robot.joints.iter_mut().for_each(|joint| joint.friction = 0.0);
         let model = robot.build().unwrap();

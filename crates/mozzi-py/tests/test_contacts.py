@@ -1,5 +1,9 @@
 """Dry friction that sticks, and contacts with planes."""
 
+import base64
+import json
+import pickle
+
 import numpy as np
 import pytest
 
@@ -36,6 +40,65 @@ def test_a_cube_falls_and_slides():
     belt = [{"name": "belt", "velocity": (0.5, 0, 0)}]
     motion = cube.simulate(start, np.zeros(6), 1.0, 1000, contacts=corners, planes=belt)
     assert abs(motion.dtheta[-1, 3] - 0.5) < 1e-9
+
+
+@pytest.mark.parametrize("method", ["auto", "rk4", "dopri"])
+def test_many_starts_stick_each_as_alone(method):
+    arm = mozzi.Model.from_urdf_string(STUCK)
+    theta, dtheta = np.linspace(-1, 1, 7)[:, None], np.array([0.0])
+    options = dict(method=method, record_every=10, torque=[2.0])
+    many = arm.simulate(theta, dtheta, 0.5, 100, **options)
+    for k, start in enumerate(theta):
+        one = arm.simulate(start, dtheta, 0.5, 100, **options)
+        for name in ("theta", "dtheta", "ddtheta", "tau", "energy"):
+            assert np.array_equal(getattr(many, name)[k], getattr(one, name)), name
+    assert many.one_sided.unsolved == 0
+    # m g l and τ are at most 4.905 + 2 N m, friction holds 8
+    assert np.abs(many.theta - theta[:, None]).max() < 1e-12
+    # together in registers: μ sgn θ̇, which is 0 at rest
+    creeps = arm.simulate(theta, dtheta, 0.5, 100, sticking=False, torque=[2.0], record_every=10)
+    assert creeps.one_sided is None and np.abs(creeps.theta - theta[:, None]).max() > 1e-4
+    motors = lambda t, theta, dtheta: 2.0 - dtheta
+    assert arm.simulate(theta, dtheta, 0.1, 10, torque=motors, sticking=False).theta.shape == (7, 11, 1)
+    with pytest.raises(TypeError, match="sticking=False"):
+        arm.simulate(theta, dtheta, 0.1, 10, torque=motors)
+    with pytest.raises(ValueError, match="sticking is False, expected True of one start"):
+        arm.simulate(theta[0], dtheta, 0.1, 10, sticking=False)
+    with pytest.raises(ValueError, match="sticking is False, expected True of robots that move one by one"):
+        arm.simulate(theta, dtheta, 0.1, 10, sticking=False, method="moreau")
+
+
+def test_many_cubes_fall():
+    cube = mozzi.Model.from_urdf_string(CUBE, floating=True)
+    corners = [{"frame": "cube", "at": (x, y, -0.05), "friction": 0.2} for x in (-0.05, 0.05) for y in (-0.05, 0.05)]
+    starts = np.array([[1, 0, 0, 0, 0, 0, 0.05 + 0.01 * k] for k in range(4)])
+    options = dict(contacts=(corner for corner in corners), record_every=10)
+    many = cube.simulate(starts, np.zeros(6), 0.3, 300, **options)
+    assert many.contact_forces.shape == (4, 31, 4, 3) and many.contact_names == ["cube"] * 4
+    for k, start in enumerate(starts):
+        one = cube.simulate(start, np.zeros(6), 0.3, 300, contacts=corners, record_every=10)
+        assert np.array_equal(many.theta[k], one.theta) and np.array_equal(many.contact_forces[k], one.contact_forces)
+    with pytest.raises(ValueError, match=r"state \[2\]: the start is contact point `cube`"):
+        cube.simulate([*starts[:2], [1, 0, 0, 0, 0, 0, -1]], np.zeros(6), 0.3, 300, contacts=corners)
+
+
+def test_the_page_of_a_motion_has_its_contacts(tmp_path):
+    cube = mozzi.Model.from_urdf_string(CUBE, floating=True)
+    corners = [{"frame": "cube", "at": (x, 0.05, -0.05), "name": f"corner {x}"} for x in (-0.05, 0.05)]
+    motion = cube.simulate([1, 0, 0, 0, 0, 0, 0.05], np.zeros(6), 0.05, 50, contacts=iter(corners))
+    assert motion.contacts == corners and motion.planes is None
+    for moved in (motion, pickle.loads(pickle.dumps(motion))):
+        moved.report(tmp_path / "cube.html")
+        page = (tmp_path / "cube.html").read_text(encoding="utf-8")
+        data = json.loads(page.split('id="data">')[1].split("</script>")[0])
+        contacts = data["motion"]["contacts"]
+        assert [pair["name"] for pair in contacts["pairs"]] == ["corner -0.05", "corner 0.05"]
+        assert contacts["planes"][0]["name"] == "ground" and contacts["events"][0]["change"] == "touches down"
+        forces = np.frombuffer(base64.b64decode(contacts["forces"]), "<f4").reshape(51, 2, 3)
+        assert np.abs(forces - motion.contact_forces).max() < 1e-4
+    free = cube.simulate([1, 0, 0, 0, 0, 0, 0.05], np.zeros(6), 0.05, 50)
+    free.report(tmp_path / "free.html")
+    assert '"contacts":null' in (tmp_path / "free.html").read_text(encoding="utf-8")
 
 
 def test_what_is_wrong_is_said():

@@ -90,8 +90,6 @@ def test_wrong_arguments_are_named(ur5):
         ur5.simulate(many, np.zeros((3, 6)), 1, 10)
     with refused(ValueError, "tau has leading axes (5,), which do not go with (4,) of the arguments before it"):
         ur5.simulate(many, one, 1, 10, torque=np.zeros((5, 6)))
-    with refused(ValueError, "slip_speed is 0.1, expected None of many starts"):
-        ur5.simulate(many, one, 1, 10, slip_speed=0.1)
     for wrong, text in [((1, 0), "steps is 0"), ((-1, 5), "duration is -1")]:
         with refused(ValueError, text):
             ur5.simulate(many, one, *wrong)
@@ -214,15 +212,23 @@ def test_joint_limits():
     assert respected.joint_limits and all(limit.beyond == 0 for limit in respected.joint_limits)
 
 
+def test_many_starts_one_by_one(ur5, random):
+    theta, dtheta, tau = state(ur5, random, 3)
+    dampened = [dict(slip_speed=0.1), dict(method="midpoint"), dict(method="dopri"), dict(joint_limits="respect")]
+    for options in dampened:
+        many = ur5.simulate(theta, dtheta, 0.05, 10, torque=tau, record_every=3, **options)
+        for k in range(3):
+            one = ur5.simulate(theta[k], dtheta[k], 0.05, 10, torque=tau[k], record_every=3, **options)
+            assert np.array_equal(many.theta[k], one.theta) and np.array_equal(many.ddtheta[k], one.ddtheta)
+            assert np.array_equal(many.t, one.t) and np.array_equal(many.energy[k], one.energy)
+    with pytest.raises(TypeError, match="torque is a function, expected an array"):
+        ur5.simulate(theta, dtheta, 0.05, 10, method="midpoint", torque=lambda t, theta, dtheta: -dtheta)
+
+
 def test_what_takes_one_start(ur5):
     many, one = np.zeros((2, 6)), np.zeros(6)
-    with refused(ValueError, "joint_limits is 'respect', expected 'report' or 'ignore' of many starts"):
-        ur5.simulate(many, one, 1, 10, joint_limits="respect")
     with refused(ValueError, "until or events is given, expected None of many starts"):
         ur5.simulate(many, one, 1, 10, until="elbow_joint > 1")
-    for torque in (None, lambda t, theta, dtheta: -dtheta):
-        with refused(ValueError, "the method is implicit midpoint, expected Euler, semi-implicit Euler or Runge-Kutta 4"):
-            ur5.simulate(many, one, 1, 10, method="midpoint", torque=torque)
     with refused(ValueError, "joint_limits is 'obey', expected 'ignore', 'report' or 'respect'"):
         ur5.simulate(one, one, 1, 10, joint_limits="obey")
     with refused(ValueError, "tolerance is 0, expected a positive, finite number"):

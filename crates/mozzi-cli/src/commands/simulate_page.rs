@@ -44,6 +44,7 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
                 "largest_residual": a.largest_residual,
                 "last_residual": a.last_residual,
                 "unsolved": a.unsolved,
+                "steps_across": a.steps_across,
                 "most_rows": a.most_rows,
             })),
             "contacts": outcome.contacts,
@@ -187,7 +188,11 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
             0 => String::new(),
             count => format!("; {count} steps above 1e-6: their problem may have no solution"),
         };
-        format!("dry friction, stops, contacts: solved to {} m/s or rad/s{unsolved}", about(a.largest_residual))
+        let across = match a.steps_across {
+            0 => String::new(),
+            count => format!("; {count} steps of Moreau-Jean across events that could not be separated"),
+        };
+        format!("dry friction, stops, contacts: solved to {} m/s or rad/s{unsolved}{across}", about(a.largest_residual))
     };
     let events = events.chain(contact_lines(outcome)).chain(outcome.one_sided.iter().map(account));
     let events = events.chain(outcome.closing.iter().map(closing));

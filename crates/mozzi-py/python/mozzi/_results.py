@@ -187,6 +187,11 @@ class Trajectories(NamedTuple):
     position_names: list[str]
     velocity_names: list[str]
     model: "Model"
+    contact_forces: Array
+    """Shape (..., rows, contacts, 3): the forces that contact points apply to planes, in {s}, N."""
+    contact_names: list[str]
+    one_sided: "OneSided | None"
+    """The worst of all robots; None if they moved together in registers."""
 
     @property
     def energy(self) -> Array:
@@ -255,6 +260,8 @@ class OneSided(NamedTuple):
     last_residual: float
     unsolved: int
     """Steps with a residual above 1e-6: their problem may have no solution."""
+    steps_across: int
+    """Steps of Moreau and Jean's method that 'dopri' took across events that it could not separate."""
 
 
 class ConstraintRank(NamedTuple):
@@ -324,6 +331,10 @@ class Trajectory(NamedTuple):
     contact_events: list[ContactEvent]
     one_sided: OneSided | None
     """None for a robot without dry friction and contacts."""
+    contacts: list[Any] | None
+    """The contact points, as given to ``simulate``."""
+    planes: list[Any] | None
+    """The planes, as given to ``simulate``: by default the ground."""
 
     @property
     def energy(self) -> Array:
@@ -345,7 +356,7 @@ class Trajectory(NamedTuple):
         title: str = "simulated",
         rows: int | None = 20_000,
     ) -> ReportSize:
-        """The motion as one HTML file that needs nothing but a browser: see ``Model.report``."""
+        """The motion, with its contacts, as one HTML file that needs nothing but a browser: see ``Model.report``."""
         return self.model.report(path, self, shapes=shapes, meshes=meshes, mesh_root=mesh_root, title=title, rows=rows)
 
     def plot(self) -> Any:

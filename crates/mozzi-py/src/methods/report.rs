@@ -4,9 +4,10 @@ use crate::array::list;
 use crate::failure::{LoadWarning, of_loader};
 use crate::model::PyModel;
 use crate::results::named;
+use crate::simulate::contacts::Fixed;
 use mozzi::Trajectory;
-use mozzi::simulation::{Energy, Sample};
-use mozzi_report::{Drawing, Meshes, Motion};
+use mozzi::simulation::{ContactChange, ContactEvent, Energy, Sample};
+use mozzi_report::{Drawing, Meshes, Motion, Touches};
 use mozzi_urdf::XacroArguments;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -42,6 +43,8 @@ fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajec
     let energy = |name| column(given, name, &[rows]);
     let (kinetic, potential) = (energy("kinetic_energy")?, energy("potential_energy")?);
     let (motor, friction, applied) = (energy("motor_work")?, energy("friction_loss")?, energy("applied_work")?);
+    let pairs = given.getattr("contact_names")?.len()?;
+    let forces = column(given, "contact_forces", &[rows, pairs, 3])?;
     let mut trajectory = Trajectory::new(model);
     for k in 0..rows {
         let energy = Energy {
@@ -58,10 +61,31 @@ fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajec
             ddtheta: row(&ddtheta, k, n),
             tau: row(&tau, k, n),
             energy,
-            contact_forces: &[],
+            contact_forces: row(&forces, k, 3 * pairs),
         });
     }
     Ok(trajectory)
+}
+
+/// The contacts of Python's `Trajectory`, if it has any.
+fn touches(model: &mozzi::Model, given: &Bound<'_, PyAny>, motion: &Trajectory) -> PyResult<Option<Touches>> {
+    let [points, planes] = ["contacts", "planes"].map(|name| given.getattr(name));
+    let (points, planes) = (points?, planes?);
+    let [points, planes] = [&points, &planes].map(|given| Some(given).filter(|given| !given.is_none()));
+    let contacts = Fixed::new(model, points, planes)?.contacts();
+    if contacts.is_empty() {
+        return Ok(None);
+    }
+    let event = |event: Bound<'_, PyAny>| -> PyResult<ContactEvent> {
+        let name: String = event.getattr("change")?.extract()?;
+        let change = ContactChange::ALL.into_iter().find(|change| change.name() == name);
+        let change = change.ok_or_else(|| PyValueError::new_err(format!("a contact event's change is '{name}'")))?;
+        Ok(ContactEvent { t: event.getattr("t")?.extract()?, contact: event.getattr("contact")?.extract()?, change })
+    };
+    let events =
+        given.getattr("contact_events")?.try_iter()?.map(|found| event(found?)).collect::<PyResult<Vec<_>>>()?;
+    let found = Touches::new(model, &contacts, motion, &events);
+    found.map(Some).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
 #[pymethods]
@@ -130,7 +154,11 @@ impl PyModel {
         }
         let motion = trajectory.map(|given| self::trajectory(model, given)).transpose()?;
         let all_rows = motion.as_ref().map_or(0, Trajectory::len);
-        let motion = motion.map(|motion| Motion::simulated(title, &motion).thinned(rows.unwrap_or(usize::MAX)));
+        let touches =
+            (trajectory.zip(motion.as_ref())).map(|(given, motion)| touches(model, given, motion)).transpose()?;
+        let contacts = touches.flatten();
+        let motion = motion.map(|motion| Motion { contacts, ..Motion::simulated(title, &motion) });
+        let motion = motion.map(|motion| motion.thinned(rows.unwrap_or(usize::MAX)));
         let page = mozzi_report::html(model, &drawing, motion.as_ref());
         let page = page.map_err(|error| PyValueError::new_err(error.to_string()))?;
         mozzi_text::whole_file::save(&path, page.as_bytes())

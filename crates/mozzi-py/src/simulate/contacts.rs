@@ -6,27 +6,54 @@ use mozzi::simulation::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi::{Model, SE3, Vec3};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyList, PyString};
 
-/// The contacts of `contacts` and `planes`.
-pub fn contacts(model: &Model, points: Given, planes: Given) -> PyResult<Contacts<'static>> {
-    let Some(points) = points else {
-        return match planes {
-            Some(_) => Err(PyValueError::new_err("planes are given without contacts, expected both")),
-            None => Ok(Contacts::default()),
+/// Contact points and planes that do not turn, which threads can share.
+#[derive(Default)]
+pub struct Fixed {
+    points: Vec<ContactPoint>,
+    /// Name, configuration, and the velocity of a belt.
+    planes: Vec<(String, SE3, Option<Vec3>)>,
+}
+
+impl Fixed {
+    /// Those of `contacts` and `planes`.
+    pub fn new(model: &Model, points: Given, planes: Given) -> PyResult<Self> {
+        let Some(points) = points else {
+            return match planes {
+                Some(_) => Err(PyValueError::new_err("planes are given without contacts, expected both")),
+                None => Ok(Fixed::default()),
+            };
         };
-    };
-    let mut found = Contacts::default();
-    for given in points.try_iter()? {
-        found.points.push(point(model, &given?)?);
+        let mut found = Fixed::default();
+        for given in points.try_iter()? {
+            found.points.push(point(model, &given?)?);
+        }
+        match planes {
+            None => found.planes.push((Plane::ground().name, SE3::identity(), None)),
+            Some(planes) => {
+                for given in planes.try_iter()? {
+                    found.planes.push(plane(&given?, found.planes.len())?);
+                }
+            }
+        }
+        Ok(found)
     }
-    for given in planes.map(|planes| planes.try_iter()).transpose()?.into_iter().flatten() {
-        found.planes.push(plane(&given?, found.planes.len())?);
+
+    /// For a simulation.
+    pub fn contacts(&self) -> Contacts<'static> {
+        let plane = |(name, T, velocity): &(String, SE3, Option<Vec3>)| {
+            let motion = velocity.map_or(PlaneMotion::Fixed(*T), |velocity| PlaneMotion::Belt(*T, velocity));
+            Plane { name: name.clone(), motion }
+        };
+        Contacts { points: self.points.clone(), planes: self.planes.iter().map(plane).collect() }
     }
-    if planes.is_none() {
-        found.planes.push(Plane::ground());
-    }
-    Ok(found)
+}
+
+/// A list of what an iterable gives, which can be read twice.
+pub fn listed<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let entries = given.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+    Ok(PyList::new(given.py(), entries)?.into_any())
 }
 
 /// The entries of a dictionary, all of which must be known.
@@ -72,7 +99,7 @@ fn point(model: &Model, given: &Bound<'_, PyAny>) -> PyResult<ContactPoint> {
     Ok(found)
 }
 
-fn plane(given: &Bound<'_, PyAny>, k: usize) -> PyResult<Plane<'static>> {
+fn plane(given: &Bound<'_, PyAny>, k: usize) -> PyResult<(String, SE3, Option<Vec3>)> {
     let entries = entries(given, "planes", &["name", "pose", "velocity"])?;
     let name = entries.get_item("name")?.map(|name| name.extract()).transpose()?;
     let pose: [f64; 7] = match entries.get_item("pose")? {
@@ -83,10 +110,7 @@ fn plane(given: &Bound<'_, PyAny>, k: usize) -> PyResult<Plane<'static>> {
     if !((size - 1.0).abs() < 2e-3) {
         return Err(PyValueError::new_err(format!("a plane's pose is {pose:?}, expected a unit quaternion first")));
     }
-    let T = SE3::from_pose(pose);
-    let motion = match entries.get_item("velocity")? {
-        Some(velocity) => PlaneMotion::Belt(T, Vec3(velocity.extract()?)),
-        None => PlaneMotion::Fixed(T),
-    };
-    Ok(Plane { name: name.unwrap_or_else(|| format!("plane {}", k + 1)), motion })
+    let velocity = entries.get_item("velocity")?.map(|velocity| velocity.extract()).transpose()?;
+    let name = name.unwrap_or_else(|| format!("plane {}", k + 1));
+    Ok((name, SE3::from_pose(pose), velocity.map(Vec3)))
 }

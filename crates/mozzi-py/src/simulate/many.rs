@@ -1,4 +1,4 @@
-//! Many starts at once: the batch's forward dynamics, and motions as arrays.
+//! Many starts at once, in registers: the batch's forward dynamics, and motions as arrays.
 
 use super::Torque;
 use crate::arguments::{Arguments, Given};
@@ -22,15 +22,24 @@ const BETWEEN_LOOKS: usize = 5_000;
 const FEWEST_STEPS: usize = 8;
 
 /// Rows of one quantity, robot after robot.
-struct Table<'py> {
+pub struct Table<'py> {
     array: Fresh<'py, f64>,
     rows: usize,
     width: usize,
 }
 
 impl<'py> Table<'py> {
-    fn new(py: Python<'py>, leading: &[usize], rows: usize, width: usize) -> PyResult<Self> {
+    pub fn new(py: Python<'py>, leading: &[usize], rows: usize, width: usize) -> PyResult<Self> {
         Ok(Table { array: Fresh::new(py, &[leading, &[rows, width]].concat())?, rows, width })
+    }
+
+    /// All rows of one robot.
+    pub fn write_robot(&mut self, robot: usize, rows: &[f64]) {
+        self.array.numbers()[robot * self.rows * self.width..][..rows.len()].copy_from_slice(rows);
+    }
+
+    pub fn into_array(self) -> Bound<'py, PyAny> {
+        self.array.into_array()
     }
 
     fn write(&mut self, row: usize, states: &[f64]) {
@@ -228,7 +237,9 @@ pub fn simulate<'py>(
     options.check().map_err(of_model)?;
     let environment = Environment::with_gravity(options.gravity.unwrap_or(model.gravity()));
     let environment = BatchEnvironment::from(environment);
-    let robots = Robots { model, batch: this.robot().batch(threads)?, environment, leading, options };
+    // robots with dry friction that sticks move one by one
+    let batch = this.robot().batch(threads)?.with_sticking(false);
+    let robots = Robots { model, batch, environment, leading, options };
     let everywhere = |_| String::new();
     robots.check_finite("theta", start[0], everywhere)?;
     robots.check_finite("dtheta", start[1], everywhere)?;
@@ -292,6 +303,9 @@ pub fn simulate<'py>(
         model.position_names().collect::<Vec<_>>().into_pyobject(py)?,
         model.velocity_names().collect::<Vec<_>>().into_pyobject(py)?,
         robot.clone().into_any(),
+        array(py, &[leading, &[rows, 0, 3]].concat(), [])?,
+        Vec::<String>::new().into_pyobject(py)?,
+        py.None().into_bound(py),
     ];
     named(py, "Trajectories", fields)
 }

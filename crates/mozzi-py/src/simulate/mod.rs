@@ -1,6 +1,7 @@
 //! Simulation: the arguments, for one start and for many.
 
-mod contacts;
+pub mod contacts;
+mod each;
 mod many;
 mod one;
 mod rollout;
@@ -102,10 +103,9 @@ impl PyModel {
     ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers
     ///     (..., n).
     /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
-    ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'; many starts take
-    ///     'rk4', in which dry friction does not stick. 'moreau' is Moreau and Jean's step for one-sided forces.
-    ///     'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is implicit and symplectic: the energy's
-    ///     error stays bounded. These two take one start.
+    ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'. 'moreau' is Moreau
+    ///     and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is
+    ///     implicit and symplectic: the energy's error stays bounded.
     /// tolerance : float
     ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇.
     /// record_every : int
@@ -118,17 +118,22 @@ impl PyModel {
     ///     Likewise, reported in the result's `events`; the motion goes on. One start only.
     /// joint_limits : {'report', 'ignore', 'respect'}
     ///     How to treat the joints' position limits: 'report' lists them in the result's `joint_limits`, 'respect'
-    ///     brings a joint to rest at its limit. 'respect' takes one start; many starts report no limits.
+    ///     brings a joint to rest at its limit. Many starts report no limits.
     /// gravity : array_like, shape (3,), optional
     ///     In place of the model's own: m/s².
     /// slip_speed : float, optional
-    ///     Coulomb friction μ tanh(θ̇ / slip_speed) in place of dry friction that sticks. One start only.
+    ///     Coulomb friction μ tanh(θ̇ / slip_speed) in place of dry friction that sticks.
     /// contacts : list of str or dict, optional
     ///     Points of the robot that planes stop: the origins of frames by name, or {'frame': …, 'at': (x, y, z),
-    ///     'radius': …, 'friction': 0.7, 'restitution': 0, 'name': …}. One start only.
+    ///     'radius': …, 'friction': 0.7, 'restitution': 0, 'name': …}.
     /// planes : list of dict, optional
     ///     {'name': …, 'pose': (qw, qx, qy, qz, x, y, z), 'velocity': (x, y, z)}: the z-axis points towards the robot,
     ///     the surface moves with the velocity. By default the ground z = 0.
+    /// sticking : bool
+    ///     Many starts only: whether dry friction holds joints still. Robots with dry friction, contacts, stops, a slip
+    ///     speed, or by 'moreau', 'dopri' or 'midpoint' move one by one, each as alone, under a torque that is no
+    ///     function. With False dry friction is μ sgn θ̇, under which joints creep and chatter, and all robots move
+    ///     together in registers, which is much faster.
     /// threads : int, optional
     ///     As many at most; by default all cores. Many starts only.
     ///
@@ -158,7 +163,7 @@ impl PyModel {
     /// >>> falls = pendulum.simulate(starts, [0.0, 0.0], 1.0, 100, record_every=10)
     /// >>> falls.t.shape, falls.theta.shape
     /// ((11,), (50, 11, 2))
-    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="auto", tolerance=1e-9, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, threads=None))]
+    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="auto", tolerance=1e-9, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, sticking=true, threads=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn simulate<'py>(
         slf: &Bound<'py, Self>,
@@ -177,6 +182,7 @@ impl PyModel {
         slip_speed: Option<f64>,
         contacts: Given<'_, 'py>,
         planes: Given<'_, 'py>,
+        sticking: bool,
         threads: Option<Threads>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = slf.get();
@@ -203,20 +209,34 @@ impl PyModel {
         let leading = common_leading(tables.iter().map(|table| (table.name, table.leading(1))))?;
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;
         let start = [theta.slice()?, dtheta.slice()?];
+        let model = &this.robot().model;
+        let [contacts, planes] = [contacts, planes].map(|given| given.map(contacts::listed).transpose());
+        let given = [contacts?, planes?];
+        let given = [given[0].as_ref(), given[1].as_ref()];
         if leading.is_empty() {
-            let contacts = contacts::contacts(&this.robot().model, contacts, planes)?;
-            return one::simulate(slf, start, torque, &options, (watched, contacts));
-        }
-        let only_one = [
-            ("slip_speed", slip_speed.map(|speed| speed.to_string()), "None"),
-            ("contacts", contacts.map(|_| "given".into()), "None"),
-            ("until or events", (!watched.is_empty()).then(|| "given".into()), "None"),
-            ("joint_limits", (joint_limits == Policy::Respect).then(|| "'respect'".into()), "'report' or 'ignore'"),
-        ];
-        for (name, found, expected) in only_one {
-            if let Some(found) = found {
-                return Err(PyValueError::new_err(format!("{name} is {found}, expected {expected} of many starts")));
+            if !sticking {
+                return Err(PyValueError::new_err("sticking is False, expected True of one start"));
             }
+            let contacts = contacts::Fixed::new(model, given[0], given[1])?.contacts();
+            return one::simulate(slf, start, torque, &options, (watched, one::Touched { given, contacts }));
+        }
+        if !watched.is_empty() {
+            return Err(PyValueError::new_err("until or events is given, expected None of many starts"));
+        }
+        let is_dry = slip_speed.is_none() && model.joints().any(|joint| joint.friction != 0.0);
+        let is_alone = given.iter().any(Option::is_some)
+            || slip_speed.is_some()
+            || joint_limits == Policy::Respect
+            || options.method.explicit().is_err();
+        if is_alone && is_dry && !sticking {
+            let expected = "True of robots that move one by one: with contacts, joint_limits='respect', or this method";
+            return Err(PyValueError::new_err(format!("sticking is False, expected {expected}")));
+        }
+        if is_alone || (is_dry && sticking) {
+            // many starts report no limits
+            let is_respected = joint_limits == Policy::Respect;
+            options.joint_limits = if is_respected { Policy::Respect } else { Policy::Ignore };
+            return each::simulate(slf, &leading, start, torque, &options, given, threads);
         }
         many::simulate(slf, &leading, start, torque, &options, gravity, threads)
     }

@@ -2,6 +2,7 @@
 
 use super::Torque;
 use super::watched::{Watched, happened, stopped};
+use crate::arguments::Given;
 use crate::array::Numbers;
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
@@ -16,7 +17,7 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 /// Motors: constant torques.
-struct Constant(Vec<f64>);
+pub struct Constant(pub Vec<f64>);
 impl Input for Constant {
     fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), Error> {
         tau.iter_mut().zip(&self.0).for_each(|(tau, x)| *tau += x);
@@ -56,13 +57,19 @@ impl Input for Function<'_, '_> {
 /// Steps between two checks for an interrupt from Python.
 const BETWEEN_LOOKS: usize = 500;
 
+/// Contact points and planes: as Python gave them, and as the library's.
+pub struct Touched<'a, 'py> {
+    pub given: [Given<'a, 'py>; 2],
+    pub contacts: Contacts<'static>,
+}
+
 /// The motion of one robot.
 pub fn simulate<'py>(
     robot: &Bound<'py, PyModel>,
     [theta, dtheta]: [&[f64]; 2],
     torque: Torque<'_, 'py>,
     options: &Options,
-    (watched, contacts): (Watched<'_, 'py>, Contacts<'static>),
+    (watched, Touched { given, contacts }): (Watched<'_, 'py>, Touched<'_, 'py>),
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, this) = (robot.py(), robot.get());
     let (model, raised) = (&this.robot().model, RefCell::new(None));
@@ -82,7 +89,7 @@ pub fn simulate<'py>(
         }
         Torque::Function(function) => go(&mut Function { model: this, function, raised: &raised })?,
     };
-    trajectory(py, robot, found, names)
+    trajectory(py, robot, found, names, given)
 }
 
 /// Checks at intervals whether Python was interrupted or a function raised an exception.
@@ -111,11 +118,23 @@ fn run(
     }
 }
 
+/// How well the laws of one-sided forces were satisfied.
+pub fn account(py: Python<'_>, found: OneSidedAccount) -> PyResult<Bound<'_, PyAny>> {
+    let fields = vec![
+        found.largest_residual.into_pyobject(py)?.into_any(),
+        found.last_residual.into_pyobject(py)?.into_any(),
+        found.unsolved.into_pyobject(py)?.into_any(),
+        found.steps_across.into_pyobject(py)?.into_any(),
+    ];
+    named(py, "OneSided", fields)
+}
+
 fn trajectory<'py>(
     py: Python<'py>,
     robot: &Bound<'py, PyModel>,
     run: Run,
     contacts: Vec<String>,
+    given: [Given<'_, 'py>; 2],
 ) -> PyResult<Bound<'py, PyAny>> {
     let Run { motion: found, events, stops, closing, method, one_sided, contact_events } = run;
     let of_event = |event: ContactEvent| {
@@ -127,14 +146,6 @@ fn trajectory<'py>(
         named(py, "ContactEvent", fields)
     };
     let contact_events = contact_events.into_iter().map(of_event).collect::<PyResult<Vec<_>>>()?;
-    let account = |account: OneSidedAccount| {
-        let fields = vec![
-            account.largest_residual.into_pyobject(py)?.into_any(),
-            account.last_residual.into_pyobject(py)?.into_any(),
-            account.unsolved.into_pyobject(py)?.into_any(),
-        ];
-        named(py, "OneSided", fields)
-    };
     let rows = found.len();
     let names = |names: Vec<&str>| names.into_pyobject(py);
     let number = |x: f64| -> PyResult<_> { Ok(x.into_pyobject(py)?.into_any()) };
@@ -162,9 +173,11 @@ fn trajectory<'py>(
         array(py, &[rows, contacts.len(), 3], found.contact_forces.iter().copied())?,
         contact_events.into_pyobject(py)?,
         match one_sided {
-            Some(found) => account(found)?,
+            Some(found) => account(py, found)?,
             None => py.None().into_bound(py),
         },
+        given[0].cloned().unwrap_or_else(|| py.None().into_bound(py)),
+        given[1].cloned().unwrap_or_else(|| py.None().into_bound(py)),
     ];
     named(py, "Trajectory", fields)
 }
