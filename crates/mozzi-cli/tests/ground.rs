@@ -3,6 +3,8 @@
 mod common;
 
 use common::{complaint, file, folder, json, rows, text};
+use mozzi::Model;
+use mozzi::simulation::{Method, Options, Simulation, Zero};
 
 const ARM: &str = r#"<robot name="stuck">
   <link name="base"/>
@@ -67,4 +69,44 @@ fn what_is_wrong_with_contacts_is_said() {
 fn anymal_is_put_on_its_feet() {
     let said = text(&["simulate", "anymal", "--floating", "--ground", "--time", "0.05"]);
     assert!(said.contains("contacts: ") && said.contains("touches down"), "{said}");
+}
+
+/// Talos with dry friction in every joint: of its file, or else 1 N m.
+fn talos() -> Option<Model> {
+    let folder = std::path::PathBuf::from(std::env::var_os("MOZZI_ROBOTS")?);
+    let file = folder.join("talos_data/robots/talos_reduced.urdf");
+    let mut robot = mozzi_urdf::open(file.to_str().filter(|_| file.is_file())?).expect("Talos").description.floating();
+    robot.joints.iter_mut().filter(|joint| joint.friction == 0.0).for_each(|joint| joint.friction = 1.0);
+    Some(robot.build().expect("sound"))
+}
+
+#[test]
+fn dry_friction_holds_talos_in_free_fall() {
+    let Some(model) = talos() else {
+        return println!("skipped: MOZZI_ROBOTS is not set or has no Talos; cargo xtask test sets it");
+    };
+    let (nq, n) = (model.nq(), model.n());
+    let start: Vec<f64> = model.neutral_configuration();
+    // at rest, and tumbling: then friction carries what keeps the limbs on their circles
+    let mut tumbling = vec![0.0; n];
+    tumbling[..3].copy_from_slice(&[0.3, -0.2, 0.25]);
+    let dopri = Method::DormandPrince { tolerance: 1e-9 };
+    for method in [Method::Automatic, Method::RungeKutta4, Method::SemiImplicitEuler, Method::Midpoint, dopri] {
+        for dtheta in [vec![0.0; n], tumbling.clone()] {
+            let options = Options { method, record_every: 10, ..Options::new(1.0, 500) };
+            let run = Simulation::new(options).run(&model, &start, &dtheta, Zero).expect("a motion");
+            let joints = |row: &[f64], from: usize, first: &[f64]| -> f64 {
+                row[from..].iter().zip(&first[from..]).map(|(x, x0)| (x - x0).abs()).fold(0.0, f64::max)
+            };
+            let moved = run.motion.theta.chunks(nq).map(|row| joints(row, 7, &start)).fold(0.0, f64::max);
+            let fastest = run.motion.dtheta.chunks(n).map(|row| joints(row, 6, &vec![0.0; n])).fold(0.0, f64::max);
+            let fallen = start[6] - run.motion.last().theta[6];
+            let (name, spins) = (run.method.name(), dtheta[0] != 0.0);
+            println!("{name}, spinning {spins}: {} joints move {moved:.1e} rad, {fastest:.1e} rad/s", n - 6);
+            // other methods than Moreau and Jean's move within a step before its constant forces act
+            let bound = if spins && run.method != Method::MoreauJean { 1e-6 } else { 1e-12 };
+            assert!(moved <= bound && fastest <= bound);
+            assert!(spins || (fallen - 0.5 * 9.81).abs() < 0.02, "it falls: {fallen}");
+        }
+    }
 }

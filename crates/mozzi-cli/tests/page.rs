@@ -1,7 +1,9 @@
 //! The page of `--report` and `view` in a real browser: the scene agrees with mozzi's results.
 
+mod browser;
 mod common;
 
+use browser::{browser, look, url};
 use common::{folder, json, numbers, rows, text};
 use mozzi::model::description::JointKind;
 use mozzi::nalgebra::DMatrix;
@@ -13,32 +15,6 @@ use std::process::{Command, Stdio};
 
 /// Positions go to the page as 32-bit floats.
 const SINGLE: f64 = 2e-6;
-
-/// A browser and a Python that drives it, or the reason why there is none.
-fn browser() -> Result<(PathBuf, PathBuf), String> {
-    let given = |name: &str| std::env::var_os(name).map(PathBuf::from).ok_or(format!("{name} is not set"));
-    let (browser, python) = (given("MOZZI_BROWSER")?, given("MOZZI_PYTHON")?);
-    let probe = Command::new(&python).args(["-c", "import playwright"]).output();
-    match probe.is_ok_and(|output| output.status.success()) {
-        true => Ok((browser, python)),
-        false => Err(format!("{} has no playwright", python.display())),
-    }
-}
-
-fn look((browser, python): &(PathBuf, PathBuf), jobs: &Value) -> Vec<Value> {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser/look.py");
-    let mut child = Command::new(python)
-        .arg(script)
-        .arg(browser)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("Python starts");
-    child.stdin.take().expect("a pipe").write_all(jobs.to_string().as_bytes()).expect("written");
-    let output = child.wait_with_output().expect("it ends");
-    assert!(output.status.success(), "look.py failed, see above");
-    serde_json::from_slice::<Vec<Value>>(&output.stdout).expect("JSON")
-}
 
 fn all_frames(model: &Model) -> Vec<(FrameId, String)> {
     model.frames().map(|(id, name)| (id, name.to_string())).collect()
@@ -132,10 +108,6 @@ fn assert_usable(found: &Value, width: u64) {
     assert!(found["painted"].as_u64().expect("a count") > 5, "the scene is empty");
     assert_eq!(found["covered"].as_f64(), Some(0.0), "M(θ) is shown, and covers nothing of the scene");
     assert!(found["width"].as_u64().expect("a width") <= width, "wider than the screen: {}", found["width"]);
-}
-
-fn url(path: &std::path::Path) -> String {
-    format!("file://{}", path.display())
 }
 
 /// A robot of example-robot-data, with meshes.

@@ -18,6 +18,9 @@ STATE = """(frames) => ({
   center: mozzi.centerOfMass(),
   tip: mozzi.overlays.frame.name,
   semiAxes: mozzi.semiAxes(),
+  contacts: mozzi.contacts(),
+  planes: mozzi.planes(),
+  hint: document.getElementById("hint").textContent,
   clock: document.getElementById("clock").textContent,
 })"""
 
