@@ -118,10 +118,18 @@ impl<'m, I: Input> Driven<'m, I> {
 
     /// M(θ), factored.
     pub fn factored(&mut self, theta: &[f64]) -> Result<Cholesky<f64, Dyn>, Error> {
+        self.factored_with(theta, 0.0)
+    }
+
+    /// M(θ) + s d, factored; d is viscous friction.
+    pub fn factored_with(&mut self, theta: &[f64], s: f64) -> Result<Cholesky<f64, Dyn>, Error> {
         if self.has_constraints() {
             self.A = self.model.constraint_rows_at(theta, &vec![0.0; self.model.n()]).A;
         }
-        let M = self.mass(theta);
+        let mut M = self.mass(theta);
+        for (j, &damping) in self.model.damping.iter().enumerate() {
+            M[(j, j)] += s * damping;
+        }
         match M.cholesky() {
             Some(M) => Ok(M),
             // checks each pivot, and names the joint

@@ -2,7 +2,8 @@
 //!
 //! > θ_m = θ[k] ⊕ ½hv,  M(θ_m)v = p[k] + ½h ṗ(θ_m, v),  θ[k+1] = θ[k] ⊕ hv,  p[k+1] = p[k] + hṗ
 //!
-//! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. The rule is symplectic in (θ, p), so that the energy's
+//! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. v is found by iteration, in which viscous friction d is
+//! implicit, (M + ½hd)v' = p + ½h(ṗ + dv): a light joint with much friction, hd > M, would else diverge. The rule is symplectic in (θ, p), so that the energy's
 //! error stays bounded; in (θ, θ̇) it would not be, because M depends on θ. On SE(3), and on SO(3) of a ball, with p_b
 //! the rows of p there and F those of ṗ less `[ad_v]`ᵀp_b, it is the variational integrator of the Lagrangian at the
 //! midpoint (Bou-Rabee and Marsden 2009), which keeps momentum exactly:
@@ -76,7 +77,7 @@ impl Midpoint {
             powers = driven.evaluate(middle, &theta, v.as_slice(), &mut self.ddtheta)?;
             mass_matrix_rate(model, &theta, v.as_slice(), &mut self.workspace, &mut self.dM);
             M = driven.mass(&theta);
-            let factors = driven.factored(&theta)?;
+            let factors = driven.factored_with(&theta, half)?;
             let dM = DMatrix::from_row_slice(n, n, &self.dM); // symmetric
             let rate = &M * DVector::from_column_slice(&self.ddtheta) + dM * &v; // ṗ
             let mut momentum = &p + &rate * half;
@@ -88,8 +89,12 @@ impl Midpoint {
                 momentum.rows_mut(place.j, k).copy_from_slice(&found.middle[..k]);
                 after.rows_mut(place.j, k).copy_from_slice(&found.end[..k]);
             }
+            for (j, &damping) in model.damping.iter().enumerate() {
+                momentum[j] += half * damping * v[j];
+            }
             let mut next = factors.solve(&momentum);
             if !driven.held.is_empty() {
+                let factors = driven.factored(&theta)?;
                 driven.bring_to_rest(&factors, &theta, None, next.as_mut_slice());
             }
             let differences = &next - &v;
@@ -154,5 +159,24 @@ pub(super) fn on_the_group<S: Real>(p: [S; 6], rate: [S; 6], Mv: [S; 6], v: [S; 
     GroupMomentum {
         middle: (series(way, P) - series(way * -half, F) * (half * h)).to_array(),
         end: (SE3::exp(way).Ad().transpose() * P).to_array(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::robots::{INERTIA, pendulum};
+    use super::super::{Method, Options, Zero};
+
+    #[test]
+    fn much_friction_on_little_inertia_converges() {
+        let (d, h, start) = (2000.0, 1e-2, 0.7);
+        assert!(0.5 * h * d > INERTIA); // where v ← M⁻¹(p + ½hṗ(v)) moves away from its fixed point
+        let model = pendulum(d, 0.0).with_gravity([0.0; 3]).expect("sound");
+        let options = Options { method: Method::Midpoint, ..Options::new(h, 1) };
+        let end = model.simulate(&[0.2], &[start], Zero, &options).expect("a step");
+        // Iθ̈ = −dθ̇ at the middle: I(v − θ̇) = −½hdv
+        let v = start * INERTIA / (INERTIA + 0.5 * h * d);
+        let last = end.last();
+        assert!((last.theta[0] - (0.2 + h * v)).abs() < 1e-14 && (last.dtheta[0] - (2.0 * v - start)).abs() < 1e-12);
     }
 }
