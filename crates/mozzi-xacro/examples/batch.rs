@@ -16,7 +16,7 @@ fn main() -> std::io::Result<()> {
         let packages =
             line.split('\t').skip(1).filter(|word| !word.contains(":=")).filter_map(|word| word.split_once('='));
         let packages = packages.map(|(name, folder)| (name.to_string(), folder.into())).collect();
-        let arguments = Arguments { values, packages };
+        let arguments = Arguments { values, packages, ..Arguments::default() };
         let (verdict, text) = match expand(path, &arguments) {
             Ok(expansion) => ("ok", expansion.text),
             Err(error) => ("error", error.to_string()),
