@@ -93,8 +93,8 @@ impl<T: Number> Batch<T> {
     }
 
     /// Chooses whether dry friction sticks in [`simulate`](Self::simulate). By default it does, and robots that have it
-    /// are moved one by one. With `false` it is μ sgn θ̇, under which joints creep and chatter; all robots are then moved
-    /// together in registers.
+    /// are moved one by one. With `false` it is μ sgn θ̇, under which joints creep and chatter; all robots are then
+    /// moved together in registers.
     pub fn with_sticking(self, sticks: bool) -> Self {
         Batch { sticks, ..self }
     }

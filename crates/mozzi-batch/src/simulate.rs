@@ -21,8 +21,9 @@ impl<T: Number> Batch<T> {
     /// unless [`with_sticking(false)`](Batch::with_sticking) was set.
     ///
     /// # Errors
-    /// A table has the wrong length, the method of robots without dry friction is not [explicit](Method::explicit), or a state fails (the error
-    /// carries its index): its mass matrix is singular, it violates the constraints, or became infinite or NaN.
+    /// A table has the wrong length, the method of robots without dry friction is not [explicit](Method::explicit), or
+    /// a state fails (the error carries its index): its mass matrix is singular, it violates the constraints, or became
+    /// infinite or NaN.
     /// Neighbouring states are computed before the error is returned.
     #[allow(clippy::too_many_arguments)] // a state, what drives it, and how
     pub fn simulate(

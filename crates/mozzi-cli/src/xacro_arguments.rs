@@ -16,7 +16,11 @@ pub struct XacroArguments {
 impl XacroArguments {
     pub fn arguments(&self) -> mozzi_urdf::XacroArguments {
         let given = self.values.iter().filter(|(_, value)| !value.is_empty());
-        mozzi_urdf::XacroArguments { values: given.cloned().collect(), packages: self.packages.clone(), texts: Vec::new() }
+        mozzi_urdf::XacroArguments {
+            values: given.cloned().collect(),
+            packages: self.packages.clone(),
+            texts: Vec::new(),
+        }
     }
 
     /// The same with more values.

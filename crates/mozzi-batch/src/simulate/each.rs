@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 
 impl<T: Number> Batch<T> {
     /// The motions of robots, each as [`Simulation::run_with_progress`] gives it alone, to the bit, on all cores: of
-    /// robot k from row k of θ (N, nq) and θ̇ (N, n), by `simulation(k)` under `input(k)`. Memory grows with the rows of
-    /// all motions.
+    /// robot k from row k of θ (N, nq) and θ̇ (N, n), by `simulation(k)` under `input(k)`. Memory grows with the rows
+    /// of all motions.
     ///
     /// # Errors
     /// A table has the wrong length, or a simulation fails (the error carries the index of the first such robot).
@@ -21,7 +21,7 @@ impl<T: Number> Batch<T> {
         progress: impl Fn(f64) -> ControlFlow<()> + Sync,
     ) -> Result<Vec<Run>, Error> {
         let (nq, n) = (self.model().nq(), self.model().n());
-        let states = if n == 0 { 0 } else { dtheta.len() / n };
+        let states = dtheta.len().checked_div(n).unwrap_or_default();
         for (what, found, width) in [("dtheta", dtheta.len(), n), ("theta", theta.len(), nq)] {
             let expected = states * width;
             if found != expected {

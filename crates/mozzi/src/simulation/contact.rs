@@ -227,8 +227,8 @@ impl Contacts<'_> {
         self.touches(model, t, theta).into_iter().map(|(touch, _)| touch.gap).collect()
     }
 
-    /// For each pair, in the order of [`gaps`](Self::gaps), a frame in {s}: its origin is the point of the robot that is
-    /// nearest to the plane, its axes are the plane's.
+    /// For each pair, in the order of [`gaps`](Self::gaps), a frame in {s}: its origin is the robot's point nearest to
+    /// the plane, its axes are the plane's.
     ///
     /// # Panics
     /// When θ is not nq long.

@@ -2,11 +2,12 @@
 //!
 //! > θ_m = θ[k] ⊕ ½hv,  M(θ_m)v = p[k] + ½h ṗ(θ_m, v),  θ[k+1] = θ[k] ⊕ hv,  p[k+1] = p[k] + hṗ
 //!
-//! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. v is found by iteration, in which viscous friction d is
-//! implicit, (M + ½hd)v' = p + ½h(ṗ + dv): a light joint with much friction, hd > M, would else diverge. The rule is symplectic in (θ, p), so that the energy's
-//! error stays bounded; in (θ, θ̇) it would not be, because M depends on θ. On SE(3), and on SO(3) of a ball, with p_b
-//! the rows of p there and F those of ṗ less `[ad_v]`ᵀp_b, it is the variational integrator of the Lagrangian at the
-//! midpoint (Bou-Rabee and Marsden 2009), which keeps momentum exactly:
+//! ṗ = Cᵀθ̇ − g + τ − f − JᵀF is Mθ̈ + Ṁθ̇ of forward dynamics. The rule is symplectic in (θ, p), so that the energy's
+//! error stays bounded; in (θ, θ̇) it would not be, because M depends on θ. v is found by iteration, in which viscous
+//! friction d is implicit, (M + ½hd)v' = p + ½h(ṗ + dv): light joints with much friction, hd > M, would else diverge.
+//!
+//! On SE(3), and on SO(3) of a ball, with p_b the rows of p there and F those of ṗ less `[ad_v]`ᵀp_b, the rule is the
+//! variational integrator of the Lagrangian at the midpoint (Bou-Rabee and Marsden 2009), which keeps momentum exactly:
 //!
 //! > P = p_b[k] + h`[Ad_e^{−½hv}]`ᵀF,  p_b(θ_m, v) = Σ (`[ad_hv]`ᵀ)ʲP/(j+1)! − ½h Σ (−½`[ad_hv]`ᵀ)ʲF/(j+1)!,
 //! > p_b[k+1] = `[Ad_e^{hv}]`ᵀP

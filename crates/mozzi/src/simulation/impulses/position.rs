@@ -19,6 +19,7 @@ const CLOSED: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
 
 /// A row whose position is to be put right.
+#[allow(clippy::large_enum_variant)] // a short list, made once a step
 enum OpenRow {
     Constraint(RowDVector<f64>),
     /// A joint and the side of its limit.
