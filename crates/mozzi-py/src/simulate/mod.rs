@@ -104,8 +104,8 @@ impl PyModel {
     ///     (..., n).
     /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
     ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'. 'moreau' is
-    ///     Moreau and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance; 'midpoint' is
-    ///     implicit and symplectic: the energy's error stays bounded.
+    ///     Moreau and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance;
+    ///     'midpoint' is implicit and symplectic: the energy's error stays bounded.
     /// tolerance : float
     ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇.
     /// record_every : int
