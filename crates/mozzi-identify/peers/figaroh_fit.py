@@ -16,26 +16,9 @@ import numpy as np
 import pinocchio as pin
 from figaroh.identification.physical_fit import PhysicalPolicy, build_problem, solve_direct_effort_fit
 from figaroh.tools.regressor import RegressorBuilder, RegressorConfig
-from scipy.signal import butter, sosfiltfilt
+from filtered_log import filtered
 
 KEYS = ["m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz"]
-
-
-def filtered(file: str, cutoff: float):
-    """θ, θ̇, θ̈, τ at even times, without the ends of the filter."""
-    rows = np.loadtxt(file, delimiter=",", skiprows=1)
-    keep = np.concatenate([[True], np.any(rows[1:, 1:] != rows[:-1, 1:], axis=1)])
-    rows = rows[keep]
-    step = np.median(np.diff(rows[:, 0]))
-    t = np.arange(rows[0, 0], rows[-1, 0], step)
-    columns = np.column_stack([np.interp(t, rows[:, 0], column) for column in rows[:, 1:].T])
-    sos = butter(4, cutoff, fs=1 / step, output="sos")
-    columns = sosfiltfilt(sos, columns, axis=0)
-    n = columns.shape[1] // 3
-    q, dq, tau = columns[:, :n], columns[:, n : 2 * n], columns[:, 2 * n :]
-    trim = int(np.ceil(2 / (cutoff * step)))
-    cut = slice(trim, len(t) - trim)
-    return q[cut], dq[cut], np.gradient(dq, step, axis=0)[cut], tau[cut]
 
 
 def main() -> None:
@@ -51,7 +34,7 @@ def main() -> None:
     if given.lock:
         locked = [model.getJointId(name) for name in given.lock]
         model = pin.buildReducedModel(model, locked, pin.neutral(model))
-    q, dq, ddq, tau = filtered(given.log, given.cutoff)
+    _, q, dq, ddq, tau = filtered(given.log, given.cutoff)
     n = model.nv
     robot = SimpleNamespace(model=model, data=model.createData())
     config = RegressorConfig(has_friction=True, has_actuator_inertia=given.armature, has_joint_offset=True)

@@ -57,7 +57,8 @@ pub struct EditedFile {
 /// an argument of a macro or an entry of a YAML file; the edited files are expanded again and compared.
 ///
 /// # Errors
-/// As [`edit`]. Of xacro: a number that is computed, or would have to get two values; each with its place.
+/// As [`edit`]. In xacro also if a number is computed or would need two values: the error lists each such number with
+/// its place.
 pub fn edit_files(
     file_name: &str,
     text: &str,
