@@ -28,6 +28,11 @@ pub fn second_way<S: Entry>(index: usize, given: Given<S>) -> Vec<Vec<S>> {
     ways[index](given)
 }
 
+/// [`second_way`] on `f64`, compiled here and not, less optimised, in each test.
+pub fn second_way_of_f64(index: usize, given: Given) -> Vec<Vec<f64>> {
+    second_way(index, given)
+}
+
 /// The rows of a Jacobian, or of the momentum matrix, from its columns.
 fn six_rows<S: Entry>(columns: &[[S; 6]]) -> Vec<S> {
     (0..6).flat_map(|row| columns.iter().map(move |column| column[row])).collect()

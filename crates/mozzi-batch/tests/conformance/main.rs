@@ -14,7 +14,7 @@ use mozzi::testing::{closed, floating_mixed_tree, floating_tree, mixed_tree, sta
 use mozzi::{Dual, Environment, Error, FrameId, Freedom, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
 use mozzi_batch::{Batch, BatchEnvironment, Compiled, InstructionSet, Number, compile};
 use mozzi_codegen::{Arguments, record_quantity};
-use mozzi_oracle::{Given, SecondWay};
+use mozzi_oracle::{Given, SecondWay, second_way_of_f64};
 
 /// Fixed and floating, with and without mimic joints, with balls and free joints, one joint alone, none.
 fn robots() -> Vec<(&'static str, Model)> {
@@ -189,7 +189,8 @@ fn conform<Q: SecondWay>(case: &Case) {
         if query.output_lengths(model).all(|length| length == 0) {
             return vec![Vec::new(); query.declaration().outputs.len()];
         }
-        Q::second_way(Given { robot: model.description(), model, of: query.subject, inputs, environment: &environment })
+        let (robot, of) = (model.description(), query.subject);
+        second_way_of_f64(query.index(), Given { robot, model, of, inputs, environment: &environment })
     };
 
     if model.n() == 0

@@ -63,6 +63,7 @@ impl Neg for Octuple {
 }
 
 impl Scalar for Octuple {
+    type Four = [Self; 4];
     const DIGITS: u32 = 237;
     fn from_f64(x: f64) -> Self {
         Octuple(f256::from(x))
