@@ -62,6 +62,7 @@ impl SubAssign for RobotNumber {
 }
 
 impl Scalar for RobotNumber {
+    type Four = [Self; 4];
     const IS_ONE: bool = Traced::IS_ONE;
     fn from_f64(x: f64) -> Self {
         x.into()

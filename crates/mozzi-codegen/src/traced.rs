@@ -67,6 +67,7 @@ impl SubAssign for Traced {
 }
 
 impl Scalar for Traced {
+    type Four = [Self; 4];
     const IS_ONE: bool = false;
     fn from_f64(x: f64) -> Self {
         x.into()

@@ -102,6 +102,7 @@ macro_rules! lane {
             fn neg(self) -> Self { self.negative() }
         }
         impl<$($generics)*> mozzi::Scalar for $L {
+            type Four = [Self; 4];
             const IS_ONE: bool = false;
             #[inline(always)]
             fn from_f64(x: f64) -> Self { mozzi::scalar::Bits::constant(mozzi::Scalar::from_f64(x)) }

@@ -140,6 +140,7 @@ impl<T: Number> std::ops::SubAssign for Wire<T> {
 }
 
 impl<T: Number> Scalar for Wire<T> {
+    type Four = [Self; 4];
     const IS_ONE: bool = false;
     fn from_f64(x: f64) -> Self {
         Self::constant(T::from_f64(x))

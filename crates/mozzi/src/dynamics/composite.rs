@@ -23,11 +23,11 @@
 //! base.
 
 use super::armature::set_armature;
-use super::path::{BaseAxes, LinkFrames, Pairs, Path, turn};
+use super::path::{Abreast, BaseAxes, LinkFrames, Load, Pairs, Path, turn};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{ByRates, Model, Row, Workspace};
-use crate::scalar::Scalar;
+use crate::scalar::{Four, Scalar};
 use crate::spatial::{CoriolisFactor, SpatialInertia, Twist, Wrench};
 
 /// The pairs (r, s) of the six axes e of a floating base, in its coordinates: r_e = `[ad_X]` e + `[ad_Y][ad_Y]` e and
@@ -123,7 +123,14 @@ pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
         let path = BaseAxes { links: &turned[..slots], rows, runs: &model.structure.runs };
         fill(model, path, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does);
     } else {
-        fill(model, LinkFrames { T: &T[..slots], pairs }, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does);
+        let frames = LinkFrames { T: &T[..slots], pairs };
+        let has_columns = by_theta.is_some() || by_rates.is_some();
+        match S::Four::at_once() {
+            Some(at_once) if has_columns => {
+                fill(model, Abreast { frames, at_once }, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does);
+            }
+            _ => fill(model, frames, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does),
+        }
     }
 
     // a floating base: the axes e
@@ -165,8 +172,8 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
     let n = model.n();
     for (i, link) in model.inward::<S>() {
         let (j, A, G_i, B_i) = (link.j, link.A(), G_c[i], B[i]);
-        let (mut GA, mut BtA) = (G_i * A, B_i.transpose_mul(A));              // row j, and column j of M; a moment
-        let (mut of_theta, mut of_rates) = (Wrench::zero(), Wrench::zero()); // the other columns j
+        let (GA, BtA) = (G_i * A, B_i.transpose_mul(A));
+        let (mut of_theta, mut of_rates) = (Wrench::zero(), Wrench::zero());
         if does.keeps_columns {
             U[i] = GA;
         }
@@ -184,12 +191,11 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
         if let Some(M) = M {
             M[j * n + j] += A * GA;
         }
-        (GA, BtA) = (path.taken(i, GA), path.taken_moment(i, BtA));
-        (of_theta, of_rates) = (path.taken(i, of_theta), path.taken(i, of_rates));
+        let mut carried = path.taken(i, Load { GA, BtA, of_theta, of_rates });
         let (mut above, mut way) = (i, model.to_base::<S>(link.parent));
         while let Some((k, below)) = way.next() {
-            (GA, BtA) = (path.carried(above, GA), path.carried_moment(above, BtA));
-            (of_theta, of_rates) = (path.carried(above, of_theta), path.carried(above, of_rates));
+            carried = path.carried(above, carried);
+            let Load { GA, BtA, of_theta, of_rates } = path.load(carried);
             if let Some((run, row)) = path.row(k) {
                 let (ij, ji) = (run.j * n + j, j * n + run.j);
                 if let Some(Filled { X, .. }) = by_theta {
@@ -205,7 +211,7 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
                     add_column(M, n, ij, entries);
                     add_row(M, ji, entries);
                 }
-                (GA, of_theta, of_rates) = (GA.about(row.p), of_theta.about(row.p), of_rates.about(row.p));
+                carried = path.about(row.p, carried);
                 (above, way) = (run.first, model.to_base::<S>(run.parent));
                 continue;
             }
@@ -226,8 +232,8 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
             }
         }
         if model.is_floating() {
-            (GA, BtA) = (path.carried(above, GA), path.carried_moment(above, BtA));
-            (of_theta, of_rates) = (path.carried(above, of_theta), path.carried(above, of_rates));
+            carried = path.carried(above, carried);
+            let Load { GA, BtA, of_theta, of_rates } = path.load(carried);
             if let Some(Filled { X, base }) = by_theta {
                 add_cross(X, n, j, of_theta, base.dot(GA, BtA));
             }

@@ -9,7 +9,7 @@
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
 use crate::model::{ByRates, ByTheta, Lifted, Model, Row, Run, Runs, Turned};
-use crate::scalar::Scalar;
+use crate::scalar::{Four, FourAtOnce, Scalar};
 use crate::spatial::{Twist, Wrench};
 
 /// The pairs of all axes, in the links' own frames.
@@ -19,16 +19,35 @@ pub(super) struct Pairs<'w, S> {
     pub by_rates: &'w [ByRates<S>],
 }
 
+/// What moves from link j to the base: the forces of axis j, as seen from a link on the way.
+#[derive(Clone, Copy)]
+pub(super) struct Load<S> {
+    /// 𝒢ᶜA_j: row j, and column j of M.
+    pub GA: Wrench<S>,
+    /// 𝓑ᶜᵀA_j, a moment without a force, which does not depend on the origin.
+    pub BtA: Vec3<S>,
+    /// Column j of the matrices by θ and by θ̇.
+    pub of_theta: Wrench<S>,
+    pub of_rates: Wrench<S>,
+}
+
+impl<S: Scalar> Load<S> {
+    #[inline(always)]
+    fn map(self, wrench: impl Fn(Wrench<S>) -> Wrench<S>, moment: impl Fn(Vec3<S>) -> Vec3<S>) -> Self {
+        let Load { GA, BtA, of_theta, of_rates } = self;
+        Load { GA: wrench(GA), BtA: moment(BtA), of_theta: wrench(of_theta), of_rates: wrench(of_rates) }
+    }
+}
+
 /// The operations of the composite-body pass on the path from link i to the base.
 pub(super) trait Path<S: Scalar> {
-    /// Converts a wrench in link i's frame to the path's coordinates, at the start of the path.
-    fn taken(&self, i: usize, F: Wrench<S>) -> Wrench<S>;
-    /// The same for a moment without a force, which does not depend on the origin.
-    fn taken_moment(&self, i: usize, m: Vec3<S>) -> Vec3<S>;
-    /// Moves a wrench from a link to its parent.
-    fn carried(&self, link: usize, F: Wrench<S>) -> Wrench<S>;
-    /// The same for a moment without a force.
-    fn carried_moment(&self, link: usize, m: Vec3<S>) -> Vec3<S>;
+    /// A load in the path's coordinates.
+    type Carried: Copy;
+    /// At the start of the path, a load in link i's frame.
+    fn taken(&self, i: usize, load: Load<S>) -> Self::Carried;
+    /// Moved from a link to its parent.
+    fn carried(&self, link: usize, load: Self::Carried) -> Self::Carried;
+    fn load(&self, carried: Self::Carried) -> Load<S>;
     /// A_kᵀF.
     fn force<C: Scalar>(&self, k: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
     where
@@ -38,7 +57,15 @@ pub(super) trait Path<S: Scalar> {
     /// The same for the pairs by rates.
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S;
     /// The links that are processed together, of which k is the last.
-    fn row(&self, k: usize) -> Option<(&Run, &Row<S>)>;
+    #[inline(always)]
+    fn row(&self, _: usize) -> Option<(&Run, &Row<S>)> {
+        None
+    }
+    /// Moved past a row, to the point p.
+    #[inline(always)]
+    fn about(&self, _: Vec3<S>, load: Self::Carried) -> Self::Carried {
+        load
+    }
 }
 
 /// Coordinates in each link's own frame.
@@ -48,21 +75,19 @@ pub(super) struct LinkFrames<'w, S> {
 }
 
 impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
+    type Carried = Load<S>;
     #[inline(always)]
-    fn taken(&self, _: usize, F: Wrench<S>) -> Wrench<S> {
-        F
+    fn taken(&self, _: usize, load: Load<S>) -> Load<S> {
+        load
     }
     #[inline(always)]
-    fn taken_moment(&self, _: usize, m: Vec3<S>) -> Vec3<S> {
-        m
+    fn carried(&self, link: usize, load: Load<S>) -> Load<S> {
+        let T = self.T[link];
+        load.map(|F| T.Ad().transpose() * F, |m| T.R.inverse_mul(m))
     }
     #[inline(always)]
-    fn carried(&self, link: usize, F: Wrench<S>) -> Wrench<S> {
-        self.T[link].Ad().transpose() * F
-    }
-    #[inline(always)]
-    fn carried_moment(&self, link: usize, m: Vec3<S>) -> Vec3<S> {
-        self.T[link].R.inverse_mul(m)
+    fn load(&self, load: Load<S>) -> Load<S> {
+        load
     }
     #[inline(always)]
     fn force<C: Scalar>(&self, _: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
@@ -79,9 +104,87 @@ impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         self.pairs.by_rates[k].dot(GA, BtA)
     }
+}
+
+/// The same, the load's moments and forces side by side in registers of four.
+pub(super) struct Abreast<'w, S> {
+    pub frames: LinkFrames<'w, S>,
+    pub at_once: FourAtOnce,
+}
+
+/// Moments and forces of 𝒢ᶜA, of the columns by θ̇ and by θ, and of 𝓑ᶜᵀA: a register each along x, y and z.
+#[derive(Clone, Copy)]
+pub(super) struct FourWrenches<S: Scalar> {
+    m: [S::Four; 3],
+    f: [S::Four; 3],
+}
+
+/// Without closures: they would be compiled without these registers.
+impl<S: Scalar> Abreast<'_, S> {
     #[inline(always)]
-    fn row(&self, _: usize) -> Option<(&Run, &Row<S>)> {
-        None
+    fn four(&self, a: Vec3<S>, b: Vec3<S>, c: Vec3<S>, d: Vec3<S>) -> [S::Four; 3] {
+        let ([ax, ay, az], [bx, by, bz], [cx, cy, cz], [dx, dy, dz]) = (a.0, b.0, c.0, d.0);
+        [
+            S::Four::new(self.at_once, [ax, bx, cx, dx]),
+            S::Four::new(self.at_once, [ay, by, cy, dy]),
+            S::Four::new(self.at_once, [az, bz, cz, dz]),
+        ]
+    }
+
+    /// Rᵀx of four vectors.
+    #[inline(always)]
+    fn turned(&self, R: &SO3<S>, [x, y, z]: [S::Four; 3]) -> [S::Four; 3] {
+        let ([a, b, c], o) = (R.matrix().rows(), S::Four::new(self.at_once, [S::zero(); 4]));
+        [
+            x.mul_add(a[0], y.mul_add(b[0], z.mul_add(c[0], o))),
+            x.mul_add(a[1], y.mul_add(b[1], z.mul_add(c[1], o))),
+            x.mul_add(a[2], y.mul_add(b[2], z.mul_add(c[2], o))),
+        ]
+    }
+}
+
+impl<S: Scalar> Path<S> for Abreast<'_, S> {
+    type Carried = FourWrenches<S>;
+    #[inline(always)]
+    fn taken(&self, _: usize, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> FourWrenches<S> {
+        FourWrenches {
+            m: self.four(GA.m, of_rates.m, of_theta.m, BtA),
+            f: self.four(GA.f, of_rates.f, of_theta.f, Vec3::zero()),
+        }
+    }
+    /// Of each wrench m ↦ Rᵀ(m + f × p), f ↦ Rᵀf.
+    #[inline(always)]
+    fn carried(&self, link: usize, FourWrenches { m: [x, y, z], f: [u, v, w] }: FourWrenches<S>) -> FourWrenches<S> {
+        let SE3 { R, p: Vec3([px, py, pz]) } = &self.frames.T[link];
+        let x = v.mul_add(*pz, w.mul_add(-*py, x));
+        let y = w.mul_add(*px, u.mul_add(-*pz, y));
+        let z = u.mul_add(*py, v.mul_add(-*px, z));
+        FourWrenches { m: self.turned(R, [x, y, z]), f: self.turned(R, [u, v, w]) }
+    }
+    #[inline(always)]
+    fn load(&self, FourWrenches { m: [x, y, z], f: [u, v, w] }: FourWrenches<S>) -> Load<S> {
+        let ([x, y, z], [u, v, w]) = ([x.numbers(), y.numbers(), z.numbers()], [u.numbers(), v.numbers(), w.numbers()]);
+        Load {
+            GA: Wrench { m: Vec3([x[0], y[0], z[0]]), f: Vec3([u[0], v[0], w[0]]) },
+            of_rates: Wrench { m: Vec3([x[1], y[1], z[1]]), f: Vec3([u[1], v[1], w[1]]) },
+            of_theta: Wrench { m: Vec3([x[2], y[2], z[2]]), f: Vec3([u[2], v[2], w[2]]) },
+            BtA: Vec3([x[3], y[3], z[3]]),
+        }
+    }
+    #[inline(always)]
+    fn force<C: Scalar>(&self, k: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
+    where
+        S: From<C>,
+    {
+        self.frames.force(k, link, F)
+    }
+    #[inline(always)]
+    fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
+        self.frames.by_theta(k, GA, BtA)
+    }
+    #[inline(always)]
+    fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
+        self.frames.by_rates(k, GA, BtA)
     }
 }
 
@@ -93,22 +196,23 @@ pub(super) struct BaseAxes<'w, S> {
 }
 
 impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
+    type Carried = Load<S>;
     #[inline(always)]
-    fn taken(&self, i: usize, F: Wrench<S>) -> Wrench<S> {
+    fn taken(&self, i: usize, load: Load<S>) -> Load<S> {
         let R = self.links[i].R;
-        Wrench { m: R * F.m, f: R * F.f }
+        load.map(|F| Wrench { m: R * F.m, f: R * F.f }, |m| R * m)
     }
     #[inline(always)]
-    fn taken_moment(&self, i: usize, m: Vec3<S>) -> Vec3<S> {
-        self.links[i].R * m
+    fn carried(&self, link: usize, load: Load<S>) -> Load<S> {
+        self.about(self.links[link].p, load)
     }
     #[inline(always)]
-    fn carried(&self, link: usize, F: Wrench<S>) -> Wrench<S> {
-        F.about(self.links[link].p)
+    fn load(&self, load: Load<S>) -> Load<S> {
+        load
     }
     #[inline(always)]
-    fn carried_moment(&self, _: usize, m: Vec3<S>) -> Vec3<S> {
-        m
+    fn about(&self, p: Vec3<S>, load: Load<S>) -> Load<S> {
+        load.map(|F| F.about(p), |m| m)
     }
     #[inline(always)]
     fn force<C: Scalar>(&self, k: usize, _: &Lifted<C, S>, F: Wrench<S>) -> S

@@ -132,6 +132,7 @@ impl<S: PartialOrd> PartialOrd for Dual<S> {
 }
 
 impl<S: Scalar> Scalar for Dual<S> {
+    type Four = [Self; 4];
     const DIGITS: u32 = S::DIGITS;
     fn from_f64(x: f64) -> Self {
         Dual::constant(S::from_f64(x))

@@ -1,5 +1,6 @@
 //! `f64` whose `mul_add` is one machine instruction.
 
+use super::four::FourFused;
 use super::{Scalar, assign_ops, float};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -55,6 +56,8 @@ impl From<f64> for Fused {
 }
 
 impl Scalar for Fused {
+    type Four = FourFused;
+
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
         Fused(x)

@@ -2,12 +2,14 @@
 
 mod dual;
 mod float;
+mod four;
 mod fused;
 #[cfg(test)]
 pub(crate) mod recorded;
 mod sin_cos;
 
 pub use dual::Dual;
+pub use four::{Four, FourAtOnce};
 pub use fused::Fused;
 pub use sin_cos::{Bits, Float, sin_cos};
 
@@ -34,6 +36,9 @@ pub trait Scalar:
 
     /// Is it one number, and not a register of them or a recording?
     const IS_ONE: bool = true;
+
+    /// Four of these numbers; `[Self; 4]` unless a register holds them.
+    type Four: Four<Self>;
 
     /// The number nearest to `x`.
     fn from_f64(x: f64) -> Self;

@@ -92,6 +92,7 @@ impl From<f64> for Recorded {
     }
 }
 impl Scalar for Recorded {
+    type Four = [Self; 4];
     fn from_f64(x: f64) -> Self {
         Recorded::Constant(x)
     }
