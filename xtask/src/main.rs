@@ -13,6 +13,7 @@ mod documents;
 mod examples;
 mod fuzz;
 mod house_rules;
+mod inlining;
 mod licences;
 mod main_job;
 mod metadata;
@@ -126,6 +127,7 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
         report.step(&format!("example {}", example.name()), || example.run(workspace, &programs));
     }
     report.step("main job", || main_job::run(workspace, release));
+    report.step("inlining", || inlining::check(workspace));
     let exit = report.finish();
     println!("{count}"); // CI reads this line
     exit

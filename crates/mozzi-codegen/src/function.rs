@@ -78,6 +78,7 @@ impl Function {
     }
 
     /// Its value. Operands beyond [`arity`](Self::arity) are ignored.
+    #[inline(always)] // into code compiled for an instruction set
     pub fn apply<S: Scalar>(self, [a, b, c]: [S; 3]) -> S {
         match self {
             Add => a + b,

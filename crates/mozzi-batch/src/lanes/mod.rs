@@ -104,6 +104,7 @@ macro_rules! lane {
         impl<$($generics)*> mozzi::Scalar for $L {
             type Four = [Self; 4];
             const IS_ONE: bool = false;
+            const IN_PLACE: bool = <$L as crate::lanes::Lane>::WIDTH > 1;
             #[inline(always)]
             fn from_f64(x: f64) -> Self { mozzi::scalar::Bits::constant(mozzi::Scalar::from_f64(x)) }
             #[inline(always)]

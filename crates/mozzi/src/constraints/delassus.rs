@@ -80,7 +80,7 @@ impl<S: Scalar> ConstraintMemory<S> {
 
 /// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. The workspace holds T_{i,i−1}(θ), the
 /// memory A.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,
@@ -115,7 +115,7 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
 
 /// Computes R rows of Y, LᵀY = Aᵀ, and of G's upper triangle. The rows are interleaved because each number of a row
 /// depends on the one before it. `vector` holds 1/D.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>, memory: &mut ConstraintMemory<S>) {
     let (m, n, pattern) = (model.ties.rows, model.n(), &model.structure.pattern);
     let ConstraintMemory { M, Y, scaled, G, vector, .. } = memory;
@@ -174,7 +174,7 @@ fn relative_rho<S: Scalar>() -> f64 {
 }
 
 /// Solves Gλ = b, with b in the memory's `right` and λ in its `lambda`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>) {
     let m = model.ties.rows;
     let ConstraintMemory { G, one_over_d, rho, step, right, lambda, .. } = memory;
@@ -193,7 +193,7 @@ pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut Constra
 }
 
 /// x ← x − Yᵀλ, which D⁻¹ and then L⁻¹ turn into the change of an acceleration or a velocity by −Aᵀλ.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn subtract_forces<S: Scalar, C: Scalar>(model: &Model<C>, memory: &ConstraintMemory<S>, x: &mut [S]) {
     let n = model.n();
     for tie in &model.ties.list {
@@ -207,7 +207,7 @@ pub(crate) fn subtract_forces<S: Scalar, C: Scalar>(model: &Model<C>, memory: &C
 }
 
 /// Adds b_r = Σ_j Y_rj x_j to `right`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn add_products<S: Scalar, C: Scalar>(model: &Model<C>, rows: &[S], x: &[S], right: &mut [S]) {
     let n = model.n();
     for tie in &model.ties.list {

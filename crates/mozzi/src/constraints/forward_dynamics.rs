@@ -24,7 +24,7 @@ use crate::scalar::Scalar;
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or λ not m.
 ///
 /// [`constraint_impulse`]: crate::constraint_impulse
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // forward_dynamics' seven, memory, and λ
 pub fn constrained_forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

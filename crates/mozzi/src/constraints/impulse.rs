@@ -18,7 +18,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̇⁺ not n, or Λ not m.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn constraint_impulse<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -40,7 +40,7 @@ pub fn constraint_impulse<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// −M⁻¹Aᵀλ, where λ solves A M⁻¹Aᵀλ = b and b is `memory.right`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>, x: &mut [S]) {
     solve(model, memory);
     x.fill(S::zero());

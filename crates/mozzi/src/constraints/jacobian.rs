@@ -22,7 +22,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or an output has another length than its own and 0.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn constraint_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -37,7 +37,7 @@ pub fn constraint_jacobian<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The same; the workspace holds T_{i,i−1}(θ).
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

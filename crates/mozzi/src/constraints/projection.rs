@@ -14,7 +14,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, or P not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn constraint_projection<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::scalar::Scalar;
 
 /// Adds the part of M θ̈ from rotors that several joints turn.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_rotor_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], tau: &mut [S]) {
     for rotor in &model.rotors {
         rotor.add(S::from(rotor.armature) * rotor.rate(ddtheta), tau);
@@ -18,7 +18,7 @@ pub(super) fn add_rotor_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>,
 }
 
 /// Sets M to the rotors' inertia alone: armature on the diagonal, and a JᵀJ for each rotor that several joints turn.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn set_armature<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, M: &mut [S]) {
     let n = model.n();
     M.fill(S::zero());
@@ -33,7 +33,7 @@ pub(crate) fn set_armature<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, M: 
 }
 
 /// θ̇ᵀ armature θ̇: twice the rotors' kinetic energy.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn rotor_energy<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S]) -> S {
     let mut twice = S::zero();
     for (&armature, &rate) in model.armature.iter().zip(dtheta) {
@@ -47,7 +47,7 @@ pub(super) fn rotor_energy<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dth
 }
 
 /// Adds a ω × v to the linear rows of each free joint.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_velocity_products<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], tau: &mut [S]) {
     for &j in &model.structure.free {
         let (w, v) = of_free_joint(dtheta, j);
@@ -59,7 +59,7 @@ pub(super) fn add_velocity_products<S: Scalar + From<C>, C: Scalar>(model: &Mode
 }
 
 /// Adds ∂(a ω × v)/∂θ̇ to ∂τ/∂θ̇.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_velocity_product_rates<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], X: &mut [S]) {
     for &j in &model.structure.free {
         let (w, v) = of_free_joint(dtheta, j);
@@ -70,7 +70,7 @@ pub(super) fn add_velocity_product_rates<S: Scalar + From<C>, C: Scalar>(model: 
 }
 
 /// Adds xᵀ∂(a ω × v)/∂θ̇.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_velocity_product_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     dtheta: &[S],
@@ -90,7 +90,7 @@ pub(super) fn add_velocity_product_vjp<S: Scalar + From<C>, C: Scalar>(
 
 /// Adds the block of C that gives a ω × v: a`[ω]` in the linear block. It is skew-symmetric, since the armature's part
 /// of M is constant.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_coriolis_blocks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, dtheta: &[S], X: &mut [S]) {
     for &j in &model.structure.free {
         let (w, _) = of_free_joint(dtheta, j);

@@ -41,18 +41,17 @@ use super::path::{Pairs, turn};
 use super::spring_forces::add_stiffness;
 use crate::linalg::{Mat3, Vec3, ldlt};
 use crate::model::{Environment, Freedom, Model, TOGETHER as W, Turned, Workspace};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
-/// Fills X and Y, n × n by rows, with ∂θ̈/∂θ and ∂θ̈/∂θ̇, and `inverse` with M⁻¹. The workspace holds T and the factors
+apart! {
+/// Fills the matrices, n × n by rows, with ∂θ̈/∂θ, ∂θ̈/∂θ̇ and M⁻¹. The workspace holds T and the factors
 /// of forward dynamics.
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip]
-#[allow(clippy::too_many_arguments)]
 pub(super) fn articulated_derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
-    environment: &Environment<S>, workspace: &mut Workspace<S>, [X, Y, inverse]: [&mut [S]; 3],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, matrices: [&mut [S]; 3],
 ) {
+    let [X, Y, inverse] = matrices;
     for matrix in [&*X, &*Y, &*inverse] {
         check_size(model, matrix);
     }
@@ -83,6 +82,7 @@ pub(super) fn articulated_derivatives<S: Scalar + From<C>, C: Scalar>(
     }
     let [inverse, X, Y] = matrices;
     multiply_blocks(model, workspace, inverse, [X, Y]);
+}
 }
 
 /// Tips to base: U, 𝓑̂, y and Q of each link.

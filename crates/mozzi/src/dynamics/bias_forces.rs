@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `h` not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -36,7 +36,7 @@ pub fn bias_forces<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `c` not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn velocity_product<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -53,7 +53,7 @@ pub fn velocity_product<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `g` not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -70,7 +70,7 @@ pub fn gravity_forces<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or τ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn tip_forces<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -83,7 +83,7 @@ pub fn tip_forces<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Inverse dynamics at rest.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn rest<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

@@ -15,7 +15,7 @@ use crate::spatial::Wrench;
 ///
 /// # Panics
 /// When θ is not nq long.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn center_of_mass<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -26,7 +26,7 @@ pub fn center_of_mass<S: Scalar + From<C>, C: Scalar>(
 
 /// The centre of mass in the base's frame. Computing about it avoids the rounding error that the base's distance from
 /// {s} would cause.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn center_in_base<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -37,7 +37,7 @@ fn center_in_base<S: Scalar + From<C>, C: Scalar>(
 
 /// A frame with the axes of {s} and its origin at the centre of mass, seen from the base. Afterwards the workspace
 /// holds composite inertias.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn centroidal_frame<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

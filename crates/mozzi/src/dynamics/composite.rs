@@ -96,7 +96,7 @@ pub(super) struct Does {
 
 /// Fills the matrices. The workspace holds T_{i,i−1}(θ) and, for each link, 𝒢, the pairs, 𝓑 and 𝓕, if the matrices need
 /// them.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip] // one equation a line
 pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, workspace: &mut Workspace<S>, Matrices { mut by_theta, mut by_rates, mut M }: Matrices<S>, does: Does,
@@ -259,7 +259,7 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
 
 /// Adds the motion of a joint's own link to r of the joint's axes: `[ad_𝒱]` A, 𝒱 seen from each axis. i is the last
 /// axis.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, i: usize, T: &[SE3<S>], V: Twist<S>, pairs: &mut [ByRates<S>],
@@ -277,7 +277,7 @@ pub(super) fn add_moved_by_link<S: Scalar + From<C>, C: Scalar>(
 
 /// Cancels the term W = `[ad_A]`ᵀ𝓕ᶜ between axis i and the earlier axes of the same joint: they move together, so the
 /// wrench at axis i does not move past them.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn carried_together<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, i: usize, T: &[SE3<S>], W: Wrench<S>, d_theta: &mut [S],
@@ -301,7 +301,7 @@ pub(super) fn check_size<S: Scalar, C: Scalar>(model: &Model<C>, X: &[S]) {
 }
 
 /// Adds column j and row j at a floating base's six rows and columns.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row: Wrench<S>) {
     for (r, (column, row)) in column.to_array().into_iter().zip(row.to_array()).enumerate() {
         X[r * n + j] += column;
@@ -327,7 +327,7 @@ fn add_row<const W: usize, S: Scalar>(X: &mut [S], at: usize, entries: [S; W]) {
 }
 
 /// Sets a column of a floating base's 6 × 6 block.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn set_column<S: Scalar>(X: &mut [S], n: usize, r: usize, column: Wrench<S>) {
     for (s, entry) in column.to_array().into_iter().enumerate() {
         X[s * n + r] = entry;

@@ -22,7 +22,7 @@ use crate::spatial::{AxisRate, CoriolisFactor, Twist};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `C` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     model: &Model<C0>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>, C: &mut [S],
@@ -31,7 +31,7 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
 }
 
 /// C for a given twist of the base.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     model: &Model<C0>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>, C: &mut [S],
@@ -68,7 +68,7 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `dM` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

@@ -40,11 +40,11 @@
 use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, composite_pass};
 use crate::kinematics::{base_motion, base_pose};
 use crate::model::{ByRates, ByTheta, Environment, Model, Workspace};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::{CoriolisFactor, Twist, Wrench};
 
 /// ∂τ/∂θ and, if given, ∂τ/∂θ̇ and M. The workspace holds T_{i,i−1}(θ), and afterwards no more.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -69,7 +69,7 @@ pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The pairs of a floating base's axes by θ and by θ̇: the axes move with {s}.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn base_rates<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -85,17 +85,16 @@ pub(super) fn base_rates<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Adds d to the diagonal of ∂τ/∂θ̇.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_damping<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, d_dtheta: &mut [S]) {
     for (j, &damping) in model.damping.iter().enumerate() {
         d_dtheta[j * (model.n() + 1)] += S::from(damping);
     }
 }
 
+apart! {
 /// The rates of the axes, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ). With a motion `along`, which is X of the base
 /// and the joints' rates x, X of each link and 𝒢X and 𝓑ᵀX in place of 𝒢 and 𝓑: see [`vjp.rs`](super::vjp).
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip] // one equation a line
 pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>,
     along: Option<(Twist<S>, &[S])>, workspace: &mut Workspace<S>,
@@ -126,6 +125,7 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
         let frame = model.frame_at::<S>(frame);
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
     }
+}
 }
 
 /// Outward from the base: the rates of the axes, twists and accelerations, 𝓕, and 𝒢 and 𝓑 or X, 𝒢X and 𝓑ᵀX of each
@@ -181,7 +181,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
 
 /// Adds θ̈ to quantities computed without it: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by
 /// `[ad_𝒱̇'_p]` A. 𝓕 of a composite body grows by 𝒢ᶜ𝒱̇'_p, and by 𝒢ᶜAθ̈ of its joint and of each joint beyond.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
     let Workspace { T, dV, F, U, carrier, by_theta, G_c, .. } = workspace;
@@ -214,7 +214,7 @@ pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
 }
 
 /// The links' part of the forces at the joints and a floating base, from the composite wrenches: τ_i = A_iᵀ𝓕ᶜ_i.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
     let Workspace { F, .. } = workspace;
     tau.fill(S::zero());

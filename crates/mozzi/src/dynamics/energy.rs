@@ -15,7 +15,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
@@ -41,7 +41,7 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], gravity: Vec3<S>, workspace: &mut Workspace<S>,

@@ -23,7 +23,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // the energies' five, memory and the gradients
 pub fn energy_gradients<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

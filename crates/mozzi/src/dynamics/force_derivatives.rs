@@ -19,7 +19,7 @@ use crate::spatial::Wrench;
 ///
 /// # Panics
 /// When θ is not nq long, or `dg` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -36,7 +36,7 @@ pub fn gravity_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `dtau` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -54,7 +54,7 @@ pub fn tip_forces_derivative<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, x not n, or `dMx` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -66,7 +66,7 @@ pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// ∂τ/∂θ of inverse dynamics at θ̇ = 0, and θ̈ = 0 or as given.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn at_rest<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

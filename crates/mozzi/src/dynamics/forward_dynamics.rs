@@ -9,7 +9,7 @@ use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{ACCELERATION, Call, DTHETA, Declaration, Kernel, Quantity, TAU, THETA, Uses, VECTOR, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::{Twist, Wrench};
 
 /// The joint accelerations θ̈ that the joint forces and torques τ produce:
@@ -23,7 +23,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, τ or θ̈ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -42,10 +42,9 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+apart! {
 /// Ĝ and 𝓕 of each link are its articulated inertia and bias wrench, felt at its joint while all joints beyond it are
 /// free.
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip]
 fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], tau: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
@@ -117,6 +116,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
         dV[i] = dV_i + link.A() * ddtheta[link.j];
     }
+}
 }
 
 /// Outward from the base, with no joint accelerating: 𝒱 of each link, its own part of 𝒱̇ (without the parent's), and

@@ -16,7 +16,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and memory
 pub(crate) fn forward_dynamics_by_inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -34,7 +34,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or a derivative not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 #[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and the derivatives
 pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(

@@ -28,7 +28,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // the derivatives', x, and memory
 pub fn forward_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -54,7 +54,7 @@ pub fn forward_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// θ̈, and y with M y = x; the workspace holds T_{i,i−1}(θ) afterwards.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub(super) fn solved<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

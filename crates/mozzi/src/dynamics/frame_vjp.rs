@@ -26,7 +26,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // the state, the frame, w, memory and the products
 pub fn frame_twist_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -51,7 +51,7 @@ pub fn frame_twist_vjp<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub fn frame_acceleration_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -8,7 +8,7 @@ use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Lifted, Model, Workspace};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::{Twist, Wrench};
 
 /// The joint forces and torques τ that produce the motion (θ, θ̇, θ̈):
@@ -23,7 +23,7 @@ use crate::spatial::{Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, θ̈ or τ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -42,6 +42,7 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     add_spring_forces(model, theta, tau);
 }
 
+apart! {
 /// Adds the links' part of τ and all velocity products to `tau`, without friction, springs and the armature's part of
 /// Mθ̈. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link, 𝒱 and 𝒱̇ in the classical form below. 𝓕_0 is the
 /// wrench that a fixed base applies to the chain, or that a floating base, itself included, needs.
@@ -51,8 +52,6 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
 /// v̇ + ω × v of the origin. Link i's motion is computed from its parent's in this form by the book's equations, then
 /// converted to the frame that moves with its own origin. The wrench 𝓕_i is the same in both; the linear part of 𝒱
 /// costs nothing.
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip] // one equation a line, as in the book
 pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
@@ -92,6 +91,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         for (tau, F) in tau.iter_mut().zip(F[0].to_array()) { *tau += F; }                // (8.54) with A = I
     }
     add_velocity_products(model, dtheta, tau);
+}
 }
 
 /// Outward from the base: 𝒱 and 𝒱̇ of each link, and the wrench for its own motion in 𝓕. `ONE_AXIS`: all joints have

@@ -21,7 +21,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // the derivatives', and x
 pub fn inverse_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -39,7 +39,7 @@ pub fn inverse_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The same; the workspace holds T_{i,i−1}(θ).
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -9,7 +9,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When there is no joint j.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn joint_friction<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, j: usize, dtheta: S) -> S {
     S::from(model.damping[j]).mul_add(dtheta, S::from(model.friction[j]) * dtheta.sgn())
 }

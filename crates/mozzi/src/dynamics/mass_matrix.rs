@@ -4,7 +4,7 @@ use super::composite::{Does, Matrices, composite_pass};
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, symmetric};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 
 /// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ for each rotor
 /// that several joints turn. kg m², kg m or kg.
@@ -17,7 +17,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, or `M` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, M: &mut [S]) {
     let n = model.n();
@@ -27,8 +27,8 @@ pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
     composite_inertias(model, workspace, M);
 }
 
+apart! {
 /// M; the workspace already holds T_{i,i−1}(θ).
-#[cfg_attr(not(test), inline(always))]
 pub(crate) fn composite_inertias<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,
@@ -40,6 +40,7 @@ pub(crate) fn composite_inertias<S: Scalar + From<C>, C: Scalar>(
     }
     let does = Does { adds_factors: false, adds_wrenches: false, keeps_columns: false, is_composite: false };
     composite_pass(model, workspace, Matrices { by_theta: None, by_rates: None, M: Some(M) }, does);
+}
 }
 
 /// See [`mass_matrix`].

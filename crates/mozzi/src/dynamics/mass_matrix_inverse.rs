@@ -15,7 +15,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, or `inverse` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn mass_matrix_inverse<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

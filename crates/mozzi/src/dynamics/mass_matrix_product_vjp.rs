@@ -21,7 +21,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn mass_matrix_product_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

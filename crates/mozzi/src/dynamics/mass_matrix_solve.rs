@@ -19,7 +19,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or `M` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and the memory for M
 pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

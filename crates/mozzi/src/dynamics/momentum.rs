@@ -17,7 +17,7 @@ use crate::spatial::{SpatialInertia, Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
     composite_inertia(model, theta, workspace).transformed(base_pose(model, theta))
@@ -35,7 +35,7 @@ pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn momentum<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
@@ -64,7 +64,7 @@ pub fn momentum<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `A` not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, A: &mut [Wrench<S>],
@@ -74,7 +74,7 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The columns of the momentum matrix in a frame {s}, seen from the base; the workspace holds the composite inertias.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE3<S>, workspace: &mut Workspace<S>, A: &mut [Wrench<S>]) {
     assert!(A.len() == model.n(), "A has {} columns, expected n = {}", A.len(), model.n());
@@ -99,7 +99,7 @@ pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or θ̈ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
@@ -109,7 +109,7 @@ pub fn momentum_rate<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// ḣ in the base's coordinates.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn rate_in_base<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
@@ -121,7 +121,7 @@ pub(super) fn rate_in_base<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// 𝒢ᶜ of every slot. Slot 0 is the base: it holds all moving links, and the base's own inertia only if it is floating.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
     model.assert_lengths(theta.len(), []);
@@ -139,12 +139,12 @@ pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
 }
 
 /// 𝒢 of a floating base, 0 for a fixed one.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn base_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> SpatialInertia<S> {
     if model.is_floating() { model.base_inertia.map(S::from) } else { SpatialInertia::zero() }
 }
 
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn seen_from_space<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], P: Wrench<S>) -> Wrench<S> {
     base_pose(model, theta).inverse().Ad().transpose() * P
 }

@@ -23,7 +23,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // the state, the point, w, memory and the products
 pub fn momentum_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -47,7 +47,7 @@ pub fn momentum_vjp<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub fn momentum_rate_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

@@ -20,6 +20,7 @@ use super::forward_dynamics_vjp::solved;
 use super::regressor::joint_entries;
 use super::vjp::of_base;
 use crate::kinematics::{base_pose, joint_transforms};
+use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Memory, Output, Quantity, Rare, TAU, THETA,
@@ -43,7 +44,7 @@ use crate::spatial::{SpatialInertia, Twist, Wrench};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, θ̈ or x not n, or an output not p, 6 b, 6 b and 3 for b moving links.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // inverse dynamics' own, x and the outputs
 pub fn inverse_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -66,7 +67,7 @@ pub fn inverse_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or x not n, or an output not p, 6 b, 6 b and 3 for b moving links.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)]
 pub fn forward_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -87,6 +88,12 @@ pub fn forward_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
     from_transforms(model, [theta, dtheta, ddtheta, y], environment, workspace, outputs);
 }
 
+/// The gradient by a small motion of all links beyond, in the coordinates of the twists: those of what carries them.
+#[inline(always)]
+fn of_all_beyond<S: Scalar>([V, dV, X]: [Twist<S>; 3], Q: Wrench<S>, R: Vec3<S>, F: Wrench<S>) -> Wrench<S> {
+    BaseRates { X: dV, Y: Some(V), sigma: S::zero() }.dot(Q, R) + X.ad().transpose() * F
+}
+
 /// The workspace holds T_{i,i−1}(θ).
 #[inline(always)]
 #[rustfmt::skip] // one equation a line
@@ -101,7 +108,7 @@ fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     by_pi.fill(S::zero());
     for (body, slot) in model.bodies().enumerate() {
         let Ad = model.link_frame(slot).map(S::from).inverse().Ad();                 // to the link's frame
-        let [V, dV, X] = [V[slot], dV[slot], X[slot]].map(|V| Ad * V);
+        let (V, dV, X) = (Ad * V[slot], Ad * dV[slot], Ad * X[slot]);
         let of_rates = SpatialInertia::by_parameters(V.ad() * X, V);
         for (k, entry) in SpatialInertia::by_parameters(X, dV).into_iter().enumerate() {
             by_pi[10 * body + k] = entry - of_rates[k];
@@ -111,10 +118,6 @@ fn from_transforms<S: Scalar + From<C>, C: Scalar>(
         by_pi[column] = x[row].mul_add(entry, by_pi[column]);
     });
 
-    // how much a small motion of all beyond counts, in the coordinates of the twists: that of what carries it
-    let small = |V: Twist<S>, dV: Twist<S>, X: Twist<S>, Q: Wrench<S>, R, F: Wrench<S>| {
-        BaseRates { X: dV, Y: Some(V), sigma: S::zero() }.dot(Q, R) + X.ad().transpose() * F
-    };
     by_axes.fill(S::zero());
     let (mut body, mut at_last) = (model.bodies().count(), Wrench::zero());
     for (i, link) in model.inward::<S>() {
@@ -123,10 +126,10 @@ fn from_transforms<S: Scalar + From<C>, C: Scalar>(
         let T_link = model.link_frame(i).map(S::from);                       // from the link's frame
         if link.has_one_axis() || link.is_last {
             body -= 1;
-            at_last = T_link.Ad().transpose() * small(V[i], dV[i], X[i], Q_i, R_i, F_i);
+            at_last = T_link.Ad().transpose() * of_all_beyond([V[i], dV[i], X[i]], Q_i, R_i, F_i);
         }
         if !link.is_next() {
-            let placed = small(Ad * V[p], Ad * dV[p], Ad * X[p], Q_i, R_i, F_i);
+            let placed = of_all_beyond([Ad * V[p], Ad * dV[p], Ad * X[p]], Q_i, R_i, F_i);
             let at_0 = T[i] * link.M.map(S::from).inverse() * T_link;                   // from the link's frame at θ = 0
             let placed = at_0.Ad().transpose() * placed;
             by_placements[6 * body..][..6].copy_from_slice(&placed.to_array());
@@ -141,7 +144,7 @@ fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     if model.is_floating() {
         let Ad = T_sb.inverse().Ad();
         let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
-        let moved = small(V_s, dV_s, Twist::zero(), Q[0], B[0].f, F[0]);
+        let moved = of_all_beyond([V_s, dV_s, Twist::zero()], Q[0], B[0].f, F[0]);
         by_placements[..6].copy_from_slice(&moved.to_array());
     }
     by_gravity.copy_from_slice(&(-(T_sb.R * Q[0].f)).0);

@@ -31,15 +31,8 @@ pub(super) struct Load<S> {
     pub of_rates: Wrench<S>,
 }
 
-impl<S: Scalar> Load<S> {
-    #[inline(always)]
-    fn map(self, wrench: impl Fn(Wrench<S>) -> Wrench<S>, moment: impl Fn(Vec3<S>) -> Vec3<S>) -> Self {
-        let Load { GA, BtA, of_theta, of_rates } = self;
-        Load { GA: wrench(GA), BtA: moment(BtA), of_theta: wrench(of_theta), of_rates: wrench(of_rates) }
-    }
-}
-
-/// The operations of the composite-body pass on the path from link i to the base.
+/// The operations of the composite-body pass on the path from link i to the base. Without closures: called more than
+/// once, they would be functions of their own, compiled without the entry's instruction set.
 pub(super) trait Path<S: Scalar> {
     /// A load in the path's coordinates.
     type Carried: Copy;
@@ -81,9 +74,9 @@ impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
         load
     }
     #[inline(always)]
-    fn carried(&self, link: usize, load: Load<S>) -> Load<S> {
-        let T = self.T[link];
-        load.map(|F| T.Ad().transpose() * F, |m| T.R.inverse_mul(m))
+    fn carried(&self, link: usize, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> Load<S> {
+        let (T, Ad) = (&self.T[link], self.T[link].Ad().transpose());
+        Load { GA: Ad * GA, BtA: T.R.inverse_mul(BtA), of_theta: Ad * of_theta, of_rates: Ad * of_rates }
     }
     #[inline(always)]
     fn load(&self, load: Load<S>) -> Load<S> {
@@ -119,7 +112,6 @@ pub(super) struct FourWrenches<S: Scalar> {
     f: [S::Four; 3],
 }
 
-/// Without closures: they would be compiled without these registers.
 impl<S: Scalar> Abreast<'_, S> {
     #[inline(always)]
     fn four(&self, a: Vec3<S>, b: Vec3<S>, c: Vec3<S>, d: Vec3<S>) -> [S::Four; 3] {
@@ -198,9 +190,14 @@ pub(super) struct BaseAxes<'w, S> {
 impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
     type Carried = Load<S>;
     #[inline(always)]
-    fn taken(&self, i: usize, load: Load<S>) -> Load<S> {
+    fn taken(&self, i: usize, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> Load<S> {
         let R = self.links[i].R;
-        load.map(|F| Wrench { m: R * F.m, f: R * F.f }, |m| R * m)
+        Load {
+            GA: Wrench { m: R * GA.m, f: R * GA.f },
+            BtA: R * BtA,
+            of_theta: Wrench { m: R * of_theta.m, f: R * of_theta.f },
+            of_rates: Wrench { m: R * of_rates.m, f: R * of_rates.f },
+        }
     }
     #[inline(always)]
     fn carried(&self, link: usize, load: Load<S>) -> Load<S> {
@@ -211,8 +208,8 @@ impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
         load
     }
     #[inline(always)]
-    fn about(&self, p: Vec3<S>, load: Load<S>) -> Load<S> {
-        load.map(|F| F.about(p), |m| m)
+    fn about(&self, p: Vec3<S>, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> Load<S> {
+        Load { GA: GA.about(p), BtA, of_theta: of_theta.about(p), of_rates: of_rates.about(p) }
     }
     #[inline(always)]
     fn force<C: Scalar>(&self, k: usize, _: &Lifted<C, S>, F: Wrench<S>) -> S
@@ -240,7 +237,7 @@ impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
 
 /// Rotates the links' quantities that the pass needs into the base's axes, from T_{i,i−1} and the lists of pairs that
 /// are `taken`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn turn<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     T: &[SE3<S>],

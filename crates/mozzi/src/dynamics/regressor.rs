@@ -32,7 +32,7 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or `Y` not n p.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn regressor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
@@ -121,7 +121,7 @@ pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `kinetic` or `potential` not p.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 #[allow(clippy::too_many_arguments)] // the energies' five, memory and two answers
 pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(

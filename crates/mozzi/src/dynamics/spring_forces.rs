@@ -13,7 +13,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, or `f` not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], f: &mut [S]) {
     model.assert_lengths(theta.len(), [f.len()]);
     f.fill(S::zero());
@@ -21,7 +21,7 @@ pub fn spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 }
 
 /// Adds f_s to a force.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
     for spring in &model.springs {
         spring.add_force(theta, tau);
@@ -29,7 +29,7 @@ pub(crate) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
 }
 
 /// Adds ∂f_s/∂θ to ∂τ/∂θ.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add_stiffness<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], d_theta: &mut [S]) {
     for spring in &model.springs {
         spring.add_stiffness(model.n(), theta, d_theta);

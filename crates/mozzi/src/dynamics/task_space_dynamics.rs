@@ -15,7 +15,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, Λ not k², η not k, or a row above 5.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // a state, a task, memory, and two results
 pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -56,7 +56,6 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     mass_matrix(model, theta, workspace, M);
     ldlt::factor(pattern, M, &mut workspace.pivots);
     ldlt::solve(pattern, M, h);
-    let dot = |a: &[S], b: &[S]| a.iter().zip(b).fold(S::zero(), |sum, (&a, &b)| a.mul_add(b, sum));
     for r in 0..k {
         eta[r] = dot(&J[r * n..][..n], h) - dJ_dtheta[r];
         row[..n].copy_from_slice(&J[r * n..][..n]);
@@ -68,6 +67,16 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     ldlt::factor(dense, Lambda, pivots);
     ldlt::solve(dense, Lambda, eta);
     ldlt::invert(dense, Lambda, &mut row[..k]);
+}
+
+/// aᵀb.
+#[inline(always)]
+fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
+    let mut sum = S::zero();
+    for (&a, &b) in a.iter().zip(b) {
+        sum = a.mul_add(b, sum);
+    }
+    sum
 }
 
 /// See [`task_space_dynamics`].

@@ -24,7 +24,7 @@ use super::derivatives::{base_rates, outward_pass};
 use crate::kinematics::base_pose;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::{Twist, Wrench};
 
 /// An environment without gravity and wrenches, in which the acceleration of {s} is `V_s`: the motion at θ̇ = 0 with θ̇
@@ -49,17 +49,18 @@ pub(super) fn of_base<S: Scalar, C: Scalar>(model: &Model<C>, x: &[S]) -> Twist<
     }
 }
 
+apart! {
 /// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward pass along X leaves:
 /// T_{i,i−1}, the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
-#[cfg_attr(not(test), inline(always))]
 pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
     X_s: Option<Twist<S>>,
     environment: &Environment<S>,
     workspace: &mut Workspace<S>,
-    [d_theta, d_dtheta, d_ddtheta]: [&mut [S]; 3],
+    products: [&mut [S]; 3],
 ) {
+    let [d_theta, d_dtheta, d_ddtheta] = products;
     match model.structure.of_one_axis {
         true => inward::<true, S, C>(model, workspace, [d_theta, d_dtheta, d_ddtheta]),
         false => inward::<false, S, C>(model, workspace, [d_theta, d_dtheta, d_ddtheta]),
@@ -79,6 +80,7 @@ pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
             sum[k] += entry;
         }
     }
+}
 }
 
 #[inline(always)]
@@ -103,10 +105,9 @@ fn inward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+apart! {
 /// Adds the products of a number with the derivative Q_bᵀ∂𝒱̇_b + R_bᵀ∂ω_b at the links of a motion, which `sources`
 /// sets from the outward pass.
-#[cfg_attr(not(test), inline(always))]
-#[allow(clippy::too_many_arguments)] // the quantity's, where it acts, and the products
 pub(super) fn add_products_of<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -128,4 +129,5 @@ pub(super) fn add_products_of<S: Scalar + From<C>, C: Scalar>(
     sources(workspace);
     workspace.F.fill(Wrench::zero());
     add_products(model, theta, None, environment, workspace, products);
+}
 }

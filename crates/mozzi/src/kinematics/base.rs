@@ -6,7 +6,7 @@ use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
 /// `T_sb` of the base link: the first seven positions of a floating base, else I.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn base_pose<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]) -> SE3<S> {
     match theta.first_chunk() {
         Some(&pose) if model.is_floating() => SE3::from_pose(pose),
@@ -18,7 +18,7 @@ pub(crate) fn base_pose<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta:
 /// {s} like a link on a joint with the axes I:
 ///
 /// > 𝒱_b = Ad 𝒱_s + 𝒱, 𝒱̇_b = Ad 𝒱̇_s + `[ad_𝒱_b]` 𝒱 + 𝒱̇, with (𝒱, 𝒱̇) the first six velocities and accelerations
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn base_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], environment: &Environment<S>,
@@ -34,7 +34,7 @@ pub(crate) fn base_motion<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// 𝒱_b alone, {s} moving with `V_s`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn base_twist<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>) -> Twist<S> {
     match dtheta.first_chunk() {

@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn forward_kinematics<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], frame: FrameId) -> SE3<S> {
     model.assert_lengths(theta.len(), []);
@@ -30,7 +30,7 @@ pub fn forward_kinematics<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
 ///
 /// # Panics
 /// If the length of θ is not nq, or `poses` does not have one entry per frame.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, poses: &mut [SE3<S>]) {
     model.assert_lengths(theta.len(), []);

@@ -16,7 +16,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or θ̈ not n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub fn frame_acceleration<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], frame: FrameId,

@@ -4,7 +4,7 @@ use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
 use crate::quantity::{Call, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
 use core::ops::Mul;
@@ -42,11 +42,16 @@ impl Jacobian<f64> {
     }
 }
 
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
-    columns.iter().zip(dtheta).fold(Twist::zero(), |V, (&column, &rate)| V + column * rate)
+    let mut V = Twist::zero();
+    for (&column, &rate) in columns.iter().zip(dtheta) {
+        V = V + column * rate;
+    }
+    V
 }
 
+apart! {
 /// The body Jacobian `J_b`(θ) of a frame {b}: 𝒱_b = `J_b` θ̇ in {b} coordinates (Modern Robotics 5.18). Fills the n
 /// columns of `J`; zero for joints that do not move the frame. A mimic joint adds ratio × its own column to its source
 /// joint's.
@@ -55,7 +60,6 @@ pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S
 ///
 /// # Panics
 /// When θ is not nq long, or `J` not n.
-#[cfg_attr(not(test), inline(always))]
 pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -64,7 +68,9 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
 ) {
     body_columns(model, theta, frame, J);
 }
+}
 
+apart! {
 /// The space Jacobian `J_s`(θ) of a frame {b}: 𝒱_s = `J_s` θ̇ in {s} coordinates (Modern Robotics 5.11), by
 /// `J_s` = `[Ad_T_sb]` `J_b`. Fills the n columns of `J`.
 ///
@@ -72,7 +78,6 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `J` not n.
-#[cfg_attr(not(test), inline(always))]
 pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -84,9 +89,10 @@ pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
         *column = T_sb.Ad() * *column;
     }
 }
+}
 
 /// Fills the body Jacobian and returns `T_sb`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], frame: FrameId, J: &mut [Twist<S>]) -> SE3<S> {
     model.assert_lengths(theta.len(), [J.len()]);

@@ -14,7 +14,7 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or `H` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -36,7 +36,7 @@ pub fn body_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, or `H` not n².
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -66,7 +66,7 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
 
 /// Calls `add` with `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and with
 /// whether both are axes of one ball or free joint, which all move with the link that they carry; returns `T_sb`.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn brackets<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

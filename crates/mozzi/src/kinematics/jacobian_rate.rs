@@ -3,9 +3,10 @@
 use super::{base_pose, base_twist};
 use crate::model::{FrameId, Model, Workspace};
 use crate::quantity::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::Twist;
 
+apart! {
 /// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` receives its n columns, J̇_i =
 /// `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link beyond
 /// all three.
@@ -14,8 +15,6 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `dJ` not n.
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip]
 pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], dtheta: &[S], frame: FrameId, dJ: &mut [Twist<S>]) {
     model.assert_lengths(theta.len(), [dtheta.len(), dJ.len()]);
     dJ.fill(Twist::zero());
@@ -37,7 +36,9 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
         }
     }
 }
+}
 
+apart! {
 /// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` receives its n columns, J̇_i =
 /// `[ad_𝒱]` J_i, with 𝒱 the twist of the link that carries joint i. A ball's axes move with the link beyond all three,
 /// so their 𝒱 is the twist of that link. (Computed from J̇_b and the frame's own twist, the contributions of the joints
@@ -47,7 +48,6 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ or `dJ` not n.
-#[cfg_attr(not(test), inline(always))]
 pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -91,6 +91,7 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
             V += J_i * dtheta[link.j];
         }
     }
+}
 }
 
 /// See [`space_jacobian_rate`].

@@ -2,13 +2,12 @@
 
 use super::base_twist;
 use crate::model::{Model, Workspace};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 use crate::spatial::Twist;
 
+apart! {
 /// `workspace.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; the workspace holds
 /// T_{i,i−1}(θ).
-#[cfg_attr(not(test), inline(always))]
-#[rustfmt::skip]
 pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
 ) {
@@ -17,4 +16,5 @@ pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
     for (i, link) in model.outward::<S>() {
         V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j];
     }
+}
 }

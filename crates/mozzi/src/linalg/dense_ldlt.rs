@@ -5,7 +5,7 @@ use crate::scalar::Scalar;
 
 /// Overwrites the upper triangle of G (row-major, m × m) with Lᵀ (unit diagonal, not stored), and fills `one_over_d`
 /// with 1/D.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn factor<S: Scalar>(G: &mut [S], one_over_d: &mut [S]) {
     let m = one_over_d.len();
     for k in 0..m {
@@ -24,7 +24,7 @@ pub(crate) fn factor<S: Scalar>(G: &mut [S], one_over_d: &mut [S]) {
 }
 
 /// Overwrites b with x, where LDLᵀx = b.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve<S: Scalar>(Lt: &[S], one_over_d: &[S], b: &mut [S]) {
     let m = one_over_d.len();
     let b = &mut b[..m];

@@ -5,7 +5,7 @@ use crate::scalar::Scalar;
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
 /// `pivots` receives D too: the caller checks that they are positive.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]) {
     let n = pattern.len();
     for k in (0..n).rev() {
@@ -25,20 +25,20 @@ pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]
 }
 
 /// Overwrites b with x, where LᵀDLx = b.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     solve_transposed_all(pattern, L, b);
     solve_rest(pattern, L, b);
 }
 
 /// Overwrites b with y, where Lᵀy = b.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve_transposed_all<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     solve_transposed(pattern, L, b, (0..pattern.len()).rev());
 }
 
 /// The same if b is zero outside these rows, listed from the last; with each row the list must contain its ancestors.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S], rows: impl Iterator<Item = usize>) {
     let n = pattern.len();
     let b = &mut b[..n];
@@ -51,7 +51,7 @@ pub(crate) fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S
 }
 
 /// Overwrites y with x, where DLx = y.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve_rest<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     let n = pattern.len();
     let b = &mut b[..n];
@@ -67,7 +67,7 @@ pub(crate) fn solve_rest<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
 
 /// Overwrites two right-hand sides, n × n by rows, with −M⁻¹B, where M = LᵀDL; entries of B are 0 unless row and column
 /// are equal or one is an ancestor of the other.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S]; 2]) {
     let n = pattern.len();
     let mut B = [&mut X[..n * n], &mut Y[..n * n]];
@@ -88,7 +88,7 @@ pub(crate) fn solve_rows<S: Scalar>(pattern: &Pattern, L: &[S], [X, Y]: [&mut [S
 /// Every step of [`solve`], up to the sign, on W columns of each matrix, from c on. The steps of one column depend on
 /// each other, so several columns take no longer than one. Two consecutive rows of a path have the same ancestors and
 /// are processed together.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize, B: &mut [&mut [S]; 2]) {
     let mut k = pattern.end[c..c + W].iter().fold(0, |end, &e| end.max(e));
     while k > 0 {
@@ -115,7 +115,7 @@ fn solve_columns<const W: usize, S: Scalar>(pattern: &Pattern, L: &[S], c: usize
 }
 
 /// X of LᵀX = B for rows k to k + R, a path: subtracts their contribution from their ancestors' rows.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn eliminate<const R: usize, const W: usize, S: Scalar>(
     pattern: &Pattern,
     L: &[S],
@@ -150,7 +150,7 @@ fn eliminate<const R: usize, const W: usize, S: Scalar>(
 }
 
 /// X of DLX = −B for rows k to k + R, a path.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn substitute<const R: usize, const W: usize, S: Scalar>(
     pattern: &Pattern,
     L: &[S],
@@ -209,7 +209,7 @@ fn add<const W: usize, S: Scalar>(mut y: [S; W], a: S, x: [S; W]) -> [S; W] {
 
 /// Overwrites L and D with M⁻¹, both triangles; entries above the diagonal are ignored on input. In LM⁻¹ = D⁻¹L⁻ᵀ the
 /// right side is upper triangular: row k of M⁻¹ follows from the rows before it. `memory` is for n numbers.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]) {
     match pattern.len() {
         0..4 => invert_by::<1, S>(pattern, L, memory),
@@ -220,7 +220,7 @@ pub(crate) fn invert<S: Scalar>(pattern: &Pattern, L: &mut [S], memory: &mut [S]
 }
 
 /// W columns at a time, W ≤ n; the last block may overlap others.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut [S]) {
     let n = pattern.len();
     let (M, L) = (&mut M[..n * n], &mut L[..n]);
@@ -249,7 +249,7 @@ fn invert_by<const W: usize, S: Scalar>(pattern: &Pattern, M: &mut [S], L: &mut 
 
 /// x with Ax = b for a symmetric positive definite A, 6 × 6, of which the lower triangle is read; and the pivots for
 /// the caller to check. The last row is eliminated first.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn solve_6<S: Scalar>(mut A: [[S; 6]; 6], mut x: [S; 6]) -> ([S; 6], [S; 6]) {
     let mut pivots = [S::zero(); 6];
     for k in (0..6).rev() {

@@ -16,7 +16,7 @@ pub use vec3::Vec3;
 use crate::scalar::Scalar;
 
 /// A ← A + Aᵀ, n × n.
-#[cfg_attr(not(test), inline(always))]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn add_transpose<S: Scalar>(n: usize, A: &mut [S]) {
     for i in 0..n {
         for j in 0..=i {

@@ -134,6 +134,7 @@ impl<S: PartialOrd> PartialOrd for Dual<S> {
 impl<S: Scalar> Scalar for Dual<S> {
     type Four = [Self; 4];
     const DIGITS: u32 = S::DIGITS;
+    const IN_PLACE: bool = S::IN_PLACE;
     fn from_f64(x: f64) -> Self {
         Dual::constant(S::from_f64(x))
     }

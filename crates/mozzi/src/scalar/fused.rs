@@ -56,6 +56,7 @@ impl From<f64> for Fused {
 }
 
 impl Scalar for Fused {
+    const IN_PLACE: bool = true;
     type Four = FourFused;
 
     #[inline(always)]

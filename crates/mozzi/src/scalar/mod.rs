@@ -1,5 +1,6 @@
 //! The number that every kernel is generic over.
 
+mod apart;
 mod dual;
 mod float;
 mod four;
@@ -8,6 +9,7 @@ mod fused;
 pub(crate) mod recorded;
 mod sin_cos;
 
+pub(crate) use apart::apart;
 pub use dual::Dual;
 pub use four::{Four, FourAtOnce};
 pub use fused::Fused;
@@ -36,6 +38,9 @@ pub trait Scalar:
 
     /// Is it one number, and not a register of them or a recording?
     const IS_ONE: bool = true;
+
+    /// Is code on it inlined into its entry, which alone is compiled for the instructions that its operations are?
+    const IN_PLACE: bool = false;
 
     /// Four of these numbers; `[Self; 4]` unless a register holds them.
     type Four: Four<Self>;
