@@ -1,5 +1,5 @@
 // mozzi from C++: mozzi.hpp with Eigen's arguments, through the C interface of the shared library. With -DCOMPILED by
-// machine code.
+// machine code; with -DPLAIN the functions of mozzi.h on pointers, as C calls them.
 
 #include "peer.hpp"
 #include <mozzi/mozzi.hpp>
@@ -10,6 +10,7 @@ using Eigen::Map, Eigen::MatrixXd, Eigen::VectorXd;
 using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 struct Robot {
+    mozzi::Model model;
     mozzi::Workspace workspace;
     int nq, n;
     VectorXd tau, ddtheta, h;
@@ -39,6 +40,50 @@ void done(const mozzi::Status& status, const void* result) {
 
 } // namespace
 
+#ifdef PLAIN
+namespace {
+
+void done(mozzi_status status, const void* result) {
+    if (status != MOZZI_OK) std::abort();
+    keep(result);
+}
+
+// Column by column, as Eigen has it.
+mozzi_matrix matrix(MatrixXd& m) { return {m.data(), 1, m.rows()}; }
+
+} // namespace
+
+std::vector<Algorithm> algorithms(const Robot&) {
+    return {
+        {"inverse_dynamics", "mozzi_inverse_dynamics",
+         [](Robot& r, const State& s) {
+             const auto m = r.model.get();
+             const auto w = r.workspace.get();
+             done(mozzi_inverse_dynamics(m, w, s.theta, s.dtheta, s.ddtheta, nullptr, r.tau.data()), r.tau.data());
+         },
+         [](Robot& r, double* out) { put(r.tau, out); }},
+        {"forward_dynamics", "mozzi_forward_dynamics",
+         [](Robot& r, const State& s) {
+             const auto m = r.model.get();
+             const auto w = r.workspace.get();
+             done(mozzi_forward_dynamics(m, w, s.theta, s.dtheta, s.tau, nullptr, r.ddtheta.data()), r.ddtheta.data());
+         },
+         [](Robot& r, double* out) { put(r.ddtheta, out); }},
+        {"mass_matrix", "mozzi_mass_matrix",
+         [](Robot& r, const State& s) {
+             done(mozzi_mass_matrix(r.model.get(), r.workspace.get(), s.theta, matrix(r.M)), r.M.data());
+         },
+         [](Robot& r, double* out) { put(r.M, out); }},
+        {"bias_forces", "mozzi_bias_forces",
+         [](Robot& r, const State& s) {
+             const auto m = r.model.get();
+             const auto w = r.workspace.get();
+             done(mozzi_bias_forces(m, w, s.theta, s.dtheta, nullptr, r.h.data()), r.h.data());
+         },
+         [](Robot& r, double* out) { put(r.h, out); }},
+    };
+}
+#else
 std::vector<Algorithm> algorithms(const Robot&) {
     return {
         {"inverse_dynamics", "inverse_dynamics",
@@ -83,6 +128,8 @@ std::vector<Algorithm> algorithms(const Robot&) {
     };
 }
 
+#endif
+
 Robot* make_robot(const Description& description) {
     auto read = mozzi::Model::parse("robot.urdf", description.urdf);
     if (!read) return nullptr;
@@ -99,7 +146,7 @@ Robot* make_robot(const Description& description) {
 #endif
     const VectorXd v = VectorXd::Zero(n);
     const MatrixXd m = MatrixXd::Zero(n, n);
-    return new Robot{std::move(workspace), nq, n, v, v, v, m, m, m, m, m};
+    return new Robot{model, std::move(workspace), nq, n, v, v, v, m, m, m, m, m};
 }
 
 void free_robot(Robot* robot) { delete robot; }

@@ -47,7 +47,7 @@ usage: cargo xtask COMMAND
           --check                                     build it elsewhere and compare
   bench   compare with Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
           --robots ur5,panda,anymal,talos,tree,chain,feet  only these robots, into target/bench/RESULTS.md
-          --peers pinocchio,mujoco,kdl,dynibo,casadi  only these libraries, likewise; c++,c++-compiled is mozzi from C++
+          --peers pinocchio,mujoco,kdl,dynibo,casadi  only these libraries, likewise; c,c++,c++-compiled is mozzi from C, C++
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first
           --criterion                                 each kernel alone, without peers

@@ -97,7 +97,9 @@ pub(crate) fn read_rows<L: Lane>(table: &[L::Number], first: usize, rows: usize,
 pub(crate) fn write_rows<L: Lane>(table: &mut [L::Number], first: usize, rows: usize, columns: &[L]) {
     let width = columns.len();
     let table = &mut table[first * width..];
-    for (k, part) in columns.chunks(L::WIDTH).enumerate().rev() {
+    // of wide tables, whole squares without a test for each row
+    let squares = if rows == L::WIDTH && width >= 2 * L::WIDTH { width / L::WIDTH } else { 0 };
+    for (k, part) in columns.chunks(L::WIDTH).enumerate().skip(squares).rev() {
         let c = k * L::WIDTH;
         let square = transpose(take(part));
         let (mut row, mut place) = (0, c);
@@ -108,6 +110,18 @@ pub(crate) fn write_rows<L: Lane>(table: &mut [L::Number], first: usize, rows: u
             }
             place += width;
             row += 1;
+        }
+    }
+    if squares > 0 {
+        let mut rows: [&mut [L::Number]; MOST] = Default::default();
+        rows.iter_mut().zip(table.chunks_exact_mut(width)).take(L::WIDTH).for_each(|(to, row)| *to = row);
+        for (k, part) in columns.chunks_exact(L::WIDTH).enumerate() {
+            let square = transpose(take(part));
+            let mut row = 0;
+            while row < L::WIDTH {
+                square[row].store(&mut rows[row][k * L::WIDTH..]);
+                row += 1;
+            }
         }
     }
 }

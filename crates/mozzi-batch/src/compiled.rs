@@ -42,7 +42,7 @@ impl Machine {
         } else {
             let program = record_quantity(model, query, Arguments::default())?;
             let own = program.outputs().len() - pivot_names(&query).len();
-            Kernel::condensing(&program, Shape::OneF64, own)
+            Kernel::condensing(&program, Shape::one_f64(), own)
         };
         let pivots = pivot_names(&query).len();
         let subject = query.subject;

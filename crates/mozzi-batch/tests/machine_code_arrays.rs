@@ -5,7 +5,7 @@
 mod common;
 
 use common::{compute, error, inputs, quantities, robots, state, tolerance};
-use mozzi::quantities::MassMatrix;
+use mozzi::quantities::{ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix};
 use mozzi_batch::{Layout, compile};
 
 #[test]
@@ -49,6 +49,41 @@ fn rows_and_blocks_of_any_number_of_states() {
         }
     }
 }
+
+#[test]
+fn any_number_of_states_on_one_thread_and_on_three() {
+    let model = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");
+    let environment = model.environment().into();
+    let queries =
+        [InverseDynamics.into(), MassMatrix.into(), ForwardDynamics.into(), InverseDynamicsDerivatives.into()];
+    for compiled in [&queries[..], &[]] {
+        for threads in [1, 3] {
+            let robot = compile(&model, compiled).expect("no frames").with_threads(threads).expect("threads");
+            for (query, states) in queries.iter().flat_map(|&query| STATES.map(|states| (query, states))) {
+                let rows: Vec<[Vec<f64>; 3]> = (0..states as u64).map(|seed| state(&model, seed % 211)).collect();
+                let count = query.declaration().inputs.len();
+                let tables: Vec<Vec<f64>> =
+                    (0..count).map(|k| rows.iter().flat_map(|row| inputs(query, row)[k].to_vec()).collect()).collect();
+                let tables: Vec<&[f64]> = tables.iter().map(Vec::as_slice).collect();
+                let lengths = query.output_lengths(&model);
+                let mut found: Vec<Vec<f64>> = lengths.map(|length| vec![f64::NAN; states * length]).collect();
+                let mut outputs: Vec<&mut [f64]> = found.iter_mut().map(Vec::as_mut_slice).collect();
+                robot.batch().compute(query, &tables, &environment, &mut outputs).expect("regular");
+                let expected: Vec<_> =
+                    (0..211.min(states as u64)).map(|seed| compute(&model, query, seed).expect("regular")).collect();
+                for k in 0..states {
+                    for (found, expected) in found.iter().zip(&expected[k % 211]) {
+                        let error = error(&found[k * expected.len()..][..expected.len()], expected);
+                        assert!(error < 1e-12, "{}, state {k} of {states}, {threads} threads: {error:e}", query.name());
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Less than a register, whole registers, one more, and many.
+const STATES: [usize; 7] = [1, 7, 8, 9, 29, 77, 10_000];
 
 #[test]
 fn what_registers_cannot_do_is_done_at_one_state() {

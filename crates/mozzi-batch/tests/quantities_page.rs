@@ -39,8 +39,8 @@ Each quantity works in each of these ways:
 
 Arrays go through one of two engines. *Registers*: the kernel is compiled for registers of 4 to 16 states. *Program*: the kernel is recorded for
 the robot, and the program runs as machine code, or in an interpreter over 32 states where there is none: on other processors, and where
-the code would be longer than 64 kB, as of large robots' derivatives and regressors. Inertial parameters of each state always go through a
-program. A compiled quantity whose code would be longer than 64 kB is computed by the kernels, and `engine` reports that.
+the code would be longer than 512 kB, as of large robots' regressors. Inertial parameters of each state always go through a
+program. A compiled quantity whose code would be longer (256 kB at one state) is computed by the kernels, and `engine` reports that.
 Source text does not check pivots: its functions return them as further outputs.
 
 ## The list

@@ -1,6 +1,5 @@
 //! Estimates the length of a program without recording it.
 
-use crate::jit::LONGEST_CODE;
 use mozzi::Model;
 use mozzi::quantities::{ForwardDynamics, Query};
 use std::collections::HashMap;
@@ -12,6 +11,8 @@ const ARTICULATED: f64 = 300.0;
 const ENTRY: f64 = 30.0;
 /// Least bytes of machine code for an operation.
 const BYTES: f64 = 5.0;
+/// Estimates beyond this are of code that is too long for every shape; recording it would take tens of milliseconds.
+const LONGEST: f64 = 1_000_000.0;
 
 /// A source text with more operations is reported as too long: a compiler takes minutes to optimize it.
 pub const LONGEST_TEXT: f64 = 150_000.0;
@@ -38,9 +39,9 @@ pub(crate) fn is_deep(model: &Model) -> bool {
     tree.by_mass_matrix() > 10.0 * ARTICULATED * tree.links
 }
 
-/// True if the machine code would be several times too long for the instruction cache.
+/// True if the machine code would be several times too long.
 pub fn is_too_long<'q>(model: &Model, query: impl Into<Query<'q>>) -> bool {
-    estimate(model, query) * BYTES > 4.0 * LONGEST_CODE as f64
+    estimate(model, query) * BYTES > LONGEST
 }
 
 /// Sums over the moving links.

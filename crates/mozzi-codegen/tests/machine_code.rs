@@ -164,7 +164,7 @@ fn what_no_machine_code_is_made_of() {
     let arrays: Vec<(&str, usize)> = names.iter().map(|name| (name.as_str(), 1)).collect();
     let many = record("many", &arrays, |x| vec![("y", vec![x.iter().fold(x[0][0], |sum, x| sum + x[0])])]);
     let long = record("long", &[("x", 300)], |x| {
-        let sum = (0..20_000).fold(x[0][0], |sum, k| sum * x[0][k % 300] + x[0][k * 7 % 300]);
+        let sum = (0..100_000).fold(x[0][0], |sum, k| sum * x[0][k % 300] + x[0][k * 7 % 300]);
         vec![("y", vec![sum])]
     });
     for shape in Shape::ALL.into_iter().filter(|shape| shape.is_supported()) {

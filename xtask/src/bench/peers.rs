@@ -14,13 +14,14 @@ pub struct Peer {
     pub is_mozzi: bool,
 }
 
-pub const PEERS: [Peer; 8] = [
+pub const PEERS: [Peer; 9] = [
     Peer { name: "Pinocchio", build: pinocchio, is_mozzi: false },
     Peer { name: "MuJoCo", build: mujoco, is_mozzi: false },
     Peer { name: "KDL", build: kdl, is_mozzi: false },
     Peer { name: "dynibo", build: dynibo, is_mozzi: false },
     Peer { name: "CasADi", build: casadi, is_mozzi: false },
     Peer { name: "Drake", build: drake, is_mozzi: false },
+    Peer { name: "C", build: plain_c, is_mozzi: true },
     Peer { name: "C++", build: cpp, is_mozzi: true },
     Peer { name: "C++-compiled", build: cpp_compiled, is_mozzi: true },
 ];
@@ -123,6 +124,11 @@ fn casadi(workshop: &Workshop) -> Result<PathBuf, String> {
 /// mozzi.hpp with Eigen's arguments, on the shared library.
 fn cpp(workshop: &Workshop) -> Result<PathBuf, String> {
     own(workshop, "mozzi-cpp", FAST)
+}
+
+/// The functions of mozzi.h on pointers.
+fn plain_c(workshop: &Workshop) -> Result<PathBuf, String> {
+    own(workshop, "mozzi-c", &format!("{FAST} -DPLAIN"))
 }
 
 /// As [`cpp`], by machine code.

@@ -192,7 +192,7 @@ impl Work {
     fn of(model: &Model, query: Query, further: Arguments, precision: Precision) -> Result<Self> {
         let program = record_quantity(model, query, further)?;
         let (one, widest, narrower) = match precision {
-            Precision::F64 => (Shape::OneF64, Shape::EightF64, Shape::FourF64),
+            Precision::F64 => (Shape::one_f64(), Shape::EightF64, Shape::FourF64),
             Precision::F32 => (Shape::OneF32, Shape::SixteenF32, Shape::EightF32),
         };
         let lanes = if widest.is_supported() { widest } else { narrower };

@@ -163,8 +163,7 @@ impl<'p> Line<'p> {
         match (self.nodes[value as usize], self.slot[value as usize]) {
             (Node::Constant(_), _) => {
                 let (pool, byte) = (self.places.pool, self.places.constants[value as usize]);
-                let is_repeated = self.shape.encoding() == Encoding::Evex;
-                if is_repeated { Operand::Repeated(pool, byte) } else { Operand::Lanes(pool, byte) }
+                if self.shape.repeats() { Operand::Repeated(pool, byte) } else { Operand::Lanes(pool, byte) }
             }
             (Node::Input(SINES, index), _) => Operand::Lanes(self.assembler.frame(), index as usize * width),
             (Node::Input(array, index), _) => Operand::Lanes(array as usize, index as usize * self.places.stride),

@@ -32,8 +32,8 @@ const SAVED: usize = 9;
 /// The largest number of arrays, including constants and spilled registers.
 pub(crate) const MOST_ARRAYS: usize = BASES.len();
 
-/// The largest frame in bytes, far less than any thread's stack.
-pub(crate) const LARGEST_FRAME: usize = 1 << 16;
+/// The largest frame in bytes, far less than a thread's stack.
+pub(crate) const LARGEST_FRAME: usize = 1 << 20;
 
 /// Opcode map, mandatory prefix (0 none, 1 66, 2 F3, 3 F2), the bit W, opcode.
 #[derive(Clone, Copy)]
@@ -231,7 +231,9 @@ impl Assembler {
         let x = if is_register { inverted(base, 4) } else { 1 };
         let registers = inverted(target, 3) << 7 | x << 6 | inverted(base, 3) << 5 | inverted(target, 4) << 4;
         let second = u8::from(wide) << 7 | (!a & 15) << 3 | 4 | prefix;
-        let third = 2 << 5 | u8::from(repeated) << 4 | inverted(a, 4) << 3;
+        // 512 bits, or the lowest number
+        let length = if self.shape.is_scalar() { 0 } else { 2 };
+        let third = length << 5 | u8::from(repeated) << 4 | inverted(a, 4) << 3;
         self.body.extend([0x62, registers | map, second, third]);
     }
 

@@ -90,7 +90,7 @@ impl Builder {
 /// smallest entry and the sum of its entries, which is not finite if an entry is not.
 pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option<Lowered> {
     let is_f64 = shape.is_f64();
-    let windows = if shape == Shape::OneF64 { windows(program) } else { Vec::new() };
+    let windows = if shape.is_scalar() && is_f64 { windows(program) } else { Vec::new() };
     let mut builder = Builder { is_f64, nodes: Vec::with_capacity(2 * program.steps.len()), constants: HashMap::new() };
     let mut place: Vec<Value> = Vec::with_capacity(program.steps.len());
     let mut angles: HashMap<u32, (Value, Value)> = HashMap::new();

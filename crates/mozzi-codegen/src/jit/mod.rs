@@ -5,6 +5,7 @@ mod assembler;
 mod executable;
 mod instruction;
 mod lower;
+mod order;
 mod shape;
 mod sin_cos;
 
@@ -26,7 +27,7 @@ pub enum Refusal {
     /// The program has a function without machine code (tanh), or more arrays than there are registers for their
     /// addresses.
     Program,
-    /// The code would be longer than [`LONGEST_CODE`]; the kernels are faster then.
+    /// The code would be longer than [`Shape::longest_code`]; the kernels are faster then.
     Long,
     /// The system does not allow executable memory.
     Memory,
@@ -38,16 +39,12 @@ impl std::fmt::Display for Refusal {
             Refusal::NotAsked => "machine code was not requested",
             Refusal::Processor => "the processor has not the instructions",
             Refusal::Program => "the program has a function without machine code, or too many arrays",
-            Refusal::Long => "the code would be longer than the instruction cache is wide",
+            Refusal::Long => "the code would be longer than the caches serve",
             Refusal::Memory => "the system grants no executable memory",
         })
     }
 }
 impl std::error::Error for Refusal {}
-
-/// Largest code size in bytes: longer code is fetched from the second-level cache at every call, and the kernels' loops
-/// are faster.
-pub const LONGEST_CODE: usize = 64 << 10;
 
 /// A program as machine code for one or several states at once. It can be shared between threads; calls do not
 /// allocate.
@@ -84,8 +81,10 @@ impl Kernel {
         let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
         let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
         let flops = lowered.flops();
+        let pays = shape.repeats() && lowered.nodes.len() <= order::LONGEST;
+        let lowered = if pays { order::ordered(lowered) } else { lowered };
         let code = allocate::allocate(shape, &lowered, &inputs)?;
-        if code.bytes.len() > LONGEST_CODE {
+        if code.bytes.len() > shape.longest_code() {
             return Err(Refusal::Long);
         }
         let largest = if shape.is_f64() { f64::LARGEST } else { f32::LARGEST.into() };

@@ -5,7 +5,7 @@
 pub(crate) enum Encoding {
     /// AVX2 and FMA: 16 registers of 256 bits.
     Vex,
-    /// AVX-512 F: 32 registers of 512 bits, constants repeated by the instruction that reads them.
+    /// AVX-512: 32 registers; those of 512 bits take constants repeated by the instruction that reads them.
     Evex,
 }
 
@@ -24,17 +24,31 @@ pub enum Shape {
     EightF64,
     /// Sixteen states in `f32`.
     SixteenF32,
+    /// One state in `f64` with twice the registers of [`OneF64`](Self::OneF64); AVX-512 F and VL.
+    OneF64Evex,
 }
 
 impl Shape {
     /// All of them.
-    pub const ALL: [Shape; 6] =
-        [Shape::OneF64, Shape::FourF64, Shape::OneF32, Shape::EightF32, Shape::EightF64, Shape::SixteenF32];
+    pub const ALL: [Shape; 7] = [
+        Shape::OneF64,
+        Shape::FourF64,
+        Shape::OneF32,
+        Shape::EightF32,
+        Shape::EightF64,
+        Shape::SixteenF32,
+        Shape::OneF64Evex,
+    ];
+
+    /// The fastest shape for one state in `f64` on this processor.
+    pub fn one_f64() -> Self {
+        if Shape::OneF64Evex.is_supported() { Shape::OneF64Evex } else { Shape::OneF64 }
+    }
 
     /// The number of states that one call computes.
     pub fn lanes(self) -> usize {
         match self {
-            Shape::OneF64 | Shape::OneF32 => 1,
+            Shape::OneF64 | Shape::OneF32 | Shape::OneF64Evex => 1,
             Shape::FourF64 => 4,
             Shape::EightF32 | Shape::EightF64 => 8,
             Shape::SixteenF32 => 16,
@@ -48,13 +62,14 @@ impl Shape {
 
     /// True if numbers are `f64`, not `f32`.
     pub fn is_f64(self) -> bool {
-        matches!(self, Shape::OneF64 | Shape::FourF64 | Shape::EightF64)
+        matches!(self, Shape::OneF64 | Shape::OneF64Evex | Shape::FourF64 | Shape::EightF64)
     }
 
     /// The required instructions, as text.
     pub fn instruction_set(self) -> &'static str {
         match self.encoding() {
             Encoding::Vex => "avx2 + fma",
+            Encoding::Evex if self.is_scalar() => "avx512f + avx512vl",
             Encoding::Evex => "avx512f",
         }
     }
@@ -66,7 +81,9 @@ impl Shape {
             use std::is_x86_feature_detected as has;
             match self.encoding() {
                 Encoding::Vex => has!("avx2") && has!("fma"),
-                Encoding::Evex => has!("avx512f"),
+                Encoding::Evex => {
+                    has!("avx512f") && (!self.is_scalar() || has!("avx512vl") && has!("avx2") && has!("fma"))
+                }
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
@@ -75,9 +92,20 @@ impl Shape {
 
     pub(crate) fn encoding(self) -> Encoding {
         match self {
-            Shape::EightF64 | Shape::SixteenF32 => Encoding::Evex,
+            Shape::EightF64 | Shape::SixteenF32 | Shape::OneF64Evex => Encoding::Evex,
             _ => Encoding::Vex,
         }
+    }
+
+    /// The longest code in bytes. Long code is fetched from the second-level cache all along: at one state the kernels'
+    /// loops are faster beyond it.
+    pub fn longest_code(self) -> usize {
+        if self.is_scalar() { 256 << 10 } else { 512 << 10 }
+    }
+
+    /// True if an instruction can repeat a number in memory.
+    pub(crate) fn repeats(self) -> bool {
+        self.encoding() == Encoding::Evex && !self.is_scalar()
     }
 
     pub(crate) fn is_scalar(self) -> bool {

@@ -70,7 +70,7 @@ fn last_operands(shape: Shape, takes_memory: bool) -> Vec<Operand> {
     if takes_memory {
         operands.extend(places(shape).map(|(memory, byte)| Operand::Lanes(memory, byte)));
     }
-    if takes_memory && shape.encoding() == Encoding::Evex {
+    if takes_memory && shape.repeats() {
         operands.extend(places(shape).map(|(memory, byte)| Operand::Repeated(memory, byte)));
     }
     operands
