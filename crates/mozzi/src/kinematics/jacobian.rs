@@ -46,7 +46,7 @@ impl Jacobian<f64> {
 pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
     let mut V = Twist::zero();
     for (&column, &rate) in columns.iter().zip(dtheta) {
-        V = V + column * rate;
+        V += column * rate;
     }
     V
 }
