@@ -2,12 +2,14 @@
 
 use crate::chunk::Chunk;
 use crate::interpreter::Interpreter;
-use crate::lanes::Lane;
+use crate::lanes::{Lane, MOST};
 use crate::request::Request;
 use crate::worker::Worker;
 use crate::{InstructionSet, Number};
+use mozzi::model::clearance;
 use mozzi::quantities::Query;
-use mozzi::{Error, FrameId, Model, Scalar, TaskFrame, least_is_clear};
+use mozzi::scalar::Float;
+use mozzi::{Error, FrameId, Model, Scalar, TaskFrame};
 use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -57,9 +59,6 @@ fn shape<T: Number>(set: InstructionSet) -> Option<Shape> {
 /// A program, and the values of its inputs that are the same in all states.
 pub type ProgramCall<'p> = (&'p Programmed, &'p [Option<Vec<f64>>]);
 
-/// The largest number of arrays of a program.
-const MOST_ARRAYS: usize = 12;
-
 /// Computes the states of a chunk; inlined into an entry.
 #[inline(always)]
 pub(crate) fn run<L: Lane>(
@@ -101,7 +100,7 @@ pub(crate) fn run<L: Lane>(
                 for (k, place) in places.iter().enumerate() {
                     chunk.read_input(k, block, states(0).1, &mut input[place.clone()]);
                 }
-                call(kernel, (inputs, input), (outputs, output), &mut squares);
+                kernel.call_joined(L::numbers(input), L::numbers_mut(output), L::numbers_mut(&mut squares));
             }
             Err(_) => {
                 for r in 0..registers {
@@ -124,21 +123,26 @@ pub(crate) fn run<L: Lane>(
                 columns.iter_mut().zip(output.chunks_exact(abreast)).for_each(|(to, from)| *to = from[r]);
                 chunk.write(first, rows, columns);
             }
-            // quick test for all states at once: all angles are reduced exactly, and there are no pivots
+            // quick test for all states at once: all angles are reduced exactly, and pivots are clear
             let kinds = outputs.len() - own;
             let limit = code.as_ref().map_or(f64::INFINITY, Kernel::angle_limit);
-            if kinds == 0 && squares[0].within(L::Number::from_f64(limit)) {
+            let (mut clear, mut clearances) = (L::one(), [L::Number::one(); MOST]);
+            for kind in 0..kinds {
+                let least = (own_columns + 2 * kind) * abreast + r;
+                // as the second operand, a NaN is kept
+                clear = clear.min(clearance(output[least], output[least + abreast], L::Number::EPSILON));
+            }
+            if kinds > 0 {
+                clear.store(&mut clearances);
+            }
+            let are_exact = squares[0].within(L::Number::from_f64(limit));
+            let are_clear = kinds == 0 || clearances[..L::WIDTH].iter().all(|&x| x > L::Number::zero());
+            if are_exact && are_clear {
                 continue;
             }
             let passes = |row: usize| {
-                let number = |column: usize| L::numbers(&output[column * abreast + r..][..1])[row];
-                let is_exact = L::numbers(&squares)[row] <= L::Number::from_f64(limit);
-                let pivots = (0..kinds).map(|kind| own_columns + 2 * kind);
-                pivots.fold(is_exact, |clear, k| clear & least_is_clear(number(k), number(k + 1)))
+                L::numbers(&squares)[row] <= L::Number::from_f64(limit) && clearances[row] > L::Number::zero()
             };
-            if (0..L::WIDTH).all(passes) {
-                continue;
-            }
             for row in (0..rows).filter(|&row| !passes(row)).collect::<Vec<_>>() {
                 if let Err(error) = chunk.recheck(request, first + row, L::WIDTH, true) {
                     errors.push((chunk.first + first + row, error));
@@ -146,29 +150,6 @@ pub(crate) fn run<L: Lane>(
             }
         }
     }
-}
-
-/// Runs machine code on contiguous columns.
-#[inline(always)]
-fn call<L: Lane>(
-    kernel: &Kernel,
-    (widths, input): (&[usize], &[L]),
-    (heights, output): (&[usize], &mut [L]),
-    squares: &mut [L; 1],
-) {
-    let mut given: [&[L::Number]; MOST_ARRAYS] = Default::default();
-    let mut found: [&mut [L::Number]; MOST_ARRAYS] = Default::default();
-    let mut rest = input;
-    for (slice, &width) in given.iter_mut().zip(widths) {
-        let (this, further) = rest.split_at(width);
-        (*slice, rest) = (L::numbers(this), further);
-    }
-    let mut rest = output;
-    for (slice, &width) in found.iter_mut().zip(heights) {
-        let (this, further) = rest.split_at_mut(width);
-        (*slice, rest) = (L::numbers_mut(this), further);
-    }
-    kernel.call(&given[..widths.len()], &mut found[..heights.len()], L::numbers_mut(squares));
 }
 
 /// Programs, each with its key.

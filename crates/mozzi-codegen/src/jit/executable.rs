@@ -64,13 +64,40 @@ impl Executable {
         self.run(&mut addresses);
     }
 
+    /// As [`call`](Self::call), with inputs and outputs each in one slice, array after array.
+    ///
+    /// # Panics
+    /// If the numbers are of another type, or a slice is too short.
+    #[inline(always)]
+    pub fn call_joined<S: Float>(&self, inputs: &[S], outputs: &mut [S], last: &mut [S]) {
+        let lanes = self.shape.lanes();
+        let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
+        let number = if self.shape.is_f64() { TypeId::of::<f64>() } else { TypeId::of::<f32>() };
+        assert!(TypeId::of::<S>() == number, "numbers of another type");
+        let (given, found) = self.lengths.split_at(self.inputs);
+        let (of_last, found) = found.split_last().unwrap_or((&0, &[]));
+        let mut at = 0;
+        for (address, length) in addresses.iter_mut().zip(given) {
+            let array = &inputs[at..at + length * lanes];
+            (*address, at) = (array.as_ptr().cast_mut().cast(), at + array.len());
+        }
+        let mut rest = outputs;
+        for (address, length) in addresses[self.inputs..].iter_mut().zip(found) {
+            let (array, further) = rest.split_at_mut(length * lanes);
+            (*address, rest) = (array.as_mut_ptr().cast(), further);
+        }
+        assert!(last.len() >= of_last * lanes, "the last output has {} entries", last.len());
+        addresses[self.lengths.len() - 1] = last.as_mut_ptr().cast();
+        self.run(&mut addresses);
+    }
+
     #[cfg(all(unix, target_arch = "x86_64"))]
     #[inline(always)]
     fn run(&self, addresses: &mut [*mut u8; MOST_ARRAYS]) {
         addresses[self.lengths.len()] = self.pages.start.wrapping_add(self.pool);
         // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has
         // its instructions (`new`). It accesses only the arrays at the given addresses, each as long as the assembler
-        // assumed (checked in `call`; the outputs are borrowed exclusively), its constants, and its stack.
+        // assumed (checked by the callers; the outputs are borrowed exclusively), its constants, and its stack.
         unsafe {
             let function: extern "sysv64" fn(*const *mut u8) = std::mem::transmute(self.pages.start);
             function(addresses.as_ptr());
