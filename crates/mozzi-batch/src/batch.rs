@@ -265,6 +265,9 @@ impl<T: Number> Batch<T> {
         let run = Run { model: &self.constants, threads: &self.threads, pool: &self.pool, request: &request, chunks };
         let errors = match programmed {
             Some(programmed) => T::run_program(self.set, (&programmed, &request.constants(&arguments)), run),
+            None if self.layout == Layout::Rows && query.is_faster_alone(&*self.model) => {
+                T::run_kernel(InstructionSet::Portable, query.index(), run)
+            }
             None => T::run_kernel(self.set, query.index(), run),
         };
         match errors.into_iter().min_by_key(|(index, _)| *index) {

@@ -2,11 +2,11 @@
 #![allow(missing_docs)]
 
 use mozzi::quantities::{
-    CenterOfMassJacobian, ConstraintJacobian, ConstraintResidual, ForwardDynamics, GravityForces, InverseDynamics,
-    MassMatrix, Query, Regressor, TaskSpaceDynamics,
+    CenterOfMassJacobian, ConstraintJacobian, ConstraintResidual, ForwardDynamics, ForwardDynamicsDerivatives,
+    GravityForces, InverseDynamics, MassMatrix, Query, Regressor, TaskSpaceDynamics,
 };
 use mozzi::simulation::{Method, Options};
-use mozzi::testing::{Random, floating_tree, four_bar, state, tree};
+use mozzi::testing::{Random, chain, floating_tree, four_bar, state, tree};
 use mozzi::{Model, Task, TaskFrame};
 use mozzi_batch::{Batch, BatchEnvironment, InstructionSet, Layout, Number};
 
@@ -36,6 +36,30 @@ impl States {
 
 fn numbers<T: Number>(list: &[f64]) -> Vec<T> {
     list.iter().map(|&x| T::from_f64(x)).collect()
+}
+
+/// ∂θ̈ of a long chain is computed one state after the other: the kernels' results to the bit.
+#[test]
+fn a_long_chain_is_computed_as_at_one_state() {
+    let model = chain(&tree(70, 40, 0));
+    let query = Query::from(ForwardDynamicsDerivatives);
+    assert!(query.is_faster_alone(&model) && !query.is_faster_alone(&tree(6, 3, 0)));
+    let (n, states, environment) = (model.n(), States::new(&model, 11), model.environment().into());
+    for set in [InstructionSet::Portable, Batch::<f64>::new(&model).instruction_set()] {
+        let batch = Batch::<f64>::new(&model).with_instruction_set(set).expect("of this machine");
+        let mut found = [n, n * n, n * n, n * n].map(|length| vec![0.0; 11 * length]);
+        let mut outputs = found.each_mut().map(Vec::as_mut_slice);
+        batch.compute(query, &[&states.theta, &states.dtheta, &states.x], &environment, &mut outputs).expect("regular");
+        for k in 0..11 {
+            let at = |x: &[f64]| x[k * n..][..n].to_vec();
+            let state = [at(&states.theta), at(&states.dtheta), at(&states.x)];
+            let state = [&state[0][..], &state[1], &state[2]];
+            let expected = model.compute(query, &state, &model.environment()).expect("regular");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_eq!(found[k * expected.len()..][..expected.len()], expected[..], "{set:?}, state {k}");
+            }
+        }
+    }
 }
 
 #[test]

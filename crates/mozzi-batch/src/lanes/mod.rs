@@ -103,8 +103,8 @@ macro_rules! lane {
         }
         impl<$($generics)*> mozzi::Scalar for $L {
             type Four = [Self; 4];
-            const IS_ONE: bool = false;
-            const IN_PLACE: bool = <$L as crate::lanes::Lane>::WIDTH > 1;
+            const IS_ONE: bool = <$L as crate::lanes::Lane>::WIDTH == 1;
+            const IN_PLACE: bool = !Self::IS_ONE;
             #[inline(always)]
             fn from_f64(x: f64) -> Self { mozzi::scalar::Bits::constant(mozzi::Scalar::from_f64(x)) }
             #[inline(always)]
