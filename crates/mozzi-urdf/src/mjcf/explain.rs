@@ -3,7 +3,7 @@
 use crate::explain::Entry;
 
 #[rustfmt::skip] // code, meaning, remedy
-pub(crate) const CODES: [Entry; 41] = [
+pub(crate) const CODES: [Entry; 42] = [
     ("actuator_armature",
         "An actuator has an armature, but drives neither a joint nor a tendon to which it could be added. MuJoCo \
          refuses it, too.",
@@ -106,6 +106,9 @@ pub(crate) const CODES: [Entry; 41] = [
     ("reversed_limits",
         "The lower end of a range is above its upper end. Limits do not enter the dynamics; the range is not used.",
         "exchange the two numbers"),
+    ("rotor_of_several_axes",
+        "A fixed tendon with an armature acts on a ball or a free joint, which do not have one position.",
+        "let the tendon act on joints of one axis only"),
     ("several_orientations",
         "An orientation is given in two ways.",
         "keep one of them"),
