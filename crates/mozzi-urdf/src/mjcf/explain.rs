@@ -3,7 +3,7 @@
 use crate::explain::Entry;
 
 #[rustfmt::skip] // code, meaning, remedy
-pub(crate) const CODES: [Entry; 42] = [
+pub(crate) const CODES: [Entry; 43] = [
     ("actuator_armature",
         "An actuator has an armature, but drives neither a joint nor a tendon to which it could be added. MuJoCo \
          refuses it, too.",
@@ -116,6 +116,10 @@ pub(crate) const CODES: [Entry; 42] = [
         "Elements are nested deeper than 256 levels. No robot needs this; the file is refused to bound time and \
          memory.",
         "check for missing closing tags"),
+    ("too_many_constraints",
+        "The equalities have more rows together than mozzi allows (a `weld` has six); each solution takes time and \
+         memory by their square.",
+        "remove equalities that repeat others, or lock joints instead"),
     ("too_many_keys",
         "The keys of a model have more than a million positions in total. No robot needs this; the file is \
          refused to bound memory.",
