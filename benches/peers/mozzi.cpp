@@ -33,20 +33,17 @@ template <typename M> double* put(const M& matrix, double* out) {
     return out + matrix.size();
 }
 
-void done(const mozzi::Status& status, const void* result) {
-    if (!status.ok()) std::abort();
+void done(bool is_ok, const void* result) {
+    if (!is_ok) std::abort();
     keep(result);
 }
+void done(const mozzi::Status& status, const void* result) { done(status.ok(), result); }
+void done(mozzi_status status, const void* result) { done(status == MOZZI_OK, result); }
 
 } // namespace
 
 #ifdef PLAIN
 namespace {
-
-void done(mozzi_status status, const void* result) {
-    if (status != MOZZI_OK) std::abort();
-    keep(result);
-}
 
 // Column by column, as Eigen has it.
 mozzi_matrix matrix(MatrixXd& m) { return {m.data(), 1, m.rows()}; }

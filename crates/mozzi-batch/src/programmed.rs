@@ -129,7 +129,7 @@ pub(crate) fn run<L: Lane>(
             let (mut clear, mut clearances) = (L::one(), [L::Number::one(); MOST]);
             for kind in 0..kinds {
                 let least = (own_columns + 2 * kind) * abreast + r;
-                // as the second operand, a NaN is kept
+                // a NaN is kept as in `registers::clearances`
                 clear = clear.min(clearance(output[least], output[least + abreast], L::Number::EPSILON));
             }
             if kinds > 0 {

@@ -5,8 +5,22 @@
 mod common;
 
 use common::{compute, error, inputs, quantities, robots, state, tolerance};
-use mozzi::quantities::{ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix};
-use mozzi_batch::{Layout, compile};
+use mozzi::quantities::{ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Query};
+use mozzi_batch::{Compiled, Layout, compile};
+
+/// The outputs at these states, by rows.
+fn by_rows(robot: &Compiled, query: Query, rows: &[[Vec<f64>; 3]]) -> Vec<Vec<f64>> {
+    let count = query.declaration().inputs.len();
+    let tables: Vec<Vec<f64>> =
+        (0..count).map(|k| rows.iter().flat_map(|row| inputs(query, row)[k].to_vec()).collect()).collect();
+    let tables: Vec<&[f64]> = tables.iter().map(Vec::as_slice).collect();
+    let lengths = query.output_lengths(robot.model());
+    let mut found: Vec<Vec<f64>> = lengths.map(|length| vec![f64::NAN; rows.len() * length]).collect();
+    let mut outputs: Vec<&mut [f64]> = found.iter_mut().map(Vec::as_mut_slice).collect();
+    let environment = robot.model().environment().into();
+    robot.batch().compute(query, &tables, &environment, &mut outputs).expect("regular");
+    found
+}
 
 #[test]
 fn rows_and_blocks_of_any_number_of_states() {
@@ -18,14 +32,7 @@ fn rows_and_blocks_of_any_number_of_states() {
             let robot = compile(&model, compiled).expect("its own frames").with_threads(2).expect("two threads");
             for (query, states) in queries.iter().flat_map(|&query| [0, 1, 8, 13].map(|states| (query, states))) {
                 let rows: Vec<[Vec<f64>; 3]> = (0..states).map(|seed| state(&model, seed)).collect();
-                let count = query.declaration().inputs.len();
-                let tables: Vec<Vec<f64>> =
-                    (0..count).map(|k| rows.iter().flat_map(|row| inputs(query, row)[k].to_vec()).collect()).collect();
-                let tables: Vec<&[f64]> = tables.iter().map(Vec::as_slice).collect();
-                let lengths = query.output_lengths(&model);
-                let mut found: Vec<Vec<f64>> = lengths.map(|length| vec![f64::NAN; states as usize * length]).collect();
-                let mut outputs: Vec<&mut [f64]> = found.iter_mut().map(Vec::as_mut_slice).collect();
-                robot.batch().compute(query, &tables, &environment, &mut outputs).expect("regular");
+                let found = by_rows(&robot, query, &rows);
                 for seed in 0..states {
                     let expected = compute(&model, query, seed).expect("regular");
                     for (found, expected) in found.iter().zip(&expected) {
@@ -53,7 +60,6 @@ fn rows_and_blocks_of_any_number_of_states() {
 #[test]
 fn any_number_of_states_on_one_thread_and_on_three() {
     let model = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");
-    let environment = model.environment().into();
     let queries =
         [InverseDynamics.into(), MassMatrix.into(), ForwardDynamics.into(), InverseDynamicsDerivatives.into()];
     for compiled in [&queries[..], &[]] {
@@ -61,14 +67,7 @@ fn any_number_of_states_on_one_thread_and_on_three() {
             let robot = compile(&model, compiled).expect("no frames").with_threads(threads).expect("threads");
             for (query, states) in queries.iter().flat_map(|&query| STATES.map(|states| (query, states))) {
                 let rows: Vec<[Vec<f64>; 3]> = (0..states as u64).map(|seed| state(&model, seed % 211)).collect();
-                let count = query.declaration().inputs.len();
-                let tables: Vec<Vec<f64>> =
-                    (0..count).map(|k| rows.iter().flat_map(|row| inputs(query, row)[k].to_vec()).collect()).collect();
-                let tables: Vec<&[f64]> = tables.iter().map(Vec::as_slice).collect();
-                let lengths = query.output_lengths(&model);
-                let mut found: Vec<Vec<f64>> = lengths.map(|length| vec![f64::NAN; states * length]).collect();
-                let mut outputs: Vec<&mut [f64]> = found.iter_mut().map(Vec::as_mut_slice).collect();
-                robot.batch().compute(query, &tables, &environment, &mut outputs).expect("regular");
+                let found = by_rows(&robot, query, &rows);
                 let expected: Vec<_> =
                     (0..211.min(states as u64)).map(|seed| compute(&model, query, seed).expect("regular")).collect();
                 for k in 0..states {

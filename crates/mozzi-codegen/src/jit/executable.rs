@@ -46,8 +46,6 @@ impl Executable {
     pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
         let lanes = self.shape.lanes();
         let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
-        let number = if self.shape.is_f64() { TypeId::of::<f64>() } else { TypeId::of::<f32>() };
-        assert!(TypeId::of::<S>() == number, "numbers of another type");
         let arrays = inputs.len() + outputs.len() + 1;
         assert!(inputs.len() == self.inputs && arrays == self.lengths.len(), "another number of arrays");
         let mut lengths = self.lengths.iter();
@@ -59,9 +57,7 @@ impl Executable {
             assert!(output.len() >= length * lanes, "an output has {} entries, expected {length}", output.len());
             *address = output.as_mut_ptr().cast();
         }
-        assert!(lengths.all(|&length| last.len() >= length * lanes), "the last output has {} entries", last.len());
-        addresses[arrays - 1] = last.as_mut_ptr().cast();
-        self.run(&mut addresses);
+        self.run_with(addresses, last);
     }
 
     /// As [`call`](Self::call), with inputs and outputs each in one slice, array after array.
@@ -72,10 +68,8 @@ impl Executable {
     pub fn call_joined<S: Float>(&self, inputs: &[S], outputs: &mut [S], last: &mut [S]) {
         let lanes = self.shape.lanes();
         let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
-        let number = if self.shape.is_f64() { TypeId::of::<f64>() } else { TypeId::of::<f32>() };
-        assert!(TypeId::of::<S>() == number, "numbers of another type");
         let (given, found) = self.lengths.split_at(self.inputs);
-        let (of_last, found) = found.split_last().unwrap_or((&0, &[]));
+        let found = &found[..found.len() - 1]; // the last is an argument of its own
         let mut at = 0;
         for (address, length) in addresses.iter_mut().zip(given) {
             let array = &inputs[at..at + length * lanes];
@@ -86,8 +80,18 @@ impl Executable {
             let (array, further) = rest.split_at_mut(length * lanes);
             (*address, rest) = (array.as_mut_ptr().cast(), further);
         }
-        assert!(last.len() >= of_last * lanes, "the last output has {} entries", last.len());
-        addresses[self.lengths.len() - 1] = last.as_mut_ptr().cast();
+        self.run_with(addresses, last);
+    }
+
+    /// Runs with these addresses and that of the last output, whose type and length are checked here.
+    #[inline(always)]
+    fn run_with<S: Float>(&self, mut addresses: [*mut u8; MOST_ARRAYS], last: &mut [S]) {
+        let number = if self.shape.is_f64() { TypeId::of::<f64>() } else { TypeId::of::<f32>() };
+        assert!(TypeId::of::<S>() == number, "numbers of another type");
+        let place = self.lengths.len() - 1;
+        let length = self.lengths[place] * self.shape.lanes();
+        assert!(last.len() >= length, "the last output has {} entries", last.len());
+        addresses[place] = last.as_mut_ptr().cast();
         self.run(&mut addresses);
     }
 

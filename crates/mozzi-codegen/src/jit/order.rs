@@ -144,5 +144,8 @@ mod tests {
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..nodes.len() as Value).collect::<Vec<_>>());
+        let place = |value: Value| order.iter().position(|&v| v == value).expect("a permutation") as Value;
+        assert!(place(101) < place(50), "while few are alive, the sum begins");
+        assert!((51..=100).all(|k| place(k) == place(50) + k - 50), "then the products end first");
     }
 }
