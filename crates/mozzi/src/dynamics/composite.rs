@@ -120,7 +120,7 @@ pub(super) fn composite_pass<S: Scalar + From<C>, C: Scalar>(
     if S::IS_ONE && model.structure.is_deep {
         let taken = [by_theta.is_some(), by_rates.is_some()];
         turn(model, &T[..slots], pairs, taken, &mut turned[..slots], rows);
-        let path = BaseAxes { links: &turned[..slots], rows, runs: &model.structure.runs };
+        let path = BaseAxes { links: &turned[..slots], rows, runs: &model.structure.runs, at_once: S::Four::at_once() };
         fill(model, path, pairs, bodies, [&mut by_theta, &mut by_rates], &mut M, does);
     } else {
         let frames = LinkFrames { T: &T[..slots], pairs };
@@ -199,15 +199,15 @@ fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
             if let Some((run, row)) = path.row(k) {
                 let (ij, ji) = (run.j * n + j, j * n + run.j);
                 if let Some(Filled { X, .. }) = by_theta {
-                    add_column(X, n, ij, row.forces(of_theta));
+                    add_column(X, n, ij, path.forces(row, of_theta));
                     add_row(X, ji, Row::products(&row.by_theta, GA, BtA));
                 }
                 if let Some(Filled { X, .. }) = by_rates {
-                    add_column(X, n, ij, row.forces(of_rates));
+                    add_column(X, n, ij, path.forces(row, of_rates));
                     add_row(X, ji, Row::products(&row.by_rates, GA, BtA));
                 }
                 if let Some(M) = M {
-                    let entries = row.forces(GA);
+                    let entries = path.forces(row, GA);
                     add_column(M, n, ij, entries);
                     add_row(M, ji, entries);
                 }

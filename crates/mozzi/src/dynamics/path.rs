@@ -8,7 +8,7 @@
 
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
-use crate::model::{ByRates, ByTheta, Lifted, Model, Row, Run, Runs, Turned};
+use crate::model::{ByRates, ByTheta, Lifted, Model, Row, Run, Runs, TOGETHER, Turned};
 use crate::scalar::{Four, FourAtOnce, Scalar};
 use crate::spatial::{Twist, Wrench};
 
@@ -53,6 +53,11 @@ pub(super) trait Path<S: Scalar> {
     #[inline(always)]
     fn row(&self, _: usize) -> Option<(&Run, &Row<S>)> {
         None
+    }
+    /// A_kᵀF of each link of a row.
+    #[inline(always)]
+    fn forces(&self, row: &Row<S>, F: Wrench<S>) -> [S; TOGETHER] {
+        row.forces(None, F)
     }
     /// Moved past a row, to the point p.
     #[inline(always)]
@@ -185,6 +190,7 @@ pub(super) struct BaseAxes<'w, S> {
     pub links: &'w [Turned<S>],
     pub runs: &'w Runs,
     pub rows: &'w [Row<S>],
+    pub at_once: Option<FourAtOnce>,
 }
 
 impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
@@ -232,6 +238,10 @@ impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
     fn row(&self, k: usize) -> Option<(&Run, &Row<S>)> {
         let at = self.runs.ending_at(k)?;
         Some((&self.runs.list[at], &self.rows[at]))
+    }
+    #[inline(always)]
+    fn forces(&self, row: &Row<S>, F: Wrench<S>) -> [S; TOGETHER] {
+        row.forces(self.at_once, F)
     }
 }
 

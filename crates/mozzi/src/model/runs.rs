@@ -2,7 +2,7 @@
 
 use super::{Link, Turned};
 use crate::linalg::Vec3;
-use crate::scalar::Scalar;
+use crate::scalar::{Four, FourAtOnce, Scalar};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -92,8 +92,11 @@ impl<S: Scalar> Row<S> {
 
     /// A_kᵀF of each link.
     #[inline(always)]
-    pub fn forces(&self, F: Wrench<S>) -> [S; W] {
-        dots(&self.A, F.to_array())
+    pub fn forces(&self, at_once: Option<FourAtOnce>, F: Wrench<S>) -> [S; W] {
+        match at_once {
+            Some(at_once) => dots_of_four(at_once, &self.A, F.to_array()),
+            None => dots(&self.A, F.to_array()),
+        }
     }
 
     /// rᵀ(𝒢ᶜA) + sᵀ(𝓑ᶜᵀA) of each link.
@@ -123,6 +126,19 @@ fn dots<const K: usize, S: Scalar>(lists: &[[S; W]; K], x: [S; K]) -> [S; W] {
         }
     }
     sum
+}
+
+/// The same in registers of four, which the compiler does not choose if the numbers go to different places.
+#[inline(always)]
+fn dots_of_four<const K: usize, S: Scalar>(at_once: FourAtOnce, lists: &[[S; W]; K], x: [S; K]) -> [S; W] {
+    let mut sums = [S::Four::new(at_once, [S::zero(); 4]); 2];
+    for k in 0..K {
+        let [a, b, c, d, e, f, g, h] = lists[k];
+        sums[0] = S::Four::new(at_once, [a, b, c, d]).mul_add(x[k], sums[0]);
+        sums[1] = S::Four::new(at_once, [e, f, g, h]).mul_add(x[k], sums[1]);
+    }
+    let ([a, b, c, d], [e, f, g, h]) = (sums[0].numbers(), sums[1].numbers());
+    [a, b, c, d, e, f, g, h]
 }
 
 #[cfg(test)]
@@ -155,7 +171,7 @@ mod tests {
         let (run, mut row) = (Run { first: 1, parent: 0, j: 0 }, Row::zero());
         row.gather(&run, &links, [true, true]);
         let (mut F, mut P, m) = (crate::testing::wrench(1), crate::testing::wrench(2), Vec3([0.3, -0.1, 0.7]));
-        let (forces, products) = (row.forces(F), Row::products(&row.by_theta, P, m));
+        let (forces, products) = (row.forces(None, F), Row::products(&row.by_theta, P, m));
         let (at_first, about) = (F.about(row.p), |F: Wrench, k: usize| F.about(links[k].p));
         for w in (0..W).rev() {
             let (r, s) = links[1 + w].by_theta;
