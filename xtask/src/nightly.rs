@@ -7,7 +7,7 @@ use crate::fuzz;
 use crate::oracles;
 use crate::report::{Outcome, Report};
 use crate::venv;
-use crate::workspace::{FEATURES, Workspace};
+use crate::workspace::Workspace;
 use std::process::{Command, ExitCode};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -31,8 +31,8 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
     report.step("long simulations", || {
-        let mut cargo = workspace.cargo(&["test", "--workspace", "--lib"]);
-        command::outcome(cargo.args(FEATURES).args(["--", "--ignored", "--nocapture", "simulation"]))
+        let mut cargo = workspace.cargo(&["test", "--package", "mozzi", "--lib"]);
+        command::outcome(cargo.args(["--", "--ignored", "--nocapture", "simulation"]))
     });
     report.step("accuracy at 1000 states", || {
         let page = workspace.path(FOLDER).join("accuracy.md");
