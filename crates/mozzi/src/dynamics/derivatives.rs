@@ -41,7 +41,7 @@ use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, com
 use crate::kinematics::{base_motion, base_pose};
 use crate::model::{ByRates, ByTheta, Environment, Model, Workspace};
 use crate::scalar::{Scalar, apart};
-use crate::spatial::{CoriolisFactor, Twist, Wrench};
+use crate::spatial::{CoriolisFactor, Twist, Wrench, coriolis_moment};
 
 /// ∂τ/∂θ and, if given, ∂τ/∂θ̇ and M. The workspace holds T_{i,i−1}(θ), and afterwards no more.
 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -107,11 +107,12 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
     let G = model.base_inertia.map(S::from);
     let P = G * V[0];
-    let B = CoriolisFactor::new(G, V[0], P);
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
     match along {
-        None => (workspace.G_c[0], workspace.B[0]) = (G, B),
-        Some((X, _)) => (workspace.X[0], workspace.U[0], workspace.B[0].f) = (X, G * X, B.transpose_mul_twist(X)),
+        None => (workspace.G_c[0], workspace.B[0]) = (G, CoriolisFactor::new(G, V[0], P)),
+        Some((X, _)) => {
+            (workspace.X[0], workspace.U[0], workspace.B[0].f) = (X, G * X, coriolis_moment(G, V[0], P.f, X));
+        }
     }
 
     // base to tips: rates of the axes, twists, accelerations; 𝒢, 𝓑 and 𝓕 of each link
@@ -165,9 +166,8 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
         let G = link.G();
         let P = G * V_i;
         F[i]  = G * dV_i - V_i.ad().transpose() * P;
-        let B_i = CoriolisFactor::new(G, V_i, P);
         let Some(x) = x else {
-            (G_c[i], B[i]) = (G, B_i);
+            (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V_i, P));
             continue;
         };
         let X_p = Ad * X[p];
@@ -175,7 +175,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
             carrier[i][2] = if link.is_next() { Ad * carrier[p][2] } else { X_p };
         }
         let X_i = X_p + link.A() * x[link.j];
-        (X[i], Q[i], B[i].f) = (X_i, G * X_i, B_i.transpose_mul_twist(X_i));
+        (X[i], Q[i], B[i].f) = (X_i, G * X_i, coriolis_moment(G, V_i, P.f, X_i));
     }
 }
 

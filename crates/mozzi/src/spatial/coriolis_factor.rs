@@ -43,12 +43,19 @@ impl<S: Scalar> CoriolisFactor<S> {
         let ([x, y, z], [fx, fy, _], b) = (self.K.z.0, self.f.0, A.b + A.b);
         Vec3([A.a.mul_add(x, b * fy), A.a.mul_add(y, -(b * fx)), A.a * z])
     }
+}
 
-    /// The same of any twist.
-    #[inline(always)]
-    pub fn transpose_mul_twist(self, V: Twist<S>) -> Vec3<S> {
-        (self.f + self.f).cross_add(V.v, self.K.transpose_mul(V.w))
-    }
+/// 𝓑ᵀX, a moment without a force, of a body with the twist 𝒱 and the linear momentum f. Its mass points dm at r move by
+/// ṙ, and X would move them by x = X_v + X_ω × r, so 𝓑ᵀX = 2 ∫ ṙ × x dm, which is
+///
+/// > 2 (f × X_v + v × (X_ω × mc) − I y) + tr(I) y, y = ω × X_ω
+///
+/// with (ω × r) × (X_ω × r) = r rᵀy and ∫ r rᵀ dm = ½ tr(I) − I.
+#[inline(always)]
+pub(crate) fn coriolis_moment<S: Scalar>(G: SpatialInertia<S>, V: Twist<S>, f: Vec3<S>, X: Twist<S>) -> Vec3<S> {
+    let y = V.w.cross(X.w);
+    let half = f.cross_add(X.v, V.v.cross_add(X.w.cross(G.mc), -(G.I * y)));
+    y.mul_add(G.I.trace(), half + half)
 }
 
 /// 𝓑A, from A's angular part: the linear part meets zeros.
@@ -86,8 +93,9 @@ mod tests {
         let A = JointAxis { a: 0.7, b: -0.3 };
         assert!((B * A - B * A.twist().w).norm() < 1e-15);
         assert!((B.transpose_mul(A).dot(X.w) - A.twist().dot(defined(X))).abs() < 1e-13);
-        assert!((B.transpose_mul_twist(A.twist()) - B.transpose_mul(A)).norm() < 1e-13);
-        assert!((B.transpose_mul_twist(V).dot(X.w) - V.dot(defined(X))).abs() < 1e-13);
+        let moment = |X| coriolis_moment(G, V, P.f, X);
+        assert!((moment(A.twist()) - B.transpose_mul(A)).norm() < 1e-13);
+        assert!((moment(X).dot(A.twist().w) - X.dot(defined(A.twist()))).abs() < 1e-13);
         // about another point: 𝓑 from the body's inertia and twist there
         let p = Vec3([0.3, -0.2, 0.5]);
         let (G, V) = (G.about(p), SE3 { p: -p, ..SE3::identity() }.Ad() * V);

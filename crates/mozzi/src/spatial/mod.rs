@@ -14,7 +14,7 @@ pub mod solids;
 pub use crate::lie::{Twist, Wrench};
 pub use articulated_inertia::ArticulatedInertia;
 pub(crate) use axis_rate::AxisRate;
-pub(crate) use coriolis_factor::CoriolisFactor;
+pub(crate) use coriolis_factor::{CoriolisFactor, coriolis_moment};
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};
