@@ -29,7 +29,7 @@ struct Machine {
     /// The task's rows, owned.
     rows: Vec<usize>,
     subject: (Option<mozzi::FrameId>, mozzi::TaskFrame, mozzi::Vec3),
-    code: Result<Kernel, Refusal>,
+    code: Result<Arc<Kernel>, Refusal>,
     /// The number of pivot outputs after the quantity's own.
     pivots: usize,
 }
@@ -42,7 +42,7 @@ impl Machine {
         } else {
             let program = record_quantity(model, query, Arguments::default())?;
             let own = program.outputs().len() - pivot_names(&query).len();
-            Kernel::condensing(&program, Shape::one_f64(), own)
+            Kernel::shared(&program, Shape::one_f64(), own)
         };
         let pivots = pivot_names(&query).len();
         let subject = query.subject;
@@ -65,7 +65,7 @@ impl Machine {
 }
 
 /// Compiles these quantities of a robot to machine code. An arm's inverse dynamics takes about a quarter of a
-/// millisecond.
+/// millisecond. Robots with the same numbers share their code.
 ///
 /// ```
 /// use mozzi::quantities::{InverseDynamics, MassMatrix, Query};

@@ -2,6 +2,7 @@
 
 use mozzi_codegen::{Kernel, Refusal, Shape};
 use std::fmt;
+use std::sync::Arc;
 
 /// The engine that computes a quantity, at one state or in arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum Engine {
 }
 
 impl Engine {
-    pub(crate) fn of(code: &Result<Kernel, Refusal>) -> Self {
+    pub(crate) fn of(code: &Result<Arc<Kernel>, Refusal>) -> Self {
         match code {
             Ok(kernel) => Engine::MachineCode(kernel.shape(), kernel.code_bytes()),
             Err(refusal) => Engine::Kernels(*refusal),
@@ -23,7 +24,7 @@ impl Engine {
     }
 
     /// The engine of a quantity that has no kernel on registers.
-    pub(crate) fn of_program(code: &Result<Kernel, Refusal>) -> Self {
+    pub(crate) fn of_program(code: &Result<Arc<Kernel>, Refusal>) -> Self {
         match Engine::of(code) {
             Engine::Kernels(refusal) => Engine::Interpreter(refusal),
             engine => engine,

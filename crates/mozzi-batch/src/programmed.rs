@@ -21,7 +21,7 @@ pub struct Programmed {
     outputs: Vec<usize>,
     /// The number of the quantity's own outputs.
     own: usize,
-    pub code: Result<Kernel, Refusal>,
+    pub code: Result<Arc<Kernel>, Refusal>,
     interpreter: Interpreter,
 }
 
@@ -35,7 +35,7 @@ impl Programmed {
         let program = record_quantity(model, query, arguments)?;
         let own = program.outputs().len() - pivot_names(&query).len();
         let code = match shape::<T>(set) {
-            Some(shape) => Kernel::condensing(&program, shape, own),
+            Some(shape) => Kernel::shared(&program, shape, own),
             None => Err(Refusal::Processor),
         };
         let inputs = program.inputs().iter().map(|input| input.length).collect();
@@ -125,7 +125,7 @@ pub(crate) fn run<L: Lane>(
             }
             // quick test for all states at once: all angles are reduced exactly, and pivots are clear
             let kinds = outputs.len() - own;
-            let limit = code.as_ref().map_or(f64::INFINITY, Kernel::angle_limit);
+            let limit = code.as_ref().map_or(f64::INFINITY, |kernel| kernel.angle_limit());
             let (mut clear, mut clearances) = (L::one(), [L::Number::one(); MOST]);
             for kind in 0..kinds {
                 let least = (own_columns + 2 * kind) * abreast + r;

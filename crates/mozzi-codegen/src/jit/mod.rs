@@ -2,6 +2,7 @@
 
 mod allocate;
 mod assembler;
+mod cache;
 mod executable;
 mod instruction;
 mod lower;
