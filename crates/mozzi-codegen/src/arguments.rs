@@ -6,7 +6,7 @@ use crate::rates::with_rates;
 use crate::record::record;
 use crate::robot_number::RobotNumber;
 use crate::traced::Traced;
-use mozzi::quantities::{ForwardDynamics, ForwardDynamicsByMassMatrix, Memory, Of, Query};
+use mozzi::quantities::{ForwardDynamics, ForwardDynamicsParameterVjp, ForwardDynamicsVjp, Memory, Of, Query};
 use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};
 
 /// Quantities kept as arguments of the program instead of constants: further inputs after the state, in this order. By
@@ -59,8 +59,8 @@ impl Arguments<'_> {
 
 /// The program of a quantity of this robot: `mozzi`'s kernel, recorded. Its inputs are the quantity's, then the
 /// [`Arguments`]. Its outputs are the quantity's by name, matrices by rows, then `pivots` if it divides by the mass
-/// matrix and `task_pivots` for a task. Forward dynamics is recorded both by the articulated-body algorithm and by the
-/// mass matrix, and the shorter program is kept.
+/// matrix and `task_pivots` for a task. Forward dynamics and its products are recorded both by the articulated-body
+/// algorithm and by the mass matrix, and the shorter program is kept.
 ///
 /// # Errors
 /// [`Error::BadArgument`] if the frame is missing or belongs to another model; [`Error::NoMass`].
@@ -68,23 +68,22 @@ pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments
     let query = query.into();
     query.check_subject(model)?;
     arguments.wrenches.iter().try_for_each(|&frame| model.check_frame(frame))?;
-    let by = |kernel: Query| {
-        let program = recorded(model, query, kernel, arguments);
+    let by = |model: &Model| {
+        let program = recorded(model, query, arguments);
         if arguments.rates { with_rates(&program, model) } else { program }
     };
-    if query == ForwardDynamics.into() && !model.has_coupled_joints() {
-        let bodies = by(query);
-        if is_deep(model) {
-            return Ok(bodies);
-        }
-        let matrix = by(ForwardDynamicsByMassMatrix.into());
-        return Ok(if work(&matrix) < work(&bodies) { matrix } else { bodies });
+    let program = by(model);
+    let solves =
+        [ForwardDynamics.into(), ForwardDynamicsVjp.into(), ForwardDynamicsParameterVjp.into()].contains(&query);
+    if !solves || model.solves_by_mass_matrix() || is_deep(model) {
+        return Ok(program);
     }
-    Ok(by(query))
+    let by_matrix = by(&model.clone().solving_by_mass_matrix());
+    Ok(if work(&by_matrix) < work(&program) { by_matrix } else { program })
 }
 
-/// The program of a query, recorded from a kernel that computes the same quantity.
-fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) -> Program {
+/// The program of a query, recorded from its kernel.
+fn recorded(model: &Model, query: Query, arguments: Arguments) -> Program {
     let declaration = query.declaration();
     let reduced = declaration.is_of_forces.then(|| model.reduced());
     let model = reduced.as_ref().unwrap_or(model);
@@ -124,7 +123,7 @@ fn recorded(model: &Model, query: Query, kernel: Query, arguments: Arguments) ->
             }
             None => model.map(RobotNumber::Constant),
         };
-        kernel.evaluate(&model, &state, &environment, &mut memory, &mut slices);
+        query.evaluate(&model, &state, &environment, &mut memory, &mut slices);
         let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
         names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
     })

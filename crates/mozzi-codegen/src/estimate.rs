@@ -23,7 +23,7 @@ pub fn estimate<'q>(model: &Model, query: impl Into<Query<'q>>) -> f64 {
     let query = query.into();
     let tree = Tree::of(model);
     let n = model.n() as f64;
-    if query == ForwardDynamics.into() && !model.has_coupled_joints() {
+    if query == ForwardDynamics.into() && !model.solves_by_mass_matrix() {
         return ARTICULATED * tree.links;
     }
     let matrices = query.shapes(model).iter().filter(|shape| shape[..] == [model.n(), model.n()]).count() as f64;

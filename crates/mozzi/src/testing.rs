@@ -117,6 +117,21 @@ pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
+/// The same robot, but of joints of one axis on the same link the first moves the others, as a gripper's fingers.
+pub fn grippers(of: &Model) -> Model {
+    let mut robot = of.description().clone();
+    let mut random = Random(40);
+    for i in 0..robot.joints.len() {
+        let is_same = |a: &Joint, b: &Joint| a.parent == b.parent && matches!(a.kind, JointKind::Screw(_));
+        let first = robot.joints[..i].iter().find(|first| is_same(first, &robot.joints[i]));
+        if let (Some(first), JointKind::Screw(_)) = (first, robot.joints[i].kind) {
+            let joint = first.name.clone();
+            robot.joints[i].mimic = Some(Mimic { joint, ratio: 1.5 * random.next(), offset: random.next() });
+        }
+    }
+    robot.build().expect("a sound robot")
+}
+
 /// A tree in which each link is the child of the one before, so that it is deep.
 pub fn chain(of: &Model) -> Model {
     limbs(of, usize::MAX)

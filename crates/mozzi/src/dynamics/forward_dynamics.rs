@@ -17,9 +17,8 @@ use crate::spatial::{Twist, Wrench};
 /// > M(θ)θ̈ = τ − c(θ, θ̇) − g(θ) − JᵀF − f(θ, θ̇)
 ///
 /// The inverse of [`inverse_dynamics`](super::inverse_dynamics()). By articulated bodies in O(n), a floating base by a
-/// 6 × 6 LDLᵀ at the root; if joints are coupled, by a mimic joint or a rotor, by the mass matrix. No allocation. If M
-/// is singular, the result is infinite, NaN or meaningless: the methods of [`Model`] check the pivots and return an
-/// error.
+/// 6 × 6 LDLᵀ at the root; by the mass matrix if [`Model::solves_by_mass_matrix`]. No allocation. If M is singular, the
+/// result is infinite, NaN or meaningless: the methods of [`Model`] check the pivots and return an error.
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇, τ or θ̈ not n.
@@ -33,7 +32,7 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     workspace: &mut Workspace<S>,
     ddtheta: &mut [S],
 ) {
-    if model.has_coupled_joints() {
+    if model.solves_by_mass_matrix() {
         let mut M = core::mem::take(&mut workspace.matrix);
         forward_dynamics_by_mass_matrix(model, theta, dtheta, tau, environment, workspace, &mut M, ddtheta);
         workspace.matrix = M;
@@ -44,14 +43,14 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
 
 apart! {
 /// Ĝ and 𝓕 of each link are its articulated inertia and bias wrench, felt at its joint while all joints beyond it are
-/// free.
+/// free. A joint and its mimic joints on the same link p free their links together: d and the columns ĜA of all add up,
+/// in p's coordinates, at the first of them.
 fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], tau: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     joint_sines(model, theta, workspace);
-    let slots = model.links.len() + 1;
     let Workspace { V, dV, F, G_hat, vector, .. } = workspace;
     vector.fill(S::zero());
     let (V_0, dV_0) = base_motion(model, theta, dtheta, vector, environment);
@@ -75,31 +74,15 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         true => motions::<true, S, C>(model, theta, dtheta, workspace),
         false => motions::<false, S, C>(model, theta, dtheta, workspace),
     }
-    let Workspace { T, dV, F, G_hat, U, u, pivots, .. } = workspace;
-    let (T, dV, F) = (&T[..slots], &mut dV[..slots], &mut F[..slots]);
-    let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
-        F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
+        workspace.F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
     }
-
-    // tips to base: free each joint and pass the remaining inertia and wrench to the parent
-    for (i, link) in model.inward::<S>() {
-        let (A, j) = (link.A(), link.j);
-        let GA = G_hat[i] * A;
-        let d  = A * GA + S::from(model.armature[j]);
-        let one_over_d = S::one() / d;
-        u[i] = -(ddtheta[j] + A * F[i]) * one_over_d;
-        U[i] = GA * one_over_d;
-        pivots[j] = d;
-        if link.parent > 0 || model.is_floating() {
-            let G_a = G_hat[i].minus_outer(GA, one_over_d);
-            let F_a = G_a.mul_add(dV[i], F[i] + GA * u[i]);
-            let (Ad, p) = (T[i].Ad(), link.parent);
-            G_hat[p] = G_a.congruence_add(Ad, G_hat[p]);
-            F[p]     = Ad.transpose().mul_add(F_a, F[p]);
-        }
+    match model.structure.siblings.is_empty() {
+        true => free_joints::<false, S, C>(model, workspace, ddtheta),
+        false => free_joints::<true, S, C>(model, workspace, ddtheta),
     }
+    let Workspace { dV, F, G_hat, pivots, .. } = &mut *workspace;
 
     // a floating base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free
     if let (Some(&F_tau), true) = (tau.first_chunk(), model.is_floating()) {
@@ -110,11 +93,9 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         dV[0] += Twist::from_array(ddbase);
     }
 
-    // base to tips: accelerations
-    for (i, link) in model.outward::<S>() {
-        let dV_i = T[i].Ad() * dV[link.parent] + dV[i];
-        ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
-        dV[i] = dV_i + link.A() * ddtheta[link.j];
+    match model.structure.siblings.is_empty() {
+        true => accelerations::<false, S, C>(model, workspace, ddtheta),
+        false => accelerations::<true, S, C>(model, workspace, ddtheta),
     }
 }
 }
@@ -140,6 +121,81 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
         (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
         F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
         G_hat[i] = link.G().into();
+    }
+}
+
+/// Inward from the tips: frees each joint and passes the remaining inertia and wrench to the parent.
+#[inline(always)]
+#[rustfmt::skip]
+fn free_joints<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
+) {
+    let slots = model.links.len() + 1;
+    let Workspace { T, dV, F, G_hat, U, u, pivots, .. } = workspace;
+    let (T, dV, F) = (&T[..slots], &dV[..slots], &mut F[..slots]);
+    let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
+    for (i, link) in model.outward::<S>() {
+        if SIBLINGS && model.first_sibling(i) == i {
+            (U[i], pivots[link.j]) = (Wrench::zero(), S::from(model.armature[link.j]));
+        }
+    }
+    for (i, link) in model.inward::<S>() {
+        let (A, j, p) = (link.A(), link.j, link.parent);
+        let (GA, moves_parent) = (G_hat[i] * A, p > 0 || model.is_floating());
+        let first = if SIBLINGS { model.first_sibling(i) } else { 0 };
+        if first > 0 {
+            let (Ad, F_i) = (T[i].Ad(), G_hat[i].mul_add(dV[i], F[i]));
+            U[first]   = Ad.transpose().mul_add(GA, U[first]);
+            pivots[j]  += A * GA;
+            ddtheta[j] += A * F_i;
+            if moves_parent {
+                G_hat[p] = G_hat[i].congruence_add(Ad, G_hat[p]);
+                F[p]     = Ad.transpose().mul_add(F_i, F[p]);
+            }
+            if i == first {
+                let (GA, one_over_d) = (U[i], S::one() / pivots[j]);
+                u[i] = -ddtheta[j] * one_over_d;
+                U[i] = GA * one_over_d;
+                if moves_parent {
+                    G_hat[p] = G_hat[p].minus_outer(GA, one_over_d);
+                    F[p] += GA * u[i];
+                }
+            }
+            continue;
+        }
+        let d  = A * GA + S::from(model.armature[j]);
+        let one_over_d = S::one() / d;
+        u[i] = -(ddtheta[j] + A * F[i]) * one_over_d;
+        U[i] = GA * one_over_d;
+        pivots[j] = d;
+        if moves_parent {
+            let G_a = G_hat[i].minus_outer(GA, one_over_d);
+            let F_a = G_a.mul_add(dV[i], F[i] + GA * u[i]);
+            let Ad = T[i].Ad();
+            G_hat[p] = G_a.congruence_add(Ad, G_hat[p]);
+            F[p]     = Ad.transpose().mul_add(F_a, F[p]);
+        }
+    }
+}
+
+/// Outward from the base: accelerations.
+#[inline(always)]
+#[rustfmt::skip]
+fn accelerations<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
+) {
+    let slots = model.links.len() + 1;
+    let Workspace { T, dV, U, u, .. } = workspace;
+    let (T, dV, U, u) = (&T[..slots], &mut dV[..slots], &U[..slots], &u[..slots]);
+    for (i, link) in model.outward::<S>() {
+        let (dV_p, first) = (dV[link.parent], if SIBLINGS { model.first_sibling(i) } else { 0 });
+        let dV_i = T[i].Ad() * dV_p + dV[i];
+        if first == 0 {
+            ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
+        } else if first == i {
+            ddtheta[link.j] = u[i] - dV_p.dot(U[i]);
+        }
+        dV[i] = dV_i + link.A() * ddtheta[link.j];
     }
 }
 

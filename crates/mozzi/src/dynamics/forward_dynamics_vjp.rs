@@ -24,7 +24,7 @@ use crate::spatial::{Twist, Wrench};
 /// They are xᵀ times the matrices of [`forward_dynamics_derivatives`](super::forward_dynamics_derivatives()), with the
 /// same conventions: an entry of xᵀ∂θ̈/∂θ is along a velocity.
 ///
-/// Cost O(n); if joints are coupled, by a mimic joint or a rotor, O(n · depth²). No allocation.
+/// Cost O(n); O(n · depth²) if [`Model::solves_by_mass_matrix`]. No allocation.
 ///
 /// # Panics
 /// When θ is not nq long, or another slice not n.
@@ -68,7 +68,7 @@ pub(super) fn solved<S: Scalar + From<C>, C: Scalar>(
 ) {
     forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
     y.copy_from_slice(x);
-    if model.has_coupled_joints() {
+    if model.solves_by_mass_matrix() {
         ldlt::solve(&model.structure.pattern, &workspace.matrix, y);
         joint_transforms(model, theta, workspace); // M's own pass leaves others
     } else {
@@ -90,10 +90,17 @@ fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Works
 
     // tips to base: the forces left at the joints, and the wrench that each link hands on
     for (i, link) in model.inward::<S>() {
-        let (j, p) = (link.j, link.parent);
-        let u = x[j] - link.A() * P[i];
-        P[p] = T[i].Ad().transpose().mul_add(P[i] + U[i] * u, P[p]);
-        x[j] = u;
+        let (j, p, Ad) = (link.j, link.parent, T[i].Ad().transpose());
+        let first = model.first_sibling(i);
+        x[j] -= link.A() * P[i];
+        if first == 0 {
+            P[p] = Ad.mul_add(P[i] + U[i] * x[j], P[p]);
+        } else {
+            P[p] = Ad.mul_add(P[i], P[p]);
+            if first == i {
+                P[p] += U[i] * x[j]; // U is in the coordinates of p
+            }
+        }
     }
     a[0] = Twist::zero();
     if let (true, Some(&F_0)) = (model.is_floating(), x.first_chunk()) {
@@ -104,9 +111,12 @@ fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Works
 
     // base to tips: the accelerations
     for (i, link) in model.outward::<S>() {
-        let (j, a_p) = (link.j, T[i].Ad() * a[link.parent]);
-        x[j] = x[j] / pivots[j] - a_p.dot(U[i]);
-        a[i] = a_p + link.A() * x[j];
+        let (j, a_p, first) = (link.j, a[link.parent], model.first_sibling(i));
+        let a_i = T[i].Ad() * a_p;
+        if first == 0 || first == i {
+            x[j] = x[j] / pivots[j] - if first == 0 { a_i } else { a_p }.dot(U[i]);
+        }
+        a[i] = a_i + link.A() * x[j];
     }
 }
 

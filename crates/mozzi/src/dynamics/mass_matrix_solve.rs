@@ -12,8 +12,8 @@ use crate::quantity::{
 use crate::scalar::Scalar;
 
 /// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ, θ̇), with h by one call of inverse dynamics. `M`
-/// is memory for n × n numbers; afterwards it holds the factors. Used for models with coupled joints, such as mimic
-/// joints.
+/// is memory for n × n numbers; afterwards it holds the factors. Used where
+/// [`Model::solves_by_mass_matrix`].
 ///
 /// Cost O(n · depth²), no allocation.
 ///

@@ -63,7 +63,7 @@ pub fn inverse_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
 /// The gradient of xᵀθ̈ by the robot, for a constant x; as that of
 /// [xᵀτ](inverse_dynamics_parameter_vjp), at −M⁻¹x. `memory` is for 2 n numbers.
 ///
-/// Cost O(n); if joints are coupled, by a mimic joint or a rotor, O(n · depth²). No allocation.
+/// Cost O(n); O(n · depth²) if [`Model::solves_by_mass_matrix`]. No allocation.
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or x not n, or an output not p, 6 b, 6 b and 3 for b moving links.

@@ -124,6 +124,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         rotors.iter().map(Rotor::joints),
     );
     let is_floating = description.base == Base::Floating;
+    let siblings = siblings(&links, n);
     Model {
         ties: ties(description, &frames, &links, &moving_joints, &pattern, is_floating),
         base_inertia: inertias[0],
@@ -135,9 +136,11 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         frames,
         gravity: Vec3(description.gravity),
         base: description.base,
+        solves_by_mass_matrix: siblings.is_none() || !rotors.is_empty(),
         structure: Arc::new(Structure {
             pattern,
             has_mimic_joints: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
+            siblings: siblings.unwrap_or_default(),
             free: joint_places.iter().filter(|place| place.freedom == Freedom::Free).map(|place| place.j).collect(),
             is_deep,
             solves_by_bodies: coupled_free && mean_depth_exceeds(VERY_DEEP, &links),
@@ -207,6 +210,22 @@ fn couple<C: Real>(
         (link.q, link.j) = (place_of[source.joint].q, place_of[source.joint].j + axis);
     }
     (joints, places)
+}
+
+/// See [`Structure::siblings`]; none if a mimic joint and its source joint are on different links.
+fn siblings<C>(links: &[Link<C>], n: usize) -> Option<Vec<usize>> {
+    let (mut first_of, mut siblings) = (vec![0; n], vec![0; links.len() + 1]);
+    for (slot, link) in (1..).zip(links) {
+        match first_of[link.j] {
+            0 => first_of[link.j] = slot,
+            first if links[first - 1].parent == link.parent => (siblings[first], siblings[slot]) = (first, first),
+            _ => return None,
+        }
+    }
+    if siblings.iter().all(|&first| first == 0) {
+        siblings.clear();
+    }
+    Some(siblings)
 }
 
 /// Mean numbers of links between a link and the base above which the base's axes, and articulated bodies, are faster;

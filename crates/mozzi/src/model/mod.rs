@@ -90,6 +90,7 @@ pub struct Model<C = f64> {
     pub(crate) ties: Ties<C>,
     pub(crate) gravity: Vec3<C>,
     pub(crate) base: Base,
+    pub(crate) solves_by_mass_matrix: bool,
     pub(crate) structure: Arc<Structure>,
 }
 
@@ -116,6 +117,9 @@ pub(crate) struct Structure {
     pub pattern: Pattern,
     /// Is there a mimic joint?
     pub has_mimic_joints: bool,
+    /// For each slot the first slot of the links that a joint and its mimic joints on the same link move, 0 for a joint
+    /// that moves a link alone; empty without mimic joints, and where the mass matrix is factored.
+    pub siblings: Vec<usize>,
     /// The first index in θ̇ of each free joint.
     pub free: Vec<usize>,
     /// Are there on average many links between a link and the base? The composite-body pass then uses the base's axes.
@@ -173,10 +177,22 @@ impl<C: Scalar> Model<C> {
         self.structure.has_mimic_joints
     }
 
-    /// Whether joints are coupled by mimic joints or by rotors that several joints turn. Forward dynamics then factors
-    /// the mass matrix.
-    pub fn has_coupled_joints(&self) -> bool {
-        self.has_mimic_joints() || !self.rotors.is_empty()
+    /// Whether forward dynamics factors the mass matrix: if several joints turn a rotor, or if a mimic joint and its
+    /// source joint are not on the same link. Else it is by articulated bodies.
+    pub fn solves_by_mass_matrix(&self) -> bool {
+        self.solves_by_mass_matrix
+    }
+
+    /// The same robot, whose forward dynamics factors the mass matrix: as machine code of a small robot, this can be
+    /// less work.
+    pub fn solving_by_mass_matrix(self) -> Self {
+        Model { solves_by_mass_matrix: true, ..self }
+    }
+
+    /// The first slot of the links that one joint and its mimic joints move, 0 for a joint that moves a link alone.
+    #[inline(always)]
+    pub(crate) fn first_sibling(&self, slot: usize) -> usize {
+        self.structure.siblings.get(slot).copied().unwrap_or_default()
     }
 
     /// The constraints, as described.
@@ -254,6 +270,7 @@ impl<C: Scalar> Model<C> {
             ties: self.ties.map(f),
             gravity: self.gravity.map(f),
             base: self.base,
+            solves_by_mass_matrix: self.solves_by_mass_matrix,
             structure: Arc::clone(&self.structure),
         }
     }

@@ -88,7 +88,7 @@ impl<S: Scalar> Workspace<S> {
             u: vec![o; slots],
             pivots: vec![o; n],
             vector: vec![o; n],
-            matrix: if model.has_coupled_joints() { vec![o; n * n] } else { Vec::new() },
+            matrix: if model.solves_by_mass_matrix() { vec![o; n * n] } else { Vec::new() },
         }
     }
 

@@ -1,6 +1,7 @@
 //! The kernels against the closed form, against each other, and against the identities of mechanics, on random trees.
 
 mod derivatives;
+mod mimics;
 mod numbers;
 mod regressor;
 mod rotors;
@@ -8,7 +9,9 @@ mod springs;
 mod vjp;
 
 use crate::model::{Environment, Model, Workspace};
-use crate::testing::{chain, floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, twist, wrench};
+use crate::testing::{
+    chain, floating_mixed_tree, floating_tree, grippers, mixed_tree, moving, state, tree, twist, wrench,
+};
 use crate::{Dual, Scalar, dynamics as kernel};
 use nalgebra::{DMatrix, DVector};
 
@@ -18,7 +21,8 @@ pub fn models() -> impl Iterator<Item = (u64, Model)> {
     let mixed = [mixed_tree(72, 18, 2), floating_mixed_tree(73, 17, 0)];
     let deep = [tree(70, 20, 0), floating_tree(71, 18, 3), floating_tree(74, 23, 0)].into_iter().chain(mixed);
     let deep = (70..).zip(deep.map(|model| chain(&model)));
-    deep.chain(trees())
+    let hands = [tree(80, 12, 0), floating_tree(81, 14, 0), mixed_tree(82, 16, 0)].map(|model| grippers(&model));
+    deep.chain(trees()).chain((80..).zip(hands))
 }
 
 fn trees() -> impl Iterator<Item = (u64, Model)> {

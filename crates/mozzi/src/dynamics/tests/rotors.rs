@@ -32,7 +32,7 @@ fn a_differential_couples_joints_that_share_no_link() {
     let model = robot.build().expect("sound");
     let M = model.mass_matrix(&[0.1, 0.2]).expect("lengths");
     assert_eq!(M.as_slice(), [2.0 + 0.5 * 4.0, -0.5 * 6.0, -0.5 * 6.0, 3.0 + 0.5 * 9.0]);
-    assert!(model.couples(0, 1) && model.has_coupled_joints() && !model.has_mimic_joints());
+    assert!(model.couples(0, 1) && model.solves_by_mass_matrix() && !model.has_mimic_joints());
     // 2 N on the left one: the rotor takes the right one along
     let a = model.forward_dynamics(&[0.1, 0.2], &[0.0; 2], &[2.0, 0.0], &model.environment()).expect("regular");
     let det = 4.0 * 7.5 - 9.0;
