@@ -39,7 +39,8 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
-          the Python package, its wheel, some fuzzing, the no_std check, every example, the main job
+          the Python package, its wheel, some fuzzing, the no_std check, every example, the main job,
+          the release build's operations on registers (none may be a call)
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
   docs    rewrite the generated pages of docs/; `test` checks that they are current

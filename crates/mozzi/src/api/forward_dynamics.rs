@@ -5,8 +5,8 @@ use crate::quantities as q;
 use nalgebra::DVector;
 
 impl Model<f64> {
-    /// θ̈ from τ: by articulated bodies, or by the mass matrix for a robot with mimic joints. See
-    /// [`forward_dynamics`](crate::forward_dynamics()).
+    /// θ̈ from τ: by articulated bodies, or by the mass matrix (see
+    /// [`solves_by_mass_matrix`](Self::solves_by_mass_matrix)). See [`forward_dynamics`](crate::forward_dynamics()).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
