@@ -192,3 +192,40 @@ fn as_fused_mut(x: &mut [f64]) -> &mut [Fused] {
     // SAFETY: Fused is a transparent f64, and the borrow is handed on.
     unsafe { core::slice::from_raw_parts_mut(x.as_mut_ptr().cast(), x.len()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantities as q;
+    use crate::testing::{chain, floating_tree, grippers, state, tree};
+    use alloc::vec;
+
+    /// Long chains, whose links are processed in registers of four, and joints that move together.
+    #[test]
+    fn results_are_the_plain_kernels() {
+        for model in [chain(&tree(70, 40, 0)), chain(&floating_tree(71, 33, 0)), grippers(&floating_tree(81, 14, 0))] {
+            let [theta, dtheta, x] = state(&model, 5);
+            let environment = model.environment();
+            for query in [
+                Query::from(q::MassMatrix),
+                q::CoriolisMatrix.into(),
+                q::InverseDynamicsDerivatives.into(),
+                q::ForwardDynamics.into(),
+                q::ForwardDynamicsVjp.into(),
+            ] {
+                let inputs = &[&theta[..], &dtheta, &x, &x][..query.declaration().inputs.len()];
+                let [found, expected] = [Workspace::new(&model), Workspace::portable(&model)].map(|mut workspace| {
+                    let mut outputs: Vec<Vec<f64>> =
+                        query.output_lengths(&model).map(|length| vec![0.0; length]).collect();
+                    let mut slices: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+                    evaluate(&query, &model, inputs, &environment, &mut workspace, &mut slices);
+                    outputs.concat()
+                });
+                let size = expected.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                for (a, b) in found.iter().zip(&expected) {
+                    assert!((a - b).abs() < 1e6 * f64::EPSILON * size, "{}: {a}, not {b}", query.name());
+                }
+            }
+        }
+    }
+}

@@ -10,7 +10,7 @@ mod emitted;
 use allocations::allocations;
 use mozzi::model::description::{Closure, Constraint};
 use mozzi::quantities::*;
-use mozzi::testing::{closed, floating_mixed_tree, floating_tree, mixed_tree, state, tree, twist, wrench};
+use mozzi::testing::{closed, floating_mixed_tree, floating_tree, grippers, mixed_tree, state, tree, twist, wrench};
 use mozzi::{Dual, Environment, Error, FrameId, Freedom, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
 use mozzi_batch::{Batch, BatchEnvironment, Compiled, InstructionSet, Number, compile};
 use mozzi_codegen::{Arguments, record_quantity};
@@ -23,6 +23,7 @@ fn robots() -> Vec<(&'static str, Model)> {
         ("fixed, mimic joints", tree(2, 8, 2)),
         ("floating", floating_tree(3, 5, 0)),
         ("floating, mimic joints", floating_tree(4, 6, 2)),
+        ("floating, joints that move together", grippers(&floating_tree(12, 7, 0))),
         ("balls and a free joint, mimic joints", mixed_tree(4, 5, 1)),
         ("floating, balls and a free joint", floating_mixed_tree(8, 3, 0)),
         ("a loop and a rope", closed_at_a_state(&tree(9, 8, 0), &[Closure::Point, Closure::Distance(0.6)])),
