@@ -90,6 +90,7 @@ pub struct Model<C = f64> {
     pub(crate) ties: Ties<C>,
     pub(crate) gravity: Vec3<C>,
     pub(crate) base: Base,
+    /// See [`solves_by_mass_matrix`](Self::solves_by_mass_matrix()).
     pub(crate) solves_by_mass_matrix: bool,
     pub(crate) structure: Arc<Structure>,
 }
@@ -118,7 +119,7 @@ pub(crate) struct Structure {
     /// Is there a mimic joint?
     pub has_mimic_joints: bool,
     /// For each slot the first slot of the links that a joint and its mimic joints on the same link move, 0 for a joint
-    /// that moves a link alone; empty without mimic joints, and where the mass matrix is factored.
+    /// that moves a link alone; empty without mimic joints, and if one and its source joint are on different links.
     pub siblings: Vec<usize>,
     /// The first index in θ̇ of each free joint.
     pub free: Vec<usize>,

@@ -95,7 +95,9 @@ mod tests {
         assert!((B.transpose_mul(A).dot(X.w) - A.twist().dot(defined(X))).abs() < 1e-13);
         let moment = |X| coriolis_moment(G, V, P.f, X);
         assert!((moment(A.twist()) - B.transpose_mul(A)).norm() < 1e-13);
-        assert!((moment(X).dot(A.twist().w) - X.dot(defined(A.twist()))).abs() < 1e-13);
+        for (X, Z) in [(V, X), (X, twist(4))] {
+            assert!((moment(X).dot(Z.w) - X.dot(defined(Z))).abs() < 1e-13);
+        }
         // about another point: 𝓑 from the body's inertia and twist there
         let p = Vec3([0.3, -0.2, 0.5]);
         let (G, V) = (G.about(p), SE3 { p: -p, ..SE3::identity() }.Ad() * V);
