@@ -261,10 +261,11 @@ impl<T: Number> Batch<T> {
         let chunks = self.cut(states, &tables, outputs);
         let mut frames = Vec::new();
         let arguments = request.arguments(&mut frames);
-        let programmed = self.programmed(&request, &arguments)?;
+        let constants = request.constants(&arguments);
+        let programmed = self.programmed(&request, &arguments, &constants)?;
         let run = Run { model: &self.constants, threads: &self.threads, pool: &self.pool, request: &request, chunks };
         let errors = match programmed {
-            Some(programmed) => T::run_program(self.set, (&programmed, &request.constants(&arguments)), run),
+            Some(programmed) => T::run_program(self.set, (&programmed, &constants), run),
             None if self.layout == Layout::Rows && query.is_faster_alone(&*self.model) => {
                 T::run_kernel(InstructionSet::Portable, query.index(), run)
             }
@@ -279,11 +280,16 @@ impl<T: Number> Batch<T> {
     /// The program that computes this request, or `None` if a kernel computes it. A program is used for a compiled
     /// quantity in the robot's own environment, for inertial parameters that differ between states, and for a quantity
     /// without a kernel on registers.
-    fn programmed(&self, request: &Request<T>, arguments: &Arguments) -> Result<Option<Arc<Programmed>>, Error> {
+    fn programmed(
+        &self,
+        request: &Request<T>,
+        arguments: &Arguments,
+        constants: &[Option<Vec<f64>>],
+    ) -> Result<Option<Arc<Programmed>>, Error> {
         let query = &request.query;
         let compiled = if self.compiled.is_empty() { None } else { find(&self.compiled, query, arguments) };
         let compiled = compiled.filter(|_| request.is_own());
-        match compiled.filter(|programmed| programmed.code.is_ok()) {
+        match compiled.filter(|programmed| programmed.code(self.layout, constants).is_ok()) {
             Some(programmed) => Ok(Some(programmed.clone())),
             None if has_registers(query.index()) && request.parameters.is_none() => Ok(None),
             None => self.program(query, arguments).map(Some),
@@ -309,6 +315,7 @@ impl<T: Number> Batch<T> {
                 continue; // left to the kernels on registers, or to a program made when it is called
             }
             let programmed = Programmed::new::<T>(&self.model, *query, arguments, self.set)?;
+            let _ = programmed.code_of_own(self.layout); // now, not in the first call
             compiled.push((Key::new(query, &arguments), Arc::new(programmed)));
         }
         Ok(Batch { compiled: Arc::new(compiled), ..self })
@@ -319,14 +326,14 @@ impl<T: Number> Batch<T> {
         let query = &query.into();
         let arguments = &alone(query);
         match find(&self.compiled, query, arguments) {
-            Some(programmed) if has_registers(query.index()) => Engine::of(&programmed.code),
-            Some(programmed) => Engine::of_program(&programmed.code),
+            Some(programmed) if has_registers(query.index()) => Engine::of(programmed.code_of_own(self.layout)),
+            Some(programmed) => Engine::of_program(programmed.code_of_own(self.layout)),
             None if has_registers(query.index()) => {
                 let is_long = query.check_subject(&self.model).is_ok() && is_too_long(&self.model, *query);
                 Engine::Kernels(if is_long { Refusal::Long } else { Refusal::NotAsked })
             }
             None => match self.program(query, arguments) {
-                Ok(programmed) => Engine::of_program(&programmed.code),
+                Ok(programmed) => Engine::of_program(programmed.code_of_own(self.layout)),
                 Err(_) => Engine::Kernels(Refusal::NotAsked), // the frame belongs to another model
             },
         }

@@ -4,7 +4,7 @@ use crate::{Batch, Engine, Layout};
 use mozzi::quantities::{ForwardDynamics, Of, Query};
 use mozzi::simulation::{self, Input, Options, Simulation};
 use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
-use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, is_too_long, pivot_names, record_quantity};
+use mozzi_codegen::{Arguments, Form, Kernel, Refusal, Shape, is_too_long, pivot_names, record_quantity};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest, no
@@ -42,7 +42,7 @@ impl Machine {
         } else {
             let program = record_quantity(model, query, Arguments::default())?;
             let own = program.outputs().len() - pivot_names(&query).len();
-            Kernel::shared(&program, Shape::one_f64(), own)
+            Kernel::shared(&program, Shape::one_f64(), Form::Blocks, own)
         };
         let pivots = pivot_names(&query).len();
         let subject = query.subject;

@@ -34,6 +34,7 @@ mod directional;
 mod engine;
 mod environment;
 mod error;
+mod in_place;
 mod instruction_set;
 mod interpreter;
 mod lanes;

@@ -1,6 +1,8 @@
 //! Many states by a recorded program: as machine code or by the interpreter.
 
 use crate::chunk::Chunk;
+use crate::columns::Layout;
+use crate::in_place;
 use crate::interpreter::Interpreter;
 use crate::lanes::{Lane, MOST};
 use crate::request::Request;
@@ -10,20 +12,27 @@ use mozzi::model::clearance;
 use mozzi::quantities::Query;
 use mozzi::scalar::Float;
 use mozzi::{Error, FrameId, Model, Scalar, TaskFrame};
-use mozzi_codegen::{Arguments, Kernel, Refusal, Shape, pivot_names, record_quantity};
-use std::sync::{Arc, Mutex, PoisonError};
+use mozzi_codegen::{Arguments, Form, Kernel, Program, Refusal, Shape, pivot_names, record_quantity};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A quantity's program for blocks of states.
+/// A quantity's program for registers of states. Machine code is made when it is first needed.
 #[derive(Debug)]
 pub struct Programmed {
+    program: Program,
     /// The program's inputs and outputs; each kind of pivots is condensed to two numbers.
-    inputs: Vec<usize>,
+    pub inputs: Vec<usize>,
     outputs: Vec<usize>,
+    /// The number of the quantity's own inputs.
+    of_state: usize,
     /// The number of the quantity's own outputs.
-    own: usize,
-    pub code: Result<Arc<Kernel>, Refusal>,
-    interpreter: Interpreter,
+    pub own: usize,
+    shape: Option<Shape>,
+    by_blocks: OnceLock<Code>,
+    by_rows: OnceLock<Code>,
+    interpreter: OnceLock<Interpreter>,
 }
+
+type Code = Result<Arc<Kernel>, Refusal>;
 
 impl Programmed {
     pub fn new<T: Number>(
@@ -34,14 +43,43 @@ impl Programmed {
     ) -> Result<Self, Error> {
         let program = record_quantity(model, query, arguments)?;
         let own = program.outputs().len() - pivot_names(&query).len();
-        let code = match shape::<T>(set) {
-            Some(shape) => Kernel::shared(&program, shape, own),
-            None => Err(Refusal::Processor),
-        };
         let inputs = program.inputs().iter().map(|input| input.length).collect();
         let mut outputs: Vec<usize> = program.outputs().iter().map(|output| output.values.len()).collect();
         outputs[own..].fill(2);
-        Ok(Programmed { inputs, outputs, own, code, interpreter: Interpreter::new(&program, own) })
+        let (by_blocks, by_rows, interpreter) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        let shape = shape::<T>(set);
+        let of_state = query.declaration().inputs.len();
+        Ok(Programmed { program, inputs, outputs, of_state, own, shape, by_blocks, by_rows, interpreter })
+    }
+
+    /// The number of the kinds of pivots.
+    pub fn kinds(&self) -> usize {
+        self.outputs.len() - self.own
+    }
+
+    /// The machine code for tables of this layout. Values that are the same in all states are given in blocks.
+    pub fn code(&self, layout: Layout, constants: &[Option<Vec<f64>>]) -> &Code {
+        self.code_in(layout, constants.iter().any(Option::is_some))
+    }
+
+    /// The machine code for the robot's own environment, where only a point is the same in all states.
+    pub fn code_of_own(&self, layout: Layout) -> &Code {
+        self.code_in(layout, self.inputs.len() > self.of_state)
+    }
+
+    fn code_in(&self, layout: Layout, has_constants: bool) -> &Code {
+        let (code, form) = match layout {
+            Layout::Rows if !has_constants => (&self.by_rows, Form::Rows),
+            _ => (&self.by_blocks, Form::Blocks),
+        };
+        code.get_or_init(|| match self.shape {
+            Some(shape) => Kernel::shared(&self.program, shape, form, self.own),
+            None => Err(Refusal::Processor),
+        })
+    }
+
+    fn interpreter(&self) -> &Interpreter {
+        self.interpreter.get_or_init(|| Interpreter::new(&self.program, self.own))
     }
 }
 
@@ -69,7 +107,13 @@ pub(crate) fn run<L: Lane>(
 ) where
     L::Number: Number,
 {
-    let Programmed { inputs, outputs, own, code, interpreter } = programmed;
+    let code = programmed.code(chunk.layout, constants);
+    if let Ok(kernel) = code
+        && kernel.form() == Form::Rows
+    {
+        return in_place::run(programmed, kernel, request, worker, chunk);
+    }
+    let Programmed { inputs, outputs, own, .. } = programmed;
     // registers side by side in a column: one for machine code, those of 32 states for the interpreter
     let abreast = if code.is_ok() { 1 } else { 32 / L::WIDTH };
     let Worker { input, output, values, errors, scratch, .. } = worker;
@@ -111,7 +155,7 @@ pub(crate) fn run<L: Lane>(
                         to.zip(columns).for_each(|(to, &mut from)| to[r] = from);
                     }
                 }
-                interpreter.run(abreast, input, values, output);
+                programmed.interpreter().run(abreast, input, values, output);
             }
         }
         for r in 0..registers {
@@ -124,30 +168,56 @@ pub(crate) fn run<L: Lane>(
                 chunk.write(first, rows, columns);
             }
             // quick test for all states at once: all angles are reduced exactly, and pivots are clear
-            let kinds = outputs.len() - own;
-            let limit = code.as_ref().map_or(f64::INFINITY, |kernel| kernel.angle_limit());
-            let (mut clear, mut clearances) = (L::one(), [L::Number::one(); MOST]);
-            for kind in 0..kinds {
+            let limit = L::Number::from_f64(code.as_ref().map_or(f64::INFINITY, |kernel| kernel.angle_limit()));
+            let mut clear = None;
+            for kind in 0..outputs.len() - own {
                 let least = (own_columns + 2 * kind) * abreast + r;
                 // a NaN is kept as in `registers::clearances`
-                clear = clear.min(clearance(output[least], output[least + abreast], L::Number::EPSILON));
+                let this = clearance(output[least], output[least + abreast], L::Number::EPSILON);
+                clear = Some(clear.map_or(this, |clear: L| clear.min(this)));
             }
-            if kinds > 0 {
-                clear.store(&mut clearances);
+            if !are_sound(squares[0], limit, clear) {
+                recheck(squares[0], limit, clear, request, &mut chunk, (first, rows), errors);
             }
-            let are_exact = squares[0].within(L::Number::from_f64(limit));
-            let are_clear = kinds == 0 || clearances[..L::WIDTH].iter().all(|&x| x > L::Number::zero());
-            if are_exact && are_clear {
-                continue;
-            }
-            let passes = |row: usize| {
-                L::numbers(&squares)[row] <= L::Number::from_f64(limit) && clearances[row] > L::Number::zero()
-            };
-            for row in (0..rows).filter(|&row| !passes(row)).collect::<Vec<_>>() {
-                if let Err(error) = chunk.recheck(request, first + row, L::WIDTH, true) {
-                    errors.push((chunk.first + first + row, error));
-                }
-            }
+        }
+    }
+}
+
+/// True if all angles are reduced exactly and all pivots are clear, in every lane.
+#[inline(always)]
+pub(crate) fn are_sound<L: Lane>(squares: L, limit: L::Number, clear: Option<L>) -> bool
+where
+    L::Number: Number,
+{
+    let mut clearances = [L::Number::one(); MOST];
+    if let Some(clear) = clear {
+        clear.store(&mut clearances);
+    }
+    squares.within(limit) && (clear.is_none() || clearances[..L::WIDTH].iter().all(|&x| x > L::Number::zero()))
+}
+
+/// Computes the states, those of `rows` lanes from the chunk's `first` on, that are not sound by themselves.
+#[cold]
+#[inline(never)]
+pub(crate) fn recheck<L: Lane>(
+    squares: L,
+    limit: L::Number,
+    clear: Option<L>,
+    request: &Request<L::Number>,
+    chunk: &mut Chunk<L::Number>,
+    (first, rows): (usize, usize),
+    errors: &mut Vec<(usize, Error)>,
+) where
+    L::Number: Number,
+{
+    let clear = [clear.unwrap_or(L::one())];
+    for row in 0..rows {
+        let passes = L::numbers(&[squares])[row] <= limit && L::numbers(&clear)[row] > L::Number::zero();
+        if passes {
+            continue;
+        }
+        if let Err(error) = chunk.recheck(request, first + row, L::WIDTH, true) {
+            errors.push((chunk.first + first + row, error));
         }
     }
 }

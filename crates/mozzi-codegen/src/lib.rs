@@ -44,7 +44,7 @@ pub use count::Count;
 pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
 pub use estimate::{LONGEST_TEXT, estimate, is_too_long};
 pub use function::Function;
-pub use jit::{Kernel, Refusal, Shape};
+pub use jit::{Extent, Form, Kernel, MOST_ARRAYS, Refusal, Shape};
 pub use program::{Array, Output, Program, Step, Value};
 pub use record::record;
 pub use text::NotAProgram;

@@ -4,7 +4,7 @@
 
 use mozzi::Scalar;
 use mozzi::testing::Random;
-use mozzi_codegen::{Kernel, Program, Shape, Traced, record};
+use mozzi_codegen::{Form, Kernel, Program, Shape, Traced, record};
 use std::time::{Duration, Instant};
 
 /// A program of operations that keep numbers at size 1 and errors from growing, so that rounding cannot explain a
@@ -52,27 +52,38 @@ fn program(random: &mut Random) -> Program {
     })
 }
 
-/// Machine code in every shape agrees with the interpreter.
+/// Machine code in every shape and form agrees with the interpreter.
 fn check(program: &Program, random: &mut Random) {
-    for shape in Shape::ALL.into_iter().filter(|shape| shape.is_supported() && shape.is_f64()) {
-        let Ok(kernel) = Kernel::new(program, shape) else { continue };
+    let shapes = Shape::ALL.into_iter().filter(|shape| shape.is_supported() && shape.is_f64());
+    for (shape, form) in shapes.flat_map(|shape| [(shape, Form::Blocks), (shape, Form::Rows)]) {
         let lanes = shape.lanes();
-        let blocks: Vec<Vec<f64>> =
-            program.inputs().iter().map(|input| random.vector(input.length * lanes, 1.0)).collect();
+        let runs = if form == Form::Rows { 2 } else { 1 };
+        if lanes == 1 && form == Form::Rows {
+            continue;
+        }
+        let Ok(kernel) = Kernel::condensing(program, shape, form, usize::MAX) else { continue };
+        let place = |width: usize, state: usize, column: usize| match form {
+            Form::Blocks => column * lanes + state,
+            Form::Rows => state * width + column,
+        };
+        let (given, found) = kernel.extents().split_at(program.inputs().len());
+        let tables: Vec<Vec<f64>> = given.iter().map(|extent| random.vector(extent.of(runs), 1.0)).collect();
         let mut outputs: Vec<Vec<f64>> =
-            program.outputs().iter().map(|output| vec![f64::NAN; output.values.len() * lanes]).collect();
-        let mut squares = vec![f64::NAN; lanes];
-        let inputs: Vec<&[f64]> = blocks.iter().map(Vec::as_slice).collect();
-        kernel.call(&inputs, &mut outputs.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>(), &mut squares);
-        for lane in 0..lanes {
-            let state: Vec<Vec<f64>> =
-                blocks.iter().map(|x| x.iter().skip(lane).step_by(lanes).copied().collect()).collect();
-            let expected = program.evaluate(&state.iter().map(Vec::as_slice).collect::<Vec<_>>());
+            found.iter().zip(program.outputs()).map(|(extent, _)| vec![f64::NAN; extent.of(runs)]).collect();
+        let mut squares = vec![f64::NAN; runs * lanes];
+        let inputs: Vec<&[f64]> = tables.iter().map(Vec::as_slice).collect();
+        kernel.run(runs, &inputs, &mut outputs.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>(), &mut squares);
+        for state in 0..runs * lanes {
+            let of = |(x, input): (&Vec<f64>, &mozzi_codegen::Array)| {
+                (0..input.length).map(|k| x[place(input.length, state, k)]).collect::<Vec<_>>()
+            };
+            let inputs: Vec<Vec<f64>> = tables.iter().zip(program.inputs()).map(of).collect();
+            let expected = program.evaluate(&inputs.iter().map(Vec::as_slice).collect::<Vec<_>>());
             for (expected, found) in expected.iter().zip(&outputs) {
-                for (k, expected) in expected.iter().enumerate() {
-                    let found = found[k * lanes + lane];
-                    let is_near = (found - expected).abs() <= 1e-12;
-                    assert!(is_near, "{shape:?}, lane {lane}, output {k}: {found} for {expected} in\n{program}");
+                for (k, x) in expected.iter().enumerate() {
+                    let found = found[place(expected.len(), state, k)];
+                    let is_near = (found - x).abs() <= 1e-12;
+                    assert!(is_near, "{shape:?}, {form:?}, state {state}, output {k}: {found} for {x} in\n{program}");
                 }
             }
         }

@@ -8,7 +8,7 @@ use mozzi::Model;
 use mozzi::quantities::Query;
 use mozzi::scalar::Float as Number;
 use mozzi::testing::Random;
-use mozzi_codegen::{Arguments, Kernel, Program, Refusal, Shape, record, record_quantity};
+use mozzi_codegen::{Arguments, Form, Kernel, Program, Refusal, Shape, record, record_quantity};
 
 /// The outputs of each lane, and the sums of squares, for one state in each lane.
 fn run<S: Number>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> (Vec<Vec<Vec<S>>>, Vec<S>) {
@@ -31,6 +31,43 @@ fn run<S: Number>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) ->
     ((0..lanes).map(of_lane).collect(), squares)
 }
 
+/// The state of row k: the states of a block, in another order in each.
+fn state_of_row(k: usize, lanes: usize) -> usize {
+    (k + k / lanes) % lanes
+}
+
+/// As [`run`], by code in the form of rows: three registers of states in one call.
+fn run_rows<S: Number>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> (Vec<Vec<Vec<S>>>, Vec<S>) {
+    const RUNS: usize = 3;
+    let nan = S::from_f64(f64::NAN);
+    let lanes = kernel.shape().lanes();
+    let count = RUNS * lanes;
+    let mut extents = kernel.extents().iter();
+    let tables: Vec<Vec<S>> = program
+        .inputs()
+        .iter()
+        .zip(extents.by_ref())
+        .enumerate()
+        .map(|(array, (_, extent))| {
+            let mut table: Vec<S> = (0..count).flat_map(|k| states[state_of_row(k, lanes)][array].clone()).collect();
+            table.resize(extent.of(RUNS), nan);
+            table
+        })
+        .collect();
+    let inputs: Vec<&[S]> = tables.iter().map(Vec::as_slice).collect();
+    let mut outputs: Vec<Vec<S>> =
+        program.outputs().iter().zip(extents).map(|(_, extent)| vec![nan; extent.of(RUNS)]).collect();
+    let mut squares = vec![nan; count];
+    kernel.run(RUNS, &inputs, &mut outputs.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>(), &mut squares);
+    let widths = || program.outputs().iter().map(|output| output.values.len());
+    let of_state = |k: usize| outputs.iter().zip(widths()).map(|(x, width)| x[k * width..][..width].to_vec()).collect();
+    if kernel.shape().instruction_set().starts_with("avx512") {
+        let rows = |width: usize| count * width;
+        assert!(outputs.iter().zip(widths()).all(|(x, width)| x.len() == rows(width)), "nothing beyond the rows");
+    }
+    ((0..count).map(of_state).collect(), squares)
+}
+
 fn states<S: Number>(model: &Model, query: Query, round: u64) -> Vec<Vec<Vec<S>>> {
     let rounded = |x: &[f64]| x.iter().map(|&x| S::from_f64(x)).collect();
     let of = |seed| inputs(query, &state(model, 16 * round + seed)).into_iter().map(rounded).collect();
@@ -39,9 +76,13 @@ fn states<S: Number>(model: &Model, query: Query, round: u64) -> Vec<Vec<Vec<S>>
 
 /// The largest normalised error of a program on states, compared with the interpreter in `f64`.
 fn worst<S: Number + Into<f64>>(kernel: &Kernel, program: &Program, states: &[Vec<Vec<S>>]) -> f64 {
-    let (found, squares) = run(kernel, program, states);
+    let (found, squares) = match kernel.form() {
+        Form::Blocks => run(kernel, program, states),
+        Form::Rows => run_rows(kernel, program, states),
+    };
     let mut worst: f64 = 0.0;
-    for ((found, state), squares) in found.iter().zip(states).zip(squares) {
+    for (k, (found, squares)) in found.iter().zip(squares).enumerate() {
+        let state = &states[state_of_row(k, kernel.shape().lanes())];
         assert!(kernel.is_exact(squares));
         let exact: Vec<Vec<f64>> = state.iter().map(|x| x.iter().map(|&x| x.into()).collect()).collect();
         let expected = program.evaluate(&exact.iter().map(Vec::as_slice).collect::<Vec<_>>());
@@ -58,8 +99,10 @@ fn every_quantity_of_every_robot_in_every_shape() {
     for (name, model) in robots() {
         for query in quantities(&model) {
             let program = record_quantity(&model, query, Arguments::default()).expect("its own frame");
-            for shape in Shape::ALL {
-                let kernel = match Kernel::new(&program, shape) {
+            let shapes = Shape::ALL.map(|shape| (shape, Form::Blocks)).into_iter();
+            let rows = Shape::ALL.into_iter().filter(|shape| shape.lanes() > 1).map(|shape| (shape, Form::Rows));
+            for (shape, form) in shapes.chain(rows) {
+                let kernel = match Kernel::condensing(&program, shape, form, usize::MAX) {
                     Ok(kernel) => kernel,
                     Err(refusal) => {
                         assert!(matches!(refusal, Refusal::Processor | Refusal::Long), "{refusal}");
@@ -72,7 +115,7 @@ fn every_quantity_of_every_robot_in_every_shape() {
                     true => worst::<f64>(&kernel, &program, &states(&model, query, 1)),
                     false => worst::<f32>(&kernel, &program, &states(&model, query, 1)) * 2e-9,
                 };
-                assert!(error < tolerance(query), "{name}, {}, {shape:?}: {error:e}", query.name());
+                assert!(error < tolerance(query), "{name}, {}, {shape:?}, {form:?}: {error:e}", query.name());
             }
         }
     }
@@ -164,13 +207,49 @@ fn what_no_machine_code_is_made_of() {
     let arrays: Vec<(&str, usize)> = names.iter().map(|name| (name.as_str(), 1)).collect();
     let many = record("many", &arrays, |x| vec![("y", vec![x.iter().fold(x[0][0], |sum, x| sum + x[0])])]);
     let long = record("long", &[("x", 300)], |x| {
-        let sum = (0..100_000).fold(x[0][0], |sum, k| sum * x[0][k % 300] + x[0][k * 7 % 300]);
+        let sum = (0..400_000).fold(x[0][0], |sum, k| sum * x[0][k % 300] + x[0][k * 7 % 300]);
         vec![("y", vec![sum])]
     });
     for shape in Shape::ALL.into_iter().filter(|shape| shape.is_supported()) {
         assert_eq!(Kernel::new(&tanh, shape).err(), Some(Refusal::Program));
         assert_eq!(Kernel::new(&many, shape).err(), Some(Refusal::Program));
         assert_eq!(Kernel::new(&long, shape).err(), Some(Refusal::Long));
+    }
+}
+
+#[test]
+fn rows_of_any_width() {
+    let (mut random, lanes) = (Random(8), |shape: Shape| shape.lanes());
+    for width in [1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33] {
+        // sums with neighbours, a reversed copy, a constant in each square
+        let program = record("neighbours", &[("x", width), ("y", 2)], |x| {
+            let next = |k: usize| x[0][k] + x[0][(k + 1) % width] * x[1][k % 2];
+            let reversed = (0..width).rev().map(|k| if k % 5 == 3 { 0.5.into() } else { x[0][k] });
+            vec![("z", (0..width).map(next).collect()), ("w", reversed.collect()), ("s", vec![x[0][0]])]
+        });
+        for shape in Shape::ALL.into_iter().filter(|&shape| shape.is_supported() && lanes(shape) > 1) {
+            let kernel = Kernel::condensing(&program, shape, Form::Rows, usize::MAX).expect("a small program");
+            let mut number = |_| 2.0 * random.next() - 1.0;
+            let states: Vec<Vec<Vec<f64>>> =
+                (0..48).map(|_| [width, 2].map(|length| (0..length).map(&mut number).collect()).to_vec()).collect();
+            let narrow = |x: &Vec<Vec<f64>>| x.iter().map(|x| x.iter().map(|&x| x as f32).collect()).collect();
+            let error = match shape.is_f64() {
+                true => worst::<f64>(&kernel, &program, &states),
+                false => worst::<f32>(&kernel, &program, &states.iter().map(narrow).collect::<Vec<_>>()) * 1e-9,
+            };
+            assert!(error < 1e-15, "{width} columns, {shape:?}: {error:e}");
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "an input has 22 entries, expected 23")]
+fn a_short_table_is_refused() {
+    let program = record("copy", &[("x", 1)], |x| vec![("y", vec![x[0][0] + x[0][0]])]);
+    match Kernel::condensing(&program, Shape::EightF64, Form::Rows, usize::MAX) {
+        // two runs of eight rows, and seven numbers beyond the last
+        Ok(kernel) => kernel.run(2, &[&[1.0; 22]], &mut [&mut [0.0; 16]], &mut [0.0; 16]),
+        Err(refusal) => panic!("an input has 22 entries, expected 23: nothing to test here, {refusal}"),
     }
 }
 

@@ -54,7 +54,9 @@ pub(super) fn lines(precision: Precision, dialect: &dyn Dialect) -> (Vec<String>
             Operation::Xor => of_bits("^"),
             Operation::SubBits => dialect.difference_of_bits(&bits(a), &bits(b)),
             Operation::ShiftLeft(by) => format!("{} << {by}", bits(a)),
-            Operation::Min | Operation::Max | Operation::Sqrt => unreachable!("the sine has none"),
+            Operation::Min | Operation::Max | Operation::Sqrt | Operation::Interleave(..) | Operation::Pick(_) => {
+                unreachable!("the sine has none")
+            }
         };
         let name = format!("r{place}");
         lines.push(match operation.is_of_bits() {

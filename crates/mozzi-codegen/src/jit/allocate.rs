@@ -1,11 +1,12 @@
 //! Register allocation for straight-line code: the value whose next use is furthest away is evicted first (Belady
 //! 1966). With equal costs this is optimal.
 
-use super::Refusal;
 use super::assembler::{Assembler, Memory, Operand, Register};
 use super::instruction::{Node, Operation, SINES, Value};
-use super::lower::{Lowered, SHAPE_TOGETHER};
+use super::lower::{Lowered, SHAPE_TOGETHER, Store};
+use super::rows::Extent;
 use super::shape::{Encoding, Shape};
+use super::{Form, Refusal};
 
 const NEVER: u32 = u32::MAX;
 
@@ -19,14 +20,21 @@ pub(crate) struct Code {
     pub frame: usize,
 }
 
+/// How the code of a program uses the caller's arrays.
+pub(crate) struct Arrays<'a> {
+    /// Inputs, then outputs.
+    pub extents: &'a [Extent],
+    pub inputs: usize,
+    pub form: Form,
+}
+
 /// The code of a lowered program; its arrays are inputs, outputs, constants, in this order. Fails if it needs more
 /// arrays, or more memory of its own, than the limits.
-pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Result<Code, Refusal> {
+pub(crate) fn allocate(shape: Shape, lowered: &Lowered, arrays: Arrays) -> Result<Code, Refusal> {
     let mut pool = Vec::new();
     let before = lowered.before.as_deref().map(|before| (before, put_constants(SHAPE_TOGETHER, before, &mut pool)));
     let constants = put_constants(shape, lowered, &mut pool);
-    let lengths = inputs.iter().copied().chain(lowered.outputs.iter().map(Vec::len));
-    let mut sizes: Vec<usize> = lengths.map(|length| length * shape.width()).collect();
+    let mut sizes: Vec<usize> = arrays.extents.iter().map(|extent| extent.size * shape.number()).collect();
     sizes.push(pool.len());
     if sizes.len() >= super::assembler::MOST_ARRAYS {
         return Err(Refusal::Program);
@@ -42,13 +50,17 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, inputs: &[usize]) -> Res
         assembler = Line::new(SHAPE_TOGETHER, before, places, assembler).code();
         assembler.set_shape(shape);
     }
-    let places = Places { constants, pool: memory, first_output: inputs.len(), stride: shape.width(), used };
+    let stride = if arrays.form == Form::Rows { shape.number() } else { shape.width() };
+    // code for one state runs once
+    let extents = if shape.is_scalar() { &[] } else { arrays.extents };
+    let steps: Vec<usize> = extents.iter().map(|extent| extent.step * shape.number()).collect();
+    let places = Places { constants, pool: memory, first_output: arrays.inputs, stride, used };
     let assembler = Line::new(shape, lowered, places, assembler).code();
     let (instructions, frame) = (assembler.instructions(), assembler.frame_bytes());
     if frame > super::assembler::LARGEST_FRAME {
         return Err(Refusal::Long);
     }
-    Ok(Code { bytes: assembler.finish(), pool, instructions, frame })
+    Ok(Code { bytes: assembler.finish(&steps), pool, instructions, frame })
 }
 
 /// For each constant node, its byte offset in the pool.
@@ -78,6 +90,19 @@ struct Places {
     used: usize,
 }
 
+/// What a register holds.
+#[derive(Clone, Copy)]
+struct Held {
+    value: Value,
+    /// The next place that needs it.
+    need: u32,
+    /// It is in memory, too.
+    is_kept: bool,
+}
+
+/// Registers that an instruction uses, as bits: they keep what they hold.
+type Pinned = u32;
+
 struct Line<'p> {
     shape: Shape,
     nodes: &'p [Node],
@@ -87,10 +112,10 @@ struct Line<'p> {
     needs: Vec<u32>,
     first: Vec<u32>,
     next: Vec<u32>,
-    /// For each value, the output entries equal to it.
-    outputs: Vec<Vec<(usize, usize)>>,
+    /// For each value, where it is written.
+    outputs: Vec<Vec<Store>>,
     register: Vec<Option<Register>>,
-    held: Vec<Option<Value>>,
+    held: Vec<Option<Held>>,
     slot: Vec<Option<usize>>,
     free_slots: Vec<usize>,
     slots: usize,
@@ -101,11 +126,18 @@ impl<'p> Line<'p> {
         let nodes = &lowered.nodes[..];
         let mut outputs = vec![Vec::new(); nodes.len()];
         let mut is_needed = vec![false; nodes.len()];
-        for (array, values) in lowered.outputs.iter().enumerate() {
-            for (index, &value) in values.iter().enumerate() {
-                outputs[value as usize].push((places.first_output + array, index));
-                is_needed[value as usize] = true;
-            }
+        let entry = |array: usize, (index, &value): (usize, &Value)| Store {
+            value,
+            array,
+            byte: index * shape.width(),
+            numbers: shape.lanes(),
+        };
+        let entries =
+            lowered.outputs.iter().enumerate().flat_map(|(k, list)| list.iter().enumerate().map(move |x| entry(k, x)));
+        for store in entries.chain(lowered.stores.iter().copied()) {
+            let array = places.first_output + store.array;
+            outputs[store.value as usize].push(Store { array, ..store });
+            is_needed[store.value as usize] = true;
         }
         // values that nothing needs are never computed
         for place in (0..nodes.len()).rev() {
@@ -179,16 +211,13 @@ impl<'p> Line<'p> {
 
     /// A register for a new value: a free one, or the one whose value is needed last; values that need not be stored
     /// are preferred.
-    fn take(&mut self, here: usize, pinned: &mut Vec<Register>) -> Register {
-        let is_pinned = |register: &usize| pinned.contains(&(*register as Register));
+    fn take(&mut self, here: usize, pinned: &mut Pinned) -> Register {
         let mut best = (0, None);
-        for register in (0..self.held.len()).filter(|register| !is_pinned(register)) {
-            let Some(value) = self.held[register] else {
+        for (register, held) in self.held.iter().enumerate().filter(|(register, _)| *pinned >> register & 1 == 0) {
+            let Some(Held { need, is_kept, .. }) = *held else {
                 best = (NEVER, Some(register));
                 break;
             };
-            let need = self.next_need(value);
-            let is_kept = self.slot[value as usize].is_some() || !matches!(self.nodes[value as usize], Node::Apply(..));
             let bonus = if is_kept { need.saturating_sub(here as u32) / 2 } else { 0 };
             let score = need.saturating_add(bonus);
             if best.1.is_none() || score > best.0 {
@@ -196,7 +225,7 @@ impl<'p> Line<'p> {
             }
         }
         let register = best.1.expect("at most four registers are pinned");
-        if let Some(value) = self.held[register].take() {
+        if let Some(Held { value, .. }) = self.held[register].take() {
             let v = value as usize;
             self.register[v] = None;
             if matches!(self.nodes[v], Node::Apply(..)) && self.slot[v].is_none() {
@@ -208,12 +237,12 @@ impl<'p> Line<'p> {
                 self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register as Register);
             }
         }
-        pinned.push(register as Register);
+        *pinned |= 1 << register;
         register as Register
     }
 
     /// Puts the value in a register; a loaded value stays there if it is needed again.
-    fn in_register(&mut self, here: usize, value: Value, pinned: &mut Vec<Register>) -> Register {
+    fn in_register(&mut self, here: usize, value: Value, pinned: &mut Pinned) -> Register {
         if let Some(register) = self.register[value as usize] {
             return register;
         }
@@ -226,7 +255,8 @@ impl<'p> Line<'p> {
     }
 
     fn hold(&mut self, register: Register, value: Value) {
-        self.held[register as usize] = Some(value);
+        let is_kept = self.slot[value as usize].is_some() || !matches!(self.nodes[value as usize], Node::Apply(..));
+        self.held[register as usize] = Some(Held { value, need: self.next_need(value), is_kept });
         self.register[value as usize] = Some(register);
     }
 
@@ -245,10 +275,15 @@ impl<'p> Line<'p> {
             return;
         }
         let operands = &operands[..operation.arity()];
-        let mut pinned: Vec<Register> = operands.iter().filter_map(|&v| self.register[v as usize]).collect();
+        let mut pinned = 0;
         for &v in operands {
             while self.next_need(v) <= value {
                 self.next[v as usize] += 1;
+            }
+            if let Some(register) = self.register[v as usize] {
+                pinned |= 1 << register;
+                let need = self.next_need(v);
+                self.held[register as usize].iter_mut().for_each(|held| held.need = need);
             }
         }
         let target = match *operands {
@@ -265,9 +300,8 @@ impl<'p> Line<'p> {
                 self.free_slots.extend(self.slot[v as usize].take());
             }
         }
-        for k in 0..self.outputs[here].len() {
-            let (array, index) = self.outputs[here][k];
-            self.assembler.store(array, index * self.shape.width(), target);
+        for &Store { array, byte, numbers, .. } in &self.outputs[here] {
+            self.assembler.store_part(array, byte, target, numbers);
         }
         if self.next_need(value) != NEVER {
             self.hold(target, value);
@@ -277,28 +311,21 @@ impl<'p> Line<'p> {
     /// Writes an output that is an input or a constant.
     fn pass_on(&mut self, here: usize, value: Value) {
         for k in 0..self.outputs[here].len() {
-            let register = self.take(here, &mut Vec::new());
+            let register = self.take(here, &mut 0);
             self.assembler.load(register, self.in_memory(value));
-            let (array, index) = self.outputs[here][k];
-            self.assembler.store(array, index * self.shape.width(), register);
+            let Store { array, byte, numbers, .. } = self.outputs[here][k];
+            self.assembler.store_part(array, byte, register, numbers);
         }
     }
 
-    fn unary(&mut self, here: usize, operation: Operation, a: Value, pinned: &mut Vec<Register>) -> Register {
+    fn unary(&mut self, here: usize, operation: Operation, a: Value, pinned: &mut Pinned) -> Register {
         let from = self.in_register(here, a, pinned);
         let target = self.dying(a).unwrap_or_else(|| self.take(here, pinned));
         self.assembler.apply(operation, target, from, Operand::Register(from));
         target
     }
 
-    fn binary(
-        &mut self,
-        here: usize,
-        operation: Operation,
-        a: Value,
-        b: Value,
-        pinned: &mut Vec<Register>,
-    ) -> Register {
+    fn binary(&mut self, here: usize, operation: Operation, a: Value, b: Value, pinned: &mut Pinned) -> Register {
         let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
         let exchange = operation.commutes() && !is_in_register(self, a) && is_in_register(self, b);
         let (a, b) = if exchange { (b, a) } else { (a, b) };
@@ -321,7 +348,7 @@ impl<'p> Line<'p> {
         a: Value,
         b: Value,
         c: Value,
-        pinned: &mut Vec<Register>,
+        pinned: &mut Pinned,
     ) -> Register {
         let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
         if let Some(target) = self.dying(c) {

@@ -4,7 +4,7 @@
 //! The assembler makes machine code memory-safe: it knows the length in bytes of every array, and emits no instruction
 //! that reads or writes beyond it, for any input.
 
-use super::instruction::Operation;
+use super::instruction::{Grain, Half, Operation};
 use super::shape::{Encoding, Shape};
 
 /// A vector register.
@@ -28,12 +28,17 @@ pub(crate) enum Operand {
 const BASES: [u8; 13] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
 /// The index of the first register that must be saved for the caller.
 const SAVED: usize = 9;
+/// r12 counts the runs.
+const COUNTER: u8 = 12;
 
 /// The largest number of arrays, including constants and spilled registers.
-pub(crate) const MOST_ARRAYS: usize = BASES.len();
+pub const MOST_ARRAYS: usize = BASES.len();
 
-/// The largest frame in bytes, far less than a thread's stack.
+/// The largest frame in bytes.
 pub(crate) const LARGEST_FRAME: usize = 1 << 20;
+
+/// The largest frame on the stack, far less than a thread's; the caller provides a larger one, as the last address.
+pub(crate) const LARGEST_ON_STACK: usize = 64 << 10;
 
 /// Opcode map, mandatory prefix (0 none, 1 66, 2 F3, 3 F2), the bit W, opcode.
 #[derive(Clone, Copy)]
@@ -58,7 +63,15 @@ pub(crate) struct Assembler {
     frame: Memory,
     body: Vec<u8>,
     instructions: usize,
+    /// The numbers that each mask lets through, from the register k1 on.
+    masks: Vec<usize>,
 }
+
+/// A mask register; 0 is none.
+type Mask = u8;
+
+/// The masks that there are.
+const MOST_MASKS: usize = 7;
 
 impl Assembler {
     /// Code that reads the addresses of all arrays of these sizes in bytes from the list at rdi; after them it has a
@@ -66,7 +79,7 @@ impl Assembler {
     pub fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();
-        Assembler { shape, frame: sizes.len() - 1, sizes, body: Vec::new(), instructions: 0 }
+        Assembler { shape, frame: sizes.len() - 1, sizes, body: Vec::new(), instructions: 0, masks: Vec::new() }
     }
 
     /// Sets the registers of the following instructions.
@@ -114,6 +127,8 @@ impl Assembler {
     pub fn takes_memory(&self, operation: Operation) -> bool {
         match operation {
             Operation::Sqrt | Operation::ShiftLeft(_) => false,
+            // a repeated number would be one of 64 bits
+            Operation::Interleave(_, Grain::Bits64) => self.shape.is_f64(),
             // the scalar forms of bit operations read sixteen bytes
             _ if operation.is_of_bits() => !self.shape.is_scalar(),
             _ => true,
@@ -138,6 +153,16 @@ impl Assembler {
                 let form = self.bits(0x73, 0x72);
                 self.instruction(form, 6, target, b);
                 self.body.push(by);
+                return;
+            }
+            Operation::Interleave(half, grain) => {
+                let (opcode, is_64) = (0x14 + u8::from(half == Half::Upper), grain == Grain::Bits64);
+                Form { map: 1, prefix: u8::from(is_64), wide: self.is_evex() && is_64, opcode }
+            }
+            Operation::Pick(places) => {
+                let (wide, opcode) = if self.is_evex() { (self.shape.is_f64(), 0x23) } else { (false, 0x06) };
+                self.instruction(Form { map: 3, prefix: 1, wide, opcode }, target, a, b);
+                self.body.push(places);
                 return;
             }
             Operation::MulAdd | Operation::MulSub | Operation::NegMulAdd | Operation::NegMulSub => {
@@ -182,11 +207,30 @@ impl Assembler {
 
     /// Memory ← a register's lanes.
     pub fn store(&mut self, to: Memory, byte: usize, from: Register) {
+        self.store_part(to, byte, from, self.shape.lanes());
+    }
+
+    /// Memory ← a register's first numbers; without AVX-512, all of them.
+    pub fn store_part(&mut self, to: Memory, byte: usize, from: Register, numbers: usize) {
+        let mask = if numbers < self.shape.lanes() && self.is_evex() { self.mask(numbers) } else { 0 };
         let form = self.arithmetic(0x11);
-        self.instruction(form, from, 0, Operand::Lanes(to, byte));
+        self.masked(form, from, 0, Operand::Lanes(to, byte), mask);
+    }
+
+    fn mask(&mut self, numbers: usize) -> Mask {
+        let place = self.masks.iter().position(|&known| known == numbers).unwrap_or_else(|| {
+            self.masks.push(numbers);
+            self.masks.len() - 1
+        });
+        assert!(place < MOST_MASKS, "{} masks", self.masks.len());
+        place as Mask + 1
     }
 
     fn instruction(&mut self, form: Form, target: Register, a: Register, b: Operand) {
+        self.masked(form, target, a, b, 0);
+    }
+
+    fn masked(&mut self, form: Form, target: Register, a: Register, b: Operand, mask: Mask) {
         assert!(usize::from(target.max(a)) < self.shape.registers(), "no such register");
         self.instructions += 1;
         let (base, repeated) = match b {
@@ -201,15 +245,20 @@ impl Assembler {
         assert!(self.is_evex() || form.is_broadcast() || !repeated, "AVX2 repeats no operands");
         let is_register = matches!(b, Operand::Register(_));
         if self.is_evex() {
-            self.evex(form, target, a, base, is_register, repeated);
+            self.evex(form, target, a, base, is_register, u8::from(repeated) << 4 | mask);
         } else {
             self.vex(form, target, a, base);
         }
         self.body.push(form.opcode);
         match b {
             Operand::Register(register) => self.body.push(0xc0 | (target & 7) << 3 | register & 7),
-            Operand::Lanes(memory, byte) => self.address(target, memory, byte, self.shape.width()),
-            Operand::Repeated(memory, byte) => self.address(target, memory, byte, self.shape.number()),
+            Operand::Lanes(memory, byte) => {
+                let numbers = if mask == 0 { self.shape.lanes() } else { self.masks[usize::from(mask) - 1] };
+                self.address(target, memory, byte, self.shape.width(), byte + numbers * self.shape.number());
+            }
+            Operand::Repeated(memory, byte) => {
+                self.address(target, memory, byte, self.shape.number(), byte + self.shape.number());
+            }
         }
     }
 
@@ -225,7 +274,7 @@ impl Assembler {
         }
     }
 
-    fn evex(&mut self, form: Form, target: Register, a: Register, base: u8, is_register: bool, repeated: bool) {
+    fn evex(&mut self, form: Form, target: Register, a: Register, base: u8, is_register: bool, modifiers: u8) {
         let Form { map, prefix, wide, .. } = form;
         // the fifth bit of a register operand is in the place of an address's index bit
         let x = if is_register { inverted(base, 4) } else { 1 };
@@ -233,19 +282,18 @@ impl Assembler {
         let second = u8::from(wide) << 7 | (!a & 15) << 3 | 4 | prefix;
         // 512 bits, or the lowest number
         let length = if self.shape.is_scalar() { 0 } else { 2 };
-        let third = length << 5 | u8::from(repeated) << 4 | inverted(a, 4) << 3;
+        let third = length << 5 | modifiers | inverted(a, 4) << 3;
         self.body.extend([0x62, registers | map, second, third]);
     }
 
-    /// An address with its displacement, for an access of `access` bytes; EVEX counts short displacements in units of
-    /// it.
-    fn address(&mut self, field: u8, memory: Memory, byte: usize, access: usize) {
-        let end = byte + access;
+    /// An address with its displacement, for an access that ends before byte `end`; EVEX counts short displacements in
+    /// units of the operand's size without a mask.
+    fn address(&mut self, field: u8, memory: Memory, byte: usize, operand: usize, end: usize) {
         if memory == self.frame {
             self.sizes[memory] = self.sizes[memory].max(end);
         }
         assert!(end <= self.sizes[memory] && end <= i32::MAX as usize, "byte {byte} of array {memory}");
-        let unit = if self.is_evex() { access } else { 1 };
+        let unit = if self.is_evex() { operand } else { 1 };
         let (field, base) = ((field & 7) << 3, BASES[memory] & 7);
         if byte.is_multiple_of(unit) && byte / unit < 128 {
             self.body.extend([0x40 | field | base, (byte / unit) as u8]);
@@ -255,15 +303,18 @@ impl Assembler {
         }
     }
 
-    /// The whole function: rdi → an array of addresses (System V).
-    pub fn finish(self) -> Vec<u8> {
+    /// The whole function: rdi → an array of addresses (System V). With steps in bytes, the code runs rsi ≥ 1 times, each
+    /// array's address a step further every time.
+    pub fn finish(self, steps: &[usize]) -> Vec<u8> {
         let (arrays, frame) = (self.sizes.len(), self.sizes[self.frame]);
         let mut code = vec![0x55, 0x48, 0x89, 0xe5]; // push rbp; mov rbp, rsp
-        let saved = BASES[SAVED.min(arrays)..arrays].iter().copied();
+        let counter = if steps.is_empty() { None } else { Some(COUNTER) };
+        let saved = BASES[SAVED.min(arrays)..arrays].iter().copied().chain(counter);
         for register in saved.clone() {
             push_or_pop(&mut code, 0x50, register);
         }
-        let rest = (frame + 64).next_multiple_of(64);
+        let is_on_stack = frame <= LARGEST_ON_STACK;
+        let rest = if is_on_stack { (frame + 64).next_multiple_of(64) } else { 0 };
         // page by page, so that the guard page below the stack is touched and not skipped
         for _ in 0..rest / 4096 {
             code.extend([0x48, 0x81, 0xec, 0x00, 0x10, 0x00, 0x00]); // sub rsp, 4096
@@ -271,6 +322,14 @@ impl Assembler {
         }
         code.extend([0x48, 0x81, 0xec]); // sub rsp, rest
         code.extend(((rest % 4096) as u32).to_le_bytes());
+        if counter.is_some() {
+            code.extend([0x49, 0x89, 0xf4]); // mov r12, rsi
+        }
+        for (k, numbers) in self.masks.iter().enumerate() {
+            code.push(0xb8); // mov eax, 2^numbers − 1; kmovw k, eax
+            code.extend(((1_u32 << numbers) - 1).to_le_bytes());
+            code.extend([0xc5, 0xf8, 0x92, 0xc0 | (k as u8 + 1) << 3]);
+        }
         // the frame's base: lea base, [rsp + 63]; and base, −64
         let is_rdi = |memory: usize| BASES[memory] == 7;
         let base = BASES[self.frame];
@@ -284,13 +343,28 @@ impl Assembler {
             let base = BASES[memory];
             code.extend([0x48 | base >> 3 << 2, 0x8b, 0x47 | (base & 7) << 3, 8 * memory as u8]);
         };
-        (0..self.frame).filter(|&memory| !is_rdi(memory)).for_each(|memory| address(&mut code, memory));
-        (0..self.frame).filter(|&memory| is_rdi(memory)).for_each(|memory| address(&mut code, memory));
-        frame_base(&mut code);
+        let given = if is_on_stack { 0..self.frame } else { 0..arrays };
+        given.clone().filter(|&memory| !is_rdi(memory)).for_each(|memory| address(&mut code, memory));
+        given.filter(|&memory| is_rdi(memory)).for_each(|memory| address(&mut code, memory));
+        if is_on_stack {
+            frame_base(&mut code);
+        }
+        let begin = code.len();
         code.extend(&self.body);
+        if counter.is_some() {
+            for (memory, &step) in steps.iter().enumerate().filter(|(_, step)| **step > 0) {
+                // add base, step
+                let base = BASES[memory];
+                code.extend([0x48 | base >> 3, 0x81, 0xc0 | base & 7]);
+                code.extend((step as u32).to_le_bytes());
+            }
+            code.extend([0x49, 0xff, 0xcc, 0x0f, 0x85]); // dec r12; jnz begin
+            let end = code.len() + 4;
+            code.extend((begin as i32 - end as i32).to_le_bytes());
+        }
         // lea rsp, [rbp − 8 saved]; pop …; pop rbp; vzeroupper; ret
-        code.extend([0x48, 0x8d, 0x65, (-8 * saved.len() as i32) as u8]);
-        for register in saved.rev() {
+        code.extend([0x48, 0x8d, 0x65, (-8 * saved.clone().count() as i32) as u8]);
+        for register in saved.collect::<Vec<_>>().into_iter().rev() {
             push_or_pop(&mut code, 0x58, register);
         }
         code.extend([0x5d, 0xc5, 0xf8, 0x77, 0xc3]);

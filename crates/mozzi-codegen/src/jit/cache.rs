@@ -1,13 +1,13 @@
 //! One machine code for equal programs in a process: robots that are loaded again, in each thread or for each test,
 //! share it as long as one of them is in use.
 
-use super::{Kernel, Refusal, Shape};
+use super::{Form, Kernel, Refusal, Shape};
 use crate::program::{Program, Step};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Two hashes of the program, the shape and the condensed outputs. The cache keeps no program to compare with: two
+/// Two hashes of the program, the shape, the form and the condensed outputs. The cache keeps no program to compare with: two
 /// different ones have the same key with a probability of 2⁻¹²⁸.
 type Key = [u64; 2];
 
@@ -18,12 +18,12 @@ impl Kernel {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn shared(program: &Program, shape: Shape, condensed: usize) -> Result<Arc<Kernel>, Refusal> {
-        let key = [0, 1].map(|seed: u8| key(seed, program, shape, condensed));
+    pub fn shared(program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Arc<Kernel>, Refusal> {
+        let key = [0, 1].map(|seed: u8| key(seed, program, shape, form, condensed));
         if let Some(kernel) = cache().get(&key).and_then(Weak::upgrade) {
             return Ok(kernel);
         }
-        let kernel = Arc::new(Kernel::condensing(program, shape, condensed)?); // the cache is not locked meanwhile
+        let kernel = Arc::new(Kernel::condensing(program, shape, form, condensed)?); // the cache is not locked meanwhile
         let mut cache = cache();
         cache.retain(|_, kernel| kernel.strong_count() > 0);
         cache.insert(key, Arc::downgrade(&kernel));
@@ -36,9 +36,9 @@ fn cache() -> MutexGuard<'static, HashMap<Key, Weak<Kernel>>> {
 }
 
 /// Numbers by their bits: −0 and 0 are different programs.
-fn key(seed: u8, program: &Program, shape: Shape, condensed: usize) -> u64 {
+fn key(seed: u8, program: &Program, shape: Shape, form: Form, condensed: usize) -> u64 {
     let mut hasher = DefaultHasher::new();
-    (seed, shape, condensed.min(program.outputs().len())).hash(&mut hasher);
+    (seed, shape, form, condensed.min(program.outputs().len())).hash(&mut hasher);
     for input in program.inputs() {
         input.length.hash(&mut hasher);
     }
@@ -69,7 +69,9 @@ mod tests {
         if !Shape::OneF64.is_supported() {
             return;
         }
-        let code = |by, condensed| Kernel::shared(&scaled(by), Shape::OneF64, condensed).expect("a short program");
+        let code = |by, condensed| {
+            Kernel::shared(&scaled(by), Shape::OneF64, Form::Blocks, condensed).expect("a short program")
+        };
         let shared = |by| code(by, usize::MAX);
         let kernel = shared(3.5);
         assert!(Arc::ptr_eq(&kernel, &shared(3.5)));

@@ -5,16 +5,19 @@
 //! refuses an instruction that would read or write beyond one of them, so that a fault in its input (a wrong program, a
 //! wrong register) gives wrong numbers, but never a wrong address. The parts to be trusted are the assembler's few
 //! forms, each of which the tests compare with a disassembler, and its frame, which is on the stack and touched page by
-//! page. The code calls nothing, does not branch, and restores the callee-saved registers of the System V ABI.
+//! page, or, if it is large, in memory of the calling thread. The code calls nothing, does not branch except back to its
+//! beginning for the next run, and restores the callee-saved registers of the System V ABI.
 //!
 //! Memory is writable while it is filled and executable afterwards, never both; constants are in pages of their own
 //! that become read-only.
 
 use super::allocate::Code;
-use super::assembler::MOST_ARRAYS;
+use super::assembler::{LARGEST_ON_STACK, MOST_ARRAYS};
+use super::rows::Extent;
 use super::shape::Shape;
 use mozzi::scalar::Float;
 use std::any::TypeId;
+use std::cell::RefCell;
 
 /// Machine code that can be called.
 #[derive(Debug)]
@@ -23,93 +26,128 @@ pub(crate) struct Executable {
     /// The offset of the constants, after the code.
     pool: usize,
     /// Inputs, then outputs.
-    lengths: Vec<usize>,
+    extents: Vec<Extent>,
     inputs: usize,
     shape: Shape,
+    /// Bytes of the frame.
+    frame: usize,
 }
+
+/// 64 bytes, aligned as the code expects its frame.
+#[derive(Clone)]
+#[repr(align(64))]
+#[allow(dead_code)] // the code alone uses them
+struct Aligned([u8; 64]);
+
+thread_local! {
+    /// The frame of code that is too large for the stack. It grows when it is first needed.
+    static FRAME: RefCell<Vec<Aligned>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The addresses of the arrays.
+type Addresses = [*mut u8; MOST_ARRAYS];
 
 impl Executable {
     /// None if the processor lacks the instructions, or the system grants no executable memory.
-    pub fn new(shape: Shape, code: &Code, inputs: &[usize], outputs: &[usize]) -> Option<Self> {
+    pub fn new(shape: Shape, code: &Code, extents: Vec<Extent>, inputs: usize) -> Option<Self> {
         if !shape.is_supported() {
             return None;
         }
         let (pages, pool) = Pages::new(&code.bytes, &code.pool)?;
-        Some(Executable { pages, pool, lengths: [inputs, outputs].concat(), inputs: inputs.len(), shape })
+        Some(Executable { pages, pool, extents, inputs, shape, frame: code.frame })
     }
 
-    /// Computes all lanes: the lanes of entry k of an array are at `k · lanes`. The last output is a separate argument.
+    pub fn extents(&self) -> &[Extent] {
+        &self.extents
+    }
+
+    /// Computes all lanes, `runs` times, each time a step further in every array. The last output is a separate
+    /// argument.
     ///
     /// # Panics
-    /// If the numbers are of another type, or an array is missing or too short.
+    /// If the numbers are of another type, an array is missing or too short, or the code cannot run so many times.
     #[inline(always)]
-    pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
-        let lanes = self.shape.lanes();
+    pub fn call<S: Float>(&self, runs: usize, inputs: &[&[S]], outputs: &mut [&mut [S]], last: &mut [S]) {
         let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
         let arrays = inputs.len() + outputs.len() + 1;
-        assert!(inputs.len() == self.inputs && arrays == self.lengths.len(), "another number of arrays");
-        let mut lengths = self.lengths.iter();
-        for ((address, input), length) in addresses.iter_mut().zip(inputs).zip(lengths.by_ref().take(self.inputs)) {
-            assert!(input.len() >= length * lanes, "an input has {} entries, expected {length}", input.len());
+        assert!(inputs.len() == self.inputs && arrays == self.extents.len(), "another number of arrays");
+        assert!(runs == 1 || !self.shape.is_scalar() && runs > 0, "{runs} runs");
+        let mut extents = self.extents.iter();
+        for ((address, input), extent) in addresses.iter_mut().zip(inputs).zip(extents.by_ref().take(self.inputs)) {
+            let length = extent.of(runs);
+            assert!(input.len() >= length, "an input has {} entries, expected {length}", input.len());
             *address = input.as_ptr().cast_mut().cast();
         }
-        for ((address, output), length) in addresses[self.inputs..].iter_mut().zip(outputs).zip(lengths.by_ref()) {
-            assert!(output.len() >= length * lanes, "an output has {} entries, expected {length}", output.len());
+        for ((address, output), extent) in addresses[self.inputs..].iter_mut().zip(outputs).zip(extents.by_ref()) {
+            let length = extent.of(runs);
+            assert!(output.len() >= length, "an output has {} entries, expected {length}", output.len());
             *address = output.as_mut_ptr().cast();
         }
-        self.run_with(addresses, last);
+        self.run_with(runs, &mut addresses, last);
     }
 
-    /// As [`call`](Self::call), with inputs and outputs each in one slice, array after array.
+    /// As [`call`](Self::call), once, with inputs and outputs each in one slice, array after array.
     ///
     /// # Panics
     /// If the numbers are of another type, or a slice is too short.
     #[inline(always)]
     pub fn call_joined<S: Float>(&self, inputs: &[S], outputs: &mut [S], last: &mut [S]) {
-        let lanes = self.shape.lanes();
         let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
-        let (given, found) = self.lengths.split_at(self.inputs);
+        let (given, found) = self.extents.split_at(self.inputs);
         let found = &found[..found.len() - 1]; // the last is an argument of its own
         let mut at = 0;
-        for (address, length) in addresses.iter_mut().zip(given) {
-            let array = &inputs[at..at + length * lanes];
+        for (address, extent) in addresses.iter_mut().zip(given) {
+            let array = &inputs[at..at + extent.size];
             (*address, at) = (array.as_ptr().cast_mut().cast(), at + array.len());
         }
         let mut rest = outputs;
-        for (address, length) in addresses[self.inputs..].iter_mut().zip(found) {
-            let (array, further) = rest.split_at_mut(length * lanes);
+        for (address, extent) in addresses[self.inputs..].iter_mut().zip(found) {
+            let (array, further) = rest.split_at_mut(extent.size);
             (*address, rest) = (array.as_mut_ptr().cast(), further);
         }
-        self.run_with(addresses, last);
+        self.run_with(1, &mut addresses, last);
     }
 
     /// Runs with these addresses and that of the last output, whose type and length are checked here.
     #[inline(always)]
-    fn run_with<S: Float>(&self, mut addresses: [*mut u8; MOST_ARRAYS], last: &mut [S]) {
+    fn run_with<S: Float>(&self, runs: usize, addresses: &mut Addresses, last: &mut [S]) {
         let number = if self.shape.is_f64() { TypeId::of::<f64>() } else { TypeId::of::<f32>() };
         assert!(TypeId::of::<S>() == number, "numbers of another type");
-        let place = self.lengths.len() - 1;
-        let length = self.lengths[place] * self.shape.lanes();
-        assert!(last.len() >= length, "the last output has {} entries", last.len());
+        let place = self.extents.len() - 1;
+        assert!(last.len() >= self.extents[place].of(runs), "the last output has {} entries", last.len());
         addresses[place] = last.as_mut_ptr().cast();
-        self.run(&mut addresses);
+        if self.frame <= LARGEST_ON_STACK { self.run(runs, addresses) } else { self.run_beside(runs, addresses) }
+    }
+
+    /// Runs with a frame that is not on the stack.
+    #[inline(never)]
+    fn run_beside(&self, runs: usize, addresses: &mut Addresses) {
+        FRAME.with_borrow_mut(|frame| {
+            let lines = self.frame.div_ceil(64);
+            if frame.len() < lines {
+                frame.resize(lines, Aligned([0; 64]));
+            }
+            addresses[self.extents.len() + 1] = frame.as_mut_ptr().cast();
+            self.run(runs, addresses);
+        });
     }
 
     #[cfg(all(unix, target_arch = "x86_64"))]
     #[inline(always)]
-    fn run(&self, addresses: &mut [*mut u8; MOST_ARRAYS]) {
-        addresses[self.lengths.len()] = self.pages.start.wrapping_add(self.pool);
+    fn run(&self, runs: usize, addresses: &mut Addresses) {
+        addresses[self.extents.len()] = self.pages.start.wrapping_add(self.pool);
         // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has
         // its instructions (`new`). It accesses only the arrays at the given addresses, each as long as the assembler
-        // assumed (checked by the callers; the outputs are borrowed exclusively), its constants, and its stack.
+        // assumed for so many runs (checked by the callers; the outputs are borrowed exclusively), its constants, and
+        // its frame, on its stack or borrowed by `run_beside`.
         unsafe {
-            let function: extern "sysv64" fn(*const *mut u8) = std::mem::transmute(self.pages.start);
-            function(addresses.as_ptr());
+            let function: extern "sysv64" fn(*const *mut u8, usize) = std::mem::transmute(self.pages.start);
+            function(addresses.as_ptr(), runs);
         }
     }
 
     #[cfg(not(all(unix, target_arch = "x86_64")))]
-    fn run(&self, _: &mut [*mut u8; MOST_ARRAYS]) {
+    fn run(&self, _: usize, _: &mut Addresses) {
         unreachable!("no code was made");
     }
 }

@@ -27,6 +27,24 @@ pub(crate) enum Operation {
     Xor,
     SubBits,
     ShiftLeft(u8),
+    /// Moves numbers: of each 128 bits, their lower or upper halves, a's and b's in turns.
+    Interleave(Half, Grain),
+    /// Moves 128 bits at a time: those of a, then those of b, at the places that the bits name.
+    Pick(u8),
+}
+
+/// Which half of 128 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Half {
+    Lower,
+    Upper,
+}
+
+/// What stays together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Grain {
+    Bits32,
+    Bits64,
 }
 
 use Operation::*;
@@ -47,6 +65,11 @@ impl Operation {
     /// True if it works on bits, not on numbers.
     pub fn is_of_bits(self) -> bool {
         matches!(self, And | Xor | SubBits | ShiftLeft(_))
+    }
+
+    /// True if it moves numbers from lane to lane.
+    pub fn moves_lanes(self) -> bool {
+        matches!(self, Interleave(..) | Pick(_))
     }
 }
 

@@ -10,11 +10,23 @@ use std::collections::HashMap;
 /// A lowered program. It has one output more than the program: the sum of the squares of all angles.
 pub(crate) struct Lowered {
     pub nodes: Vec<Node>,
+    /// Entries of arrays in blocks.
     pub outputs: Vec<Vec<Value>>,
+    /// What is written into tables; see [`by_rows`](super::rows::by_rows).
+    pub stores: Vec<Store>,
     /// The code that runs first, on registers of several numbers: the sines and cosines of neighbouring angles of one
     /// state. Its inputs are [`TOGETHER`] numbers of an array from an entry on; its only output is the array that
     /// [`SINES`] refers to.
     pub before: Option<Box<Lowered>>,
+}
+
+/// The first numbers of a register, written to a byte of an output.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Store {
+    pub value: Value,
+    pub array: usize,
+    pub byte: usize,
+    pub numbers: usize,
 }
 
 /// The number of angles of one state whose sines are computed in one register.
@@ -27,7 +39,9 @@ impl Lowered {
     /// Floating-point operations; a fused multiply-add counts as two.
     pub fn flops(&self) -> usize {
         let work = |node: &Node| match node {
-            Node::Apply(operation, _) if !operation.is_of_bits() => operation.arity().saturating_sub(1).max(1),
+            Node::Apply(operation, _) if !operation.is_of_bits() && !operation.moves_lanes() => {
+                operation.arity().saturating_sub(1).max(1)
+            }
             _ => 0,
         };
         let before = self.before.as_ref().map_or(0, |before| TOGETHER * before.flops());
@@ -155,7 +169,7 @@ pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option
     }
     outputs.push(vec![squares]);
     let before = (!windows.is_empty()).then(|| Box::new(sines(&windows, &sin_cos)));
-    Some(Lowered { nodes: builder.nodes, outputs, before })
+    Some(Lowered { nodes: builder.nodes, outputs, stores: Vec::new(), before })
 }
 
 /// The beginning of a register's angles: array, entry.
@@ -199,5 +213,5 @@ fn sines(windows: &[Window], sin_cos: &SinCos) -> Lowered {
         <[Value; 2]>::from(sin_cos.at(&mut builder, angles))
     });
     let outputs = vec![both.collect()];
-    Lowered { nodes: builder.nodes, outputs, before: None }
+    Lowered { nodes: builder.nodes, outputs, stores: Vec::new(), before: None }
 }

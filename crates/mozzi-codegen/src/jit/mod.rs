@@ -7,10 +7,13 @@ mod executable;
 mod instruction;
 mod lower;
 mod order;
+mod rows;
 mod shape;
 mod sin_cos;
 
+pub use assembler::MOST_ARRAYS;
 pub(crate) use instruction::{Node, Operation};
+pub use rows::Extent;
 pub use shape::Shape;
 pub(crate) use sin_cos::SinCos;
 
@@ -47,12 +50,23 @@ impl std::fmt::Display for Refusal {
 }
 impl std::error::Error for Refusal {}
 
+/// How the code finds the numbers of its states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// Blocks of a register's states: entry by entry, the lanes of each contiguous.
+    Blocks,
+    /// Rows of the caller's tables, state by state; for shapes of several states. What outputs are
+    /// [condensed](Kernel::condensing) to, and the squares of angles, are in blocks, one after the other.
+    Rows,
+}
+
 /// A program as machine code for one or several states at once. It can be shared between threads; calls do not
 /// allocate.
 #[derive(Debug)]
 pub struct Kernel {
     executable: Executable,
     shape: Shape,
+    form: Form,
     angle_limit: f64,
     code_bytes: usize,
     instructions: usize,
@@ -66,37 +80,57 @@ impl Kernel {
     /// # Errors
     /// [`Refusal`] with the reason why there is no machine code.
     pub fn new(program: &Program, shape: Shape) -> Result<Self, Refusal> {
-        Self::condensing(program, shape, usize::MAX)
+        Self::condensing(program, shape, Form::Blocks, usize::MAX)
     }
 
-    /// Likewise, but each output from index `condensed` on is replaced by its smallest entry and the sum of its
-    /// entries, which is enough to check pivots.
+    /// Likewise, in this form; and each output from index `condensed` on is replaced by its smallest entry and the sum
+    /// of its entries, which is enough to check pivots.
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn condensing(program: &Program, shape: Shape, condensed: usize) -> Result<Self, Refusal> {
+    ///
+    /// # Panics
+    /// For rows of a shape of one state.
+    pub fn condensing(program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Self, Refusal> {
+        assert!(form == Form::Blocks || !shape.is_scalar(), "one state has no rows");
         if !shape.is_supported() {
             return Err(Refusal::Processor);
         }
         let lowered = lower::lower(program, shape, condensed).ok_or(Refusal::Program)?;
-        let inputs: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
-        let outputs: Vec<usize> = lowered.outputs.iter().map(Vec::len).collect();
         let flops = lowered.flops();
+        let widths: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
+        let (inputs, own) = (widths.len(), condensed.min(program.outputs().len()));
+        let mut extents = Vec::new();
+        extents.extend(widths.iter().map(|&width| match form {
+            Form::Blocks => Extent::of_block(width, shape),
+            Form::Rows => Extent::of_input(width, shape),
+        }));
+        extents.extend(lowered.outputs.iter().enumerate().map(|(k, output)| match form {
+            Form::Rows if k < own => Extent::of_output(output.len(), shape),
+            _ => Extent::of_block(output.len(), shape),
+        }));
         let pays = shape.repeats() && lowered.nodes.len() <= order::LONGEST;
+        let lowered = if form == Form::Rows { rows::by_rows(lowered, shape, &widths, own) } else { lowered };
         let lowered = if pays { order::ordered(lowered) } else { lowered };
-        let code = allocate::allocate(shape, &lowered, &inputs)?;
+        let code = allocate::allocate(shape, &lowered, allocate::Arrays { extents: &extents, inputs, form })?;
         if code.bytes.len() > shape.longest_code() {
             return Err(Refusal::Long);
         }
         let largest = if shape.is_f64() { f64::LARGEST } else { f32::LARGEST.into() };
-        let executable = Executable::new(shape, &code, &inputs, &outputs).ok_or(Refusal::Memory)?;
+        let executable = Executable::new(shape, &code, extents, inputs).ok_or(Refusal::Memory)?;
         let (code_bytes, instructions, frame_bytes) = (code.bytes.len(), code.instructions, code.frame);
-        Ok(Kernel { executable, shape, angle_limit: largest * largest, code_bytes, instructions, frame_bytes, flops })
+        let angle_limit = largest * largest;
+        Ok(Kernel { executable, shape, form, angle_limit, code_bytes, instructions, frame_bytes, flops })
     }
 
     /// Its instruction set and number type.
     pub fn shape(&self) -> Shape {
         self.shape
+    }
+
+    /// How it finds the numbers of its states.
+    pub fn form(&self) -> Form {
+        self.form
     }
 
     /// The length of the code in bytes.
@@ -119,6 +153,11 @@ impl Kernel {
         self.frame_bytes
     }
 
+    /// The numbers of each array that a run may touch: of the inputs, of the outputs, and of the squares of angles.
+    pub fn extents(&self) -> &[Extent] {
+        self.executable.extents()
+    }
+
     /// Fills the outputs of one state for each lane of the shape. The lanes of entry k of an array are contiguous, from
     /// `k · lanes` on. `squares` receives, for each lane, the sum of the squares of all angles whose sine is computed;
     /// see [`is_exact`](Self::is_exact).
@@ -127,7 +166,17 @@ impl Kernel {
     /// If the numbers do not have the shape's type, or an array is missing or too short.
     #[inline(always)]
     pub fn call<S: Float>(&self, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
-        self.executable.call(inputs, outputs, squares);
+        self.executable.call(1, inputs, outputs, squares);
+    }
+
+    /// Fills the outputs' tables from the inputs', for `runs` registers of states one after the other: after the first,
+    /// array k is used from `extents()[k].step` on, and so forth.
+    ///
+    /// # Panics
+    /// As [`call`](Self::call), and if a shape of one state is to run more than once.
+    #[inline(always)]
+    pub fn run<S: Float>(&self, runs: usize, inputs: &[&[S]], outputs: &mut [&mut [S]], squares: &mut [S]) {
+        self.executable.call(runs, inputs, outputs, squares);
     }
 
     /// As [`call`](Self::call), with the inputs one after the other in one slice and the outputs in another.

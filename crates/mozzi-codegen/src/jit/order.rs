@@ -7,7 +7,7 @@
 //! forward dynamics 0.91 to 0.96; nothing at one state, nothing for longer programs, which wait for their code.
 
 use super::instruction::{Node, Operation, Value};
-use super::lower::Lowered;
+use super::lower::{Lowered, Store};
 
 /// The longest program that is ordered.
 pub(crate) const LONGEST: usize = 6000;
@@ -39,7 +39,8 @@ pub(crate) fn ordered(lowered: Lowered) -> Lowered {
     let nodes = order.iter().map(moved).collect();
     let outputs =
         lowered.outputs.iter().map(|list| list.iter().map(|&value| place[value as usize]).collect()).collect();
-    Lowered { nodes, outputs, before: lowered.before }
+    let moved = |store: &Store| Store { value: place[store.value as usize], ..*store };
+    Lowered { nodes, outputs, stores: lowered.stores.iter().map(moved).collect(), before: lowered.before }
 }
 
 /// The pipe of an operation, and the cycles after which its result is known.
@@ -49,6 +50,7 @@ fn cost(operation: Operation) -> (usize, u32) {
         Operation::Div | Operation::Sqrt => (0, 13),
         Operation::Add | Operation::Sub | Operation::Min | Operation::Max => (1, 3),
         Operation::And | Operation::Xor | Operation::SubBits | Operation::ShiftLeft(_) => (1, 1),
+        Operation::Interleave(..) | Operation::Pick(_) => (1, 3),
     }
 }
 
@@ -120,7 +122,7 @@ mod tests {
             }
         }
         let outputs = vec![vec![7, 13]];
-        let found = ordered(Lowered { nodes: nodes.clone(), outputs, before: None });
+        let found = ordered(Lowered { nodes: nodes.clone(), outputs, stores: Vec::new(), before: None });
         assert_eq!(found.nodes.len(), nodes.len());
         for (place, node) in found.nodes.iter().enumerate() {
             assert!(node.operands().iter().all(|&operand| (operand as usize) < place));

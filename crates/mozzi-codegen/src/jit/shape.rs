@@ -97,10 +97,14 @@ impl Shape {
         }
     }
 
-    /// The longest code in bytes. Long code is fetched from the second-level cache all along: at one state the kernels'
-    /// loops are faster beyond it.
+    /// The longest code in bytes. Long code is fetched from the second-level cache all along: beyond it the kernels'
+    /// loops are faster.
     pub fn longest_code(self) -> usize {
-        if self.is_scalar() { 256 << 10 } else { 512 << 10 }
+        match self.encoding() {
+            _ if self.is_scalar() => 256 << 10,
+            Encoding::Vex => 512 << 10,
+            Encoding::Evex => 2 << 20,
+        }
     }
 
     /// True if an instruction can repeat a number in memory.

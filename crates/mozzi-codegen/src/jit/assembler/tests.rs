@@ -141,6 +141,77 @@ fn operations_on_one_number() {
 }
 
 #[test]
+fn moves_between_lanes() {
+    for shape in Shape::ALL.into_iter().filter(|shape| !shape.is_scalar()) {
+        let evex = shape.encoding() == Encoding::Evex;
+        let pick = match (evex, shape.is_f64()) {
+            (false, _) => "vperm2f128",
+            (true, true) => "vshuff64x2",
+            (true, false) => "vshuff32x4",
+        };
+        let table = [
+            (Operation::Interleave(Half::Lower, Grain::Bits64), "vunpcklpd", None),
+            (Operation::Interleave(Half::Upper, Grain::Bits64), "vunpckhpd", None),
+            (Operation::Interleave(Half::Lower, Grain::Bits32), "vunpcklps", None),
+            (Operation::Interleave(Half::Upper, Grain::Bits32), "vunpckhps", None),
+            (Operation::Pick(0xdd), pick, Some(0xdd)),
+        ];
+        for (operation, mnemonic, immediate) in table {
+            if operation == Operation::Interleave(Half::Lower, Grain::Bits32) && shape.is_f64() {
+                break; // halves of numbers
+            }
+            let takes_memory = assembler(shape).takes_memory(operation);
+            for last in last_operands(shape, takes_memory) {
+                for (target, a) in registers(shape).zip(registers(shape).cycle().skip(3)) {
+                    let found = check(shape, mnemonic, |assembler| assembler.apply(operation, target, a, last));
+                    assert_eq!(found.op_register(0), named(shape, target));
+                    assert_eq!(found.op_register(1), named(shape, a));
+                    check_last(shape, &found, 2, last);
+                    if let Some(immediate) = immediate {
+                        assert_eq!((found.op_count(), found.immediate8()), (4, immediate));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn parts_of_registers_are_stored_under_masks() {
+    for shape in Shape::ALL.into_iter().filter(|shape| shape.repeats()) {
+        let moves = format!("vmovu{}", suffix(shape));
+        for (from, place) in registers(shape).cycle().zip(places(shape)) {
+            for numbers in 1..shape.lanes() {
+                let store = check(shape, &moves, |a| a.store_part(place.0, place.1, from, numbers));
+                assert_eq!((store.op_register(1), store.op_mask()), (named(shape, from), Named::K1));
+                assert!(!store.zeroing_masking());
+                check_memory(shape, &store, 0, place, false);
+            }
+        }
+        // up to the array's end and no further; the masks are set at the beginning
+        let mut assembler = Assembler::new(shape, &[3 * shape.number()]);
+        assembler.store_part(0, 0, 1, 3);
+        assembler.store_part(0, 0, 1, 2);
+        assembler.store_part(0, shape.number(), 1, 2);
+        let found = decoded(&assembler.finish(&[]));
+        let values = found.iter().filter(|x| x.mnemonic() == Mnemonic::Mov && x.op1_kind() == OpKind::Immediate32);
+        assert_eq!(
+            values.map(|x| (x.op0_register(), x.immediate32())).collect::<Vec<_>>(),
+            [(Named::EAX, 7), (Named::EAX, 3)]
+        );
+        let masks = found.iter().filter(|x| x.mnemonic() == Mnemonic::Kmovw);
+        let masks: Vec<_> = masks.map(|x| (x.op0_register(), x.op1_register())).collect();
+        assert_eq!(masks, [(Named::K1, Named::EAX), (Named::K2, Named::EAX)]);
+    }
+}
+
+#[test]
+#[should_panic(expected = "byte 16 of array 0")]
+fn masks_end_within_the_array() {
+    Assembler::new(Shape::EightF64, &[32]).store_part(0, 16, 0, 3);
+}
+
+#[test]
 fn fused_products() {
     let operations = [
         (Operation::MulAdd, "vfmadd"),
@@ -197,14 +268,17 @@ fn loads_and_stores() {
 #[test]
 fn a_function_keeps_what_is_its_callers() {
     for arrays in 1..MOST_ARRAYS {
-        for frame in [0, 64, 5000, 40_000] {
+        for (frame, repeats) in
+            [0, 64, 5000, 40_000, 100_000].into_iter().flat_map(|frame| [(frame, false), (frame, true)])
+        {
             let mut assembler = Assembler::new(Shape::EightF64, &vec![64; arrays]);
             let (own, mut expected) = (assembler.frame(), Vec::new());
             if frame > 0 {
                 assembler.store(own, frame - 64, 1);
             }
             (0..arrays).for_each(|memory| assembler.load(2, Operand::Lanes(memory, 0)));
-            let code = assembler.finish();
+            let steps: Vec<usize> = if repeats { (0..arrays).map(|k| 64 * k).collect() } else { Vec::new() };
+            let code = assembler.finish(&steps);
             let found = decoded(&code);
             // pushed registers are popped in reverse order, and each array's address is loaded from its place
             let of = |mnemonic| found.iter().filter(move |x| x.mnemonic() == mnemonic).map(|x| x.op0_register());
@@ -217,32 +291,59 @@ fn a_function_keeps_what_is_its_callers() {
                     expected.push(base(memory));
                 }
             }
+            expected.extend(repeats.then_some(Named::R12));
             assert_eq!(pushed[1..], expected);
+            // each array's address goes on by its step, and the code begins again behind the prologue
+            let adds: Vec<_> = found.iter().filter(|x| x.mnemonic() == Mnemonic::Add).collect();
+            let steps = steps.iter().enumerate().filter(|(_, step)| **step > 0);
+            assert!(
+                adds.iter()
+                    .map(|x| (x.op0_register(), x.immediate32to64()))
+                    .eq(steps.map(|(k, &step)| (base(k), step as i64)))
+            );
+            let jumps: Vec<_> = found.iter().filter(|x| x.mnemonic() == Mnemonic::Jne).collect();
+            assert_eq!(jumps.len(), usize::from(repeats));
+            if let [jump] = jumps[..] {
+                let is_before = |x: &Instruction| {
+                    x.mnemonic() == Mnemonic::And || x.mnemonic() == Mnemonic::Mov && x.memory_base() == Named::RDI
+                };
+                let last = found.iter().rposition(is_before).expect("addresses");
+                assert_eq!(jump.near_branch_target(), found[last].next_ip());
+                let before = |k: usize| &found[found.iter().position(|x| x == jump).expect("found") - k];
+                assert_eq!((before(1).mnemonic(), before(1).op0_register()), (Mnemonic::Dec, Named::R12));
+                let counter = found.iter().find(|x| x.mnemonic() == Mnemonic::Mov && x.op0_register() == Named::R12);
+                assert_eq!(counter.map(|x| x.op1_register()), Some(Named::RSI));
+            }
             let loads: Vec<_> =
                 found.iter().filter(|x| x.mnemonic() == Mnemonic::Mov && x.memory_base() == Named::RDI).collect();
-            assert_eq!(loads.len(), arrays);
-            for memory in 0..arrays {
+            let is_on_stack = frame <= LARGEST_ON_STACK;
+            let given_addresses = arrays + usize::from(!is_on_stack);
+            assert_eq!(loads.len(), given_addresses);
+            for memory in 0..given_addresses {
                 let at = |x: &&&Instruction| {
                     x.memory_displacement64() == 8 * memory as u64 && x.op0_register() == base(memory)
                 };
                 assert_eq!(loads.iter().filter(at).count(), 1, "array {memory}");
             }
-            assert!(loads[..arrays - 1].iter().all(|x| x.op0_register() != Named::RDI), "rdi last");
+            assert!(loads[..loads.len() - 1].iter().all(|x| x.op0_register() != Named::RDI), "rdi last");
             // the frame lies within the allocated stack, whatever its alignment was
             let given: u64 = found
                 .iter()
                 .filter(|x| x.mnemonic() == Mnemonic::Sub && x.op0_register() == Named::RSP)
                 .map(|x| u64::from(x.immediate32()))
                 .sum();
-            assert!(given >= frame as u64 + 63, "{given} bytes for {frame}");
-            let lea: Vec<_> = found.iter().filter(|x| x.mnemonic() == Mnemonic::Lea).collect();
-            assert_eq!(
-                (lea[0].op0_register(), lea[0].memory_base(), lea[0].memory_displacement64()),
-                (base(own), Named::RSP, 63)
-            );
-            let and = found.iter().find(|x| x.mnemonic() == Mnemonic::And).expect("an alignment");
-            assert_eq!((and.op0_register(), and.immediate8to64()), (base(own), -64));
-            let back = lea[1];
+            let mut lea = found.iter().filter(|x| x.mnemonic() == Mnemonic::Lea);
+            if is_on_stack {
+                assert!(given >= frame as u64 + 63, "{given} bytes for {frame}");
+                let lea = lea.next().expect("the frame's address");
+                assert_eq!(
+                    (lea.op0_register(), lea.memory_base(), lea.memory_displacement64()),
+                    (base(own), Named::RSP, 63)
+                );
+                let and = found.iter().find(|x| x.mnemonic() == Mnemonic::And).expect("an alignment");
+                assert_eq!((and.op0_register(), and.immediate8to64()), (base(own), -64));
+            }
+            let back = lea.next().expect("the saved registers' address");
             assert_eq!((back.op0_register(), back.memory_base()), (Named::RSP, Named::RBP));
             assert_eq!(back.memory_displacement64() as i64, -8 * expected.len() as i64);
             let end: Vec<_> = found.iter().rev().take(3).map(|x| x.mnemonic()).collect();
