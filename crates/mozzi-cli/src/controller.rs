@@ -1,17 +1,18 @@
 //! `--controller FILE.json`: the controller, its gains, and its own model of the robot.
 
 use crate::failure::{Failure, Result};
-use crate::json_file::{JsonFile, Step, unknown_key};
+use crate::json_file;
 use crate::robot::RobotArguments;
 use mozzi::Model;
 use mozzi::simulation::Input;
 use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
 use mozzi_motion::trajectories::Reference;
+use mozzi_urdf::json::{File, Step, unknown_key};
 use serde_json::Value;
 
 /// A controller's file, and its robot if the file names one.
 pub struct Controller {
-    file: JsonFile,
+    file: File,
     kind: String,
     /// The controller's own model, if it differs from the simulated robot.
     believed: Option<Model>,
@@ -27,7 +28,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 
 impl Controller {
     pub fn read(name: &str, robot: &RobotArguments) -> Result<Self> {
-        let file = JsonFile::read(name)?;
+        let file = json_file::read(name)?;
         let whole = |sentence: String| Failure::from(file.wrong(&[], sentence));
         let wrong = |key: &str, sentence: String| Failure::from(file.wrong(&[Step::Key(key)], sentence));
         let Value::Object(entries) = &file.value else { return Err(whole("is not a JSON object".into())) };

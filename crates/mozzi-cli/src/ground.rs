@@ -1,13 +1,14 @@
 //! `--ground`, `--contact` and `--contacts FILE.json`: points of the robot and planes that stop them.
 
 use crate::failure::{self, Failure, Result};
-use crate::json_file::{JsonFile, Step};
+use crate::json_file;
 use crate::numbers::number;
 use crate::robot::RobotArguments;
 use clap::Args;
 use mozzi::simulation::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi::{Model, SE3, Vec3};
 use mozzi_urdf::geometry::{contact_points, geometry_with};
+use mozzi_urdf::json::Step;
 use serde_json::Value;
 use std::path::Path;
 
@@ -108,7 +109,7 @@ pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64]) {
 }
 
 fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contacts<'static>> {
-    let file = JsonFile::read(name)?;
+    let file = json_file::read(name)?;
     let list = |key: &'static str| file.value.get(key).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     if let Some(key) =
         file.value.as_object().and_then(|all| all.keys().find(|k| !["points", "planes"].contains(&&***k)))

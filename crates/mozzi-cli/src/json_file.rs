@@ -1,47 +1,26 @@
-//! A file of JSON: its value, and the line of each entry for messages. A name that is given twice is an error, as the
-//! last one would win silently.
-
-mod position;
+//! A file of JSON from a path or from standard input.
 
 use crate::failure::{Failure, Result};
 use crate::input;
-use mozzi_urdf::did_you_mean;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
-use serde_json::{Map, Value};
-use std::fmt;
+use mozzi_urdf::json::{File, Misplaced};
 
 /// A larger file is refused.
 const MOST_BYTES: usize = 256 << 20;
 
-/// A step from a value to one of its entries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step<'p> {
-    Key(&'p str),
-    Index(usize),
+/// Reads it; `-` is standard input, which contains the robot.
+pub fn read(name: &str) -> std::result::Result<File, Misplaced> {
+    let shown = input::name(name);
+    let text = text(name).map_err(|failure| {
+        let why = if let Failure::Wrong(why) = failure { why } else { String::from("cannot be read") };
+        Misplaced::whole(shown, why.strip_prefix(&format!("{shown} ")).unwrap_or(&why))
+    })?;
+    File::parse(shown, text)
 }
 
-pub struct JsonFile {
-    pub name: String,
-    text: String,
-    pub value: Value,
-}
-
-/// An error in a file of JSON.
-#[derive(Debug)]
-pub struct Misplaced {
-    file: String,
-    /// Line and column, from 1; none if the error concerns the whole file.
-    pub position: Option<(usize, usize)>,
-    pub message: String,
-}
-
-impl fmt::Display for Misplaced {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(&self.file)?;
-        if let Some((line, column)) = self.position {
-            write!(f, ":{line}:{column}")?;
-        }
-        write!(f, ": {}", self.message)
+fn text(file: &str) -> Result<String> {
+    match file {
+        "-" => input::to_text(file, input::robot_text().map_err(|error| input::cannot(file, &error))?.to_vec()),
+        file => input::text(file, MOST_BYTES),
     }
 }
 
@@ -54,134 +33,5 @@ impl From<Misplaced> for Failure {
 impl From<Vec<Misplaced>> for Failure {
     fn from(errors: Vec<Misplaced>) -> Self {
         Failure::wrong(errors.iter().map(Misplaced::to_string).collect::<Vec<_>>().join("\nerror: "))
-    }
-}
-
-impl JsonFile {
-    pub fn read(name: &str) -> Result<Self, Misplaced> {
-        let text = text(name).map_err(|failure| {
-            let why = if let Failure::Wrong(why) = failure { why } else { String::from("cannot be read") };
-            whole(input::name(name), why.strip_prefix(&format!("{} ", input::name(name))).unwrap_or(&why).to_string())
-        })?;
-        Self::parse(input::name(name), text)
-    }
-
-    /// A byte order mark at the start is accepted.
-    fn parse(name: &str, text: String) -> Result<Self, Misplaced> {
-        let json = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        let Once(value) = serde_json::from_str(json).map_err(|error| misread(name, &error))?;
-        Ok(JsonFile { name: name.to_string(), value, text })
-    }
-
-    /// A message about an entry; if there is no such entry, its line is that of the value in which it is missing.
-    pub fn wrong(&self, path: &[Step], message: impl Into<String>) -> Misplaced {
-        let position = Some(position::find(&self.text, path));
-        Misplaced { file: self.name.clone(), position, message: message.into() }
-    }
-}
-
-/// The text of a file; `-` is standard input, which contains the robot.
-fn text(file: &str) -> Result<String> {
-    match file {
-        "-" => input::to_text(file, input::robot_text().map_err(|error| input::cannot(file, &error))?.to_vec()),
-        file => input::text(file, MOST_BYTES),
-    }
-}
-
-fn whole(name: &str, message: String) -> Misplaced {
-    Misplaced { file: name.to_string(), position: None, message }
-}
-
-fn misread(name: &str, error: &serde_json::Error) -> Misplaced {
-    let (line, column) = (error.line(), error.column());
-    let why = error.to_string();
-    let why = why.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&why);
-    let message = if error.is_data() { why.to_string() } else { format!("is not valid JSON: {why}") };
-    Misplaced { file: name.to_string(), position: Some((line, column)), message }
-}
-
-/// "`frition` is not an entry of joints[1], did you mean `friction`?", or the list of all known keys.
-pub fn unknown_key(key: &str, parent: &str, known: &[&str]) -> String {
-    let others = || format!("expected {}", known.join(", "));
-    let hint = did_you_mean(key, known.iter().copied()).unwrap_or_else(others);
-    format!("`{key}` is not an entry of {parent}, {hint}")
-}
-
-struct Once(Value);
-
-impl<'de> Deserialize<'de> for Once {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        deserializer.deserialize_any(Values).map(Once)
-    }
-}
-
-struct Values;
-
-impl<'de> Visitor<'de> for Values {
-    type Value = Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a value of JSON")
-    }
-    fn visit_unit<E>(self) -> std::result::Result<Value, E> {
-        Ok(Value::Null)
-    }
-    fn visit_bool<E>(self, x: bool) -> std::result::Result<Value, E> {
-        Ok(x.into())
-    }
-    fn visit_i64<E>(self, x: i64) -> std::result::Result<Value, E> {
-        Ok(x.into())
-    }
-    fn visit_u64<E>(self, x: u64) -> std::result::Result<Value, E> {
-        Ok(x.into())
-    }
-    fn visit_f64<E>(self, x: f64) -> std::result::Result<Value, E> {
-        Ok(x.into())
-    }
-    fn visit_str<E>(self, x: &str) -> std::result::Result<Value, E> {
-        Ok(x.into())
-    }
-    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> std::result::Result<Value, A::Error> {
-        let mut list = Vec::new();
-        while let Some(Once(entry)) = entries.next_element()? {
-            list.push(entry);
-        }
-        Ok(list.into())
-    }
-    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> std::result::Result<Value, A::Error> {
-        let mut map = Map::new();
-        while let Some(name) = entries.next_key::<String>()? {
-            if map.contains_key(&name) {
-                return Err(A::Error::custom(format!("`{name}` is given twice")));
-            }
-            let Once(value) = entries.next_value()?;
-            map.insert(name, value);
-        }
-        Ok(map.into())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_those_of_serde_json_and_each_once() {
-        let text = r#"{"a": [1, -2, 3.5, 1e300, null, true, "x"], "b": {"c": {}, "d": []}}"#;
-        let Once(value) = serde_json::from_str(text).expect("JSON");
-        assert_eq!(value, serde_json::from_str::<Value>(text).expect("JSON"));
-        let error = serde_json::from_str::<Once>("{\"a\": {\"p\": 1,\n \"q\": 2, \"p\": 3}}").err().expect("twice");
-        assert_eq!(error.to_string(), "`p` is given twice at line 2 column 12");
-    }
-
-    #[test]
-    fn errors_have_a_line_and_a_byte_order_mark_is_none() {
-        let why = |text: &str| JsonFile::parse("a.json", text.to_string()).err().map(|error| error.to_string());
-        assert_eq!(why("\u{feff}{\"a\": 1}"), None);
-        assert_eq!(why("{\"a\": 1,\n \"a\": 2}").as_deref(), Some("a.json:2:4: `a` is given twice"));
-        assert_eq!(why("{\"a\":\n }").as_deref(), Some("a.json:2:2: is not valid JSON: expected value"));
-        let file = JsonFile::parse("a.json", "{\"a\": [1,\n 2]}".to_string()).expect("JSON");
-        let wrong = file.wrong(&[Step::Key("a"), Step::Index(1)], "is 2");
-        assert_eq!(wrong.to_string(), "a.json:2:2: is 2");
     }
 }

@@ -73,6 +73,7 @@ mod finding;
 mod floating;
 pub mod geometry;
 mod joint;
+pub mod json;
 mod limit;
 mod link;
 mod mend;

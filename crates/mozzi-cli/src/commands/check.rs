@@ -2,11 +2,11 @@
 
 use super::info;
 use crate::failure::{self, Failure, Result};
-use crate::json_file::Misplaced;
 use crate::robot::PolicyArguments;
 use crate::{input, json as pretty, robot_json, sarif};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
+use mozzi_urdf::json::Misplaced;
 use mozzi_urdf::{Consequence, Diagnostic, Severity};
 use serde_json::{Value, json};
 

@@ -1,8 +1,8 @@
 //! A value of a file of JSON with its path, read as a text, a number, a vector, a pose.
 
-use crate::json_file::{JsonFile, Misplaced, Step, unknown_key};
+use super::file::{File, Misplaced, Step, unknown_key};
+use crate::constraints::Entry;
 use mozzi::SE3;
-use mozzi_urdf::constraints::Entry;
 use serde_json::Value;
 use std::fmt::Display;
 
@@ -10,13 +10,13 @@ pub type Read<T> = std::result::Result<T, Misplaced>;
 
 /// A value and its path in its file.
 pub struct At<'v> {
-    file: &'v JsonFile,
+    file: &'v File,
     pub value: &'v Value,
     path: Vec<Step<'v>>,
 }
 
 impl<'v> At<'v> {
-    pub fn root(file: &'v JsonFile) -> Self {
+    pub fn root(file: &'v File) -> Self {
         At { file, value: &file.value, path: Vec::new() }
     }
 

@@ -1,14 +1,14 @@
 //! Named states, by joint.
 
 use super::entry::{At, Read};
-use crate::json;
+use super::value;
 use mozzi::model::description::{BaseState, JointState, NamedState};
 use serde_json::{Value, json};
 
 pub fn write(state: &NamedState) -> Value {
-    let base = |base: &BaseState| json!({ "pose": json::vector(&base.pose), "twist": json::vector(&base.twist) });
+    let base = |base: &BaseState| json!({ "pose": value::vector(&base.pose), "twist": value::vector(&base.twist) });
     let joint = |joint: &JointState| {
-        let (positions, velocities) = (json::vector(&joint.positions), json::vector(&joint.velocities));
+        let (positions, velocities) = (value::vector(&joint.positions), value::vector(&joint.velocities));
         json!({ "name": joint.name, "positions": positions, "velocities": velocities })
     };
     json!({

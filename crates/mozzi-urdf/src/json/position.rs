@@ -1,6 +1,6 @@
 //! The place of an entry in a JSON text. The text was parsed before, so it is valid.
 
-use super::Step;
+use super::file::Step;
 
 /// Line and column, from 1, of the entry at a path: of its key, or of its value in a list. If an entry does not exist,
 /// those of the value in which it is missing.

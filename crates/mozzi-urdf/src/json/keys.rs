@@ -1,7 +1,7 @@
 //! The keys of each object of the file.
 
 use super::entry::At;
-use crate::json_file::Misplaced;
+use super::file::Misplaced;
 
 /// The required and the optional keys of an object, and the objects, or lists of objects, in it.
 pub struct Object {
