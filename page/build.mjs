@@ -9,10 +9,13 @@ import { build } from "esbuild";
 const here = dirname(fileURLToPath(import.meta.url));
 const text = (file) => readFileSync(join(here, file), "utf8").replaceAll("\r\n", "\n");
 
+// What the WebAssembly was made of, with its hash: see xtask/src/wasm.rs.
+const WASM = "../crates/mozzi-report/bundle/mozzi.wasm.txt";
+
 // 64-bit FNV-1a of all sources, which `cargo xtask test` computes again: was the bundle made from them?
 function stamp() {
   const scripts = readdirSync(join(here, "src")).filter((name) => name.endsWith(".js")).map((name) => `src/${name}`);
-  const files = ["build.mjs", "index.html", "package-lock.json", "package.json", "style.css", ...scripts].sort();
+  const files = [WASM, "build.mjs", "index.html", "pack.mjs", "package-lock.json", "package.json", "style.css", ...scripts].sort();
   let hash = 0xcbf29ce484222325n;
   for (const byte of Buffer.from(files.map((file) => `${file}\n${text(file)}`).join(""))) {
     hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
@@ -22,16 +25,16 @@ function stamp() {
 
 const bundled = await build({
   entryPoints: [join(here, "src/main.js")],
-  bundle: true, minify: true, write: false, format: "iife", target: "es2022", legalComments: "none", charset: "ascii",
+  bundle: true, minify: true, write: false, format: "esm", target: "es2022", legalComments: "none", charset: "ascii",
 });
 const script = bundled.outputFiles[0].text.trim().replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 const { code } = await (await import("esbuild")).transform(text("style.css"), { loader: "css", minify: true, charset: "ascii" });
 const style = code.trim();
 
 const hashed = (part) => `'sha256-${createHash("sha256").update(part).digest("base64")}'`;
-// nothing is fetched; the textures that a mesh asks for are an empty picture
+// nothing is fetched; the textures that a mesh asks for are an empty picture; WebAssembly is in the page, not evaluated text
 const policy = [
-  "default-src 'none'", `script-src ${hashed(script)}`, "style-src 'unsafe-inline'", "img-src data: blob:", "connect-src 'none'",
+  "default-src 'none'", `script-src ${hashed(script)} 'wasm-unsafe-eval'`, "style-src 'unsafe-inline'", "img-src data: blob:", "connect-src 'none'",
   "base-uri 'none'", "form-action 'none'",
 ].join("; ");
 
@@ -40,6 +43,8 @@ const notice = `<!--
 Made by \`cargo xtask page\` from the sources in page/, stamp ${stamp()}. It contains three.js ${version}, https://threejs.org:
 
 ${text("node_modules/three/LICENSE").trim()}
+
+${text(WASM).trim()}
 -->`;
 const parts = { policy, style, script };
 const page = text("index.html").replace(/\{\{(policy|style|script)\}\}/g, (_, name) => parts[name]);

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { seriesColour } from "./colours.js";
 import { KINDS } from "./kinds.js";
-import { add, dot, fromRows, norm, scaled, turned } from "./lie.js";
+import { add, dot, fromRows, norm, scaled, turned } from "./vectors.js";
 import { Arrow, paint } from "./marks.js";
 import { short } from "./plots.js";
 

@@ -1,8 +1,8 @@
-// The data that mozzi writes into the page: `robot`, `meshes` and `motion`, see crates/mozzi-report. Numbers of a motion are 32-bit
-// floats, base64, its times 64-bit ones; meshes are gzipped.
+// The data that mozzi writes into the page: `robot`, `shapes`, `meshes` and `motion`, see crates/mozzi-report. Numbers of a motion are
+// 32-bit floats, base64, its times 64-bit ones; meshes are gzipped.
 
-import { hasQuaternion, normalized } from "./joints.js";
-import { dot, fromRows, identity } from "./lie.js";
+import { hasQuaternion } from "./joints.js";
+import { dot, fromRows } from "./vectors.js";
 
 export function bytes(base64) {
   const text = atob(base64);
@@ -21,18 +21,12 @@ function floats(base64, size = 4) {
   return Float64Array.from({ length: raw.length / size }, (_, k) => at(k));
 }
 
-// Body 0 is the base; `moving` are the bodies that a joint moves, each with its place `at` among all, `allJoints` the independent joints. A
-// floating base stands first in both.
-export function readRobot(raw) {
-  const isFloating = raw.base === "floating";
-  const base = isFloating ? [{ name: "base", kind: "free", parent: -1, at: 0, M: identity(), q: 0, j: 0 }] : [];
-  const bodies = raw.bodies.map((body, k) => ({ ...body, M: fromRows(body.M), at: k + 1 }));
-  const frames = raw.frames.map((frame) => ({ ...frame, T: fromRows(frame.T) }));
-  const shapes = raw.shapes.map((shape) => ({ ...shape, T: fromRows(shape.T) }));
-  return {
-    ...raw, bodies, frames, shapes, isFloating, moving: [...base, ...bodies], allJoints: [...base, ...raw.joints],
-    n: raw.velocities.length, nq: raw.positions.length,
-  };
+// The robot of the page, with its shapes.
+export function readRobot(library, { robot: description, parameters, shapes }) {
+  const robot = library.load("robot.json", JSON.stringify(description));
+  if (parameters) robot.setParameters(parameters);
+  robot.shapes = shapes.map((shape) => ({ ...shape, T: fromRows(shape.T) }));
+  return robot;
 }
 
 // A motion: columns[name] is a list of rows' entries; names that the file does not give are null.
@@ -90,7 +84,7 @@ export function stateAt(motion, time) {
   const part = t[high] > t[low] ? Math.min(Math.max((time - t[low]) / (t[high] - t[low]), 0), 1) : 0;
   const mixed = (from, to) => from.map((x, k) => x + part * (to[k] - x));
   const between = (rows) => rows && mixed(rows[low], rows[high]);
-  const theta = normalized(robot, mixed(motion.theta[low], nearer(robot, motion.theta[low], motion.theta[high])));
+  const theta = robot.normalized(mixed(motion.theta[low], nearer(robot, motion.theta[low], motion.theta[high])));
   const { contacts } = motion;
   const touch = contacts && {
     points: between(contacts.points),

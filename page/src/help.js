@@ -28,7 +28,7 @@ export function fillHelp(dialog, hasMotion, notes) {
     const ul = dialog.appendChild(document.createElement("ul"));
     for (const note of notes) ul.appendChild(document.createElement("li")).textContent = note;
   }
-  const credit = "Made by mozzi; drawn with three.js, whose licence stands at the top of this file. Nothing here was fetched from a network.";
+  const credit = "Made and computed by mozzi, which is in this file as WebAssembly; drawn with three.js, whose licence stands at the top of this file. Nothing here was fetched from a network.";
   dialog.appendChild(document.createElement("p")).textContent = credit;
   const close = dialog.appendChild(document.createElement("button"));
   close.textContent = "Close";

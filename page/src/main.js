@@ -5,11 +5,11 @@ import { seriesColour } from "./colours.js";
 import { lastEvent } from "./contacts.js";
 import { plotsOf } from "./curves.js";
 import { readMotion, readRobot, stateAt } from "./data.js";
-import { centerOfMass, massMatrix, poses } from "./dynamics.js";
 import { fillHelp } from "./help.js";
-import { atZero, randomPose } from "./joints.js";
+import { randomPose } from "./joints.js";
 import { KINDS } from "./kinds.js";
 import { onKeys } from "./keys.js";
+import { Library } from "./library.js";
 import { MatrixPicture } from "./matrix.js";
 import { Overlays } from "./overlays.js";
 import { Player, SPEEDS } from "./player.js";
@@ -21,18 +21,25 @@ import { addSliders } from "./sliders.js";
 import { startTheme } from "./theme.js";
 
 const find = (id) => document.getElementById(id);
+// For the console, and for tests: `ready` comes when the page can be used.
+let opened;
+window.mozzi = { ready: new Promise((resolve) => (opened = resolve)) };
+
 const raw = JSON.parse(find("data").textContent);
-const robot = readRobot(raw.robot);
+const library = await Library.open(find("wasm").textContent).catch((error) => {
+  find("hint").textContent = `This browser cannot run the page: ${error.message}`;
+  throw error;
+});
+const robot = readRobot(library, raw);
 const motion = readMotion(raw.motion, robot);
 const asked = new URLSearchParams(location.hash.slice(1)); // #t=1.2&show=axes,twists&theme=dark
 const jointColour = (j) => seriesColour(j, robot.n);
 
-const neutral = robot.allJoints.flatMap(atZero);
 const still = () => ({ theta: [...robot.start], dtheta: null, ddtheta: null, tip: null, loops: null });
 let state = motion ? stateAt(motion, motion.t[0]) : still();
 
 find("name").textContent = robot.name;
-find("about").textContent = motion ? motion.title : `${robot.n} velocities, ${robot.bodies.length} moving links`;
+find("about").textContent = motion ? motion.title : `${robot.n} velocities, ${robot.bodies.length - 1} moving links`;
 
 const scene = new Scene(find("scene"), robot);
 const reach = reachOf();
@@ -43,26 +50,32 @@ const plots = [];
 
 // How far frames are from the base: what all marks are scaled by.
 function reachOf() {
-  const T = poses(robot, neutral);
-  const far = robot.bodies.map((_, k) => Math.hypot(...T[k + 1].p.map((x, i) => x - T[0].p[i])));
-  const frames = robot.frames.map(({ body, T: at }) => Math.hypot(...T[body].p.map((x, i) => x - T[0].p[i])) + Math.hypot(...at.p));
+  const T = robot.bodyPoses(robot.poses(robot.neutral));
+  const far = T.map(({ p }) => Math.hypot(...p.map((x, i) => x - T[0].p[i])));
+  const frames = robot.frames.map(({ body, p }) => far[body] + Math.hypot(...p));
   const solids = robot.shapes.filter(({ kind }) => kind !== "mesh").map(({ T: at, size }) => Math.hypot(...at.p) + 0.6 * Math.max(...size));
   return Math.max(...far, ...frames, ...solids, 0.05);
 }
 
+let failure = "";
 function place() {
-  const T = poses(robot, state.theta);
-  scene.place(T);
-  if (state.touch) scene.placePlanes(state.touch.planes, state.time);
-  overlays.update(state, T);
-  if (shown.mass) matrix.show(massMatrix(robot, state.theta));
+  try {
+    const T = robot.poses(state.theta);
+    scene.place(T, robot.bodyPoses(T));
+    if (state.touch) scene.placePlanes(state.touch.planes, state.time);
+    overlays.update(state);
+    if (shown.mass) matrix.show(robot.massMatrix(state.theta));
+    failure = "";
+  } catch (error) {
+    failure = error.message;
+  }
   hint();
 }
 
 // Below the scene: what was left out, the scale of contact forces, what last happened to contacts.
 let omitted = 0;
 function hint() {
-  const said = omitted > 0 ? [`${omitted} shapes were left out: see ?`] : [];
+  const said = [failure, omitted > 0 ? `${omitted} shapes were left out: see ?` : ""];
   if (motion?.contacts && shown.contacts) {
     const usual = overlays.touches.usual;
     if (usual > 0) said.push(`contacts: forces that the robot applies to planes, ${short(usual)} N is drawn ${short(0.3 * reach)} m long`);
@@ -119,8 +132,8 @@ function row() {
 
 // The frame with the most joints before it, where no end effector is named.
 function farthest() {
-  const depth = [0];
-  robot.bodies.forEach(({ parent }) => depth.push(depth[parent] + 1));
+  const depth = [];
+  robot.bodies.forEach(({ parent }) => depth.push(parent === null ? 0 : depth[parent] + 1));
   return robot.frames.reduce((best, { body }, k) => (depth[body] >= depth[robot.frames[best].body] ? k : best), 0);
 }
 
@@ -209,8 +222,7 @@ function look() {
   const points = box.isEmpty() ? [] : [0, 1, 2, 3, 4, 5, 6, 7].map((k) =>
     new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
   for (const { theta } of motion && !robot.isFloating ? some(24) : [state]) {
-    const T = poses(robot, theta);
-    robot.frames.forEach(({ body, T: at }) => points.push(new THREE.Vector3(...at.p).applyMatrix4(scene.matrixOf(T[body]))));
+    robot.poses(theta).forEach(({ p }) => points.push(new THREE.Vector3(...p)));
   }
   if (shown.contacts) points.push(...overlays.touches.ends(state).map((end) => new THREE.Vector3(...end)));
   if (new THREE.Box3().setFromPoints(points).getSize(new THREE.Vector3()).length() < 0.1 * reach)
@@ -252,7 +264,7 @@ async function start() {
     addPlots();
     addTransport();
   } else {
-    setJoints = addSliders(find("panel"), robot, state.theta, neutral, jointColour, place);
+    setJoints = addSliders(find("panel"), robot, state.theta, jointColour, place);
   }
   overlays.measure(motion ? some(60) : randomStates(30));
   const read = await addShapes(robot, raw.meshes, scene);
@@ -279,10 +291,8 @@ async function start() {
   scene.drawNow();
 }
 
-// For the console, and for tests.
-window.mozzi = {
-  robot, motion, overlays, show,
-  ready: start(),
+Object.assign(window.mozzi, {
+  robot, motion, overlays, show, library,
   seek: (time) => player.seek(time),
   setTheta: (theta) => setJoints(theta),
   state: () => state,
@@ -292,9 +302,11 @@ window.mozzi = {
     const frame = scene.frames[robot.frames.findIndex((known) => known.name === name)];
     return frame.matrixWorld.clone().transpose().elements.slice(0, 12);
   },
-  massMatrix: () => massMatrix(robot, state.theta),
-  centerOfMass: () => centerOfMass(robot, poses(robot, state.theta)),
-  semiAxes: () => overlays.singularValues(poses(robot, state.theta)).map(({ sigma }) => sigma),
+  // A quantity by its name, at the given inputs: see Robot.compute.
+  compute: (request, inputs) => robot.compute(request, inputs),
+  massMatrix: () => robot.massMatrix(state.theta),
+  centerOfMass: () => robot.centerOfMass(state.theta),
+  semiAxes: () => overlays.singularValues(state.theta).map(({ sigma }) => sigma),
   contacts: () => overlays.touches?.drawn() ?? [],
   // Each plane's origin and z-axis, as the scene has them.
   planes: () => scene.floors.map((floor) => {
@@ -302,5 +314,6 @@ window.mozzi = {
     const { elements } = floor.matrixWorld;
     return { origin: elements.slice(12, 15), z: elements.slice(8, 11) };
   }),
-  vectors: () => overlays.vectors(state, poses(robot, state.theta)),
-};
+  vectors: () => overlays.vectors(state),
+});
+opened(start());

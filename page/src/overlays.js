@@ -2,24 +2,13 @@
 
 import * as THREE from "three";
 import { ContactMarks } from "./contacts.js";
-import { centerOfMass, linearGram, poses, twists, wrenches } from "./dynamics.js";
-import { add, angular, cross, eigen, linear, moved, norm, scaled } from "./lie.js";
-import { linesOf, pointOf } from "./joints.js";
 import { KINDS } from "./kinds.js";
 import { Arrow, Ellipsoid, massMark, triad } from "./marks.js";
+import { rows } from "./robot.js";
+import { add, fromRows, norm, scaled } from "./vectors.js";
 
 // A velocity of 1 m/s by ‖θ̇‖ = 1 is drawn a quarter of a metre long; forces so that both ellipsoids are of the robot's size.
 const DRAWN = 0.25;
-
-const center = ([m, x, y, z]) => (m > 0 ? [x / m, y / m, z / m] : [0, 0, 0]);
-
-// Inertia about the centre of mass, row-major.
-function centralInertia([m, hx, hy, hz, xx, xy, xz, yy, yz, zz]) {
-  const c = center([m, hx, hy, hz]);
-  const d = m * (c[0] ** 2 + c[1] ** 2 + c[2] ** 2);
-  const I = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
-  return I.map((x, k) => x - (k % 4 === 0 ? d : 0) + m * c[Math.floor(k / 3)] * c[k % 3]);
-}
 
 export class Overlays {
   constructor(robot, scene, reach, jointColour, contacts) {
@@ -29,10 +18,10 @@ export class Overlays {
       layer.visible = false;
       scene.world.add(layer);
     }
-    this.inertias = [robot.baseInertia, ...robot.bodies.map((body) => body.inertia)];
     this.fixedParts(jointColour);
+    this.applied();
     const thickness = 0.006 * reach;
-    const moving = this.inertias.map(() => null);
+    const moving = robot.bodies.map(() => null);
     this.spin = moving.map(() => this.put("twists", new Arrow("#8ccf4d", thickness)));
     this.speed = moving.map(() => this.put("twists", new Arrow(KINDS.twists.colour, thickness)));
     this.moment = moving.map(() => this.put("wrenches", new Arrow("#ef9f3c", thickness)));
@@ -64,28 +53,40 @@ export class Overlays {
       this.attached[kind].push(object);
     };
     robot.bodies.forEach((body, k) => {
-      linesOf(body).forEach(({ point, direction }, i) => {
+      body.lines.forEach(({ point, direction }, i) => {
         const axis = new Arrow(jointColour(body.j + i), 0.0045 * reach);
         axis.set(add(point, scaled(direction, -0.16 * reach)), scaled(direction, 0.38 * reach));
-        attach("axes", k + 1, new THREE.Group().add(axis));
+        attach("axes", k, new THREE.Group().add(axis));
       });
-      attach("frames", k + 1, triad(0.11 * reach));
-    });
-    attach("frames", 0, triad(0.16 * reach));
-    this.inertias.forEach((inertia, k) => {
-      if (inertia[0] <= 0) return;
+      attach("frames", k, triad((k === 0 ? 0.16 : 0.11) * reach));
+      if (!body.ellipsoid) return;
       const mark = massMark(0.016 * reach, "#f3c623");
-      mark.position.set(...center(inertia));
+      mark.position.set(...body.center);
       attach("masses", k, mark);
-      const principal = eigen(centralInertia(inertia));
-      const [a, b, c] = principal.map(({ value }) => value);
-      // semi-axes of the homogeneous ellipsoid with this inertia
-      const semi = (x, y, z) => Math.sqrt(Math.max((5 * (y + z - x)) / (2 * inertia[0]), 0));
       const ellipsoid = new Ellipsoid(KINDS.inertia.colour);
-      const lengths = [semi(a, b, c), semi(b, c, a), semi(c, a, b)];
-      ellipsoid.set(center(inertia), principal.map(({ vector }, i) => ({ vector, length: lengths[i] })));
+      ellipsoid.set(body.center, body.ellipsoid.axes.map((vector, i) => ({ vector, length: body.ellipsoid.lengths[i] })));
       attach("inertia", k, new THREE.Group().add(ellipsoid));
     });
+  }
+
+  // The wrenches that a motion knows: of the end effector in its own frame, of anchor b on a and of a on b in {s}, and
+  // of contacts as forces at points.
+  applied() {
+    const { robot, pairs } = this;
+    const tip = robot.endEffector === null ? [] : [{ frame: robot.frames[robot.endEffector].name, as: "body" }];
+    const ends = robot.constraints.flatMap(({ a, b }) => [b, a].filter(Boolean).map((frame) => ({ frame, as: "space" })));
+    const points = pairs.map(({ frame }) => ({ frame: robot.frames[frame].name, as: "point" }));
+    const set = robot.applying([...tip, ...ends, ...points]);
+    const none = [0, 0, 0, 0, 0, 0];
+    this.apply = ({ tip: F, loops, touch }) => {
+      const three = (list, k) => list.slice(3 * k, 3 * k + 3);
+      const W = (k) => (loops ? loops.slice(6 * k, 6 * k + 6) : none);
+      set([
+        ...(tip.length > 0 ? F ?? none : []),
+        ...robot.constraints.flatMap(({ a, b }, k) => [...(b ? W(k) : []), ...(a ? scaled(W(k), -1) : [])]),
+        ...pairs.flatMap((_, k) => (touch ? [...three(touch.points, k), ...three(touch.forces, k)] : none)),
+      ]);
+    };
   }
 
   show(kind, isOn) {
@@ -107,10 +108,8 @@ export class Overlays {
   drawPath(motion) {
     const layer = this.layers.path;
     layer.clear();
-    const points = motion.theta.map((theta) => {
-      const T = poses(this.robot, theta)[this.frame.body];
-      return new THREE.Vector3(...moved(T, this.frame.T.p));
-    });
+    const request = { quantity: "forward_kinematics", frame: this.frame.name };
+    const points = motion.theta.map((theta) => new THREE.Vector3(...fromRows(this.robot.compute(request, { theta }).T).p));
     const material = new THREE.LineBasicMaterial({ color: KINDS.path.colour, transparent: true, opacity: 0.9 });
     layer.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), material));
   }
@@ -119,7 +118,7 @@ export class Overlays {
   measure(states) {
     const longest = { carried: 0, spin: 0, speed: 0, moment: 0, force: 0 };
     for (const state of states) {
-      const found = this.vectors(state, poses(this.robot, state.theta));
+      const found = this.vectors(state);
       for (const kind of Object.keys(longest))
         for (const vector of found[kind] ?? []) longest[kind] = Math.max(longest[kind], norm(vector));
     }
@@ -127,32 +126,31 @@ export class Overlays {
   }
 
   // ω and v at each centre of mass, m and f at each joint.
-  vectors({ dtheta, ddtheta, tip, loops, touch }, T) {
+  vectors(state) {
     const { robot } = this;
+    const { theta, loops } = state;
     const still = new Array(robot.n).fill(0);
-    const centers = this.inertias.map((inertia, k) => moved(T[k], center(inertia)));
-    const V = twists(robot, T, dtheta ?? still);
-    const three = (list, k) => list.slice(3 * k, 3 * k + 3);
-    const pushes = touch ? this.pairs.map(({ frame }, k) => ({ frame, at: three(touch.points, k), force: three(touch.forces, k) })) : [];
-    const F = wrenches(robot, T, dtheta ?? still, ddtheta ?? still, tip, loops, pushes);
-    const anchors = robot.constraints.map(({ a, b }) => [a, b].map(({ body, p }) => (body === null ? p : moved(T[body], p))));
-    const joints = T.map((pose, k) => (k === 0 ? pose.p : moved(pose, pointOf(robot.bodies[k - 1]))));
+    this.apply(state);
+    const found = robot.compute({ quantity: "body_motion" }, { theta, dtheta: state.dtheta ?? still, ddtheta: state.ddtheta ?? still });
+    const of = (name) => rows(found[name], 3);
+    const { a, b } = robot.compute({ quantity: "constraint_anchors" }, { theta });
+    const ends = [rows(a, 3), rows(b, 3)];
     return {
-      centers,
-      joints,
-      anchors,
+      centers: of("center"),
+      joints: of("point"),
+      anchors: robot.constraints.map((_, k) => ends.map((list) => list[k])),
       carried: robot.constraints.map((_, k) => (loops ? loops.slice(6 * k + 3, 6 * k + 6) : [0, 0, 0])),
-      spin: V.map(angular),
-      speed: V.map((twist, k) => add(linear(twist), cross(angular(twist), centers[k]))),
-      moment: F.map((wrench, k) => add(angular(wrench), scaled(cross(joints[k], linear(wrench)), -1))),
-      force: F.map(linear),
+      spin: of("angular_velocity"),
+      speed: of("center_velocity"),
+      moment: of("moment"),
+      force: of("force"),
     };
   }
 
-  update(state, T) {
+  update(state) {
     const { layers } = this;
     if (layers.twists.visible || layers.wrenches.visible || layers.constraints.visible) {
-      const found = this.vectors(state, T);
+      const found = this.vectors(state);
       found.anchors.forEach((ends, k) => this.lines[k].geometry.setFromPoints(ends.map((end) => new THREE.Vector3(...end))));
       for (const [kind, from] of [["spin", found.centers], ["speed", found.centers], ["moment", found.joints], ["force", found.joints], ["carried", found.anchors.map(([, b]) => b)]]) {
         const scale = this.longest[kind] > 0 ? (0.3 * this.reach) / this.longest[kind] : 0;
@@ -161,22 +159,23 @@ export class Overlays {
     }
     if (layers.contacts.visible && state.touch) this.touches.update(state);
     if (layers.masses.visible) {
-      const c = centerOfMass(this.robot, T);
+      const c = this.robot.centerOfMass(state.theta);
       this.total.visible = c !== null;
       if (c) this.total.position.set(...c);
     }
-    if (layers.manipulability.visible || layers.torque.visible) this.ellipsoids(T);
+    if (layers.manipulability.visible || layers.torque.visible) this.ellipsoids(state.theta);
   }
 
   // Singular values σ of J_v, ascending, and their directions.
-  singularValues(T) {
-    return eigen(linearGram(this.robot, T, this.frame)).map(({ value, vector }) => ({ vector, sigma: Math.sqrt(Math.max(value, 0)) }));
+  singularValues(theta) {
+    const { sigma, u } = this.robot.compute({ quantity: "velocity_ellipsoid", frame: this.frame.name }, { theta });
+    return rows(u, 3).map((vector, k) => ({ vector, sigma: sigma[k] }));
   }
 
   // Of linear velocity, ‖θ̇‖ = 1: semi-axes σ along the singular directions of J_v; of force, ‖τ‖ = 1: 1/σ.
-  ellipsoids(T) {
-    const at = moved(T[this.frame.body], this.frame.T.p);
-    const principal = this.singularValues(T);
+  ellipsoids(theta) {
+    const at = fromRows(this.robot.compute({ quantity: "forward_kinematics", frame: this.frame.name }, { theta }).T).p;
+    const principal = this.singularValues(theta);
     const most = 1.5 * this.reach;
     this.manipulability.set(at, principal.map(({ vector, sigma }) => ({ vector, length: DRAWN * sigma })));
     const force = (sigma) => Math.min((DRAWN * this.reach ** 2) / 4 / Math.max(sigma, 1e-9), most);

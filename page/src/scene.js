@@ -1,4 +1,4 @@
-// The picture: camera, light, ground, and a group for each body, placed by its pose. Drawn when something changed, not otherwise.
+// The picture: camera, light, ground, and a group for each body and each frame, placed by its pose. Drawn when something changed, not otherwise.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -19,7 +19,7 @@ export class Scene {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
-    this.bodies = Array.from({ length: robot.bodies.length + 1 }, () => {
+    this.bodies = robot.bodies.map(() => {
       const group = new THREE.Group();
       group.matrixAutoUpdate = false;
       this.world.add(group);
@@ -28,9 +28,8 @@ export class Scene {
     this.frames = robot.frames.map((frame) => {
       const group = new THREE.Group();
       group.matrixAutoUpdate = false;
-      group.matrix.copy(matrixOf(frame.T));
       group.name = frame.name;
-      this.bodies[frame.body].add(group);
+      this.world.add(group);
       return group;
     });
     this.light();
@@ -103,9 +102,11 @@ export class Scene {
 
   matrixOf = matrixOf;
 
-  place(T) {
-    T.forEach((pose, k) => this.bodies[k].matrix.copy(matrixOf(pose)));
-    const base = new THREE.Vector3(...T[0].p);
+  // By the poses of frames and of bodies.
+  place(T, bodies) {
+    T.forEach((pose, k) => this.frames[k].matrix.copy(matrixOf(pose)));
+    bodies.forEach((pose, k) => this.bodies[k].matrix.copy(matrixOf(pose)));
+    const base = new THREE.Vector3(...bodies[0].p);
     if (this.isFollowing) {
       const step = base.clone().sub(this.followed);
       this.controls.target.add(step);

@@ -1,8 +1,6 @@
 // A robot without geometry, or without its skin: bones between joints, a drum, a slide or a sphere at each joint.
 
 import * as THREE from "three";
-import { linesOf, pointOf } from "./joints.js";
-import { moved } from "./lie.js";
 
 const Z = new THREE.Vector3(0, 0, 1);
 
@@ -19,14 +17,12 @@ function bone(from, to, thick, thin, material) {
 
 // Where a body's bones lead: to the joints that it carries, or, of a tip, to its farthest frame and its centre of mass.
 function ends(robot, k) {
-  const children = robot.bodies.filter((body) => body.parent === k && body.kind !== "free")
-    .map((body) => (body.kind === "ball" ? moved(body.M, body.center) : body.M.p));
+  const children = robot.bodies.filter((body) => body.parent === k && body.kind !== "free").map(({ at }) => at);
   if (children.length > 0) return children;
   const length = (p) => Math.hypot(...p);
-  const frames = robot.frames.filter((frame) => frame.body === k).map((frame) => frame.T.p);
+  const frames = robot.frames.filter((frame) => frame.body === k).map(({ p }) => p);
   const far = frames.reduce((best, p) => (length(p) > length(best) ? p : best), [0, 0, 0]);
-  const [m, ...h] = k === 0 ? robot.baseInertia : robot.bodies[k - 1].inertia;
-  const center = m > 0 ? h.slice(0, 3).map((x) => x / m) : [0, 0, 0];
+  const { center } = robot.bodies[k];
   return length(far) > length(center) ? [far] : [center];
 }
 
@@ -41,12 +37,11 @@ export function addSkeleton(robot, scene, reach, jointColour) {
     scene.bodies[k].add(mesh);
     parts.push(mesh);
   };
-  for (let k = 0; k <= robot.bodies.length; k++) {
+  robot.bodies.forEach((body, k) => {
     if (k === 0) add(0, base(robot, r, metal));
-    const start = robot.bodies[k - 1]?.center ?? [0, 0, 0];
-    for (const end of ends(robot, k)) add(k, bone(start, end, 1.05 * r, 0.7 * r, metal));
-    if (k > 0) add(k, joint(robot.bodies[k - 1], r, metal, jointColour(robot.bodies[k - 1].j)));
-  }
+    for (const end of ends(robot, k)) add(k, bone(body.point, end, 1.05 * r, 0.7 * r, metal));
+    if (k > 0) add(k, joint(body, r, metal, jointColour(body.j)));
+  });
   return parts;
 }
 
@@ -64,8 +59,8 @@ function joint(body, r, metal, colour) {
   if (body.kind === "free") return sphere(1.8 * r, metal);
   const paint = new THREE.MeshStandardMaterial({ color: new THREE.Color(colour), roughness: 0.45, metalness: 0.1 });
   const mesh = body.kind === "ball" ? sphere(2.1 * r, paint) : new THREE.Mesh(drumOrSlide(body.kind, r), paint);
-  mesh.position.set(...pointOf(body));
-  mesh.quaternion.setFromUnitVectors(Z, new THREE.Vector3(...linesOf(body)[0].direction).normalize());
+  mesh.position.set(...body.point);
+  mesh.quaternion.setFromUnitVectors(Z, new THREE.Vector3(...body.lines[0].direction).normalize());
   return mesh;
 }
 

@@ -1,11 +1,11 @@
 // A slider and a number for each coordinate of each independent joint, where there is no motion.
 
-import { coordinates, positionsOf, randomPose } from "./joints.js";
+import { coordinates, positionsOf, randomPose, velocitiesOf } from "./joints.js";
 
-export function addSliders(host, robot, theta, neutral, jointColour, onChange) {
+export function addSliders(host, robot, theta, jointColour, onChange) {
   const row = host.appendChild(document.createElement("div"));
   row.className = "row";
-  const fields = robot.joints.map((joint) => slidersOf(host, joint, theta, jointColour, onChange));
+  const fields = robot.joints.map((joint) => slidersOf(host, robot, joint, theta, jointColour, onChange));
   const set = (values) => {
     values.forEach((value, k) => (theta[k] = value));
     fields.forEach((show) => show());
@@ -16,7 +16,7 @@ export function addSliders(host, robot, theta, neutral, jointColour, onChange) {
     made.textContent = text;
     made.addEventListener("click", () => set(values()));
   };
-  button("all at 0", () => neutral);
+  button("all at 0", () => robot.neutral);
   button("a random pose", () => randomPose(robot));
   if (robot.states.length > 0) addStates(row, robot.states, set);
   return set;
@@ -32,14 +32,16 @@ function addStates(row, states, set) {
 }
 
 // The fields of one joint, which set its positions in `theta`; returned is what shows them.
-function slidersOf(host, joint, theta, jointColour, onChange) {
-  const own = () => coordinates.read(joint, theta.slice(joint.q, joint.q + positionsOf(joint)));
+function slidersOf(host, robot, joint, theta, jointColour, onChange) {
+  const own = () => robot.coordinates(theta).slice(joint.j, joint.j + velocitiesOf(joint));
   const values = own();
+  const x = new Array(robot.n).fill(0);
   const fields = coordinates.names(joint).map((name, k) => {
     const isLength = coordinates.isLength(joint, k);
     return field(host, { name, isLength, range: coordinates.range(joint, k), colour: jointColour(joint.j + k) }, (value) => {
       values[k] = value;
-      coordinates.write(joint, values).forEach((x, i) => (theta[joint.q + i] = x));
+      values.forEach((value, i) => (x[joint.j + i] = value));
+      robot.configuration(x).slice(joint.q, joint.q + positionsOf(joint)).forEach((value, i) => (theta[joint.q + i] = value));
       onChange();
     });
   });

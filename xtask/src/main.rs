@@ -28,6 +28,7 @@ mod spdx;
 mod stamp;
 mod tests;
 mod venv;
+mod wasm;
 mod wheel;
 mod workspace;
 
@@ -44,7 +45,8 @@ usage: cargo xtask COMMAND
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
   docs    rewrite the generated pages of docs/; `test` checks that they are current
-  page    bundle page/ by npm into crates/mozzi-report/bundle/; `test` checks that it is current
+  page    bundle page/ by npm, and mozzi-web if there is a compiler for WebAssembly, into crates/mozzi-report/bundle/;
+          `test` checks that both are current
           --check                                     build it elsewhere and compare
   bench   compare with Pinocchio, MuJoCo, KDL, dynibo and CasADi's C, on one core, into benches/RESULTS.md
           --robots ur5,panda,anymal,talos,tree,chain,feet  only these robots, into target/bench/RESULTS.md

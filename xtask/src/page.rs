@@ -1,28 +1,36 @@
 //! The bundle of `page/`, which is committed: npm builds it, and a stamp that needs no Node compares it with its
-//! sources.
+//! sources. Next to it is the WebAssembly that the page contains: see [`wasm`].
 
 use crate::command;
 use crate::report::Outcome;
+use crate::stamp::fnv;
+use crate::wasm;
 use crate::workspace::Workspace;
 use std::path::PathBuf;
 use std::process::Command;
 
 const BUNDLE: &str = "crates/mozzi-report/bundle/page.html";
+/// The note of the wasm, as seen from `page/`.
+const WASM: &str = "../crates/mozzi-report/bundle/mozzi.wasm.txt";
 const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
 
 /// Names of the browsers that can run the tests.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// Rebuilds the bundle.
+/// Rebuilds the bundle, and before it the wasm if there is a compiler for it.
 pub fn write(workspace: &Workspace) -> Outcome {
-    match build(workspace, &workspace.path(BUNDLE)) {
-        Ok(()) => Outcome::Passed(BUNDLE.into()),
+    let wasm = wasm::write(workspace).and_then(|made| wasm::is_current(workspace).map(|()| made));
+    match wasm.and_then(|made| build(workspace, &workspace.path(BUNDLE)).map(|()| made)) {
+        Ok(made) => Outcome::Passed(format!("{BUNDLE}, with {made}")),
         Err(why) => Outcome::Failed(why),
     }
 }
 
-/// Builds the bundle elsewhere and compares.
+/// Builds the bundle elsewhere and compares. The wasm is not rebuilt: another compiler gives other bytes.
 pub fn compare(workspace: &Workspace) -> Outcome {
+    if let Err(why) = wasm::is_current(workspace) {
+        return Outcome::Failed(why);
+    }
     let new = workspace.path("target/page.html");
     let read = |path: &PathBuf| std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()));
     let both = build(workspace, &new).and_then(|()| Ok((read(&new)?, read(&workspace.path(BUNDLE))?)));
@@ -45,7 +53,7 @@ pub fn is_current(workspace: &Workspace) -> Outcome {
         Ok(bundle) => bundle,
         Err(error) => return Outcome::Failed(format!("{BUNDLE}: {error}")),
     };
-    match stamp(workspace) {
+    match wasm::is_current(workspace).and_then(|()| stamp(workspace)) {
         Ok(stamp) if bundle.contains(&format!("stamp {stamp}.")) => Outcome::Passed(format!("stamp {stamp}")),
         Ok(_) => Outcome::Failed(format!("{BUNDLE} is older than page/: run cargo xtask page (needs npm)")),
         Err(why) => Outcome::Failed(why),
@@ -55,20 +63,20 @@ pub fn is_current(workspace: &Workspace) -> Outcome {
 /// The hash of `page/build.mjs`: 64-bit FNV-1a of names and texts.
 fn stamp(workspace: &Workspace) -> Result<String, String> {
     let mut files: Vec<String> =
-        ["build.mjs", "index.html", "package-lock.json", "package.json", "style.css"].map(String::from).to_vec();
+        [WASM, "build.mjs", "index.html", "pack.mjs", "package-lock.json", "package.json", "style.css"]
+            .map(String::from)
+            .to_vec();
     let entries = std::fs::read_dir(workspace.path("page/src")).map_err(|error| format!("page/src: {error}"))?;
     let names = entries.filter_map(Result::ok).map(|entry| entry.file_name().to_string_lossy().into_owned());
     files.extend(names.filter(|name| name.ends_with(".js")).map(|name| format!("src/{name}")));
     files.sort();
-    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+    let mut all = Vec::new();
     for file in files {
         let path = workspace.path("page").join(&file);
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        for byte in format!("{file}\n{}", text.replace("\r\n", "\n")).bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        all.extend(format!("{file}\n{}", text.replace("\r\n", "\n")).into_bytes());
     }
-    Ok(format!("{hash:016x}"))
+    Ok(fnv(all))
 }
 
 /// A browser for the tests of the page.

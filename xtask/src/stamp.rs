@@ -2,6 +2,12 @@
 
 use std::path::PathBuf;
 
+/// 64-bit FNV-1a, as hexadecimal text.
+pub fn fnv(bytes: impl IntoIterator<Item = u8>) -> String {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    format!("{:016x}", bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, step))
+}
+
 pub struct Stamp {
     file: PathBuf,
     text: String,

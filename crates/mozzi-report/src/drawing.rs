@@ -1,8 +1,8 @@
 //! The shapes of a robot, with the files of their meshes.
 
 use crate::base64;
-use crate::robot::rows;
 use flate2::{Compression, write::GzEncoder};
+use mozzi::{Model, SE3};
 use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry_with, locate, parse};
 use mozzi_urdf::{LoadError, XacroArguments, visible};
 use serde_json::{Value, json};
@@ -120,7 +120,8 @@ impl Drawing {
     }
 
     /// Shapes of links without a frame in the model (such as the parent of a floating base) are omitted.
-    pub(crate) fn shapes_to_json(&self, frame_of: &dyn Fn(&str) -> Option<usize>) -> Value {
+    pub(crate) fn shapes_to_json(&self, model: &Model) -> Value {
+        let frame_of = |link: &str| model.frames().position(|(_, known)| known == link);
         let shape = |shape: &Shape| {
             let (kind, size, mesh) = self.form(&shape.form);
             Some(json!({
@@ -185,6 +186,11 @@ fn small(path: &PathBuf) -> std::io::Result<Vec<u8>> {
         true => Err(std::io::Error::other(format!("it has more than {MOST_BYTES} bytes, expected at most these"))),
         false => Ok(bytes),
     }
+}
+
+/// The first three rows of a configuration's matrix.
+pub(crate) fn rows(T: SE3) -> Vec<f64> {
+    T.to_matrix()[..3].concat()
 }
 
 #[cfg(test)]

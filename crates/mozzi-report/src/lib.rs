@@ -15,9 +15,9 @@
 //!
 //! The file contains the page (`page/` in the repository, bundled by `cargo xtask page`) and the data, a JSON object:
 //!
-//! - `robot`: bodies with their joints' screws and inertias, named frames, shapes, as [`Model`] has them, in the frames
-//!   of the robot's file; its start, in which it is shown at first, and its named states;
-//! - `meshes`: the files of meshes, gzipped;
+//! - `robot`: the description, as [`mozzi_urdf::json`] writes it, from which mozzi-web in the page builds the model;
+//! - `parameters`: the inertial parameters, if they are not those of the description;
+//! - `shapes`, each at a frame, and `meshes`: the files of meshes, gzipped;
 //! - `motion`: rows of a trajectory, as 32-bit floats (times: 64), and its contacts ([`Touches`]).
 mod base64;
 mod drawing;
@@ -28,7 +28,6 @@ mod fit_json;
 mod motion;
 mod page;
 pub mod pictures;
-mod robot;
 #[cfg(test)]
 mod testing;
 mod touches;
@@ -55,8 +54,12 @@ pub fn html(model: &Model, drawing: &Drawing, motion: Option<&Motion>) -> Result
         None => model.description().name.clone(),
     };
     let rows = motion.map(|motion| motion.to_json(model)).transpose()?;
+    let parameters = Some(model.parameters());
+    let described: Model = model.description().clone().build()?;
     let data = serde_json::json!({
-        "robot": robot::to_json(model, drawing)?,
+        "robot": mozzi_urdf::json::to_value(model.description()),
+        "parameters": parameters.filter(|parameters| *parameters != described.parameters()),
+        "shapes": drawing.shapes_to_json(model),
         "meshes": drawing.meshes_to_json(),
         "motion": rows,
         "notes": drawing.notes,

@@ -1,17 +1,21 @@
 //! The bundled page, with placeholders for data.
 
+use crate::base64;
 use serde_json::Value;
 
 /// Made by `cargo xtask page` from `page/`.
 const PAGE: &str = include_str!("../bundle/page.html");
+/// mozzi-web for WebAssembly, gzipped, made by `cargo xtask page`.
+const WASM: &[u8] = include_bytes!("../bundle/mozzi.wasm.gz");
 
 /// The text in HTML elements and the JSON in its `<script>` must not contain a `<` that could end them.
 pub fn fill(title: &str, data: &Value) -> String {
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let data = data.to_string().replace('<', "\\u003c");
     let (head, rest) = PAGE.split_once("{{title}}").unwrap_or((PAGE, ""));
-    let (middle, tail) = rest.split_once("{{data}}").unwrap_or((rest, ""));
-    [head, &title, middle, &data, tail].concat()
+    let (middle, rest) = rest.split_once("{{wasm}}").unwrap_or((rest, ""));
+    let (last, tail) = rest.split_once("{{data}}").unwrap_or((rest, ""));
+    [head, &title, middle, &base64::encode(WASM), last, &data, tail].concat()
 }
 
 #[cfg(test)]
@@ -30,7 +34,10 @@ mod tests {
     fn the_bundle_asks_for_nothing_and_is_small() {
         assert!(PAGE.contains("default-src 'none'") && PAGE.contains("connect-src 'none'"));
         assert!(PAGE.contains("three.js") && PAGE.contains("The MIT License"), "the notice of three.js");
-        assert!(PAGE.len() < 2_000_000, "{} bytes", PAGE.len());
-        assert_eq!((PAGE.matches("{{title}}").count(), PAGE.matches("{{data}}").count()), (1, 1));
+        let whole = fill("", &Value::Null).len();
+        assert!(whole < 1_300_000, "{whole} bytes");
+        for place in ["{{title}}", "{{wasm}}", "{{data}}"] {
+            assert_eq!(PAGE.matches(place).count(), 1, "{place}");
+        }
     }
 }

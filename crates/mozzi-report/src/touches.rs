@@ -1,9 +1,9 @@
 //! The contacts of a motion: what the page draws of points, planes, forces and cones.
 
 use crate::base64::singles;
+use crate::drawing::rows;
 use crate::error::Error;
 use crate::motion::thin;
-use crate::robot::rows;
 use mozzi::simulation::{ContactEvent, Contacts, PlaneMotion};
 use mozzi::{FrameId, Model, SE3, Trajectory, Vec3};
 use serde_json::{Value, json};
