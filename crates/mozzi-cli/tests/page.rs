@@ -13,8 +13,10 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Positions go to the page as 32-bit floats.
+/// A motion's positions and rates go to the page as 32-bit floats.
 const SINGLE: f64 = 2e-6;
+/// What the page computes of them is the library's.
+const EXACT: f64 = 1e-12;
 
 fn all_frames(model: &Model) -> Vec<(FrameId, String)> {
     model.frames().map(|(id, name)| (id, name.to_string())).collect()
@@ -41,18 +43,22 @@ fn assert_near(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
 /// The page's state equals mozzi's at the same positions: poses, M, and, if rates are given, twists and wrenches.
 fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f64]; 2]>) {
     assert_near("theta", &numbers(&found["theta"]), theta, SINGLE);
+    for (name, rate) in ["dtheta", "ddtheta"].into_iter().zip(rates.into_iter().flatten()) {
+        assert_near(name, &numbers(&found[name]), rate, SINGLE);
+    }
+    let rates = rates.map(|_| ["dtheta", "ddtheta"].map(|name| numbers(&found[name])));
+    let theta = &numbers(&found["theta"])[..];
     let poses = model.frame_poses(theta).expect("poses");
     for ((_, name), (found, expected)) in
         all_frames(model).iter().zip(found["poses"].as_array().expect("poses").iter().zip(&poses))
     {
         let apart = (pose(found).inverse() * *expected).log().to_array();
-        assert_near(name, &apart, &[0.0; 6], 3.0 * SINGLE);
+        assert_near(name, &apart, &[0.0; 6], EXACT);
     }
     let M = model.mass_matrix(theta).expect("M");
     let found_M = rows(&found["M"]).concat();
-    assert_near("M", &found_M, DMatrix::transpose(&M).as_slice(), 20.0 * SINGLE);
-    let still = vec![0.0; model.n()];
-    let [dtheta, ddtheta] = rates.unwrap_or([&still, &still]);
+    assert_near("M", &found_M, DMatrix::transpose(&M).as_slice(), EXACT);
+    let [dtheta, ddtheta] = &rates.unwrap_or_else(|| [vec![0.0; model.n()], vec![0.0; model.n()]]);
     let environment = model.environment();
     let of = |frame| model.newton_euler(theta, dtheta, ddtheta, &environment, frame).expect("a state");
     let (at_link, at_mass) = (of(BodyFrame::Link), of(BodyFrame::CenterOfMass));
@@ -66,14 +72,14 @@ fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f6
         };
         let R = link(&joint.child).R;
         let vectors = |kind: &str| numbers(&found["vectors"][kind][k + 1]);
-        let compare = |kind: &str, expected: Vec3| assert_near(kind, &vectors(kind), &(R * expected).0, 100.0 * SINGLE);
+        let compare = |kind: &str, expected: Vec3| assert_near(kind, &vectors(kind), &(R * expected).0, EXACT);
         compare("spin", at_link.twists[k].w);
         compare("speed", at_mass.twists[k].v);
         compare("force", at_link.wrenches[k].f);
         compare("moment", at_link.wrenches[k].m - point.cross(at_link.wrenches[k].f));
     }
     let center = model.center_of_mass(theta).expect("a robot that weighs something");
-    assert_near("center of mass", &numbers(&found["center"]), &center.0, 10.0 * SINGLE);
+    assert_near("center of mass", &numbers(&found["center"]), &center.0, EXACT);
     let tip = all_frames(model).into_iter().find(|(_, name)| found["tip"] == name.as_str()).expect("a frame").0;
     let J = model.body_jacobian(theta, tip).expect("J");
     // J_v Jᵥᵀ in the frame's own axes has the same trace and determinant
@@ -88,7 +94,7 @@ fn assert_state(model: &Model, found: &Value, theta: &[f64], rates: Option<[&[f6
     let mut squares: Vec<f64> = (&J_v * J_v.transpose()).symmetric_eigenvalues().iter().copied().collect();
     squares.sort_by(f64::total_cmp);
     let found: Vec<f64> = numbers(&found["semiAxes"]).iter().map(|sigma| sigma * sigma).collect();
-    assert_near("manipulability", &found, &squares, 20.0 * SINGLE);
+    assert_near("manipulability", &found, &squares, EXACT);
 }
 
 fn assert_usable(found: &Value, width: u64) {

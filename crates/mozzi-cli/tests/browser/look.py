@@ -1,6 +1,7 @@
 """Opens pages in a browser and does to them what a visitor does: python look.py BROWSER < jobs.json > found.json
 
-A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}, with "tip": an end effector's name or none.
+A job: {"url", "width", "height", "times": [s, ...] or "theta": [[...], ...], "frames": [name, ...]}, with "tip": an end effector's name or none,
+and "requests": [{"request", "inputs"}, ...] or none: quantities, computed after the states.
 """
 
 import json
@@ -12,6 +13,8 @@ ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-san
 
 STATE = """(frames) => ({
   theta: mozzi.state().theta,
+  dtheta: mozzi.state().dtheta,
+  ddtheta: mozzi.state().ddtheta,
   poses: frames.map(mozzi.framePose),
   M: mozzi.massMatrix(),
   vectors: mozzi.vectors(),
@@ -22,6 +25,14 @@ STATE = """(frames) => ({
   planes: mozzi.planes(),
   hint: document.getElementById("hint").textContent,
   clock: document.getElementById("clock").textContent,
+})"""
+
+COMPUTED = """(all) => all.map(({ request, inputs }) => {
+  try {
+    return mozzi.compute(request, inputs);
+  } catch (error) {
+    return { error: error.message };
+  }
 })"""
 
 PAINTED = """() => {
@@ -50,6 +61,7 @@ def look(browser, job):
     for theta in job.get("theta", []):
         page.evaluate("(theta) => mozzi.setTheta(theta)", theta)
         found["states"].append(page.evaluate(STATE, job["frames"]))
+    found["computed"] = page.evaluate(COMPUTED, job.get("requests", []))
     pressed = "(button) => button.getAttribute('aria-pressed')"
     found["toggles"] = {}
     for button in page.query_selector_all("#toggles button"):
