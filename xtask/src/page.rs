@@ -31,7 +31,7 @@ pub fn compare(workspace: &Workspace) -> Outcome {
     if let Err(why) = wasm::is_current(workspace) {
         return Outcome::Failed(why);
     }
-    let new = workspace.path("target/page.html");
+    let new = workspace.target().join("page.html");
     let read = |path: &PathBuf| std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()));
     let both = build(workspace, &new).and_then(|()| Ok((read(&new)?, read(&workspace.path(BUNDLE))?)));
     match both {

@@ -121,9 +121,12 @@ fn the_page_starts_in_a_state() {
     let start = |arguments: &[&str]| {
         text(&[&["view", KEYS, "--out", &page], arguments].concat());
         let html = std::fs::read_to_string(&page).expect("a page");
-        let (_, after) = html.split_once("\"start\":[").expect("its start");
-        let (inside, _) = after.split_once(']').expect("a list");
-        inside.split(',').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>()
+        let (_, after) = html.split_once("id=\"data\">").expect("its data");
+        let data: Value = serde_json::from_str(after.split_once("</script>").expect("an end").0).expect("JSON");
+        let file = mozzi_urdf::json::File::parse("robot.json", data["robot"].to_string()).expect("JSON");
+        let robot = mozzi_urdf::json::read(&file).expect("a robot");
+        let model: mozzi::Model = robot.build().expect("sound");
+        model.start().theta
     };
     assert_eq!(start(&[]), state(KEYS, "qpos0")[0]);
     assert_eq!(start(&["--state", "still"]), state(KEYS, "still")[0]);
