@@ -82,7 +82,7 @@ fn misread(name: &str, error: &serde_json::Error) -> Misplaced {
     Misplaced { file: name.to_string(), position: Some((line, column)), message }
 }
 
-/// "`frition` is not an entry of joints[1], did you mean `friction`?", or the list of all known keys.
+/// "`frition` is not an entry of `joints[1]`, did you mean `friction`?", or the list of all known keys.
 pub fn unknown_key(key: &str, parent: &str, known: &[&str]) -> String {
     let others = || format!("expected {}", known.join(", "));
     let hint = did_you_mean(key, known.iter().copied()).unwrap_or_else(others);
