@@ -69,7 +69,7 @@ fn how() -> String {
 - mozzi: {rustc}, release profile, no flags: `mozzi::fast` finds FMA when it runs; portable is the same source
   without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows; blocks
   the same with tables in blocks; compiled is `mozzi_codegen`, machine code
-  made for the one robot when the program runs, up to 256 kB, of many states 512 kB.
+  made for the one robot when the program runs, up to 256 kB; of many states up to 512 kB (AVX2) and 2 MB (AVX-512).
 "
     )
 }
