@@ -303,8 +303,8 @@ impl Assembler {
         }
     }
 
-    /// The whole function: rdi → an array of addresses (System V). With steps in bytes, the code runs rsi ≥ 1 times, each
-    /// array's address a step further every time.
+    /// The whole function: rdi → an array of addresses (System V). With steps in bytes, the code runs rsi ≥ 1 times,
+    /// each array's address a step further every time.
     pub fn finish(self, steps: &[usize]) -> Vec<u8> {
         let (arrays, frame) = (self.sizes.len(), self.sizes[self.frame]);
         let mut code = vec![0x55, 0x48, 0x89, 0xe5]; // push rbp; mov rbp, rsp

@@ -5,8 +5,8 @@
 //! refuses an instruction that would read or write beyond one of them, so that a fault in its input (a wrong program, a
 //! wrong register) gives wrong numbers, but never a wrong address. The parts to be trusted are the assembler's few
 //! forms, each of which the tests compare with a disassembler, and its frame, which is on the stack and touched page by
-//! page, or, if it is large, in memory of the calling thread. The code calls nothing, does not branch except back to its
-//! beginning for the next run, and restores the callee-saved registers of the System V ABI.
+//! page, or, if it is large, in memory of the calling thread. The code calls nothing, does not branch except back to
+//! its beginning for the next run, and restores the callee-saved registers of the System V ABI.
 //!
 //! Memory is writable while it is filled and executable afterwards, never both; constants are in pages of their own
 //! that become read-only.

@@ -127,9 +127,7 @@ impl<'m, I: Input> Equation<'m, I> {
     /// # Panics
     /// On slices of a wrong length.
     pub fn evaluate(&mut self, t: f64, theta: &[f64], dtheta: &[f64], ddtheta: &mut [f64]) -> Result<Powers, Error> {
-        self.bounded("theta", t, theta)?;
-        self.bounded("dtheta", t, dtheta)?;
-        self.ask_input(t, theta, dtheta)?;
+        self.call_input(t, theta, dtheta)?;
         let friction_power = self.friction(dtheta);
         let environment = Environment { applied: &self.wrenches, ..Environment::with_gravity(self.gravity) };
         let state = [theta, dtheta, &self.force];
@@ -142,12 +140,24 @@ impl<'m, I: Input> Equation<'m, I> {
                 self.fast.are_pivots_clear(&query)
             }
         };
+        // one loop for the motors' power and all tests; what fails is named afterwards
+        let (mut motor_power, mut is_fine) = (0.0, are_below(theta, LARGEST));
+        for ((&tau, &rate), ddtheta) in self.tau.iter().zip(dtheta).zip(&*ddtheta) {
+            motor_power += tau * rate;
+            is_fine &= (tau.abs() < f64::INFINITY) & (rate.abs() < LARGEST) & (ddtheta.abs() < LARGEST);
+        }
+        if !is_fine || !is_clear {
+            self.bounded("theta", t, theta)?;
+            self.bounded("dtheta", t, dtheta)?;
+            self.check_torque(t)?;
+        }
         if !is_clear {
             self.model.compute(self.query(), &state, &environment)?; // names what is singular, if anything is
         }
         let applied_power = self.applied_power(theta, dtheta);
-        self.bounded("ddtheta", t, ddtheta)?;
-        let motor_power = self.tau.iter().zip(dtheta).map(|(tau, rate)| tau * rate).sum();
+        if !is_fine {
+            self.bounded("ddtheta", t, ddtheta)?;
+        }
         Ok([motor_power, friction_power, applied_power])
     }
 
@@ -230,16 +240,27 @@ impl<'m, I: Input> Equation<'m, I> {
         self.bounded("dtheta", t, dtheta)
     }
 
+    /// Calls the input, and checks its numbers.
     fn ask_input(&mut self, t: f64, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
+        self.call_input(t, theta, dtheta)?;
+        self.check_torque(t)
+    }
+
+    fn check_torque(&self, t: f64) -> Result<(), Error> {
+        if are_below(&self.tau, f64::INFINITY) {
+            return Ok(());
+        }
+        let j = self.tau.iter().position(|x| !x.is_finite()).unwrap_or_default();
+        let found = format!("{} at joint `{}`, t = {t} s", self.tau[j], self.joint(j));
+        check(false, "the input's torque", found, "a finite number")
+    }
+
+    /// Calls the input, and checks its wrenches.
+    fn call_input(&mut self, t: f64, theta: &[f64], dtheta: &[f64]) -> Result<(), Error> {
         self.tau.fill(0.0);
         self.wrenches.clear();
         self.input.torque(t, theta, dtheta, &mut self.tau)?;
         self.input.applied(t, theta, dtheta, &mut self.wrenches)?;
-        if !are_below(&self.tau, f64::INFINITY) {
-            let j = self.tau.iter().position(|x| !x.is_finite()).unwrap_or_default();
-            let found = format!("{} at joint `{}`, t = {t} s", self.tau[j], self.joint(j));
-            return check(false, "the input's torque", found, "a finite number");
-        }
         for &(frame, F) in &self.wrenches {
             let known = self.model.frames().len();
             check(frame.0 < known, "the frame of an input's wrench", frame.0, "a frame of this model")?;
