@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Two hashes of the program, the shape, the form and the condensed outputs. The cache keeps no program to compare with:
-/// two different ones have the same key with a probability of 2⁻¹²⁸.
+/// Two hashes of the program, the shape, the form and the condensed outputs. The cache keeps no program to compare
+/// with: two different ones have the same key with a probability of 2⁻¹²⁸.
 type Key = [u64; 2];
 
 static CACHE: LazyLock<Mutex<HashMap<Key, Weak<Kernel>>>> = LazyLock::new(Mutex::default);
