@@ -4,11 +4,10 @@
 use super::assembler::{Assembler, Memory, Operand, Register};
 use super::instruction::{Node, Operation, SINES, Value};
 use super::lower::{Lowered, SHAPE_TOGETHER, Store};
+use super::registers::{NEVER, Pinned, Registers};
 use super::rows::Extent;
 use super::shape::{Encoding, Shape};
 use super::{Form, Refusal};
-
-const NEVER: u32 = u32::MAX;
 
 /// Machine code with its constants, before it is placed in executable memory.
 #[derive(Clone, Debug)]
@@ -90,19 +89,6 @@ struct Places {
     used: usize,
 }
 
-/// What a register holds.
-#[derive(Clone, Copy)]
-struct Held {
-    value: Value,
-    /// The next place that needs it.
-    need: u32,
-    /// It is in memory, too.
-    is_kept: bool,
-}
-
-/// Registers that an instruction uses, as bits: they keep what they hold.
-type Pinned = u32;
-
 struct Line<'p> {
     shape: Shape,
     nodes: &'p [Node],
@@ -115,7 +101,7 @@ struct Line<'p> {
     /// For each value, where it is written.
     outputs: Vec<Vec<Store>>,
     register: Vec<Option<Register>>,
-    held: Vec<Option<Held>>,
+    registers: Registers,
     slot: Vec<Option<usize>>,
     free_slots: Vec<usize>,
     slots: usize,
@@ -171,7 +157,7 @@ impl<'p> Line<'p> {
             first,
             outputs,
             register: vec![None; nodes.len()],
-            held: vec![None; shape.registers()],
+            registers: Registers::new(shape.registers()),
             slot: vec![None; nodes.len()],
             free_slots: Vec::new(),
         }
@@ -212,20 +198,9 @@ impl<'p> Line<'p> {
     /// A register for a new value: a free one, or the one whose value is needed last; values that need not be stored
     /// are preferred.
     fn take(&mut self, here: usize, pinned: &mut Pinned) -> Register {
-        let mut best = (0, None);
-        for (register, held) in self.held.iter().enumerate().filter(|(register, _)| *pinned >> register & 1 == 0) {
-            let Some(Held { need, is_kept, .. }) = *held else {
-                best = (NEVER, Some(register));
-                break;
-            };
-            let bonus = if is_kept { need.saturating_sub(here as u32) / 2 } else { 0 };
-            let score = need.saturating_add(bonus);
-            if best.1.is_none() || score > best.0 {
-                best = (score, Some(register));
-            }
-        }
-        let register = best.1.expect("at most four registers are pinned");
-        if let Some(Held { value, .. }) = self.held[register].take() {
+        let (register, evicted) = self.registers.choose(here, *pinned);
+        self.registers.release(register);
+        if let Some(value) = evicted {
             let v = value as usize;
             self.register[v] = None;
             if matches!(self.nodes[v], Node::Apply(..)) && self.slot[v].is_none() {
@@ -234,11 +209,11 @@ impl<'p> Line<'p> {
                     self.slots - 1
                 });
                 self.slot[v] = Some(slot);
-                self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register as Register);
+                self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register);
             }
         }
         *pinned |= 1 << register;
-        register as Register
+        register
     }
 
     /// Puts the value in a register; a loaded value stays there if it is needed again.
@@ -256,7 +231,7 @@ impl<'p> Line<'p> {
 
     fn hold(&mut self, register: Register, value: Value) {
         let is_kept = self.slot[value as usize].is_some() || !matches!(self.nodes[value as usize], Node::Apply(..));
-        self.held[register as usize] = Some(Held { value, need: self.next_need(value), is_kept });
+        self.registers.hold(register, value, self.next_need(value), is_kept);
         self.register[value as usize] = Some(register);
     }
 
@@ -282,8 +257,7 @@ impl<'p> Line<'p> {
             }
             if let Some(register) = self.register[v as usize] {
                 pinned |= 1 << register;
-                let need = self.next_need(v);
-                self.held[register as usize].iter_mut().for_each(|held| held.need = need);
+                self.registers.set_need(register, self.next_need(v));
             }
         }
         let target = match *operands {
@@ -295,7 +269,7 @@ impl<'p> Line<'p> {
         for &v in operands {
             if self.next_need(v) == NEVER {
                 if let Some(register) = self.register[v as usize].take() {
-                    self.held[register as usize] = None;
+                    self.registers.release(register);
                 }
                 self.free_slots.extend(self.slot[v as usize].take());
             }

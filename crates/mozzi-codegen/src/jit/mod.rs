@@ -7,6 +7,7 @@ mod executable;
 mod instruction;
 mod lower;
 mod order;
+mod registers;
 mod rows;
 mod shape;
 mod sin_cos;

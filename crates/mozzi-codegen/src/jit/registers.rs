@@ -1,0 +1,87 @@
+//! What the registers hold, and which is freed for a new value.
+
+use super::assembler::Register;
+use super::instruction::Value;
+
+/// The need of a value that nothing needs any more.
+pub(crate) const NEVER: u32 = u32::MAX;
+
+/// The most registers of a shape.
+const MOST: usize = 32;
+
+/// Registers that an instruction uses, as bits: they keep what they hold.
+pub(crate) type Pinned = u32;
+
+/// Arrays by register; those of a free one mean nothing.
+pub(crate) struct Registers {
+    count: usize,
+    free: u32,
+    value: [Value; MOST],
+    /// The next place that needs the value.
+    need: [u32; MOST],
+    /// The value is in memory, too.
+    is_kept: [bool; MOST],
+}
+
+impl Registers {
+    /// So many, all free.
+    pub fn new(count: usize) -> Self {
+        let free = ((1_u64 << count) - 1) as u32;
+        Registers { count, free, value: [0; MOST], need: [0; MOST], is_kept: [false; MOST] }
+    }
+
+    pub fn hold(&mut self, register: Register, value: Value, need: u32, is_kept: bool) {
+        let place = usize::from(register);
+        self.free &= !(1 << place);
+        (self.value[place], self.need[place], self.is_kept[place]) = (value, need, is_kept);
+    }
+
+    pub fn set_need(&mut self, register: Register, need: u32) {
+        self.need[usize::from(register)] = need;
+    }
+
+    pub fn release(&mut self, register: Register) {
+        self.free |= 1 << register;
+    }
+
+    /// A free register, or the one whose value is needed last, with this value; values that need not be stored are
+    /// preferred.
+    pub fn choose(&self, here: usize, pinned: Pinned) -> (Register, Option<Value>) {
+        let free = self.free & !pinned;
+        if free != 0 {
+            return (free.trailing_zeros() as Register, None);
+        }
+        let mut best = (0, None);
+        for place in (0..self.count).filter(|place| pinned >> place & 1 == 0) {
+            let need = self.need[place];
+            let bonus = if self.is_kept[place] { need.saturating_sub(here as u32) / 2 } else { 0 };
+            let score = need.saturating_add(bonus);
+            if score > best.0 || best.1.is_none() {
+                best = (score, Some(place));
+            }
+        }
+        let place = best.1.expect("at most four registers are pinned");
+        (place as Register, Some(self.value[place]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn free_ones_first_then_what_is_needed_last() {
+        let mut registers = Registers::new(3);
+        assert_eq!(registers.choose(0, 0b001), (1, None));
+        registers.hold(0, 10, 8, false);
+        registers.hold(1, 11, 20, false);
+        registers.hold(2, 12, 16, true);
+        // 16 + (16 − 4) / 2 = 22 > 20: it need not be stored
+        assert_eq!(registers.choose(4, 0), (2, Some(12)));
+        assert_eq!(registers.choose(4, 0b100), (1, Some(11)));
+        registers.set_need(0, NEVER);
+        assert_eq!(registers.choose(4, 0), (0, Some(10)));
+        registers.release(1);
+        assert_eq!(registers.choose(4, 0), (1, None));
+    }
+}
