@@ -108,9 +108,7 @@ pub(crate) fn run<L: Lane>(
     L::Number: Number,
 {
     let code = programmed.code(chunk.layout, constants);
-    if let Ok(kernel) = code
-        && kernel.form() == Form::Rows
-    {
+    if let (Ok(kernel), true) = (code, constants.iter().all(Option::is_none)) {
         return in_place::run(programmed, kernel, request, worker, chunk);
     }
     let Programmed { inputs, outputs, own, .. } = programmed;

@@ -77,7 +77,7 @@ fn every_quantity_of_the_page_is_the_librarys() {
     for (Case { model, state, frame, .. }, found) in cases.iter().zip(&found) {
         let name = &model.description().name;
         assert_eq!(found["errors"], json!([]), "{name}: no error on the console");
-        assert_eq!(found["requests"].as_array().map(Vec::len), Some(1), "{name}: nothing but the page is asked for");
+        assert_eq!(found["requests"].as_array().map(Vec::len), Some(1), "{name}: the page loads nothing but itself");
         let frame = model.frame(frame).expect("a frame");
         for (place, (quantity, found)) in LIST.iter().zip(found["computed"].as_array().expect("a list")).enumerate() {
             let inputs: Vec<Vec<f64>> = quantity.inputs.iter().map(|input| given(input.name, state)).collect();
