@@ -1,9 +1,10 @@
 //! Register allocation for straight-line code: the value whose next use is furthest away is evicted first (Belady
 //! 1966). With equal costs this is optimal.
 
-use super::assembler::{Assembler, Memory, Operand, Register};
+use super::assembler::{Assembler, Operand, Register};
 use super::instruction::{Node, Operation, SINES, Value};
 use super::lower::{Lowered, SHAPE_TOGETHER, Store};
+use super::places::{Places, put_constants};
 use super::registers::{NEVER, Pinned, Registers};
 use super::rows::Extent;
 use super::shape::{Encoding, Shape};
@@ -13,6 +14,8 @@ use super::{Form, Refusal};
 #[derive(Clone, Debug)]
 pub(crate) struct Code {
     pub bytes: Vec<u8>,
+    /// Where its segments begin, each a function.
+    pub starts: Vec<usize>,
     /// The constants.
     pub pool: Vec<u8>,
     pub instructions: usize,
@@ -25,6 +28,8 @@ pub(crate) struct Arrays<'a> {
     pub extents: &'a [Extent],
     pub inputs: usize,
     pub form: Form,
+    /// The bytes after which a segment ends.
+    pub segment: usize,
 }
 
 /// The code of a lowered program; its arrays are inputs, outputs, constants, in this order. Fails if it needs more
@@ -44,7 +49,8 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, arrays: Arrays) -> Resul
     if let Some((before, constants)) = before {
         // its results are at the beginning of the frame
         used = before.outputs[0].len() * SHAPE_TOGETHER.width();
-        let places = Places { constants, pool: memory, first_output: assembler.frame(), stride: shape.number(), used };
+        let (first_output, stride, segment) = (assembler.frame(), shape.number(), usize::MAX);
+        let places = Places { constants, pool: memory, first_output, stride, used, segment };
         assembler.set_shape(SHAPE_TOGETHER);
         assembler = Line::new(SHAPE_TOGETHER, before, places, assembler).code();
         assembler.set_shape(shape);
@@ -53,40 +59,15 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, arrays: Arrays) -> Resul
     // code for one state runs once
     let extents = if shape.is_scalar() { &[] } else { arrays.extents };
     let steps: Vec<usize> = extents.iter().map(|extent| extent.step * shape.number()).collect();
-    let places = Places { constants, pool: memory, first_output: arrays.inputs, stride, used };
+    let Arrays { inputs: first_output, segment, .. } = arrays;
+    let places = Places { constants, pool: memory, first_output, stride, used, segment };
     let assembler = Line::new(shape, lowered, places, assembler).code();
     let (instructions, frame) = (assembler.instructions(), assembler.frame_bytes());
     if frame > super::assembler::LARGEST_FRAME {
         return Err(Refusal::Long);
     }
-    Ok(Code { bytes: assembler.finish(&steps), pool, instructions, frame })
-}
-
-/// For each constant node, its byte offset in the pool.
-fn put_constants(shape: Shape, lowered: &Lowered, pool: &mut Vec<u8>) -> Vec<usize> {
-    let repeat = if shape.encoding() == Encoding::Vex { shape.lanes() } else { 1 };
-    let put = |node: &Node| {
-        let byte = pool.len();
-        if let Node::Constant(bits) = node {
-            (0..repeat).for_each(|_| pool.extend(&bits.to_le_bytes()[..shape.number()]));
-        }
-        byte
-    };
-    lowered.nodes.iter().map(put).collect()
-}
-
-/// Where straight-line code finds its operands in memory.
-struct Places {
-    /// For each constant, its byte offset in the pool.
-    constants: Vec<usize>,
-    /// The array of constants.
-    pool: Memory,
-    /// The first array of outputs.
-    first_output: Memory,
-    /// The stride between entries of an input, in bytes.
-    stride: usize,
-    /// Bytes of the frame that are already in use.
-    used: usize,
+    let (bytes, starts) = assembler.finish(&steps);
+    Ok(Code { bytes, starts, pool, instructions, frame })
 }
 
 struct Line<'p> {
@@ -105,6 +86,8 @@ struct Line<'p> {
     slot: Vec<Option<usize>>,
     free_slots: Vec<usize>,
     slots: usize,
+    /// Stores that were narrower than a register, without a mask.
+    narrow: usize,
 }
 
 impl<'p> Line<'p> {
@@ -160,13 +143,29 @@ impl<'p> Line<'p> {
             registers: Registers::new(shape.registers()),
             slot: vec![None; nodes.len()],
             free_slots: Vec::new(),
+            narrow: 0,
         }
     }
 
     /// The assembler with the whole code.
     fn code(mut self) -> Assembler {
-        (0..self.nodes.len()).for_each(|place| self.step(place));
+        for place in 0..self.nodes.len() {
+            self.step(place);
+            // without masks, a narrow row's store is right once the next row is stored: so all of the square, or none
+            let is_between_squares = self.narrow.is_multiple_of(self.shape.lanes());
+            if self.assembler.segment_bytes() >= self.places.segment && is_between_squares {
+                self.cut();
+            }
+        }
         self.assembler
+    }
+
+    /// Puts all registers aside and begins another segment.
+    fn cut(&mut self) {
+        for (register, value) in self.registers.held() {
+            self.put_aside(register, value);
+        }
+        self.assembler.cut();
     }
 
     /// The next place that needs a value.
@@ -199,21 +198,26 @@ impl<'p> Line<'p> {
     /// are preferred.
     fn take(&mut self, here: usize, pinned: &mut Pinned) -> Register {
         let (register, evicted) = self.registers.choose(here, *pinned);
-        self.registers.release(register);
         if let Some(value) = evicted {
-            let v = value as usize;
-            self.register[v] = None;
-            if matches!(self.nodes[v], Node::Apply(..)) && self.slot[v].is_none() {
-                let slot = self.free_slots.pop().unwrap_or_else(|| {
-                    self.slots += 1;
-                    self.slots - 1
-                });
-                self.slot[v] = Some(slot);
-                self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register);
-            }
+            self.put_aside(register, value);
         }
         *pinned |= 1 << register;
         register
+    }
+
+    /// Frees a register; its value is stored unless it is in memory.
+    fn put_aside(&mut self, register: Register, value: Value) {
+        let v = value as usize;
+        self.registers.release(register);
+        self.register[v] = None;
+        if matches!(self.nodes[v], Node::Apply(..)) && self.slot[v].is_none() {
+            let slot = self.free_slots.pop().unwrap_or_else(|| {
+                self.slots += 1;
+                self.slots - 1
+            });
+            self.slot[v] = Some(slot);
+            self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register);
+        }
     }
 
     /// Puts the value in a register; a loaded value stays there if it is needed again.
@@ -276,6 +280,7 @@ impl<'p> Line<'p> {
         }
         for &Store { array, byte, numbers, .. } in &self.outputs[here] {
             self.assembler.store_part(array, byte, target, numbers);
+            self.narrow += usize::from(numbers < self.shape.lanes() && self.shape.encoding() == Encoding::Vex);
         }
         if self.next_need(value) != NEVER {
             self.hold(target, value);

@@ -4,6 +4,10 @@
 //! The assembler makes machine code memory-safe: it knows the length in bytes of every array, and emits no instruction
 //! that reads or writes beyond it, for any input.
 
+mod function;
+#[cfg(test)]
+mod tests;
+
 use super::instruction::{Grain, Half, Operation};
 use super::shape::{Encoding, Shape};
 
@@ -26,10 +30,6 @@ pub(crate) enum Operand {
 /// General registers for the arrays' addresses; rdi, which passes them, is the last of those that need not be saved.
 /// `rsp` and `r12` are left out: as base registers they need another encoding.
 const BASES: [u8; 13] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
-/// The index of the first register that must be saved for the caller.
-const SAVED: usize = 9;
-/// r12 counts the runs.
-const COUNTER: u8 = 12;
 
 /// The largest number of arrays, including constants and spilled registers.
 pub const MOST_ARRAYS: usize = BASES.len();
@@ -62,6 +62,8 @@ pub(crate) struct Assembler {
     /// The index of the array that is the frame; the frame grows.
     frame: Memory,
     body: Vec<u8>,
+    /// Where the body's segments begin, but for the first.
+    cuts: Vec<usize>,
     instructions: usize,
     /// The numbers that each mask lets through, from the register k1 on.
     masks: Vec<usize>,
@@ -79,7 +81,8 @@ impl Assembler {
     pub fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();
-        Assembler { shape, frame: sizes.len() - 1, sizes, body: Vec::new(), instructions: 0, masks: Vec::new() }
+        let (body, cuts, masks) = (Vec::new(), Vec::new(), Vec::new());
+        Assembler { shape, frame: sizes.len() - 1, sizes, body, cuts, instructions: 0, masks }
     }
 
     /// Sets the registers of the following instructions.
@@ -90,6 +93,16 @@ impl Assembler {
     /// The array of spilled registers.
     pub fn frame(&self) -> Memory {
         self.frame
+    }
+
+    /// Begins another segment. Registers are lost between segments, the frame is not.
+    pub fn cut(&mut self) {
+        self.cuts.push(self.body.len());
+    }
+
+    /// The bytes of the last segment.
+    pub fn segment_bytes(&self) -> usize {
+        self.body.len() - self.cuts.last().unwrap_or(&0)
     }
 
     pub fn instructions(&self) -> usize {
@@ -302,81 +315,6 @@ impl Assembler {
             self.body.extend((byte as u32).to_le_bytes());
         }
     }
-
-    /// The whole function: rdi → an array of addresses (System V). With steps in bytes, the code runs rsi ≥ 1 times,
-    /// each array's address a step further every time.
-    pub fn finish(self, steps: &[usize]) -> Vec<u8> {
-        let (arrays, frame) = (self.sizes.len(), self.sizes[self.frame]);
-        let mut code = vec![0x55, 0x48, 0x89, 0xe5]; // push rbp; mov rbp, rsp
-        let counter = if steps.is_empty() { None } else { Some(COUNTER) };
-        let saved = BASES[SAVED.min(arrays)..arrays].iter().copied().chain(counter);
-        for register in saved.clone() {
-            push_or_pop(&mut code, 0x50, register);
-        }
-        let is_on_stack = frame <= LARGEST_ON_STACK;
-        let rest = if is_on_stack { (frame + 64).next_multiple_of(64) } else { 0 };
-        // page by page, so that the guard page below the stack is touched and not skipped
-        for _ in 0..rest / 4096 {
-            code.extend([0x48, 0x81, 0xec, 0x00, 0x10, 0x00, 0x00]); // sub rsp, 4096
-            code.extend([0x48, 0x85, 0x24, 0x24]); // test [rsp], rsp
-        }
-        code.extend([0x48, 0x81, 0xec]); // sub rsp, rest
-        code.extend(((rest % 4096) as u32).to_le_bytes());
-        if counter.is_some() {
-            code.extend([0x49, 0x89, 0xf4]); // mov r12, rsi
-        }
-        for (k, numbers) in self.masks.iter().enumerate() {
-            code.push(0xb8); // mov eax, 2^numbers − 1; kmovw k, eax
-            code.extend(((1_u32 << numbers) - 1).to_le_bytes());
-            code.extend([0xc5, 0xf8, 0x92, 0xc0 | (k as u8 + 1) << 3]);
-        }
-        // the frame's base: lea base, [rsp + 63]; and base, −64
-        let is_rdi = |memory: usize| BASES[memory] == 7;
-        let base = BASES[self.frame];
-        let frame_base = |code: &mut Vec<u8>| {
-            let (high, low) = (base >> 3, base & 7);
-            code.extend([0x48 | high << 2, 0x8d, 0x44 | low << 3, 0x24, 63]);
-            code.extend([0x48 | high, 0x83, 0xe0 | low, 0xc0]);
-        };
-        let address = |code: &mut Vec<u8>, memory: usize| {
-            // mov base, [rdi + 8 memory]
-            let base = BASES[memory];
-            code.extend([0x48 | base >> 3 << 2, 0x8b, 0x47 | (base & 7) << 3, 8 * memory as u8]);
-        };
-        let given = if is_on_stack { 0..self.frame } else { 0..arrays };
-        given.clone().filter(|&memory| !is_rdi(memory)).for_each(|memory| address(&mut code, memory));
-        given.filter(|&memory| is_rdi(memory)).for_each(|memory| address(&mut code, memory));
-        if is_on_stack {
-            frame_base(&mut code);
-        }
-        let begin = code.len();
-        code.extend(&self.body);
-        if counter.is_some() {
-            for (memory, &step) in steps.iter().enumerate().filter(|(_, step)| **step > 0) {
-                // add base, step
-                let base = BASES[memory];
-                code.extend([0x48 | base >> 3, 0x81, 0xc0 | base & 7]);
-                code.extend((step as u32).to_le_bytes());
-            }
-            code.extend([0x49, 0xff, 0xcc, 0x0f, 0x85]); // dec r12; jnz begin
-            let end = code.len() + 4;
-            code.extend((begin as i32 - end as i32).to_le_bytes());
-        }
-        // lea rsp, [rbp − 8 saved]; pop …; pop rbp; vzeroupper; ret
-        code.extend([0x48, 0x8d, 0x65, (-8 * saved.clone().count() as i32) as u8]);
-        for register in saved.collect::<Vec<_>>().into_iter().rev() {
-            push_or_pop(&mut code, 0x58, register);
-        }
-        code.extend([0x5d, 0xc5, 0xf8, 0x77, 0xc3]);
-        code
-    }
-}
-
-fn push_or_pop(code: &mut Vec<u8>, opcode: u8, register: u8) {
-    if register >= 8 {
-        code.push(0x41);
-    }
-    code.push(opcode | register & 7);
 }
 
 fn inverted(register: u8, bit: u8) -> u8 {
@@ -392,6 +330,3 @@ fn fused_offset(operation: Operation) -> u8 {
         _ => unreachable!("not a fused product"),
     }
 }
-
-#[cfg(test)]
-mod tests;

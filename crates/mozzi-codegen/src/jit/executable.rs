@@ -14,6 +14,7 @@
 use super::allocate::Code;
 use super::assembler::{LARGEST_ON_STACK, MOST_ARRAYS};
 use super::rows::Extent;
+use super::segments;
 use super::shape::Shape;
 use mozzi::scalar::Float;
 use std::any::TypeId;
@@ -23,6 +24,8 @@ use std::cell::RefCell;
 #[derive(Debug)]
 pub(crate) struct Executable {
     pages: Pages,
+    /// Where its segments begin.
+    starts: Vec<usize>,
     /// The offset of the constants, after the code.
     pool: usize,
     /// Inputs, then outputs.
@@ -54,7 +57,7 @@ impl Executable {
             return None;
         }
         let (pages, pool) = Pages::new(&code.bytes, &code.pool)?;
-        Some(Executable { pages, pool, extents, inputs, shape, frame: code.frame })
+        Some(Executable { pages, starts: code.starts.clone(), pool, extents, inputs, shape, frame: code.frame })
     }
 
     pub fn extents(&self) -> &[Extent] {
@@ -116,38 +119,51 @@ impl Executable {
         let place = self.extents.len() - 1;
         assert!(last.len() >= self.extents[place].of(runs), "the last output has {} entries", last.len());
         addresses[place] = last.as_mut_ptr().cast();
-        if self.frame <= LARGEST_ON_STACK { self.run(runs, addresses) } else { self.run_beside(runs, addresses) }
+        addresses[place + 1] = self.pages.start.wrapping_add(self.pool);
+        let is_alone = self.starts.len() == 1 && self.frame <= LARGEST_ON_STACK;
+        if is_alone { self.enter(0, runs, addresses) } else { self.run_beside(runs, addresses) }
     }
 
-    /// Runs with a frame that is not on the stack.
+    /// Runs with a frame that is not on the stack; segment after segment, each on a group of runs.
     #[inline(never)]
     fn run_beside(&self, runs: usize, addresses: &mut Addresses) {
+        let (frames, group) = match segments::group(self.shape) {
+            _ if self.starts.len() == 1 => (1, runs),
+            group => (group.min(runs), group),
+        };
         FRAME.with_borrow_mut(|frame| {
-            let lines = self.frame.div_ceil(64);
+            let lines = self.frame.div_ceil(64) * frames;
             if frame.len() < lines {
                 frame.resize(lines, Aligned([0; 64]));
             }
             addresses[self.extents.len() + 1] = frame.as_mut_ptr().cast();
-            self.run(runs, addresses);
+            for first in (0..runs).step_by(group) {
+                let count = group.min(runs - first);
+                self.starts.iter().for_each(|&start| self.enter(start, count, addresses));
+                for (address, extent) in addresses.iter_mut().zip(&self.extents) {
+                    *address = address.wrapping_add(count * extent.step * self.shape.number());
+                }
+            }
         });
     }
 
+    /// Calls the function that begins at this offset.
     #[cfg(all(unix, target_arch = "x86_64"))]
     #[inline(always)]
-    fn run(&self, runs: usize, addresses: &mut Addresses) {
-        addresses[self.extents.len()] = self.pages.start.wrapping_add(self.pool);
-        // SAFETY: the pages begin with a whole function of this signature (`Assembler::finish`), and the processor has
-        // its instructions (`new`). It accesses only the arrays at the given addresses, each as long as the assembler
+    fn enter(&self, start: usize, runs: usize, addresses: &Addresses) {
+        // SAFETY: a whole function of this signature begins there (`assembler/function.rs`), and the processor has its
+        // instructions (`new`). It accesses only the arrays at the given addresses, each as long as the assembler
         // assumed for so many runs (checked by the callers; the outputs are borrowed exclusively), its constants, and
         // its frame, on its stack or borrowed by `run_beside`.
         unsafe {
-            let function: extern "sysv64" fn(*const *mut u8, usize) = std::mem::transmute(self.pages.start);
+            let function: extern "sysv64" fn(*const *mut u8, usize) =
+                std::mem::transmute(self.pages.start.wrapping_add(start));
             function(addresses.as_ptr(), runs);
         }
     }
 
     #[cfg(not(all(unix, target_arch = "x86_64")))]
-    fn run(&self, _: usize, _: &mut Addresses) {
+    fn enter(&self, _: usize, _: usize, _: &Addresses) {
         unreachable!("no code was made");
     }
 }

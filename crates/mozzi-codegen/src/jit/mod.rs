@@ -7,8 +7,10 @@ mod executable;
 mod instruction;
 mod lower;
 mod order;
+mod places;
 mod registers;
 mod rows;
+mod segments;
 mod shape;
 mod sin_cos;
 
@@ -93,6 +95,12 @@ impl Kernel {
     /// # Panics
     /// For rows of a shape of one state.
     pub fn condensing(program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Self, Refusal> {
+        let cuts = segments::pay(shape);
+        Self::cut_if(cuts, program, shape, form, condensed)
+    }
+
+    /// Likewise, and long code is cut into [`segments`] or not.
+    fn cut_if(cuts: bool, program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Self, Refusal> {
         assert!(form == Form::Blocks || !shape.is_scalar(), "one state has no rows");
         if !shape.is_supported() {
             return Err(Refusal::Processor);
@@ -113,7 +121,9 @@ impl Kernel {
         let pays = shape.repeats() && lowered.nodes.len() <= order::LONGEST;
         let lowered = if form == Form::Rows { rows::by_rows(lowered, shape, &widths, own) } else { lowered };
         let lowered = if pays { order::ordered(lowered) } else { lowered };
-        let code = allocate::allocate(shape, &lowered, allocate::Arrays { extents: &extents, inputs, form })?;
+        let segment = if cuts { segments::longest(lowered.nodes.len()) } else { usize::MAX };
+        let arrays = allocate::Arrays { extents: &extents, inputs, form, segment };
+        let code = allocate::allocate(shape, &lowered, arrays)?;
         if code.bytes.len() > shape.longest_code() {
             return Err(Refusal::Long);
         }

@@ -44,6 +44,12 @@ impl Registers {
         self.free |= 1 << register;
     }
 
+    /// The registers that hold a value, with it.
+    pub fn held(&self) -> Vec<(Register, Value)> {
+        let is_held = |register: &usize| self.free >> register & 1 == 0;
+        (0..self.count).filter(is_held).map(|register| (register as Register, self.value[register])).collect()
+    }
+
     /// A free register, or the one whose value is needed last, with this value; values that need not be stored are
     /// preferred.
     pub fn choose(&self, here: usize, pinned: Pinned) -> (Register, Option<Value>) {
@@ -51,16 +57,16 @@ impl Registers {
         if free != 0 {
             return (free.trailing_zeros() as Register, None);
         }
-        let mut best = (0, None);
-        for place in (0..self.count).filter(|place| pinned >> place & 1 == 0) {
+        // the largest of score · MOST + (MOST − 1 − place), without branches: of equal ones the first
+        let mut best = None;
+        for place in 0..self.count {
             let need = self.need[place];
             let bonus = if self.is_kept[place] { need.saturating_sub(here as u32) / 2 } else { 0 };
-            let score = need.saturating_add(bonus);
-            if score > best.0 || best.1.is_none() {
-                best = (score, Some(place));
-            }
+            let score = u64::from(need) + u64::from(bonus);
+            let key = score * MOST as u64 + (MOST - 1 - place) as u64;
+            best = best.max((pinned >> place & 1 == 0).then_some(key));
         }
-        let place = best.1.expect("at most four registers are pinned");
+        let place = MOST - 1 - best.expect("at most four registers are pinned") as usize % MOST;
         (place as Register, Some(self.value[place]))
     }
 }

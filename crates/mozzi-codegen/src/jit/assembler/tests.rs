@@ -193,7 +193,7 @@ fn parts_of_registers_are_stored_under_masks() {
         assembler.store_part(0, 0, 1, 3);
         assembler.store_part(0, 0, 1, 2);
         assembler.store_part(0, shape.number(), 1, 2);
-        let found = decoded(&assembler.finish(&[]));
+        let found = decoded(&assembler.finish(&[]).0);
         let values = found.iter().filter(|x| x.mnemonic() == Mnemonic::Mov && x.op1_kind() == OpKind::Immediate32);
         assert_eq!(
             values.map(|x| (x.op0_register(), x.immediate32())).collect::<Vec<_>>(),
@@ -278,7 +278,7 @@ fn a_function_keeps_what_is_its_callers() {
             }
             (0..arrays).for_each(|memory| assembler.load(2, Operand::Lanes(memory, 0)));
             let steps: Vec<usize> = if repeats { (0..arrays).map(|k| 64 * k).collect() } else { Vec::new() };
-            let code = assembler.finish(&steps);
+            let (code, _) = assembler.finish(&steps);
             let found = decoded(&code);
             // pushed registers are popped in reverse order, and each array's address is loaded from its place
             let of = |mnemonic| found.iter().filter(move |x| x.mnemonic() == mnemonic).map(|x| x.op0_register());
