@@ -1,6 +1,7 @@
 //! A robot's quantities as programs.
 
 use crate::estimate::is_deep;
+use crate::needed;
 use crate::program::Program;
 use crate::rates::with_rates;
 use crate::record::record;
@@ -91,7 +92,7 @@ fn recorded(model: &Model, query: Query, arguments: Arguments) -> Program {
     let state = declaration.inputs.iter().map(|input| input.name).zip(query.input_lengths(model));
     let inputs: Vec<(&str, usize)> =
         state.chain(further.iter().map(|(name, length)| (name.as_str(), *length))).collect();
-    record(query.name(), &inputs, |arrays| {
+    let program = record(query.name(), &inputs, |arrays| {
         let (state, rest) = arrays.split_at(declaration.inputs.len());
         let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
         let mut rest = rest.iter().map(Vec::as_slice);
@@ -126,7 +127,8 @@ fn recorded(model: &Model, query: Query, arguments: Arguments) -> Program {
         query.evaluate(&model, &state, &environment, &mut memory, &mut slices);
         let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
         names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
-    })
+    });
+    needed::ordered(program, query, model.n())
 }
 
 /// The outputs of a program after the quantity's own: the pivots that it divides by.

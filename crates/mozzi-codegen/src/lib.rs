@@ -31,6 +31,7 @@ mod emit;
 mod estimate;
 mod function;
 mod jit;
+mod needed;
 mod program;
 mod rates;
 mod record;
