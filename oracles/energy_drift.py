@@ -4,7 +4,7 @@
     pip install drake  # 100 MB, beside oracles/requirements.txt; without it its rows are left out
     python oracles/energy_drift.py [--mozzi target/release/mozzi] [--time 10]
 
-models/double_pendulum.urdf, let go at (2, 1) rad; the largest |E(t) - E(0)| over the steps, in joules (of mozzi's Dormand-Prince over rows of 10 ms).
+crates/mozzi-urdf/models/double_pendulum.urdf, let go at (2, 1) rad; the largest |E(t) - E(0)| over the steps, in joules (of mozzi's Dormand-Prince over rows of 10 ms).
 """
 
 import argparse
@@ -18,7 +18,7 @@ import numpy as np
 import pinocchio as pin
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-MODEL = ROOT / "models" / "double_pendulum.urdf"
+MODEL = ROOT / "crates/mozzi-urdf/models" / "double_pendulum.urdf"
 START = [2.0, 1.0]
 # "discrete" is MultibodyPlant's own step; the others are integrators of its continuous equations
 DRAKE = ("discrete", "explicit_euler", "semi_explicit_euler", "implicit_euler", "runge_kutta3", "radau3")

@@ -38,7 +38,7 @@ ANGLE = DISTANCE = 1e-4
 class Robot:
     def __init__(self, name):
         self.name, self.frame = name, ROBOTS[name]
-        self.path = str(ROOT / "models" / f"{name}.urdf")
+        self.path = str(ROOT / "crates/mozzi-urdf/models" / f"{name}.urdf")
         whole = pin.buildModelFromUrdf(self.path)
         # only the joints that move the frame: the others are no part of the question
         support = [whole.joints[k].shortname() and whole.names[k] for k in whole.supports[whole.frames[whole.getFrameId(self.frame)].parentJoint]]

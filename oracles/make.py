@@ -41,6 +41,8 @@ ROBOTS = {
     "double_pendulum": "double_pendulum_description/urdf/double_pendulum.urdf",
     "double_pendulum_continuous": "double_pendulum_description/urdf/double_pendulum_continuous.urdf",
 }
+# The folders of our own robots, as they are called in the records.
+OWN = {"models": REPOSITORY / "crates/mozzi-urdf/models", "oracles": REPOSITORY / "oracles"}
 # Otherwise the tip is the leaf link that the most moving joints carry, the last of them in the file.
 TIPS = {"models/panda": "panda_hand_tcp"}
 
@@ -60,18 +62,18 @@ def package_root():
 
 
 def own_models():
-    paths = sorted([*REPOSITORY.glob("models/*.urdf"), *REPOSITORY.glob("oracles/*.urdf")])
-    return [f"{path.parent.name}/{path.stem}" for path in paths]
+    return [f"{folder}/{path.stem}" for folder, place in OWN.items() for path in sorted(place.glob("*.urdf"))]
 
 
 def is_own(name):
-    return name.startswith(("models/", "oracles/"))
+    return name.partition("/")[0] in OWN
 
 
 def find_urdf(name):
     """The path of a robot's file, and that path as written into the record."""
     if is_own(name):
-        path, shown = REPOSITORY / f"{name}.urdf", f"{name}.urdf"
+        folder, _, stem = name.partition("/")
+        path, shown = OWN[folder] / f"{stem}.urdf", f"{name}.urdf"
     else:
         shown = ROBOTS.get(name, name if name.endswith(".urdf") else f"{name}.urdf")
         path = package_root() / shown

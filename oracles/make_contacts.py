@@ -67,7 +67,7 @@ def violation(G, b, mu, p):
 
 
 def anymal(random, dt=1e-3):
-    model = pin.buildModelFromUrdf(str(HERE.parent / "models/anymal.urdf"), pin.JointModelFreeFlyer())
+    model = pin.buildModelFromUrdf(str(HERE.parent / "crates/mozzi-urdf/models/anymal.urdf"), pin.JointModelFreeFlyer())
     data = model.createData()
     q = pin.neutral(model)
     for k, leg in enumerate(["LF", "RF", "LH", "RH"]):

@@ -17,7 +17,7 @@ import mozzi
 import mozzi.jax
 import numpy as np
 
-URDF = Path(__file__).parents[2] / "models/ur5.urdf"
+URDF = Path(__file__).parents[2] / "crates/mozzi-urdf/models/ur5.urdf"
 ur5 = mozzi.models.ur5()
 random = np.random.default_rng(1763)
 

@@ -65,14 +65,14 @@ pub fn robots(workspace: &Workspace) -> Option<PathBuf> {
     (!folder.is_empty()).then(|| PathBuf::from(folder))
 }
 
-/// The sources of the numbers: scripts, requirements, robots and models under `oracles/`, and the robots of `models/`.
+/// The sources of the numbers: scripts, requirements, robots and models under `oracles/`, and the embedded robots.
 fn stamp(workspace: &Workspace) -> Result<Stamp, String> {
     let mut files = Vec::new();
     let folders = [
         ("oracles", &["py", "txt", "urdf", "xml"][..]),
         ("oracles/parts", &["xml"]),
         ("oracles/floating", &["urdf"]),
-        ("models", &["urdf"]),
+        ("crates/mozzi-urdf/models", &["urdf"]),
     ];
     for (folder, endings) in folders {
         let Ok(entries) = std::fs::read_dir(workspace.path(folder)) else { continue };

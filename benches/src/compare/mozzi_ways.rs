@@ -30,9 +30,12 @@ pub fn all<'a>(model: &'a Model, states: &'a States) -> Result<Vec<Entry<'a>>, S
     });
     entries.push(Entry { name: "compiled".into(), width: Some(Width::Scalar), contestant: Box::new(one) });
     let registers = [(InstructionSet::Avx2, Width::Four), (InstructionSet::Avx512, Width::Eight)];
-    for (name, layout, is_compiled) in
-        [("batch", Layout::Rows, false), ("blocks", Layout::Blocks, false), ("compiled", Layout::Rows, true)]
-    {
+    for (name, layout, is_compiled) in [
+        ("batch", Layout::Rows, false),
+        ("blocks", Layout::Blocks, false),
+        ("compiled", Layout::Rows, true),
+        ("compiled blocks", Layout::Blocks, true),
+    ] {
         for (set, width) in registers {
             let name = format!("{name} {}", set.name());
             let batched = Batched::new(model, states, set, layout, is_compiled);

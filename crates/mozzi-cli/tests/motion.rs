@@ -32,7 +32,8 @@ fn a_motion_is_made_and_followed() {
     assert!(worst(&follow(task, &[])) < 1e-2);
     let lagging = follow(r#"{"controller": "pd-gravity", "p": [900, 900, 900, 90, 90, 90], "d": 20}"#, &[]);
     assert!(worst(&lagging) > 1e-2 && worst(&lagging) < 0.5);
-    let urdf = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/ur5.urdf")).expect("there");
+    let urdf =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-urdf/models/ur5.urdf")).expect("there");
     assert!(urdf.contains("8.393"));
     let name = file(&folder, "other.urdf", &urdf.replace("8.393", "6.0")).replace('\\', "/");
     let wrong = follow(&format!(r#"{{"controller": "computed-torque", "p": 100, "d": 20, "model": "{name}"}}"#), &[]);

@@ -9,7 +9,7 @@ import numpy as np
 POSE = [0, 0.7, -1.0, 0, 0.7, -1.0, 0, -0.7, 1.0, 0, -0.7, 1.0]
 LEGS = [f"{leg}_{joint}" for leg in ("LF", "RF", "LH", "RH") for joint in ("HAA", "HFE", "KFE")]
 
-urdf = Path(__file__).resolve().parents[3] / "models/anymal.urdf"
+urdf = Path(__file__).resolve().parents[3] / "crates/mozzi-urdf/models/anymal.urdf"
 text = urdf.read_text().replace("<robot ", "<robot ", 1)
 start = text.index(">", text.index("<robot")) + 1
 text = text[:start] + '<mujoco><compiler discardvisual="true" fusestatic="false"/></mujoco>' + text[start:]

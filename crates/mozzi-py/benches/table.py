@@ -35,7 +35,7 @@ def same(found, expected, tolerance=1e-9):
 def beside_pinocchio(random):
     robot = mozzi.models.panda()
     fast = robot.compile("inverse_dynamics", "forward_dynamics", "mass_matrix", threads=1)
-    model = pin.buildModelFromUrdf(str(Path(__file__).parents[3] / "models/panda.urdf"), mimic=True)
+    model = pin.buildModelFromUrdf(str(Path(__file__).parents[3] / "crates/mozzi-urdf/models/panda.urdf"), mimic=True)
     data, bridge = model.createData(), Pinocchio(robot)
     theta, dtheta, ddtheta = random.uniform(-1, 1, (3, robot.n))
     q, v, a = bridge.configuration(theta), bridge.velocity(dtheta), bridge.acceleration(ddtheta)

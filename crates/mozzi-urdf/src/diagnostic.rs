@@ -107,6 +107,7 @@ impl Diagnostic {
     }
 
     /// The whole text, for excerpts; `None` if excerpts must not be shown.
+    #[cfg(feature = "pretty")]
     pub(crate) fn text(&self) -> Option<&str> {
         self.source.is_shown.then_some(&self.source.text)
     }

@@ -4,12 +4,12 @@ use std::path::Path;
 
 /// Name and text.
 const ROBOTS: [(&str, &str); 6] = [
-    ("anymal", include_str!("../../../models/anymal.urdf")),
-    ("double_pendulum", include_str!("../../../models/double_pendulum.urdf")),
-    ("furuta_pendulum", include_str!("../../../models/furuta_pendulum.urdf")),
-    ("panda", include_str!("../../../models/panda.urdf")),
-    ("two_link_planar", include_str!("../../../models/two_link_planar.urdf")),
-    ("ur5", include_str!("../../../models/ur5.urdf")),
+    ("anymal", include_str!("../models/anymal.urdf")),
+    ("double_pendulum", include_str!("../models/double_pendulum.urdf")),
+    ("furuta_pendulum", include_str!("../models/furuta_pendulum.urdf")),
+    ("panda", include_str!("../models/panda.urdf")),
+    ("two_link_planar", include_str!("../models/two_link_planar.urdf")),
+    ("ur5", include_str!("../models/ur5.urdf")),
 ];
 
 /// The names, in alphabetical order.

@@ -82,6 +82,7 @@ mod number;
 mod origin;
 mod pages;
 mod places;
+#[cfg(feature = "pretty")]
 mod pretty;
 mod problem;
 mod repair;
@@ -107,6 +108,7 @@ pub use explain::{codes, explain, nearest_code, remedy};
 pub use expressible::expressible;
 pub use mozzi::model::Severity;
 pub use mozzi_xacro::Arguments as XacroArguments;
+#[cfg(feature = "pretty")]
 pub use pretty::Style;
 pub use settings::{Policy, Settings};
 pub use spelling::did_you_mean;

@@ -74,7 +74,7 @@ fn a_robot_arrives_with_every_digit() {
     }
     session.close(1);
     assert_eq!(session.robot(1).expect_err("closed"), "robot 1 is not open");
-    assert_eq!(session.load("arm.urdf", include_str!("../../../models/ur5.urdf")), Ok(models().len()));
+    assert_eq!(session.load("arm.urdf", include_str!("../../mozzi-urdf/models/ur5.urdf")), Ok(models().len()));
 }
 
 #[test]

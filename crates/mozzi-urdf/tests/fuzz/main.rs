@@ -249,7 +249,7 @@ fn texts(name: &str, target: fn(&[u8]), corpus: &[Vec<u8>], words: &[&str]) {
 #[test]
 #[ignore = "takes its time; cargo xtask test runs it"]
 fn urdf() {
-    texts("urdf", targets::urdf, &corpus(&["tests/broken", "../../models"], "urdf"), WORDS);
+    texts("urdf", targets::urdf, &corpus(&["tests/broken", "models"], "urdf"), WORDS);
 }
 
 #[test]

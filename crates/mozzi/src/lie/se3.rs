@@ -68,14 +68,31 @@ impl<S: Scalar> SE3<S> {
 }
 
 /// Error: the matrix is not a configuration in SE(3).
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InvalidConfiguration {
     /// Its upper left 3 × 3 block.
-    #[error(transparent)]
-    Rotation(#[from] InvalidRotation),
+    Rotation(InvalidRotation),
     /// Its last row.
-    #[error("not a configuration: the last row is {0:?}, expected [0, 0, 0, 1]")]
     LastRow([f64; 4]),
+}
+
+impl core::fmt::Display for InvalidConfiguration {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            InvalidConfiguration::Rotation(error) => error.fmt(f),
+            InvalidConfiguration::LastRow(row) => {
+                write!(f, "not a configuration: the last row is {row:?}, expected [0, 0, 0, 1]")
+            }
+        }
+    }
+}
+
+impl core::error::Error for InvalidConfiguration {}
+
+impl From<InvalidRotation> for InvalidConfiguration {
+    fn from(error: InvalidRotation) -> Self {
+        InvalidConfiguration::Rotation(error)
+    }
 }
 
 impl SE3<f64> {

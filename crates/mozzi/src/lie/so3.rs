@@ -11,10 +11,7 @@ use core::ops::Mul;
 pub struct SO3<S = f64>(pub(crate) Mat3<S>);
 
 /// Error: the matrix is not a rotation.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "not a rotation matrix: RᵀR differs from I by up to {deviation:.3e} (expected at most {tolerance:.0e}) and det R = {determinant:.6} (expected 1)"
-)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InvalidRotation {
     /// The largest entry of |RᵀR − I|.
     pub deviation: f64,
@@ -23,6 +20,18 @@ pub struct InvalidRotation {
     /// det R.
     pub determinant: f64,
 }
+
+impl core::fmt::Display for InvalidRotation {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let InvalidRotation { deviation, tolerance, determinant } = self;
+        write!(
+            f,
+            "not a rotation matrix: RᵀR differs from I by up to {deviation:.3e} (expected at most {tolerance:.0e}) and det R = {determinant:.6} (expected 1)"
+        )
+    }
+}
+
+impl core::error::Error for InvalidRotation {}
 
 impl<S: Scalar> SO3<S> {
     /// I.

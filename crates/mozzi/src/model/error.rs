@@ -3,14 +3,13 @@
 use super::check::{Problem, Severity};
 use alloc::string::String;
 use alloc::vec::Vec;
-use core::fmt::Write;
+use core::fmt::{self, Write};
 
 /// Errors of building a model and of its methods.
-#[derive(Clone, Debug, thiserror::Error)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Error {
     /// The description is invalid, or contains something that mozzi does not support.
-    #[error("the robot `{robot}` cannot be built:{}", list(problems))]
     Invalid {
         /// The robot's name.
         robot: String,
@@ -18,7 +17,6 @@ pub enum Error {
         problems: Vec<Problem>,
     },
     /// The constraints cannot be satisfied.
-    #[error("constraint `{constraint}` cannot be satisfied: {what} does; the nearest violates it by {residual:.3e}")]
     Unreachable {
         /// The constraint that is violated most.
         constraint: String,
@@ -28,10 +26,6 @@ pub enum Error {
         what: &'static str,
     },
     /// A simulation's start violates a constraint.
-    #[error(
-        "the start has {what} that violates constraint `{constraint}` by {residual:.3e}, expected at most 1e-6; `assemble` \
-         closes positions, `assemble_velocities` or `constraint_impulse` velocities"
-    )]
     OpenStart {
         /// The constraint.
         constraint: String,
@@ -41,10 +35,6 @@ pub enum Error {
         what: &'static str,
     },
     /// A simulation cannot keep a constraint.
-    #[error(
-        "constraint `{constraint}` cannot be closed at t = {time} s: {residual:.3e} rad or m are left; the step may be too \
-         long, or the mechanism at the end of its reach"
-    )]
     Opened {
         /// The constraint that is violated most.
         constraint: String,
@@ -54,10 +44,6 @@ pub enum Error {
         time: f64,
     },
     /// The motors cannot produce the motion.
-    #[error(
-        "no motor drives `{joint}` ({motors} motors for {freedom} degrees of freedom): the motion needs {force:.3e} N m \
-         or N there"
-    )]
     Underactuated {
         /// The joint that takes the largest part of the missing force.
         joint: String,
@@ -69,7 +55,6 @@ pub enum Error {
         freedom: usize,
     },
     /// A vector or matrix of a wrong length.
-    #[error("{what} has {found} entries, expected {expected}")]
     WrongLength {
         /// Which argument.
         what: &'static str,
@@ -79,7 +64,6 @@ pub enum Error {
         expected: usize,
     },
     /// No frame has this name.
-    #[error("there is no frame `{name}`; this robot has {}", names(known))]
     NoSuchFrame {
         /// The requested name.
         name: String,
@@ -87,7 +71,6 @@ pub enum Error {
         known: Vec<String>,
     },
     /// No joint has this name.
-    #[error("there is no joint `{name}`; this robot has {}", names(known))]
     NoSuchJoint {
         /// The requested name.
         name: String,
@@ -95,7 +78,6 @@ pub enum Error {
         known: Vec<String>,
     },
     /// No state has this name.
-    #[error("there is no state `{name}`; this robot has {}", names(known))]
     NoSuchState {
         /// The requested name.
         name: String,
@@ -103,7 +85,6 @@ pub enum Error {
         known: Vec<String>,
     },
     /// No quantity has this name.
-    #[error("there is no quantity `{name}`; expected one of {}", all_names(known))]
     NoSuchQuantity {
         /// The requested name.
         name: String,
@@ -111,16 +92,11 @@ pub enum Error {
         known: Vec<&'static str>,
     },
     /// The end effector is not obvious.
-    #[error("the end effector must be named: this robot ends in {}", names(leaves))]
     NoEndEffector {
         /// The candidates.
         leaves: Vec<String>,
     },
     /// The mass matrix cannot be inverted: a joint moves no inertia, or joints produce the same motion.
-    #[error(
-        "the mass matrix is singular at joint `{joint}`: its pivot is {pivot:e}, against {diagonal:e} on the diagonal (it moves no inertia, or \
-         other joints produce the same motion), at θ = {theta:?}"
-    )]
     SingularMassMatrix {
         /// The joint.
         joint: String,
@@ -132,9 +108,6 @@ pub enum Error {
         theta: Vec<f64>,
     },
     /// The task's directions are not independent at this state.
-    #[error(
-        "the task is singular at θ = {theta:?}: the singular values of its Jacobian are {singular_values:?}, the smallest below {tolerance:e}"
-    )]
     SingularTask {
         /// Singular values of the task's rows, largest first.
         singular_values: Vec<f64>,
@@ -144,10 +117,6 @@ pub enum Error {
         theta: Vec<f64>,
     },
     /// The simulated state became infinite, NaN or too large.
-    #[error(
-        "the simulation diverged: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of {step_size} s; \
-         a smaller step may help"
-    )]
     Diverged {
         /// "theta", "dtheta" or "ddtheta".
         quantity: &'static str,
@@ -163,7 +132,6 @@ pub enum Error {
         step_size: f64,
     },
     /// A simulation takes steps so short that it would practically never end.
-    #[error("the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")]
     Stalled {
         /// Seconds.
         time: f64,
@@ -173,10 +141,6 @@ pub enum Error {
         cause: String,
     },
     /// The iteration of an implicit step does not converge.
-    #[error(
-        "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations at joint `{joint}`, which is stiff, \
-         or jumps; a smaller step or smooth friction may help"
-    )]
     NoConvergence {
         /// The joint whose velocity changes most between iterations.
         joint: String,
@@ -188,13 +152,11 @@ pub enum Error {
         iterations: usize,
     },
     /// The moving links have no mass.
-    #[error("the robot's total mass is {mass} kg; the centre of mass is undefined")]
     NoMass {
         /// kg.
         mass: f64,
     },
     /// An invalid event condition of a simulation.
-    #[error("`{text}`{problem}")]
     Condition {
         /// The condition.
         text: String,
@@ -202,7 +164,6 @@ pub enum Error {
         problem: String,
     },
     /// An argument outside its domain.
-    #[error("{what} is {found}, expected {expected}")]
     BadArgument {
         /// Which argument.
         what: &'static str,
@@ -212,6 +173,78 @@ pub enum Error {
         expected: &'static str,
     },
 }
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Invalid { robot, problems } => write!(f, "the robot `{robot}` cannot be built:{}", list(problems)),
+            Error::Unreachable { constraint, residual, what } => write!(
+                f,
+                "constraint `{constraint}` cannot be satisfied: {what} does; the nearest violates it by {residual:.3e}"
+            ),
+            Error::OpenStart { constraint, residual, what } => write!(
+                f,
+                "the start has {what} that violates constraint `{constraint}` by {residual:.3e}, expected at most 1e-6; `assemble` \
+         closes positions, `assemble_velocities` or `constraint_impulse` velocities"
+            ),
+            Error::Opened { constraint, residual, time } => write!(
+                f,
+                "constraint `{constraint}` cannot be closed at t = {time} s: {residual:.3e} rad or m are left; the step may be too \
+         long, or the mechanism at the end of its reach"
+            ),
+            Error::Underactuated { joint, force, motors, freedom } => write!(
+                f,
+                "no motor drives `{joint}` ({motors} motors for {freedom} degrees of freedom): the motion needs {force:.3e} N m \
+         or N there"
+            ),
+            Error::WrongLength { what, found, expected } => {
+                write!(f, "{what} has {found} entries, expected {expected}")
+            }
+            Error::NoSuchFrame { name, known } => {
+                write!(f, "there is no frame `{name}`; this robot has {}", names(known))
+            }
+            Error::NoSuchJoint { name, known } => {
+                write!(f, "there is no joint `{name}`; this robot has {}", names(known))
+            }
+            Error::NoSuchState { name, known } => {
+                write!(f, "there is no state `{name}`; this robot has {}", names(known))
+            }
+            Error::NoSuchQuantity { name, known } => {
+                write!(f, "there is no quantity `{name}`; expected one of {}", all_names(known))
+            }
+            Error::NoEndEffector { leaves } => {
+                write!(f, "the end effector must be named: this robot ends in {}", names(leaves))
+            }
+            Error::SingularMassMatrix { joint, pivot, diagonal, theta } => write!(
+                f,
+                "the mass matrix is singular at joint `{joint}`: its pivot is {pivot:e}, against {diagonal:e} on the diagonal (it moves no inertia, or \
+         other joints produce the same motion), at θ = {theta:?}"
+            ),
+            Error::SingularTask { singular_values, tolerance, theta } => write!(
+                f,
+                "the task is singular at θ = {theta:?}: the singular values of its Jacobian are {singular_values:?}, the smallest below {tolerance:e}"
+            ),
+            Error::Diverged { quantity, joint, value, step, time, step_size } => write!(
+                f,
+                "the simulation diverged: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of {step_size} s; \
+         a smaller step may help"
+            ),
+            Error::Stalled { time, joint, cause } => {
+                write!(f, "the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")
+            }
+            Error::NoConvergence { joint, time, step, iterations } => write!(
+                f,
+                "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations at joint `{joint}`, which is stiff, \
+         or jumps; a smaller step or smooth friction may help"
+            ),
+            Error::NoMass { mass } => write!(f, "the robot's total mass is {mass} kg; the centre of mass is undefined"),
+            Error::Condition { text, problem } => write!(f, "`{text}`{problem}"),
+            Error::BadArgument { what, found, expected } => write!(f, "{what} is {found}, expected {expected}"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}
 
 fn list(problems: &[Problem]) -> String {
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error);

@@ -111,16 +111,25 @@ impl<S: Scalar + PartialEq> SpatialInertia<S> {
 }
 
 /// Error: the matrix is not a spatial inertia.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "not a spatial inertia: entry ({row}, {column}) is {found}, expected {expected} (the form is [[I, [mc]], [−[mc], m]])"
-)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotASpatialInertia {
     row: usize,
     column: usize,
     found: f64,
     expected: f64,
 }
+
+impl core::fmt::Display for NotASpatialInertia {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let NotASpatialInertia { row, column, found, expected } = self;
+        write!(
+            f,
+            "not a spatial inertia: entry ({row}, {column}) is {found}, expected {expected} (the form is [[I, [mc]], [−[mc], m]])"
+        )
+    }
+}
+
+impl core::error::Error for NotASpatialInertia {}
 
 impl SpatialInertia<f64> {
     /// From a 6 × 6 matrix, as rows, angular first: the book's block-diagonal 𝒢_b, or one whose frame is not at the

@@ -13,17 +13,26 @@ use core::ops::Mul;
 pub struct ScrewAxis<S = f64>(Twist<S>);
 
 /// Error: the twist given as a screw axis is not unit.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1 (use ScrewAxis::normalize \
-     and multiply this joint's θ, and divide its τ, by the size that it returns)"
-)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotAScrew {
     /// ‖ω‖.
     pub angular: f64,
     /// ‖v‖.
     pub linear: f64,
 }
+
+impl core::fmt::Display for NotAScrew {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let NotAScrew { angular, linear } = self;
+        write!(
+            f,
+            "not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1 (use ScrewAxis::normalize \
+     and multiply this joint's θ, and divide its τ, by the size that it returns)"
+        )
+    }
+}
+
+impl core::error::Error for NotAScrew {}
 
 impl ScrewAxis<f64> {
     /// From (ω, v), unit to 10⁻¹².
