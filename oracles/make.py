@@ -73,7 +73,8 @@ def find_urdf(name):
     """The path of a robot's file, and that path as written into the record."""
     if is_own(name):
         folder, _, stem = name.partition("/")
-        path, shown = OWN[folder] / f"{stem}.urdf", f"{name}.urdf"
+        path = OWN[folder] / f"{stem}.urdf"
+        shown = path.relative_to(REPOSITORY).as_posix()
     else:
         shown = ROBOTS.get(name, name if name.endswith(".urdf") else f"{name}.urdf")
         path = package_root() / shown

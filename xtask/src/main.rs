@@ -1,4 +1,5 @@
-//! `cargo xtask test | check | docs | page | bench | accuracy | nightly | wheel | dist`: the same commands as in CI.
+//! `cargo xtask test | check | docs | page | bench | accuracy | nightly | wheel | api | release | dist`: the same commands
+//! as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -22,6 +23,7 @@ mod no_std;
 mod oracles;
 mod package;
 mod page;
+mod release;
 mod report;
 mod source_text;
 mod spdx;
@@ -65,6 +67,9 @@ usage: cargo xtask COMMAND
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
           --of-tests                                  package the build of `test`, as `test` does it
+  api     list the public items of the published crates in docs/api; `check` compares
+  release --dry-run VERSION: version, changelog, metadata, features, public items; packages every crate that is published,
+          and builds and runs their documentation's examples, a first program and the command line from the packages alone
   dist    archives of the C and C++ library for Linux into target/dist, for glibc 2.28 or newer; needs cmake";
 
 /// Options of `test`, each with what it installs.
@@ -83,6 +88,12 @@ fn main() -> ExitCode {
         ["page", "--check"] => one("page", || page::compare(&workspace)),
         ["wheel"] => wheel(&workspace),
         ["dist"] => dist(&workspace),
+        ["api"] => one("public items", || release::api::write(&workspace)),
+        ["release", "--dry-run", version] => {
+            let mut report = Report::default();
+            release::rehearse(&workspace, version, &mut report);
+            report.finish()
+        }
         ["nightly"] => nightly::run(&workspace, nightly::SECONDS),
         ["nightly", "--seconds", seconds] if seconds.parse::<u32>().is_ok() => {
             nightly::run(&workspace, seconds.parse().unwrap_or(nightly::SECONDS))
@@ -178,6 +189,7 @@ fn check(workspace: &Workspace) -> ExitCode {
         let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);
         command::outcome(doc.env("RUSTDOCFLAGS", "-Dwarnings"))
     });
+    report.step("public items", || release::api::check(workspace));
     report.step("licences", || licences::check(workspace));
     report.step("advisories", || advisories::check(workspace));
     report.step("house rules", || house_rules::check(workspace));

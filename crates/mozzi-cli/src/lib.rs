@@ -35,10 +35,11 @@ mod task;
 mod terminal;
 #[doc(hidden)]
 pub mod untrusted;
+mod version;
 mod workload;
 mod xacro_arguments;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use commands::{assemble, check, compute, convert, explain, info, screws, simulate, terms, tour};
 use failure::{Failure, Result};
 use mozzi_text as text;
@@ -50,7 +51,7 @@ use std::process::ExitCode;
 /// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, xacro, MuJoCo's MJCF, or JSON
 /// of `mozzi convert`), - for standard input, or the name of an embedded robot.
 #[derive(Parser, Debug)]
-#[command(version, after_help = help(), after_long_help = help(), max_term_width = 104)]
+#[command(name = "mozzi", version, long_version = version::long(), after_help = help(), after_long_help = help(), max_term_width = 104)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
@@ -108,6 +109,10 @@ enum Command {
     Compare(commands::compare::CompareArguments),
     /// Explain a diagnostic's code, such as mozzi::urdf::zero_axis
     Explain(explain::ExplainArguments),
+    /// Print the script that lets a shell complete this command line
+    Completions(commands::completions::CompletionsArguments),
+    /// Print the manual's page, or write all of them to a folder
+    Man(commands::man::ManArguments),
 }
 
 const EXAMPLES: &str = "\
@@ -287,6 +292,8 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),
         Some(Command::Explain(arguments)) => explain::run(arguments),
+        Some(Command::Completions(arguments)) => commands::completions::run(arguments, Arguments::command()),
+        Some(Command::Man(arguments)) => commands::man::run(arguments, Arguments::command()),
         Some(Command::Xacro(arguments)) => commands::xacro::run(arguments),
         Some(Command::Plot(arguments)) => commands::plot::run(arguments),
         Some(Command::View(arguments)) => commands::view::run(arguments),
