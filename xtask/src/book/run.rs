@@ -11,6 +11,7 @@ use super::mozzi;
 use crate::command;
 use crate::package;
 use crate::report::Outcome;
+use crate::venv;
 use crate::workspace::Workspace;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,7 @@ const COMPILERS: [&str; 2] = ["g++", "clang++"];
 
 /// What the blocks need.
 struct Tools {
-    /// PATH with the folder of `mozzi` in front.
+    /// PATH with the folders of `mozzi` and of the tests' Python in front.
     path: OsString,
     compiler: Option<&'static str>,
     /// The static library of C that the tests were built with.
@@ -49,7 +50,8 @@ pub fn code(workspace: &Workspace) -> Outcome {
 fn try_code(workspace: &Workspace) -> Result<Outcome, String> {
     let mozzi = mozzi(workspace)?;
     let paths = std::env::var_os("PATH").unwrap_or_default();
-    let before = mozzi.parent().map(Path::to_path_buf).into_iter();
+    let python = venv::python(workspace); // with Pinocchio and MuJoCo
+    let before = [&mozzi, &python].into_iter().filter_map(|program| program.parent().map(Path::to_path_buf));
     let tools = Tools {
         path: std::env::join_paths(before.chain(std::env::split_paths(&paths))).map_err(|error| error.to_string())?,
         compiler: COMPILERS.into_iter().find(|name| command::exists(&mut Command::new(name))),
@@ -125,7 +127,7 @@ impl Page<'_> {
                 }
             }
             "python" if self.blocks[..at].iter().any(|block| block.language == "python") => {}
-            "python" => self.python(workspace)?,
+            "python" => self.python(workspace, tools)?,
             "cpp" => match tools.compiler {
                 None => return Ok(Some(format!("cpp, because there is no {}", COMPILERS.join(" or ")))),
                 Some(_) if !tools.library.is_file() => return Ok(Some("cpp, because mozzi-c is not built".into())),
@@ -154,7 +156,7 @@ impl Page<'_> {
         Ok(out)
     }
 
-    fn python(&self, workspace: &Workspace) -> Result<(), String> {
+    fn python(&self, workspace: &Workspace, tools: &Tools) -> Result<(), String> {
         let blocks: Vec<&Block> = self.blocks.iter().filter(|block| block.language == "python").collect();
         let mut program = String::new();
         for block in &blocks {
@@ -162,7 +164,7 @@ impl Page<'_> {
         }
         std::fs::write(self.folder.join("page.py"), program).map_err(|error| error.to_string())?;
         let mut python = package::python(workspace);
-        python.env("PYTHONIOENCODING", "utf-8").env("MPLBACKEND", "agg").arg("page.py");
+        python.env("PATH", &tools.path).env("PYTHONIOENCODING", "utf-8").env("MPLBACKEND", "agg").arg("page.py");
         let (succeeded, out, error) = self.output(&mut python)?;
         if !succeeded {
             return Err(format!("Python failed:\n{out}{error}"));
