@@ -8,6 +8,7 @@ macro_rules! pages {
 }
 
 pages! {
+    Homework "../../book/src/learn/homework.md"
     Legged "../../book/src/use/legged.md"
     Million "../../book/src/use/million.md"
 }

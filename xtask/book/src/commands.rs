@@ -5,9 +5,9 @@ use crate::text;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The standard output of a run of `mozzi`.
+/// The standard output of a run of `mozzi` in the repository's root.
 pub fn output(place: &Place, arguments: &[&str]) -> Result<String, String> {
-    let found = Command::new(&place.mozzi).args(arguments).stdin(Stdio::null()).output();
+    let found = Command::new(&place.mozzi).args(arguments).current_dir(&place.root).stdin(Stdio::null()).output();
     let found = found.map_err(|error| format!("{}: {error}", place.mozzi.display()))?;
     if !found.status.success() {
         let errors = String::from_utf8_lossy(&found.stderr);

@@ -59,7 +59,8 @@ fn one(root: &Path, directive: &str, up: &str, asked: &mut Asked) -> Result<Stri
 
 /// Source lines under their file's name. A path from the repository's root begins with `/` in links.
 fn listing(file: &str, code: &str) -> String {
-    format!("From [{file}](/{file}):\n\n```rust,ignore\n{code}\n```")
+    let language = if file.ends_with(".json") { "json" } else { "rust,ignore" };
+    format!("From [{file}](/{file}):\n\n```{language}\n{code}\n```")
 }
 
 fn live(up: &str, page: &str, model: &str, options: &[&str], asked: &mut Asked) -> Result<String, String> {

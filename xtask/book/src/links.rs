@@ -47,8 +47,8 @@ impl Page<'_> {
         // generated chapters and pictures are in the book's folder alone
         let page_folder = self.page.rsplit_once('/').map_or("", |(folder, _)| folder);
         if self.file.starts_with("book/src/") && !path.starts_with('/') {
-            let in_book = joined(page_folder, path)?;
-            if self.src.join(&in_book).is_file() || in_book.starts_with("rustdoc/") {
+            let in_book = joined(page_folder, path).ok();
+            if in_book.is_some_and(|page| self.src.join(page).is_file()) {
                 return Ok(link.to_owned());
             }
         }

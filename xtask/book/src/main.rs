@@ -19,6 +19,7 @@ mod robots;
 mod text;
 
 use mdbook_driver::MDBook;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -35,7 +36,8 @@ pub struct Place {
 }
 
 fn main() -> ExitCode {
-    let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let absolute = |path: OsString| std::path::absolute(&path).unwrap_or_else(|_| PathBuf::from(path));
+    let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(absolute).collect();
     let place = match &arguments[..] {
         [root, out, mozzi] => Place { root: root.clone(), out: out.clone(), mozzi: mozzi.clone(), rustdoc: None },
         [root, out, mozzi, rustdoc] => {
