@@ -14,6 +14,7 @@ mod links;
 mod map;
 mod math;
 mod python;
+mod python_docs;
 mod reference;
 mod robots;
 mod text;

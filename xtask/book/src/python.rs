@@ -2,6 +2,7 @@
 //! stubs and modules of `crates/mozzi-py/python/mozzi`; formulas from the list of quantities, sentences from the
 //! sources of the compiled methods.
 
+use crate::python_docs::sentences;
 use crate::text;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -51,16 +52,23 @@ pub fn page(root: &Path) -> Result<String, String> {
             section = module;
         }
         for entry in entries(&text::read(&root.join(PACKAGE).join(file))?) {
-            let short = entry.name.rsplit('.').next().unwrap_or(&entry.name);
-            let known = formulas.get(short).or_else(|| sentences.get(short).and_then(Option::as_ref));
+            let quantity = entry.name.strip_prefix("Model.").and_then(|name| formulas.get(name));
+            let known = sentences.get(&entry.name).or(quantity);
             let doc = if entry.doc.is_empty() { known.cloned().unwrap_or_default() } else { entry.doc.clone() };
+            let doc = text::escaped(&doc).replace("&quot;", "\"");
+            if !entry.signature.is_empty() && !entry.signature.contains('(') {
+                // a property or a field
+                let doc = if doc.is_empty() { doc } else { format!(": {doc}") };
+                page += &format!("\n- `{}`{doc}\n", entry.signature.replacen(": : ", ": ", 1));
+                continue;
+            }
             let level = if entry.name.contains('.') { "####" } else { "###" };
             page += &format!("\n{level} `{}`\n", entry.name);
             if !entry.signature.is_empty() {
                 page += &format!("\n```python\n{}\n```\n", wrapped(&entry.signature));
             }
             if !doc.is_empty() {
-                page += &format!("\n{}\n", text::escaped(&doc).replace("&quot;", "\""));
+                page += &format!("\n{doc}\n");
             }
         }
     }
@@ -96,10 +104,10 @@ fn entries(source: &str) -> Vec<Entry> {
                 class = None;
             }
             if is_public {
-                let full = owner.map_or_else(|| name.clone(), |owner| format!("{owner}.{name}"));
+                let full = owner.as_ref().map_or_else(|| name.clone(), |owner| format!("{owner}.{name}"));
                 let signature = match is_property {
                     true => signature.replacen("(self) -> ", ": ", 1),
-                    false => signature,
+                    false => as_call(&signature, owner.as_ref()),
                 };
                 found.retain(|entry| entry.name != full);
                 found.push(Entry { name: full, signature, doc: docstring(&lines, end + 1) });
@@ -127,7 +135,9 @@ fn signature(lines: &[&str], start: usize) -> (String, usize) {
     for (at, line) in lines.iter().enumerate().skip(start) {
         let bare = line.trim();
         depth += bare.chars().map(|c| i32::from("([{".contains(c)) - i32::from(")]}".contains(c))).sum::<i32>();
-        if !joined.is_empty() && !joined.ends_with('(') {
+        if bare.starts_with(')') {
+            joined.truncate(joined.trim_end_matches(',').len());
+        } else if !joined.is_empty() && !joined.ends_with('(') {
             joined.push(' ');
         }
         joined += bare;
@@ -137,6 +147,15 @@ fn signature(lines: &[&str], start: usize) -> (String, usize) {
         }
     }
     (joined, start)
+}
+
+/// A signature as a call: without `self`, and under the class's name if it is the constructor.
+fn as_call(signature: &str, owner: Option<&String>) -> String {
+    let bare = signature.replacen("(self, ", "(", 1).replacen("(self)", "()", 1);
+    match (bare.strip_prefix("__init__"), owner) {
+        (Some(rest), Some(owner)) => format!("{owner}{}", rest.trim_end_matches(" -> None")),
+        _ => bare,
+    }
 }
 
 /// The first paragraph of the docstring that begins on this line, if one does.
@@ -191,37 +210,6 @@ fn formulas(page: &str) -> BTreeMap<String, String> {
     rows.filter_map(row).collect()
 }
 
-/// The first paragraph of the documentation of each function of the compiled package; none if two have the same name.
-fn sentences(folder: &Path) -> Result<BTreeMap<String, Option<String>>, String> {
-    let mut found: BTreeMap<String, Option<String>> = BTreeMap::new();
-    for file in text::files(folder)? {
-        let (mut doc, mut ended): (Vec<String>, bool) = (Vec::new(), false);
-        for line in text::read(&file)?.lines().map(str::trim) {
-            if let Some(part) = line.strip_prefix("///") {
-                ended |= part.trim().is_empty();
-                if !ended {
-                    doc.push(part.trim().to_owned());
-                }
-                continue;
-            }
-            if line.starts_with("#[") || line.is_empty() && !doc.is_empty() {
-                continue;
-            }
-            let name = line.trim_start_matches("pub ").strip_prefix("fn ").filter(|_| !doc.is_empty());
-            if let Some(name) = name {
-                let name: String = name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-                let text = doc.join(" ");
-                let other = found.insert(name.clone(), Some(text.clone()));
-                if other.is_some_and(|other| other.as_ref() != Some(&text)) {
-                    found.insert(name, None);
-                }
-            }
-            (doc, ended) = (Vec::new(), false);
-        }
-    }
-    Ok(found)
-}
-
 #[cfg(test)]
 mod tests {
     use super::{entries, wrapped};
@@ -237,7 +225,7 @@ mod tests {
                 ("A", "class A(B)", "A thing."),
                 ("A.x", "x: int", ""),
                 ("A.y", "y: float", "In m."),
-                ("f", "f(a: int, b: str = \"c\",) -> None", "Does."),
+                ("f", "f(a: int, b: str = \"c\") -> None", "Does."),
             ]
         );
     }
