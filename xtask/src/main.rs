@@ -82,7 +82,7 @@ fn main() -> ExitCode {
         }
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
-        ["book"] => one("book", || book::build(&workspace, true)),
+        ["book"] => book(&workspace),
         ["book", "--code"] => one("code of the book", || book::code(&workspace)),
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
@@ -137,6 +137,7 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     report.step("main job", || main_job::run(workspace, release));
     report.step("book's builder", || book::test_builder(workspace));
     report.step("book", || book::build(workspace, false));
+    report.step("search of the book", || book::search(workspace));
     report.step("code of the book", || book::code(workspace));
     report.step("inlining", || inlining::check(workspace));
     let exit = report.finish();
@@ -170,6 +171,13 @@ fn docs(workspace: &Workspace) -> ExitCode {
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
     report.step("pages", || docs::write(workspace));
+    report.finish()
+}
+
+fn book(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("book", || book::build(workspace, true));
+    report.step("search of the book", || book::search(workspace));
     report.finish()
 }
 

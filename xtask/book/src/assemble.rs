@@ -5,7 +5,7 @@ use crate::links::{Page, Sources};
 use crate::map::Map;
 use crate::robots::Robots;
 use crate::text::{self, Part};
-use crate::{Place, commands, math, reference};
+use crate::{Place, commands, math, quantities, reference};
 use std::path::Path;
 
 /// What was put together.
@@ -52,7 +52,10 @@ pub fn assemble(place: &Place) -> Result<Assembled, Vec<String>> {
     let names: Vec<String> = chapters.iter().map(|chapter| chapter.page.clone()).collect();
     let map = Map::new(&names);
     for (file, page) in Map::imported() {
-        let text = text::read(&place.root.join(file)).map_err(one)?;
+        let mut text = text::read(&place.root.join(file)).map_err(one)?;
+        if page == "reference/quantities.md" {
+            text = quantities::with_each(&place.root, &text).map_err(one)?;
+        }
         chapters.push(Chapter { file: file.into(), page: page.into(), text });
     }
     for (page, text) in reference::pages(place, &mut made.sources)? {

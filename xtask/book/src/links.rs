@@ -38,19 +38,24 @@ impl Page<'_> {
         Ok(out)
     }
 
+    /// Whether a relative path leads to a file of the repository.
+    fn is_in_repository(&self, path: &str) -> bool {
+        let folder = self.file.rsplit_once('/').map_or("", |(folder, _)| folder);
+        joined(folder, path).is_ok_and(|file| self.root.join(file).exists())
+    }
+
     fn target(&self, link: &str, sources: &mut Sources) -> Result<String, String> {
         if link.starts_with('#') || link.contains("://") || link.starts_with("mailto:") {
             return Ok(link.to_owned());
         }
         let (path, fragment) =
             link.split_once('#').map_or((link, String::new()), |(path, id)| (path, format!("#{id}")));
-        // generated chapters and pictures are in the book's folder alone
+        // generated chapters, pictures and rustdoc are in the book's folder alone
         let page_folder = self.page.rsplit_once('/').map_or("", |(folder, _)| folder);
-        if self.file.starts_with("book/src/") && !path.starts_with('/') {
-            let in_book = joined(page_folder, path).ok();
-            if in_book.is_some_and(|page| self.src.join(page).is_file()) {
-                return Ok(link.to_owned());
-            }
+        let in_book = joined(page_folder, path).ok().filter(|_| !path.starts_with('/'));
+        let is_generated = |page: String| page.starts_with("rustdoc/") || self.src.join(page).is_file();
+        if !self.is_in_repository(path) && in_book.is_some_and(is_generated) {
+            return Ok(link.to_owned());
         }
         let folder = self.file.rsplit_once('/').map_or("", |(folder, _)| folder);
         let file = match path.strip_prefix('/') {

@@ -15,6 +15,7 @@ mod map;
 mod math;
 mod python;
 mod python_docs;
+mod quantities;
 mod reference;
 mod robots;
 mod text;

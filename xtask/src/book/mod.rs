@@ -3,8 +3,10 @@
 mod blocks;
 mod expected;
 mod run;
+mod search;
 
 pub use run::code;
+pub use search::check as search;
 
 use crate::command;
 use crate::report::Outcome;
