@@ -184,6 +184,9 @@ fn book(workspace: &Workspace) -> ExitCode {
 fn check(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
+    report.step("formatting of the book's builder", || {
+        command::outcome(workspace.cargo(&["fmt", "--check", "--manifest-path", "xtask/book/Cargo.toml"]))
+    });
     report.step("clippy", || {
         let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
         command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
