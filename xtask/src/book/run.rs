@@ -2,8 +2,8 @@
 //! `examples/src/book.rs`.
 //!
 //! The blocks of a page run in their order, in one empty folder. All Python of a page is one program, which runs at its
-//! first block. A block `xml,file=NAME` (or another data format) becomes a file. The block `text` after a program is its
-//! output, and `console` shows commands with theirs: both are compared.
+//! first block. A block `xml,file=NAME` (or another data format) becomes a file. The block `text` after a program is
+//! its output, and `console` shows commands with theirs: both are compared.
 
 use super::blocks::{Block, blocks};
 use super::expected::{agrees, sessions};
