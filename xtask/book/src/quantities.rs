@@ -6,13 +6,20 @@ use std::path::Path;
 /// Where the quantities are listed in Rust.
 const LIST: &str = "crates/mozzi/src/quantities/mod.rs";
 
-/// The page, with the paragraphs added.
+/// The page with a paragraph for each quantity, to which the names in the list lead; the list keeps its formulas.
 pub fn with_each(root: &Path, page: &str) -> Result<String, String> {
     let list = text::read(&root.join(LIST))?;
-    let rows: Vec<Vec<&str>> = page.lines().filter(|line| line.starts_with("| `")).map(cells).collect();
-    let mut out = format!("{page}\n## One by one\n");
+    let (head, table) = page.split_once("| name | formula |").ok_or("docs/quantities.md has no list of formulas")?;
+    let rows: Vec<Vec<&str>> = table.lines().filter(|line| line.starts_with("| `")).map(cells).collect();
+    let mut out = format!("{head}| name | formula |\n|---|---|\n");
+    for [name, formula] in rows.iter().filter_map(|row| row.first_chunk::<2>()) {
+        out += &format!("| [{name}](#{}) | {formula} |\n", name.trim_matches('`'));
+    }
+    out += "\n## One by one\n";
     for row in &rows {
-        let [name, formula, inputs, of, environment, outputs, arrays] = row[..] else { continue };
+        let [name, formula, inputs, of, environment, outputs, arrays] = row[..] else {
+            return Err(format!("docs/quantities.md: {} columns, expected 7", row.len()));
+        };
         let name = name.trim_matches('`');
         let rust = camel_case(name);
         if !list.split_whitespace().any(|word| word == rust) {
