@@ -1,5 +1,5 @@
-//! Executes every code block of `book/src`, each in its language; those of Rust are documentation tests of
-//! `examples/src/book.rs`.
+//! Executes every code block of `book/src`, and some of other pages, each in its language; those of Rust are
+//! documentation tests of `examples/src/book.rs`.
 //!
 //! The blocks of a page run in their order, in one empty folder. All Python of a page is one program, which runs at its
 //! first block. A block `xml,file=NAME` (or another data format) becomes a file. The block `text` after a program is
@@ -19,6 +19,8 @@ use std::process::{Command, Stdio};
 
 /// The documentation tests of the pages with Rust.
 const RUST: &str = "examples/src/book.rs";
+/// Pages elsewhere, with the language of which the blocks run; other tests run their other blocks, or none.
+const GUIDES: [(&str, &str); 3] = [("README.md", "python"), ("docs/jax.md", "python"), ("docs/cpp.md", "cpp")];
 /// Printed between the outputs of two blocks of Python.
 const MARK: &str = "\u{1}";
 const COMPILERS: [&str; 2] = ["g++", "clang++"];
@@ -62,10 +64,12 @@ fn try_code(workspace: &Workspace) -> Result<Outcome, String> {
     let mut files = Vec::new();
     markdown(&workspace.path("book/src"), &mut files)?;
     files.sort();
-    for file in files {
-        let name = file.strip_prefix(workspace.path("book/src")).unwrap_or(&file).to_string_lossy().replace('\\', "/");
+    let own = files.into_iter().map(|file| (file, None));
+    for (file, only) in own.chain(GUIDES.map(|(file, language)| (workspace.path(file), Some(language)))) {
+        let name = file.strip_prefix(&workspace.root).unwrap_or(&file).to_string_lossy().replace('\\', "/");
         let text = std::fs::read_to_string(&file).map_err(|error| format!("{name}: {error}"))?;
-        let blocks = blocks(&text).map_err(|why| format!("{name}: {why}"))?;
+        let mut blocks = blocks(&text).map_err(|why| format!("{name}: {why}"))?;
+        blocks.retain(|block| only.is_none_or(|language| block.language == language));
         let folder = workspace.scratch(&format!("book-{}", name.replace('/', "-").trim_end_matches(".md")))?;
         let page = Page { name, folder, blocks: &blocks };
         for at in 0..blocks.len() {
@@ -74,7 +78,7 @@ fn try_code(workspace: &Workspace) -> Result<Outcome, String> {
                 Ok(Some(why)) if skipped.contains(&why) => {}
                 Ok(Some(why)) => skipped.push(why),
                 Err(why) => {
-                    let place = format!("book/src/{}:{}", page.name, blocks[at].line);
+                    let place = format!("{}:{}", page.name, blocks[at].line);
                     println!("{place}: {why}");
                     failed.push(place);
                 }
@@ -111,7 +115,7 @@ impl Page<'_> {
         match block.language.as_str() {
             "rust" => {
                 no_output()?;
-                match tools.rust.contains(&format!("book/src/{}\"", self.name)) {
+                match tools.rust.contains(&format!("/{}\"", self.name)) {
                     true => {}
                     false => return Err(format!("is not among the documentation tests of {RUST}")),
                 }
