@@ -1,5 +1,7 @@
 //! Helpers shared by the examples: agreement within a tolerance, printed numbers, and plots.
 
+#[cfg(doctest)]
+mod book;
 pub mod chart;
 pub mod plot;
 pub mod tracking;

@@ -29,6 +29,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     let mut files = Vec::new();
     rust_files(&workspace.path("crates"), &mut files);
     rust_files(&workspace.path("xtask/src"), &mut files);
+    rust_files(&workspace.path("xtask/book/src"), &mut files);
     files.sort();
     let (mut broken, mut long) = (0, 0);
     for file in &files {

@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | page | bench | accuracy | nightly | wheel | api | release | dist`: the same commands
-//! as in CI.
+//! `cargo xtask test | check | docs | book | page | bench | accuracy | nightly | wheel | api | release | dist`: the same
+//! commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -7,6 +7,7 @@
 mod accuracy;
 mod advisories;
 mod bench;
+mod book;
 mod command;
 mod dist;
 mod docs;
@@ -47,6 +48,8 @@ usage: cargo xtask COMMAND
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
   docs    rewrite the generated pages of docs/; `test` checks that they are current
+  book    build the documentation book from book/, docs/ and the sources, with rustdoc, into target/book/html
+          --code                                      run its code blocks instead; `test` does that and builds the book
   page    bundle page/ by npm, and mozzi-web if there is a compiler for WebAssembly, into crates/mozzi-report/bundle/;
           `test` checks that both are current
           --check                                     build it elsewhere and compare
@@ -84,6 +87,8 @@ fn main() -> ExitCode {
         }
         ["check"] => check(&workspace),
         ["docs"] => docs(&workspace),
+        ["book"] => book(&workspace),
+        ["book", "--code"] => one("code of the book", || book::code(&workspace)),
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
         ["wheel"] => wheel(&workspace),
@@ -141,6 +146,10 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
         report.step(&format!("example {}", example.name()), || example.run(workspace, &programs));
     }
     report.step("main job", || main_job::run(workspace, release));
+    report.step("book's builder", || book::test_builder(workspace));
+    report.step("book", || book::build(workspace, false));
+    report.step("search of the book", || book::search(workspace));
+    report.step("code of the book", || book::code(workspace));
     report.step("inlining", || inlining::check(workspace));
     let exit = report.finish();
     println!("{count}"); // CI reads this line
@@ -176,9 +185,19 @@ fn docs(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
+fn book(workspace: &Workspace) -> ExitCode {
+    let mut report = Report::default();
+    report.step("book", || book::build(workspace, true));
+    report.step("search of the book", || book::search(workspace));
+    report.finish()
+}
+
 fn check(workspace: &Workspace) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
+    report.step("formatting of the book's builder", || {
+        command::outcome(workspace.cargo(&["fmt", "--check", "--manifest-path", "xtask/book/Cargo.toml"]))
+    });
     report.step("clippy", || {
         let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
         command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))

@@ -12,10 +12,10 @@ pub struct Dependency {
     pub licence: Option<String>,
 }
 
-/// All packages in `Cargo.lock`, for any platform, except the workspace's own.
-pub fn dependencies(workspace: &Workspace) -> Result<Vec<Dependency>, String> {
-    let (true, text) = command::output(workspace.cargo(&["metadata", "--all-features", "--format-version", "1"]))?
-    else {
+/// All packages in the `Cargo.lock` next to this manifest, for any platform, except the workspace's own.
+pub fn dependencies(workspace: &Workspace, manifest: &str) -> Result<Vec<Dependency>, String> {
+    let mut cargo = workspace.cargo(&["metadata", "--all-features", "--format-version", "1", "--manifest-path"]);
+    let (true, text) = command::output(cargo.arg(workspace.path(manifest)))? else {
         return Err("`cargo metadata` failed".into());
     };
     let metadata: Value = serde_json::from_str(&text).map_err(|error| format!("`cargo metadata`: {error}"))?;

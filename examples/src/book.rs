@@ -1,0 +1,14 @@
+//! The pages of the documentation book (`book/src`) that contain Rust, run with the documentation's tests: here, where
+//! all of their crates are known. `cargo xtask book --code` runs the other languages and requires each page to be listed.
+
+macro_rules! pages {
+    ($($name:ident $file:literal)*) => {
+        $(#[doc = include_str!($file)] struct $name;)*
+    };
+}
+
+pages! {
+    Homework "../../book/src/learn/homework.md"
+    Legged "../../book/src/use/legged.md"
+    Million "../../book/src/use/million.md"
+}
