@@ -22,6 +22,7 @@ mod metadata;
 mod nightly;
 mod no_std;
 mod oracles;
+mod other_targets;
 mod package;
 mod page;
 mod release;
@@ -66,7 +67,7 @@ usage: cargo xtask COMMAND
           --robots ur5,anymal:floating,FILE.urdf      only these robots, to standard output
           --quantities mass-matrix,forward-dynamics   likewise
           --no-hard                                   without the cases that are hard by design
-  nightly long simulations, accuracy at 1000 states, fuzzing guided by coverage; hours, with a log in target/nightly
+  nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
           --of-tests                                  package the build of `test`, as `test` does it

@@ -1,10 +1,11 @@
-//! Checks that take hours: long simulations, fuzzing with and without coverage guidance, accuracy at many states. The
+//! Checks that take hours: long simulations, other processors, fuzzing with and without coverage guidance, accuracy at many states. The
 //! log of a night is `target/nightly/DATE.md`; each step is written when it ends.
 
 use crate::accuracy;
 use crate::command;
 use crate::fuzz;
 use crate::oracles;
+use crate::other_targets;
 use crate::report::{Outcome, Report};
 use crate::venv;
 use crate::workspace::Workspace;
@@ -16,7 +17,7 @@ pub const SECONDS: u32 = 3600;
 const FOLDER: &str = "target/nightly";
 /// Initial inputs of a target in addition to its corpus.
 const SEEDS: [(&str, &[&str]); 3] = [
-    ("urdf", &["models", "crates/mozzi-urdf/tests/broken"]),
+    ("urdf", &["crates/mozzi-urdf/models", "crates/mozzi-urdf/tests/broken"]),
     ("mjcf", &["oracles", "crates/mozzi-urdf/tests/broken/mjcf"]),
     ("xacro", &["examples/xacro", "crates/mozzi-urdf/tests/xacro"]),
 ];
@@ -38,6 +39,8 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
         let page = workspace.path(FOLDER).join("accuracy.md");
         accuracy::run(workspace, &["--states", "1000", "--page", &page.to_string_lossy()])
     });
+    report.step("AArch64", || other_targets::aarch64(workspace));
+    report.step("WebAssembly in node", || other_targets::node(workspace));
     report.step("xacro beside PyPI's", || xacro(workspace, seconds));
     report.step("fuzzing, plain", || fuzz::run(workspace, Some(seconds)));
     for target in targets(workspace) {

@@ -1,4 +1,4 @@
-//! The dynamics of many states at once: [`mozzi`]'s kernels, unchanged, on registers that hold one number of 4 to 16
+//! The dynamics of many states at once: [`mozzi`]'s kernels, unchanged, on registers that hold one number of 2 to 16
 //! states, and on all cores.
 //!
 //! ```

@@ -5,6 +5,8 @@
 
 use crate::InstructionSet;
 use crate::chunk::Chunk;
+#[cfg(target_arch = "aarch64")]
+use crate::lanes::{F32x4, F64x2};
 #[cfg(target_arch = "x86_64")]
 use crate::lanes::{F32x8, F32x16, F64x4, F64x8};
 use crate::lanes::{Lane, Portable};
@@ -27,6 +29,9 @@ pub trait Entries: Sized {
     /// One number on any processor: wider arrays are no faster, and take longer to compile in proportion to their
     /// width.
     type Portable: Lane<Number = Self>;
+    /// NEON.
+    #[cfg(target_arch = "aarch64")]
+    type Neon: Lane<Number = Self>;
     /// AVX2.
     #[cfg(target_arch = "x86_64")]
     type Avx2: Lane<Number = Self>;
@@ -84,6 +89,10 @@ macro_rules! all_entries {
     ($($Q:ident)*) => {
         entries!(portable_f64, f64, Portable<f64, 1>, []; $($Q)*);
         entries!(portable_f32, f32, Portable<f32, 1>, []; $($Q)*);
+        #[cfg(target_arch = "aarch64")]
+        entries!(neon_f64, f64, F64x2, ["neon"]; $($Q)*);
+        #[cfg(target_arch = "aarch64")]
+        entries!(neon_f32, f32, F32x4, ["neon"]; $($Q)*);
         #[cfg(target_arch = "x86_64")]
         entries!(avx2_f64, f64, F64x4, ["avx2,fma"]; $($Q)*);
         #[cfg(target_arch = "x86_64")]
@@ -97,9 +106,11 @@ macro_rules! all_entries {
 mozzi::quantities!(all_entries);
 
 macro_rules! number {
-    ($T:ty, $portable:ident, $avx2:ident: $Avx2:ty, $avx512:ident: $Avx512:ty) => {
+    ($T:ty, $portable:ident, $neon:ident: $Neon:ty, $avx2:ident: $Avx2:ty, $avx512:ident: $Avx512:ty) => {
         impl Entries for $T {
             type Portable = Portable<$T, 1>;
+            #[cfg(target_arch = "aarch64")]
+            type Neon = $Neon;
             #[cfg(target_arch = "x86_64")]
             type Avx2 = $Avx2;
             #[cfg(target_arch = "x86_64")]
@@ -112,6 +123,8 @@ macro_rules! number {
                     InstructionSet::Avx512 => run.map($avx512::KERNELS[index]),
                     #[cfg(target_arch = "x86_64")]
                     InstructionSet::Avx2 => run.map($avx2::KERNELS[index]),
+                    #[cfg(target_arch = "aarch64")]
+                    InstructionSet::Neon => run.map($neon::KERNELS[index]),
                     _ => run.map($portable::KERNELS[index]),
                 }
             }
@@ -127,11 +140,15 @@ macro_rules! number {
                     InstructionSet::Avx2 => {
                         run.map(|request, _, worker, chunk| $avx2::program(program, request, worker, chunk))
                     }
+                    #[cfg(target_arch = "aarch64")]
+                    InstructionSet::Neon => {
+                        run.map(|request, _, worker, chunk| $neon::program(program, request, worker, chunk))
+                    }
                     _ => run.map(|request, _, worker, chunk| $portable::program(program, request, worker, chunk)),
                 }
             }
         }
     };
 }
-number!(f64, portable_f64, avx2_f64: F64x4, avx512_f64: F64x8);
-number!(f32, portable_f32, avx2_f32: F32x8, avx512_f32: F32x16);
+number!(f64, portable_f64, neon_f64: F64x2, avx2_f64: F64x4, avx512_f64: F64x8);
+number!(f32, portable_f32, neon_f32: F32x4, avx2_f32: F32x8, avx512_f32: F32x16);

@@ -90,7 +90,7 @@ fn shape<T: Number>(set: InstructionSet) -> Option<Shape> {
         (InstructionSet::Avx512, _) => Some(Shape::SixteenF32),
         (InstructionSet::Avx2, 8) => Some(Shape::FourF64),
         (InstructionSet::Avx2, _) => Some(Shape::EightF32),
-        (InstructionSet::Portable, _) => None,
+        (InstructionSet::Portable | InstructionSet::Neon, _) => None,
     }
 }
 

@@ -1,9 +1,15 @@
 //! Registers of numbers, one number of each state: scalars that mozzi's kernels run on unchanged.
 
+#[cfg(target_arch = "aarch64")]
+mod neon;
 mod portable;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod register;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+#[cfg(target_arch = "aarch64")]
+pub use neon::{F32x4, F64x2};
 pub use portable::Portable;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{F32x8, F32x16, F64x4, F64x8};
@@ -120,3 +126,5 @@ macro_rules! lane {
     };
 }
 pub(crate) use lane;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+pub(crate) use register::register;

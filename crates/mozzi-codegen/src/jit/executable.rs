@@ -170,6 +170,7 @@ impl Executable {
 
 /// Pages of code, and pages of constants after them.
 #[derive(Debug)]
+#[cfg_attr(not(all(unix, target_arch = "x86_64")), allow(dead_code))] // never made there
 struct Pages {
     start: *mut u8,
     length: usize,

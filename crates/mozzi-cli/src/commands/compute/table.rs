@@ -37,16 +37,14 @@ pub struct TableArguments {
     /// Largest number of threads [default: one per core]
     #[arg(long, value_name = "K", requires = "input")]
     threads: Option<usize>,
-    /// Instruction set: portable, avx2 or avx512 [default: the widest that the machine has]
+    /// Instruction set: portable, neon, avx2 or avx512 [default: the widest that the machine has]
     #[arg(long, value_name = "NAME", value_parser = instruction_set, requires = "input")]
     instruction_set: Option<InstructionSet>,
 }
 
 fn instruction_set(name: &str) -> Result<InstructionSet, String> {
-    use InstructionSet::*;
-    let all = [Portable, Avx2, Avx512];
-    let names = all.map(InstructionSet::name).join(", ");
-    all.into_iter().find(|set| set.name() == name).ok_or(format!("expected one of {names}"))
+    let names = InstructionSet::ALL.map(InstructionSet::name).join(", ");
+    InstructionSet::ALL.into_iter().find(|set| set.name() == name).ok_or(format!("expected one of {names}"))
 }
 
 /// A computation at all states of a file.
