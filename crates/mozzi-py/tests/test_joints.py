@@ -189,3 +189,19 @@ def test_inverse_kinematics_within_a_cone(tmp_path, random):
     beyond = robot.forward_kinematics([np.cos(0.5), np.sin(0.5), 0, 0, 0], frame="tip")
     with pytest.raises(mozzi.MotionError, match="`pivot`"):
         mozzi.InverseKinematics(robot, "tip", starts=3).solve(guess, pose=beyond, must_reach=True)
+
+
+def test_positions_after_velocities_and_back(robot, random):
+    thetas, dthetas, _ = states(random, 5)
+    for theta, dtheta in zip(thetas, dthetas):
+        later = robot.integrate(theta, dtheta, 0.5)
+        assert_close(robot.difference(theta, later), 0.5 * dtheta, 5.0)
+        assert_close(robot.integrate(theta, robot.difference(theta, later)), later, 5.0)
+        for quaternion in later[:4], later[7:11]:
+            assert abs(np.linalg.norm(quaternion) - 1) < 1e-15
+    with pytest.raises(ValueError, match="dtheta has shape"):
+        robot.integrate(thetas[0], [0, 1])
+    with pytest.raises(ValueError, match="theta1 has shape"):
+        robot.difference(thetas[0], [0])
+    with pytest.raises(ValueError, match="a unit quaternion"):
+        robot.integrate(2 * thetas[0], dthetas[0])
