@@ -4,6 +4,7 @@ import importlib
 import os
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+from ._notebook import Page, of_motion
 from ._quantities import Array
 
 if TYPE_CHECKING:
@@ -345,6 +346,13 @@ class Trajectory(NamedTuple):
         """A pandas.DataFrame over t, with the columns theta.<joint>, dtheta.<joint>, ddtheta.<joint>, tau.<joint>."""
         pandas: Any = importlib.import_module("pandas")
         return pandas.DataFrame(_columns(self), index=pandas.Index(self.t, name="t"))
+
+    def page(self) -> Page:
+        """The motion as a page with the robot and plots, which a notebook shows; ``Model.report`` has meshes, too."""
+        return of_motion(self.model, self)
+
+    def _repr_html_(self) -> str:
+        return self.page()._repr_html_()
 
     def report(
         self,
