@@ -13,6 +13,7 @@ pub mod identify;
 pub mod ik;
 pub mod info;
 pub mod outcome;
+pub mod play;
 pub mod plot;
 pub mod python;
 pub mod screws;
