@@ -36,6 +36,11 @@ export class App {
     return this.description !== null && JSON.stringify(this.description) !== this.original;
   }
 
+  // Is the only edit that the base was freed?
+  get isJustFreed() {
+    return this.description !== null && JSON.stringify(this.description) === this.freed;
+  }
+
   // What went wrong, in the place of diagnostics; the last robot stays.
   trouble(title, text) {
     const box = this.find("trouble");
@@ -105,12 +110,8 @@ export class App {
     this.showControls();
     this.apply({ reset: true });
     this.panels.forEach((panel) => panel.take(robot));
-    this.begin.look = !isAlike;
     this.refresh();
-    if (!isAlike) {
-      this.stage.overlays.measure([this.state]);
-      this.stage.look();
-    }
+    if (!isAlike) this.stage.look();
     this.stage.ground(this.settings.ground !== null);
     this.say(`${robot.n} velocities, ${robot.bodies.length - 1} moving links${robot.warnings.length > 0 ? `, ${robot.warnings.length} warnings: see ?` : ""}`);
     addShapesNote(this.find("hint"), this.omitted);
@@ -152,6 +153,7 @@ export class App {
   take(answer) {
     for (const name of STATE) this.state[name] = read(this.robot, name);
     Object.assign(this.state, { touches: [], push: null }, answer);
+    if (this.state.push) this.state.push.frame = this.push?.frame ?? this.frameName;
     if (answer.time !== undefined) this.record.add(structuredClone(this.state));
     this.draw();
   }
@@ -262,6 +264,7 @@ export class App {
     for (const change of changes) {
       const description = this.attempt(() => command(this.robot, { do: "edit", ...change }));
       if (!description) return;
+      if (change.what === "floating" && !this.isEdited) this.freed = JSON.stringify(description);
       await this.open(this.entry, { description, ...this.converted(change, theta, dtheta) });
     }
   }
@@ -298,6 +301,8 @@ export class App {
     this.robot.set("theta", row.theta);
     this.robot.set("dtheta", row.dtheta);
     this.state = structuredClone(row);
+    this.settings.target = [...row.theta];
+    this.apply({ account: row });
     this.draw();
   }
 

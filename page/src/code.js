@@ -55,7 +55,8 @@ const EMBEDDED = ["anymal", "double_pendulum", "furuta_pendulum", "panda", "two_
 function pythonOf(robot, isFloating) {
   const floating = isFloating ? "floating=True" : "";
   if (EMBEDDED.includes(robot)) return `mozzi.models.${robot}(${robot === "anymal" && !isFloating ? "floating=False" : floating})`;
-  if (/\.json$/i.test(robot)) return `mozzi.Model.from_json("${robot}")`;
+  // Python reads no JSON
+  if (/\.json$/i.test(robot)) return `mozzi.Model.from_urdf("robot.urdf")  # mozzi convert ${robot} robot.urdf`;
   const reader = /\.(xml|mjcf)$/i.test(robot) ? "from_mjcf" : "from_urdf";
   return `mozzi.Model.${reader}("${robot}"${floating && `, ${floating}`})`;
 }

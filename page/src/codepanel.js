@@ -70,13 +70,13 @@ export class CodePanel {
     } catch {
       outputs = quantity.outputs.map((name) => ({ name, shape: [] }));
     }
+    const isOther = app.isEdited && !app.isJustFreed;
     this.code.textContent = codeOf(this.language.value, {
-      robot: app.entry.isEmbedded ? app.entry.name : app.description ? `${robot.name}.json` : app.entry.name,
-      isFloating: robot.isFloating && (app.entry.isEmbedded || !app.description),
+      robot: isOther ? `${robot.name}.json` : app.entry.isEmbedded ? app.entry.name : app.entry.file.split("/").pop(),
+      isFloating: robot.isFloating && app.isJustFreed,
       quantity, outputs, frame: app.frameName,
       inputs: quantity.inputs.map((name) => [name, read(robot, name)]),
     });
-    const isOther = app.description && app.isEdited;
     this.note.textContent = isOther ? "The robot was edited: save it as JSON and open that file in these lines." : "";
   }
 }

@@ -29,7 +29,7 @@ export class Stage {
     else this.scene = new Scene(this.host, robot);
     this.layers = { visual: [], collision: [] };
     this.reach = this.reachOf(theta);
-    this.overlays = new Overlays(robot, this.scene, this.reach, this.jointColour, null);
+    this.addOverlays();
     this.skeleton = addSkeleton(robot, this.scene, this.reach, this.jointColour);
     this.marks?.forEach((mark) => mark.removeFromParent());
     this.push = new Arrow(PUSH, 0.009 * this.reach);
@@ -50,7 +50,7 @@ export class Stage {
   replace(robot) {
     this.overlays.remove();
     this.robot = robot;
-    this.overlays = new Overlays(robot, this.scene, this.reach, this.jointColour, null);
+    this.addOverlays();
     this.setFrame(this.frame);
     this.addToggles();
   }
@@ -68,7 +68,8 @@ export class Stage {
 
   addToggles() {
     const { robot, toggles } = this;
-    const possible = { shapes: this.shapes.length > 0, glass: this.shapes.length > 0, constraints: robot.constraints.length > 0, path: false, mass: false };
+    // with loops also what they carry would have to be known
+    const possible = { wrenches: robot.constraints.length === 0, shapes: this.shapes.length > 0, glass: this.shapes.length > 0, constraints: robot.constraints.length > 0, path: false, mass: false };
     const usual = possible.shapes ? ["shapes", "contacts"] : ["skeleton", "axes", "masses", "contacts"];
     toggles.replaceChildren();
     for (const [kind, { name, key, colour, about }] of Object.entries(KINDS)) {
@@ -109,10 +110,38 @@ export class Stage {
     this.last = state;
     const T = this.robot.poses(state.theta);
     this.scene.place(T, this.robot.bodyPoses(T));
-    this.overlays.update({ ...state, tip: null, loops: null, touch: null });
+    this.applied(state);
+    this.measure({ ...state, tip: null, loops: null, touch: null });
     this.push.visible = false;
     if (state.push) this.push.set(add(state.push.p, scaled(state.push.f, -this.lengthOf(state.push.f))), scaled(state.push.f, this.lengthOf(state.push.f)));
     this.placeTouches(this.shown.contacts ? state.touches ?? [] : []);
+  }
+
+  // The wrenches that the robot applies: to the ground, and to the mouse.
+  applied({ touches = [], push = null }) {
+    const list = touches.map(({ frame }) => ({ frame, as: "point" }));
+    if (push) list.push({ frame: push.frame, as: "point" });
+    const key = JSON.stringify(list);
+    if (this.appliedBy !== key) [this.appliedBy, this.apply] = [key, this.robot.applying(list)];
+    this.apply([...touches.flatMap(({ p, f }) => [...p, ...f]), ...(push ? [...push.p, ...scaled(push.f, -1)] : [])]);
+  }
+
+  // Arrows by the longest so far.
+  measure(state) {
+    if (this.shown.twists || this.shown.wrenches) {
+      const before = { ...this.overlays.longest };
+      this.overlays.measure([state]);
+      for (const [kind, size] of Object.entries(before)) this.overlays.longest[kind] = Math.max(0.98 * size, this.overlays.longest[kind]);
+    }
+    this.overlays.update(state);
+  }
+
+  // The overlays of a robot; what it applies is set here.
+  addOverlays() {
+    this.overlays = new Overlays(this.robot, this.scene, this.reach, this.jointColour, null);
+    this.overlays.apply = () => {};
+    this.overlays.longest = { carried: 0, spin: 0, speed: 0, moment: 0, force: 0 };
+    this.appliedBy = null;
   }
 
   // Metres for a newton: the robot's weight is drawn half as long as the robot.

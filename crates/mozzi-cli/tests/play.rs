@@ -55,7 +55,12 @@ fn assert_quiet(found: &[Value], jobs: &[Value]) {
     for (found, job) in found.iter().zip(jobs) {
         assert_eq!(found["errors"], json!([]), "{}: no error on the console", job["do"]);
         assert_eq!(found["requests"].as_array().map(Vec::len), Some(1), "{}: {}", job["do"], found["requests"]);
-        assert!(found["wide"].as_f64() <= job["width"].as_f64(), "{}: wider than the screen: {}", job["do"], found["wide"]);
+        assert!(
+            found["wide"].as_f64() <= job["width"].as_f64(),
+            "{}: wider than the screen: {}",
+            job["do"],
+            found["wide"]
+        );
     }
 }
 
@@ -82,7 +87,8 @@ fn every_number_of_the_playground_is_the_librarys() {
     let load = |name: &str| mozzi_urdf::open(name).expect("a robot").description;
     let built = |description: Description| description.build().expect("sound");
     let delta = common::file(&folder, "delta.json", include_str!("../../mozzi-report/robots/delta.json"));
-    let closed = mozzi_urdf::json::File::parse(&delta, include_str!("../../mozzi-report/robots/delta.json")).expect("JSON");
+    let closed =
+        mozzi_urdf::json::File::parse(&delta, include_str!("../../mozzi-report/robots/delta.json")).expect("JSON");
     let closed = mozzi_urdf::json::read(&closed).expect("sound");
     let mut cases = vec![
         case(&page(&folder, "panda", &[]), built(load("panda"))),
@@ -137,7 +143,11 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
     let mass = json!({ "what": "link", "name": "forearm_link", "entry": "mass", "value": 5.5, "scale": true });
     let jobs = vec![
         job("drop_and_play", &panda, json!({ "texts": parts, "name": "snake" })),
-        job("drop_and_play", &panda, json!({ "texts": { "spherical_pendulum.xml": CART }, "name": "spherical_pendulum" })),
+        job(
+            "drop_and_play",
+            &panda,
+            json!({ "texts": { "spherical_pendulum.xml": CART }, "name": "spherical_pendulum" }),
+        ),
         job("wrong_file", &panda, json!({ "texts": { "ur5.urdf": wrong } })),
         job("drag", &ur5, json!({ "body": 2 })),
         job("share", &ur5, json!({ "theta": posed, "edit": mass })),
@@ -186,9 +196,18 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
     let entry = panels["entry"].as_str().expect("text");
     assert!(entry.starts_with("M (shoulder_pan_joint, shoulder_lift_joint) = "), "{entry}");
     assert_eq!(panels["axes"], 2, "both joints are shown in the scene");
-    let shown: f64 = entry.split(" = ").nth(1).and_then(|rest| rest.split(',').next()).and_then(|x| x.parse().ok()).expect("a number");
+    let shown: f64 = entry
+        .split(" = ")
+        .nth(1)
+        .and_then(|rest| rest.split(',').next())
+        .and_then(|x| x.parse().ok())
+        .expect("a number");
     assert_eq!(shown, panels["value"].as_f64().expect("a number"));
-    for (language, needed) in [("python", "mozzi.models.ur5()"), ("rust", "mozzi_urdf::open(\"ur5\")"), ("cpp", "workspace.body_jacobian(theta, frame, J)")] {
+    for (language, needed) in [
+        ("python", "mozzi.models.ur5()"),
+        ("rust", "mozzi_urdf::open(\"ur5\")"),
+        ("cpp", "workspace.body_jacobian(theta, frame, J)"),
+    ] {
         let lines = panels["code"][language].as_str().expect("text");
         assert!(lines.contains(needed), "{lines}");
     }
@@ -229,8 +248,20 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
 fn legs() -> Vec<f64> {
     let model = mozzi_urdf::open("anymal").expect("embedded").build().expect("sound");
     let bend = |name: &str| match (&name[..2], &name[3..]) {
-        (leg, "HFE") => if leg.ends_with('F') { 0.4 } else { -0.4 },
-        (leg, "KFE") => if leg.ends_with('F') { -0.8 } else { 0.8 },
+        (leg, "HFE") => {
+            if leg.ends_with('F') {
+                0.4
+            } else {
+                -0.4
+            }
+        }
+        (leg, "KFE") => {
+            if leg.ends_with('F') {
+                -0.8
+            } else {
+                0.8
+            }
+        }
         _ => 0.0,
     };
     model.joint_names().map(bend).collect()
@@ -243,7 +274,9 @@ fn a_playground_is_a_file_or_served() {
     std::fs::write(&own, UR5).expect("written");
     let own = own.to_str().expect("text").to_string();
     let page = std::fs::read_to_string(page(&folder, "own", &[&own])).expect("a page");
-    assert!(page.starts_with("<!doctype html>") && page.contains("\"name\":\"own.urdf\"") && page.contains("\"first\":0"));
+    assert!(
+        page.starts_with("<!doctype html>") && page.contains("\"name\":\"own.urdf\"") && page.contains("\"first\":0")
+    );
     let said = json(&["play", "ur5", "--json", "--out", folder.join("ur5.html").to_str().expect("text")]);
     assert_eq!(said["robot"], "ur5");
     let (code, said) = common::complaint(&["play", "nowhere.urdf", "--out", "never.html"]);

@@ -182,8 +182,20 @@ fn a_quadruped_stands_on_the_ground_and_on_pinned_feet() {
 /// Knees bent.
 fn bend(name: &str) -> f64 {
     match (name.contains("HFE"), name.contains("KFE"), name.contains("F_")) {
-        (true, _, front) => if front || name.starts_with("LF") || name.starts_with("RF") { 0.4 } else { -0.4 },
-        (_, true, _) => if name.starts_with("LF") || name.starts_with("RF") { -0.8 } else { 0.8 },
+        (true, _, front) => {
+            if front || name.starts_with("LF") || name.starts_with("RF") {
+                0.4
+            } else {
+                -0.4
+            }
+        }
+        (_, true, _) => {
+            if name.starts_with("LF") || name.starts_with("RF") {
+                -0.8
+            } else {
+                0.8
+            }
+        }
         _ => 0.0,
     }
 }
@@ -226,7 +238,10 @@ fn the_mouse_moves_joints_and_the_end_effector() {
     let answer = play(robot, json!({ "do": "reach", "frame": tool, "goal": goal, "keep": true }));
     let reached = pose(input(robot, "theta"));
     assert_eq!(answer["reached"], true);
-    assert!((reached.p - mozzi::Vec3(goal)).norm() < 1e-5 && (reached.R.matrix() - pose(&start).R.matrix()).rows().concat().iter().all(|x| x.abs() < 1e-5));
+    assert!(
+        (reached.p - mozzi::Vec3(goal)).norm() < 1e-5
+            && (reached.R.matrix() - pose(&start).R.matrix()).rows().concat().iter().all(|x| x.abs() < 1e-5)
+    );
 
     // a joint alone: the goal is where the point would be with another angle of it
     input(robot, "theta").copy_from_slice(&start);
@@ -253,7 +268,16 @@ fn loops_stay_closed() {
         assert_eq!(input(robot, "theta")[place], angle);
         let open = |robot: &mut Robot| {
             let theta = input(robot, "theta").to_vec();
-            robot.model().compute(Query::named("constraint_residual").expect("a quantity"), &[&theta], &robot.model().environment()).expect("φ")[0].iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+            robot
+                .model()
+                .compute(
+                    Query::named("constraint_residual").expect("a quantity"),
+                    &[&theta],
+                    &robot.model().environment(),
+                )
+                .expect("φ")[0]
+                .iter()
+                .fold(0.0, |most: f64, x| most.max(x.abs()))
         };
         assert!(open(robot) < 1e-9);
         play(robot, json!({ "do": "step", "step": 0.001, "steps": 200 }));
@@ -300,9 +324,11 @@ fn edits_change_the_description() {
     let inertia = |link: &Value| numbers(&link["inertia"])[0];
     assert!((inertia(same.expect("there")) - 2.0 * inertia(link)).abs() < 1e-12);
     let urdf = play(robot, json!({ "do": "urdf" }));
-    let read = mozzi_urdf::parse("ur5.urdf", urdf["text"].as_str().expect("text")).expect("URDF").build().expect("sound");
+    let read =
+        mozzi_urdf::parse("ur5.urdf", urdf["text"].as_str().expect("text")).expect("URDF").build().expect("sound");
     assert!((read.mass() - robot.model().mass()).abs() < 1e-9);
-    for command in [json!({ "do": "edit", "what": "joint", "entry": "friction", "value": -1 }), json!({ "do": "fly" })] {
+    for command in [json!({ "do": "edit", "what": "joint", "entry": "friction", "value": -1 }), json!({ "do": "fly" })]
+    {
         assert!(robot.play(&command.to_string()).is_err());
     }
 }

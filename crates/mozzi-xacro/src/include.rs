@@ -125,8 +125,13 @@ impl Expander<'_> {
 fn without_parents(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
-        let is_up = part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
-        if is_up { drop(plain.pop()) } else { plain.push(part) }
+        let is_up =
+            part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
+        if is_up {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
     }
     plain
 }

@@ -69,7 +69,9 @@ fn text(robot: &RobotArguments) -> Result<(String, String)> {
         path => std::fs::read(path).map_err(cannot)?,
     };
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    let file = Path::new(input::name(name_or_path)).file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let file = Path::new(input::name(name_or_path))
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Ok(match expanded(input::name(name_or_path), &text, robot.settings())? {
         Some(expansion) => (file.trim_end_matches(".xacro").trim_end_matches(".urdf").to_string() + ".urdf", expansion),
         None => (file, text),

@@ -35,7 +35,8 @@ pub fn drag(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         if !nearer(model, place, (frame, point, goal), &mut theta).map_err(said)? {
             break;
         }
-        let limits = index.checked_sub(base).and_then(|k| model.joints().nth(k)).and_then(|joint| joint.limits.position);
+        let limits =
+            index.checked_sub(base).and_then(|k| model.joints().nth(k)).and_then(|joint| joint.limits.position);
         if let (Freedom::One, Some([low, high])) = (place.freedom, limits) {
             theta[place.q] = theta[place.q].max(low).min(high);
         }
@@ -58,9 +59,8 @@ fn nearer(
     let J = model.body_jacobian(theta, frame)?;
     let velocities = place.velocities().skip(if place.freedom == Freedom::Free { 3 } else { 0 });
     let velocities: Vec<usize> = velocities.collect();
-    let columns: Vec<_> = (velocities.iter())
-        .map(|&j| Vector3::from((T.R * (J.0[j].v + J.0[j].w.cross(point))).0))
-        .collect();
+    let columns: Vec<_> =
+        (velocities.iter()).map(|&j| Vector3::from((T.R * (J.0[j].v + J.0[j].w.cross(point))).0)).collect();
     let J = DMatrix::from_fn(3, columns.len(), |row, column| columns[column][row]);
     let mut square = J.transpose() * &J;
     let most = square.amax();

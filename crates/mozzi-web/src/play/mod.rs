@@ -28,7 +28,7 @@ impl Robot {
     ///
     /// | `do` | |
     /// |---|---|
-    /// | `set` | `motors`, `omega`, `zeta`, `target`, `ground`, `limits`: how to simulate |
+    /// | `set` | `motors`, `omega`, `zeta`, `target`, `ground`, `limits`: how to simulate; `reset`, or `account`, from an answer of `step` |
     /// | `step` | `step` (s), `steps`, and a push: simulates; the state goes to the inputs |
     /// | `reach` | `frame`, `goal` (m, in {s}), `keep` (the orientation): θ by inverse kinematics |
     /// | `drag` | `joint`, `frame`, `point` (in the frame), `goal` (in {s}): θ of that joint alone |
@@ -40,7 +40,8 @@ impl Robot {
     /// # Errors
     /// Text that is no command; the library's errors.
     pub fn play(&mut self, command: &str) -> Result<Value, String> {
-        let command: Value = serde_json::from_str(command).map_err(|error| format!("the command is not JSON: {error}"))?;
+        let command: Value =
+            serde_json::from_str(command).map_err(|error| format!("the command is not JSON: {error}"))?;
         match text(&command, "do")? {
             "set" => settings::set(self, &command),
             "step" => simulate::step(self, &command),

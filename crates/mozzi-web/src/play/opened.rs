@@ -3,8 +3,8 @@
 use super::files::settings;
 use super::shapes::drawn;
 use crate::robot::Robot;
-use mozzi::{Description, Model, Vec3};
 use mozzi::simulation::ContactPoint;
+use mozzi::{Description, Model, Vec3};
 use mozzi_urdf::geometry::{Geometry, contact_points, parse_with as geometry};
 use mozzi_urdf::{Diagnostic, Style, json};
 use serde_json::{Map, Value, json};
@@ -34,9 +34,10 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
     if is_json {
         description = Some(from_json(name, source)?);
     } else if asked["description"].is_null() {
-        let loaded = mozzi_urdf::parse_with(name, source, settings.clone())
-            .map_err(|error| error.pretty(Style::Unicode))?;
-        warnings = loaded.warnings.iter().take(WARNINGS).map(|warning: &Diagnostic| warning.pretty(Style::Unicode)).collect();
+        let loaded =
+            mozzi_urdf::parse_with(name, source, settings.clone()).map_err(|error| error.pretty(Style::Unicode))?;
+        warnings =
+            loaded.warnings.iter().take(WARNINGS).map(|warning: &Diagnostic| warning.pretty(Style::Unicode)).collect();
         description = Some(loaded.description);
     }
     if !asked["description"].is_null() {

@@ -9,7 +9,8 @@ use mozzi_motion::{Goal, InverseKinematics};
 use serde_json::{Value, json};
 
 /// One start: the nearest solution, or the nearest position to the goal.
-const OPTIONS: fn() -> Options = || Options { starts: 1, iterations: 40, angle: 1e-6, distance: 1e-6, ..Options::default() };
+const OPTIONS: fn() -> Options =
+    || Options { starts: 1, iterations: 40, angle: 1e-6, distance: 1e-6, ..Options::default() };
 
 /// Moves a frame's origin to a point of {s}, with its orientation if `keep` is true. A floating base stays, and so do
 /// constraints.

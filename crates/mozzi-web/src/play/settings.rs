@@ -72,6 +72,14 @@ pub fn set(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         let settings = &mut robot.settings;
         (settings.time, settings.works, settings.drift) = (0.0, Energy::default(), 0.0);
     }
+    if has("account") {
+        let of = |key: &str| number(&command["account"], key);
+        let settings = &mut robot.settings;
+        (settings.time, settings.drift) = (of("time")?, of("drift")?);
+        settings.works.motor_work = of("motorWork")?;
+        settings.works.friction_loss = of("frictionLoss")?;
+        settings.works.applied_work = of("appliedWork")?;
+    }
     let Gains { p, d } = &robot.settings.gains;
     Ok(json!({ "p": p, "d": d, "points": robot.settings.points.len() }))
 }

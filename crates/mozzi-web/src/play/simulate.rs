@@ -54,10 +54,13 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     }
     let run = simulation.run(model, &theta, &dtheta, input).map_err(said)?;
     let (first, last) = (run.motion.sample(0), run.motion.last());
+    // each point and the only plane
     let touched = simulation.contacts.frames(model, 0.0, last.theta);
-    let touches = touched.iter().zip(last.contact_forces.as_chunks::<3>().0);
-    let touches: Value =
-        touches.filter(|(_, f)| **f != [0.0; 3]).map(|(T, f)| json!({ "p": T.p.0, "f": f })).collect();
+    let touches = simulation.contacts.points.iter().zip(&touched).zip(last.contact_forces.as_chunks::<3>().0);
+    let touches: Value = touches
+        .filter(|(_, f)| **f != [0.0; 3])
+        .map(|((point, T), f)| json!({ "frame": model.frame_name(point.frame), "p": T.p.0, "f": f }))
+        .collect();
     let pushed = match &push {
         Some(push) => Some(push.force(last.theta, last.dtheta).map_err(said)?),
         None => None,
