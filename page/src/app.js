@@ -87,11 +87,13 @@ export class App {
     const isAlike = last && this.entry === entry && alike(last, robot);
     Object.assign(this, { robot, entry, description: description ?? null });
     const fits = theta?.length === robot.nq && dtheta?.length === robot.n;
-    this.state = { time: 0, theta: fits ? theta : [...robot.start], dtheta: fits ? dtheta : new Array(robot.n).fill(0) };
+    const start = entry.theta?.length === robot.nq ? entry.theta : robot.start;
+    this.state = { time: 0, theta: fits ? theta : [...start], dtheta: fits ? dtheta : new Array(robot.n).fill(0) };
     robot.set("theta", this.state.theta);
     robot.set("dtheta", this.state.dtheta);
     for (const name of ["x", "w"]) if (robot.inputs.some((input) => input.name === name)) robot.set(name, new Array(robot.inputs.find((input) => input.name === name).length).fill(1));
-    // a start that breaks the constraints is put right
+    // a start beyond limits, or that breaks the constraints, is put right
+    if (!fits) command(robot, { do: "within" });
     if (robot.constraints.length > 0 && !fits) this.quietly(() => command(robot, { do: "close" }));
     this.state.theta = read(robot, "theta");
     this.begin = { theta: [...this.state.theta], dtheta: [...this.state.dtheta] };

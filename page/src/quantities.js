@@ -136,7 +136,7 @@ export class Quantities {
     return (numbers) => numbers.forEach((x, k) => {
       if (!cells[k]) return;
       cells[k].dataset.value = x;
-      cells[k].textContent = written(x);
+      cells[k].textContent = written(x, across.length > 5 ? 3 : 5);
     });
   }
 
@@ -196,9 +196,9 @@ export class Quantities {
   }
 }
 
-export function written(x) {
+export function written(x, digits = 5) {
   if (x === 0) return "0";
   const size = Math.abs(x);
   if (!Number.isFinite(x)) return String(x);
-  return (size >= 1e5 || size < 1e-4 ? x.toExponential(3) : x.toPrecision(5)).replace("-", "−");
+  return (size >= 1e5 || size < 1e-4 ? x.toExponential(digits - 2) : x.toPrecision(digits)).replace("-", "−");
 }

@@ -19,6 +19,17 @@ const MORE: [(&str, &str, &str); 4] = [
     ("Delta robot", "delta.json", include_str!("../robots/delta.json")),
 ];
 
+/// Where robots start: poses from which they fall, swing or stand, of our own choice.
+const STARTS: [(&str, &[f64]); 7] = [
+    ("anymal", &[0.0, 0.4, -0.8, 0.0, 0.4, -0.8, 0.0, -0.4, 0.8, 0.0, -0.4, 0.8]),
+    ("double_pendulum", &[1.6, 0.3]),
+    ("furuta_pendulum", &[0.0, 0.4]),
+    ("panda", &[0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8, 0.02]),
+    ("two_link_planar", &[0.3, 0.8]),
+    ("ur5", &[0.0, -1.2, 1.5, -0.3, -1.57, 0.0]),
+    ("snake, a xacro", &[0.3, -0.5, 0.2, 0.6, -0.3, 0.4]),
+];
+
 /// The robot that the playground shows at first.
 #[derive(Clone, Copy, Debug)]
 pub struct Played<'a> {
@@ -57,7 +68,8 @@ pub fn play_html(first: &Played) -> String {
 }
 
 fn entry(name: &str, file: &str, text: &str, is_embedded: bool) -> Value {
-    json!({ "name": name, "file": file, "files": { file: text }, "isEmbedded": is_embedded })
+    let start = STARTS.iter().find(|(known, _)| *known == name).map(|(_, theta)| theta);
+    json!({ "name": name, "file": file, "files": { file: text }, "isEmbedded": is_embedded, "theta": start })
 }
 
 /// Does no option change the embedded robot?

@@ -3,6 +3,7 @@
 use super::entry::text;
 use crate::robot::Robot;
 use mozzi::simulation::{Contacts, Plane};
+use mozzi::{Freedom, Model};
 use serde_json::{Value, json};
 
 /// Closes loops: the joint of `hold` stays if that is possible.
@@ -20,6 +21,23 @@ pub fn closed(robot: &mut Robot, guess: &[f64], hold: &[&str]) -> Result<Value, 
     }
     robot.put("theta", &theta);
     Ok(Value::Null)
+}
+
+/// Puts each joint of one axis that is beyond a limit onto it.
+pub fn within(model: &Model, theta: &mut [f64]) {
+    for (joint, place) in model.joints().zip(model.places()) {
+        if let (Freedom::One, Some([low, high])) = (place.freedom, joint.limits.position) {
+            theta[place.q] = theta[place.q].max(low).min(high);
+        }
+    }
+}
+
+/// The same for the inputs, before a simulation that respects limits.
+pub fn put_within(robot: &mut Robot) -> Value {
+    let mut theta = robot.theta().to_vec();
+    within(robot.model(), &mut theta);
+    robot.put("theta", &theta);
+    Value::Null
 }
 
 /// A floating base moves up or down until its lowest contact point is at z = 0. Answers with that height before.

@@ -33,6 +33,7 @@ impl Robot {
     /// | `reach` | `frame`, `goal` (m, in {s}), `keep` (the orientation): θ by inverse kinematics |
     /// | `drag` | `joint`, `frame`, `point` (in the frame), `goal` (in {s}): θ of that joint alone |
     /// | `close` | `hold`: θ that satisfies the constraints |
+    /// | `within` | θ within the joints' limits |
     /// | `settle` | puts a floating base on the ground |
     /// | `inertias`, `edit` | the numbers of links and joints, and the description with others |
     /// | `urdf`, `json` | the robot's text |
@@ -48,6 +49,7 @@ impl Robot {
             "reach" => reach::reach(self, &command),
             "drag" => drag::drag(self, &command),
             "close" => close::close(self, &command),
+            "within" => Ok(close::put_within(self)),
             "settle" => close::settle(self),
             "inertias" => Ok(edit::numbers(self.model())),
             "edit" => edit::edit(self, &command),

@@ -1,10 +1,11 @@
 //! A few steps of a simulation, between two pictures.
 
+use super::close::within;
 use super::entry::number;
 use super::motors::motors;
 use super::push::Push;
 use crate::robot::Robot;
-use mozzi::simulation::{ContactPoint, Contacts, Input, Options, Plane, Simulation};
+use mozzi::simulation::{ContactPoint, Contacts, Input, Options, Plane, Policy, Simulation};
 use mozzi::{Error, FrameId, Wrench};
 use serde_json::{Value, json};
 
@@ -36,13 +37,16 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     let said = |error: Error| error.to_string();
     let (length, steps) = (number(command, "step")?, number(command, "steps")?);
     let steps = steps as usize;
-    let [theta, dtheta] = [robot.theta().to_vec(), robot.dtheta().to_vec()];
+    let [mut theta, dtheta] = [robot.theta().to_vec(), robot.dtheta().to_vec()];
+    if steps > 0 && robot.settings.limits == Policy::Respect {
+        within(robot.model(), &mut theta);
+    }
     let (model, settings) = (robot.model(), &robot.settings);
     let target = if settings.target.is_empty() { &theta } else { &settings.target };
     let push = Push::parse(model, command)?;
     let input = Both(motors(model, settings.kind, &settings.gains, target)?, push.clone());
     let options = Options {
-        joint_limits: settings.limits,
+        joint_limits: if steps > 0 { settings.limits } else { Policy::Ignore },
         record_every: steps.max(1),
         ..Options::new(length * steps as f64, steps.max(1))
     };
