@@ -3,6 +3,7 @@
 import { addShapesNote } from "./notes.js";
 import { History } from "./history.js";
 import { linkOf } from "./share.js";
+import { alike, farthest } from "./robot.js";
 import { closeRobot, command, openRobot, read } from "./session.js";
 
 // Seconds of a step.
@@ -34,6 +35,12 @@ export class App {
 
   get isEdited() {
     return this.description !== null && JSON.stringify(this.description) !== this.original;
+  }
+
+  // Does it neither move nor begin to?
+  get isResting() {
+    const { dtheta, ddtheta } = this.state;
+    return this.settings.motors === "off" && [...dtheta, ...(ddtheta ?? [])].every((x) => Math.abs(x) < 1e-6);
   }
 
   // Is the only edit that the base was freed?
@@ -209,6 +216,7 @@ export class App {
   setRates(dtheta) {
     this.remember();
     this.robot.set("dtheta", dtheta);
+    if (this.robot.constraints.length > 0) this.attempt(() => command(this.robot, { do: "close" }));
     this.changed();
   }
 
@@ -339,6 +347,7 @@ export class App {
     if (this.state.time === 0) this.begin = { theta: [...this.state.theta], dtheta: [...this.state.dtheta] };
     this.remember();
     this.isPlaying = true;
+    if (this.isResting) this.say("The robot is at rest and stays so: drag it, or move a joint.");
     this.loop.start();
     this.showPlaying();
   }
@@ -386,14 +395,4 @@ export class App {
   savePicture() {
     this.save(`${this.robot.name}.png`, this.stage.scene.picture());
   }
-}
-
-const alike = (a, b) =>
-  String(a.frames.map(({ name }) => name)) === String(b.frames.map(({ name }) => name)) && a.isFloating === b.isFloating && String(a.positions) === String(b.positions);
-
-// The frame with the most joints before it, where no end effector is named.
-function farthest(robot) {
-  const depth = [];
-  robot.bodies.forEach(({ parent }) => depth.push(parent === null ? 0 : depth[parent] + 1));
-  return robot.frames.reduce((best, { body }, k) => (depth[body] >= depth[robot.frames[best].body] ? k : best), 0);
 }

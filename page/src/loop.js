@@ -21,7 +21,8 @@ export class Loop {
 
   frame(now) {
     const { app } = this;
-    if (!app.isPlaying) return;
+    if (!app.isPlaying) return app.stage.quality.rest();
+    app.stage.quality.frame(now - this.before);
     const past = Math.min(Math.max((now - this.before) / 1000, 0), MOST) * app.speed + this.rest;
     this.before = now;
     const wanted = Math.floor(past / STEP);
@@ -29,7 +30,7 @@ export class Loop {
     this.rest = steps < wanted ? 0 : past - steps * STEP;
     if (steps > 0) this.advance(steps);
     this.isSlow = steps < wanted;
-    requestAnimationFrame((next) => this.frame(next));
+    return requestAnimationFrame((next) => this.frame(next));
   }
 
   // Some steps, and what they lead to.

@@ -6,6 +6,7 @@ import { meshesOf } from "./files.js";
 import { KINDS } from "./kinds.js";
 import { Arrow } from "./marks.js";
 import { Overlays } from "./overlays.js";
+import { Quality } from "./quality.js";
 import { Scene } from "./scene.js";
 import { addShapes, seeThrough } from "./shapes.js";
 import { addSkeleton } from "./skeleton.js";
@@ -17,6 +18,7 @@ const TOUCH = "#4f46e5";
 export class Stage {
   constructor(host, toggles) {
     Object.assign(this, { host, toggles, shown: {}, buttons: {}, layers: { visual: [], collision: [] } });
+    this.quality = new Quality(this);
   }
 
   jointColour = (j) => seriesColour(j, this.robot.n);

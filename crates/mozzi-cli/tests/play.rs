@@ -166,6 +166,7 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
         assert!(found["after"]["time"].as_f64() > Some(0.2), "{}", found["after"]);
     }
     assert_eq!(dropped["menu"][0], "snake.urdf.xacro");
+    assert_ne!(mjcf["before"]["theta"], mjcf["after"]["theta"], "two actions, and it moves");
 
     let said = wrong["said"].as_str().expect("text");
     assert!(said.contains("ur5.urdf:") && said.contains("8,393") && said.contains('─'), "{said}");

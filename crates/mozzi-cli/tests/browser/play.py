@@ -276,7 +276,7 @@ def robots(page, job):
 def frames(page, job):
     """Pictures a second, and milliseconds of dynamics for each, while it plays."""
     page.click("#play")
-    page.wait_for_timeout(1500)
+    page.wait_for_timeout(6000)
     page.evaluate("() => (mozzi.app.loop.times.length = 0)")
     found = page.evaluate("""() => new Promise((done) => {
       const times = [];

@@ -13,11 +13,13 @@ pub fn close(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     closed(robot, &theta, &hold)
 }
 
-/// Puts the nearest θ that satisfies the constraints into the inputs.
+/// Puts the nearest θ that satisfies the constraints into the inputs, and the nearest θ̇.
 pub fn closed(robot: &mut Robot, guess: &[f64], hold: &[&str]) -> Result<Value, String> {
     let mut theta = guess.to_vec();
     if robot.model().constraint_rows() > 0 {
         theta = robot.model().assemble(guess, hold).map_err(|error| error.to_string())?;
+        let dtheta = robot.model().assemble_velocities(&theta, robot.dtheta(), &[]);
+        robot.put("dtheta", &dtheta.map_err(|error| error.to_string())?);
     }
     robot.put("theta", &theta);
     Ok(Value::Null)
