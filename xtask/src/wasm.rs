@@ -15,7 +15,6 @@ use std::process::Command;
 pub struct Wasm {
     gzip: &'static str,
     note: &'static str,
-    profile: &'static str,
     features: &'static [&'static str],
 }
 
@@ -24,13 +23,11 @@ const ALL: [Wasm; 2] = [
     Wasm {
         gzip: "crates/mozzi-report/bundle/mozzi.wasm.gz",
         note: "crates/mozzi-report/bundle/mozzi.wasm.txt",
-        profile: "web",
         features: &["--no-default-features"],
     },
     Wasm {
         gzip: "crates/mozzi-report/bundle/play.wasm.gz",
         note: "crates/mozzi-report/bundle/play.wasm.txt",
-        profile: "play",
         features: &["--no-default-features", "--features", "play"],
     },
 ];
@@ -70,7 +67,7 @@ impl Compiler {
 
     /// `cargo build` with it; messages of panics name no folder of this machine.
     fn build(&self, workspace: &Workspace, folder: &Path, wasm: &Wasm) -> Result<(), String> {
-        let mut cargo = workspace.cargo(&["build", "--package", "mozzi-web", "--lib", "--profile", wasm.profile]);
+        let mut cargo = workspace.cargo(&["build", "--package", "mozzi-web", "--lib", "--profile", "web"]);
         cargo.args(wasm.features);
         cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
         if let Compiler::Folder(_) = self {
@@ -113,7 +110,7 @@ impl Wasm {
     fn write(&self, workspace: &Workspace, compiler: &Compiler) -> Result<(), String> {
         let folder = workspace.target().join("wasm");
         compiler.build(workspace, &folder, self)?;
-        let built = folder.join(TARGET).join(self.profile).join("mozzi_web.wasm");
+        let built = folder.join(TARGET).join("web/mozzi_web.wasm");
         let mut pack = Command::new("node");
         pack.current_dir(workspace.path("page")).arg("pack.mjs").arg(built).arg(workspace.path(self.gzip));
         command::run(pack)?;
