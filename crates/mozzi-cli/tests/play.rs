@@ -213,7 +213,7 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
         assert!(lines.contains(needed), "{lines}");
     }
     let line = panels["code"]["shell"].as_str().expect("text").replace("\\\n", " ");
-    let words: Vec<&str> = line.split_whitespace().skip(1).chain(["--json"]).collect();
+    let words: Vec<&str> = line.split_whitespace().skip(1).collect();
     let computed = json(&words);
     assert_same("the line of the command line", &numbers(&panels["expected"]["J"]), &rows(&computed["J"]).concat());
 
@@ -278,7 +278,7 @@ fn a_playground_is_a_file_or_served() {
     assert!(
         page.starts_with("<!doctype html>") && page.contains("\"name\":\"own.urdf\"") && page.contains("\"first\":0")
     );
-    let said = json(&["play", "ur5", "--json", "--out", folder.join("ur5.html").to_str().expect("text")]);
+    let said = json(&["play", "ur5", "--out", folder.join("ur5.html").to_str().expect("text")]);
     assert_eq!(said["robot"], "ur5");
     let (code, said) = common::complaint(&["play", "nowhere.urdf", "--out", "never.html"]);
     assert!(code == 1 && said.contains("neither a file nor one of the embedded robots"), "{said}");
