@@ -1,9 +1,7 @@
 //! The playground in a real browser: what a visitor does, and its numbers against the library's.
 
-#[path = "browser/mod.rs"]
-#[allow(dead_code)] // other tests look at pages
+#[allow(dead_code)] // other tests look at reports
 mod browser;
-#[allow(dead_code)]
 mod common;
 
 use browser::{browser, run, url};

@@ -144,7 +144,7 @@ fn a_quadruped_stands_on_the_ground_and_on_pinned_feet() {
     let (number, _) = session.open(&asked.to_string()).expect("sound");
     let robot = session.robot(number).expect("open");
     let mut stand = vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let legs: Vec<f64> = robot.model().joint_names().map(|name| bend(name)).collect();
+    let legs: Vec<f64> = robot.model().joint_names().map(bend).collect();
     stand.extend(&legs[legs.len() - 12..]);
     input(robot, "theta").copy_from_slice(&stand);
     play(robot, json!({ "do": "settle" }));
