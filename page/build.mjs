@@ -1,4 +1,4 @@
-// Bundles the page into one HTML file: `node build.mjs [FILE]`. The same sources give the same bytes.
+// Bundles a page into one HTML file: `node build.mjs report|play FILE`. The same sources give the same bytes.
 
 import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
@@ -9,13 +9,19 @@ import { build } from "esbuild";
 const here = dirname(fileURLToPath(import.meta.url));
 const text = (file) => readFileSync(join(here, file), "utf8").replaceAll("\r\n", "\n");
 
-// What the WebAssembly was made of, with its hash: see xtask/src/wasm.rs.
-const WASM = "../crates/mozzi-report/bundle/mozzi.wasm.txt";
+// Script, template, styles, and what the WebAssembly was made of, with its hash: see xtask/src/wasm.rs.
+const PAGES = {
+  report: { main: "src/main.js", html: "index.html", styles: ["style.css"], wasm: "../crates/mozzi-report/bundle/mozzi.wasm.txt" },
+  play: { main: "src/play.js", html: "play.html", styles: ["style.css", "play.css"], wasm: "../crates/mozzi-report/bundle/play.wasm.txt" },
+};
+const [name, file] = process.argv.slice(2);
+const page = PAGES[name];
 
 // 64-bit FNV-1a of all sources, which `cargo xtask test` computes again: was the bundle made from them?
 function stamp() {
   const scripts = readdirSync(join(here, "src")).filter((name) => name.endsWith(".js")).map((name) => `src/${name}`);
-  const files = [WASM, "build.mjs", "index.html", "pack.mjs", "package-lock.json", "package.json", "style.css", ...scripts].sort();
+  const notes = Object.values(PAGES).map(({ wasm }) => wasm);
+  const files = [...notes, "build.mjs", "index.html", "pack.mjs", "package-lock.json", "package.json", "play.css", "play.html", "style.css", ...scripts].sort();
   let hash = 0xcbf29ce484222325n;
   for (const byte of Buffer.from(files.map((file) => `${file}\n${text(file)}`).join(""))) {
     hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
@@ -24,11 +30,11 @@ function stamp() {
 }
 
 const bundled = await build({
-  entryPoints: [join(here, "src/main.js")],
+  entryPoints: [join(here, page.main)],
   bundle: true, minify: true, write: false, format: "esm", target: "es2022", legalComments: "none", charset: "ascii",
 });
 const script = bundled.outputFiles[0].text.trim().replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-const { code } = await (await import("esbuild")).transform(text("style.css"), { loader: "css", minify: true, charset: "ascii" });
+const { code } = await (await import("esbuild")).transform(page.styles.map(text).join("\n"), { loader: "css", minify: true, charset: "ascii" });
 const style = code.trim();
 
 const hashed = (part) => `'sha256-${createHash("sha256").update(part).digest("base64")}'`;
@@ -44,10 +50,9 @@ Made by \`cargo xtask page\` from the sources in page/, stamp ${stamp()}. It con
 
 ${text("node_modules/three/LICENSE").trim()}
 
-${text(WASM).trim()}
+${text(page.wasm).trim()}
 -->`;
 const parts = { policy, style, script };
-const page = text("index.html").replace(/\{\{(policy|style|script)\}\}/g, (_, name) => parts[name]);
-const file = process.argv[2] ?? join(here, "../crates/mozzi-report/bundle/page.html");
-writeFileSync(file, page.replace("<!doctype html>", () => `<!doctype html>\n${notice}`));
-console.log(`${file}: ${page.length} bytes, three.js ${version}`);
+const html = text(page.html).replace(/\{\{(policy|style|script)\}\}/g, (_, name) => parts[name]);
+writeFileSync(file, html.replace("<!doctype html>", () => `<!doctype html>\n${notice}`));
+console.log(`${file}: ${html.length} bytes, three.js ${version}`);

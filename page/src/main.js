@@ -14,6 +14,7 @@ import { MatrixPicture } from "./matrix.js";
 import { Overlays } from "./overlays.js";
 import { Player, SPEEDS } from "./player.js";
 import { Plot, short } from "./plots.js";
+import { farthest } from "./robot.js";
 import { Scene } from "./scene.js";
 import { addShapes, seeThrough } from "./shapes.js";
 import { addSkeleton } from "./skeleton.js";
@@ -130,13 +131,6 @@ function row() {
   return div;
 }
 
-// The frame with the most joints before it, where no end effector is named.
-function farthest() {
-  const depth = [];
-  robot.bodies.forEach(({ parent }) => depth.push(parent === null ? 0 : depth[parent] + 1));
-  return robot.frames.reduce((best, { body }, k) => (depth[body] >= depth[robot.frames[best].body] ? k : best), 0);
-}
-
 // The frame whose path and ellipsoids are meant.
 function addFrameChoice() {
   const div = row();
@@ -144,7 +138,7 @@ function addFrameChoice() {
   label.textContent = "End effector ";
   const select = label.appendChild(document.createElement("select"));
   robot.frames.forEach(({ name }, k) => select.append(new Option(name, k)));
-  select.value = robot.endEffector ?? farthest();
+  select.value = robot.endEffector ?? farthest(robot);
   const take = () => {
     overlays.setFrame(Number(select.value), motion);
     place();

@@ -38,6 +38,12 @@ export class Overlays {
     this.longest = { carried: 1, spin: 1, speed: 1, moment: 1, force: 1 };
   }
 
+  // Takes what is not in a body's or a frame's group out of the scene.
+  remove() {
+    for (const layer of Object.values(this.layers)) layer.removeFromParent();
+    for (const object of [...Object.values(this.attached).flat(), this.tipTriad]) object?.removeFromParent();
+  }
+
   put(kind, object) {
     this.layers[kind].add(object);
     return object;

@@ -102,3 +102,14 @@ export class Robot {
 
 // A list as rows of a width.
 export const rows = (list, width) => Array.from({ length: list.length / width }, (_, k) => list.slice(k * width, (k + 1) * width));
+
+// The frame with the most joints before it, where no end effector is named.
+export function farthest(robot) {
+  const depth = [];
+  robot.bodies.forEach(({ parent }) => depth.push(parent === null ? 0 : depth[parent] + 1));
+  return robot.frames.reduce((best, { body }, k) => (depth[body] >= depth[robot.frames[best].body] ? k : best), 0);
+}
+
+// Have two robots the same joints and frames?
+export const alike = (a, b) =>
+  String(a.frames.map(({ name }) => name)) === String(b.frames.map(({ name }) => name)) && a.isFloating === b.isFloating && String(a.positions) === String(b.positions);

@@ -13,30 +13,35 @@ export class Scene {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.shadowMap.enabled = true;
     host.append(this.renderer.domElement);
-    this.renderer.domElement.setAttribute("aria-label", `The robot ${robot.name} in three dimensions`);
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
-    this.bodies = robot.bodies.map(() => {
-      const group = new THREE.Group();
-      group.matrixAutoUpdate = false;
-      this.world.add(group);
-      return group;
-    });
-    this.frames = robot.frames.map((frame) => {
-      const group = new THREE.Group();
-      group.matrixAutoUpdate = false;
-      group.name = frame.name;
-      this.world.add(group);
-      return group;
-    });
     this.light();
-    this.isFollowing = robot.isFloating;
-    this.followed = new THREE.Vector3();
+    this.setRobot(robot);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
+  }
+
+  // Groups for the bodies and the frames of a robot; those of the last one go.
+  setRobot(robot) {
+    for (const group of [...(this.bodies ?? []), ...(this.frames ?? [])]) {
+      this.world.remove(group);
+      group.traverse((part) => part.geometry?.dispose());
+    }
+    const placed = (name) => {
+      const group = new THREE.Group();
+      group.matrixAutoUpdate = false;
+      group.name = name;
+      this.world.add(group);
+      return group;
+    };
+    this.bodies = robot.bodies.map(() => placed(""));
+    this.frames = robot.frames.map((frame) => placed(frame.name));
+    this.isFollowing = robot.isFloating;
+    this.followed = new THREE.Vector3();
+    this.renderer.domElement.setAttribute("aria-label", `The robot ${robot.name} in three dimensions`);
   }
 
   light() {
@@ -149,7 +154,7 @@ export class Scene {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * (this.scale ?? 1));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();

@@ -76,7 +76,7 @@ export async function addShapes(robot, meshes, scene) {
   const failures = [];
   const files = new Map();
   const file = (k) => {
-    if (!files.has(k)) files.set(k, unzipped(meshes[k].gzip));
+    if (!files.has(k)) files.set(k, meshes[k].bytes ? meshes[k].bytes() : unzipped(meshes[k].gzip));
     return files.get(k);
   };
   for (const shape of robot.shapes) {

@@ -42,7 +42,7 @@ function slidersOf(host, robot, joint, theta, jointColour, onChange) {
       values[k] = value;
       values.forEach((value, i) => (x[joint.j + i] = value));
       robot.configuration(x).slice(joint.q, joint.q + positionsOf(joint)).forEach((value, i) => (theta[joint.q + i] = value));
-      onChange();
+      onChange(joint);
     });
   });
   const show = () => own().forEach((value, k) => fields[k]((values[k] = value)));

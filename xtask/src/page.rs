@@ -1,5 +1,5 @@
-//! The bundle of `page/`, which is committed: npm builds it, and a stamp that needs no Node compares it with its
-//! sources. Next to it is the WebAssembly that the page contains: see [`wasm`].
+//! The bundles of `page/`, which are committed: npm builds them, and a stamp that needs no Node compares them with
+//! their sources. Next to each is the WebAssembly that the page contains: see [`wasm`].
 
 use crate::command;
 use crate::report::Outcome;
@@ -9,63 +9,92 @@ use crate::workspace::Workspace;
 use std::path::PathBuf;
 use std::process::Command;
 
-const BUNDLE: &str = "crates/mozzi-report/bundle/page.html";
-/// The note of the wasm, as seen from `page/`.
-const WASM: &str = "../crates/mozzi-report/bundle/mozzi.wasm.txt";
+/// The pages: the name of each, as `page/build.mjs` knows it, and its bundle.
+const PAGES: [(&str, &str); 2] =
+    [("report", "crates/mozzi-report/bundle/page.html"), ("play", "crates/mozzi-report/bundle/play.html")];
+/// Sources of the pages next to the scripts, as seen from `page/`; the notes are those of the wasm.
+const SOURCES: [&str; 10] = [
+    "../crates/mozzi-report/bundle/mozzi.wasm.txt",
+    "../crates/mozzi-report/bundle/play.wasm.txt",
+    "build.mjs",
+    "index.html",
+    "pack.mjs",
+    "package-lock.json",
+    "package.json",
+    "play.css",
+    "play.html",
+    "style.css",
+];
 const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
 
 /// Names of the browsers that can run the tests.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// Rebuilds the bundle, and before it the wasm if there is a compiler for it.
+/// Rebuilds the bundles, and before them the wasm if there is a compiler for it.
 pub fn write(workspace: &Workspace) -> Outcome {
-    let wasm = wasm::write(workspace).and_then(|made| wasm::is_current(workspace).map(|()| made));
-    match wasm.and_then(|made| build(workspace, &workspace.path(BUNDLE)).map(|()| made)) {
-        Ok(made) => Outcome::Passed(format!("{BUNDLE}, with {made}")),
+    let wasm = wasm::write(workspace).and_then(|made| wasm::are_current(workspace).map(|()| made));
+    let built = wasm.and_then(|made| {
+        install(workspace)?;
+        PAGES.iter().try_for_each(|(name, bundle)| build(workspace, name, &workspace.path(bundle)))?;
+        Ok(made)
+    });
+    match built {
+        Ok(made) => Outcome::Passed(format!("{} pages, with {made}", PAGES.len())),
         Err(why) => Outcome::Failed(why),
     }
 }
 
-/// Builds the bundle elsewhere and compares. The wasm is not rebuilt: another compiler gives other bytes.
+/// Builds the bundles elsewhere and compares. The wasm is not rebuilt: another compiler gives other bytes.
 pub fn compare(workspace: &Workspace) -> Outcome {
-    if let Err(why) = wasm::is_current(workspace) {
-        return Outcome::Failed(why);
+    let all = wasm::are_current(workspace)
+        .and_then(|()| install(workspace))
+        .and_then(|()| PAGES.iter().try_for_each(|(name, bundle)| is_built(workspace, name, bundle)));
+    match all {
+        Ok(()) => Outcome::Passed("as npm builds them".into()),
+        Err(why) => Outcome::Failed(why),
     }
-    let new = workspace.target().join("page.html");
+}
+
+fn is_built(workspace: &Workspace, name: &str, bundle: &str) -> Result<(), String> {
+    let new = workspace.target().join(format!("{name}.html"));
     let read = |path: &PathBuf| std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()));
-    let both = build(workspace, &new).and_then(|()| Ok((read(&new)?, read(&workspace.path(BUNDLE))?)));
-    match both {
-        Ok((new, committed)) if new == committed => Outcome::Passed("as npm builds it".into()),
-        Ok(_) => Outcome::Failed(format!("{BUNDLE} is not what npm builds from page/: run cargo xtask page")),
-        Err(why) => Outcome::Failed(why),
+    build(workspace, name, &new)?;
+    match read(&new)? == read(&workspace.path(bundle))? {
+        true => Ok(()),
+        false => Err(format!("{bundle} is not what npm builds from page/: run cargo xtask page")),
     }
 }
 
-fn build(workspace: &Workspace, file: &std::path::Path) -> Result<(), String> {
+fn install(workspace: &Workspace) -> Result<(), String> {
     let page = workspace.path("page");
-    command::run(Command::new(NPM).current_dir(&page).args(["ci", "--no-audit", "--no-fund", "--ignore-scripts"]))?;
-    command::run(Command::new("node").current_dir(&page).arg("build.mjs").arg(file))
+    command::run(Command::new(NPM).current_dir(page).args(["ci", "--no-audit", "--no-fund", "--ignore-scripts"]))
 }
 
-/// True if the bundle has the stamp of the current sources.
+fn build(workspace: &Workspace, name: &str, file: &std::path::Path) -> Result<(), String> {
+    command::run(Command::new("node").current_dir(workspace.path("page")).args(["build.mjs", name]).arg(file))
+}
+
+/// True if the bundles have the stamp of the current sources.
 pub fn is_current(workspace: &Workspace) -> Outcome {
-    let bundle = match std::fs::read_to_string(workspace.path(BUNDLE)) {
-        Ok(bundle) => bundle,
-        Err(error) => return Outcome::Failed(format!("{BUNDLE}: {error}")),
+    let stamp = match wasm::are_current(workspace).and_then(|()| stamp(workspace)) {
+        Ok(stamp) => stamp,
+        Err(why) => return Outcome::Failed(why),
     };
-    match wasm::is_current(workspace).and_then(|()| stamp(workspace)) {
-        Ok(stamp) if bundle.contains(&format!("stamp {stamp}.")) => Outcome::Passed(format!("stamp {stamp}")),
-        Ok(_) => Outcome::Failed(format!("{BUNDLE} is older than page/: run cargo xtask page (needs npm)")),
-        Err(why) => Outcome::Failed(why),
+    for (_, bundle) in PAGES {
+        match std::fs::read_to_string(workspace.path(bundle)) {
+            Ok(text) if text.contains(&format!("stamp {stamp}.")) => {}
+            Ok(_) => {
+                return Outcome::Failed(format!("{bundle} is older than page/: run cargo xtask page (needs npm)"));
+            }
+            Err(error) => return Outcome::Failed(format!("{bundle}: {error}")),
+        }
     }
+    Outcome::Passed(format!("stamp {stamp}"))
 }
 
 /// The hash of `page/build.mjs`: 64-bit FNV-1a of names and texts.
 fn stamp(workspace: &Workspace) -> Result<String, String> {
-    let mut files: Vec<String> =
-        [WASM, "build.mjs", "index.html", "pack.mjs", "package-lock.json", "package.json", "style.css"]
-            .map(String::from)
-            .to_vec();
+    let mut files: Vec<String> = SOURCES.map(String::from).to_vec();
     let entries = std::fs::read_dir(workspace.path("page/src")).map_err(|error| format!("page/src: {error}"))?;
     let names = entries.filter_map(Result::ok).map(|entry| entry.file_name().to_string_lossy().into_owned());
     files.extend(names.filter(|name| name.ends_with(".js")).map(|name| format!("src/{name}")));

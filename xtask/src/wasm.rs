@@ -1,5 +1,5 @@
-//! mozzi-web for WebAssembly, which is committed next to the page: built if there is a compiler for it, else the
-//! committed one is used.
+//! mozzi-web for WebAssembly, which is committed next to the pages, once for each: built if there is a compiler for it,
+//! else the committed ones are used.
 //!
 //! It depends on nearly every crate. If its stamp covered all of them, every change of the library would need this
 //! compiler. So the stamp covers `crates/mozzi-web`, the interface; whether the numbers are current is a test's task:
@@ -11,9 +11,30 @@ use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const GZIP: &str = "crates/mozzi-report/bundle/mozzi.wasm.gz";
-const NOTE: &str = "crates/mozzi-report/bundle/mozzi.wasm.txt";
+/// A build of mozzi-web.
+pub struct Wasm {
+    gzip: &'static str,
+    note: &'static str,
+    features: &'static [&'static str],
+}
+
+/// That of the page of `--report` and `view`, and that of the playground.
+const ALL: [Wasm; 2] = [
+    Wasm {
+        gzip: "crates/mozzi-report/bundle/mozzi.wasm.gz",
+        note: "crates/mozzi-report/bundle/mozzi.wasm.txt",
+        features: &["--no-default-features"],
+    },
+    Wasm {
+        gzip: "crates/mozzi-report/bundle/play.wasm.gz",
+        note: "crates/mozzi-report/bundle/play.wasm.txt",
+        features: &["--no-default-features", "--features", "play"],
+    },
+];
+
 const SOURCES: &str = "crates/mozzi-web";
+/// Bytes of stack, for xacro files that nest deep; more ends in a trap.
+const STACK: usize = 8 << 20;
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// A compiler for [`TARGET`].
@@ -45,9 +66,9 @@ impl Compiler {
     }
 
     /// `cargo build` with it; messages of panics name no folder of this machine.
-    fn build(&self, workspace: &Workspace, folder: &Path) -> Result<(), String> {
+    fn build(&self, workspace: &Workspace, folder: &Path, wasm: &Wasm) -> Result<(), String> {
         let mut cargo = workspace.cargo(&["build", "--package", "mozzi-web", "--lib", "--profile", "web"]);
-        cargo.arg("--no-default-features");
+        cargo.args(wasm.features);
         cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
         if let Compiler::Folder(_) = self {
             let host = printed(&rustc(), &["--print", "target-libdir"]).unwrap_or_default();
@@ -62,48 +83,77 @@ impl Compiler {
         let places =
             [Some(workspace.root.clone()), home, sysroot, library].into_iter().zip(["mozzi", "cargo", "rust", "rust"]);
         let flags = places.filter_map(|(place, name)| Some(format!("--remap-path-prefix={}={name}", place?.display())));
+        let flags = flags.chain([format!("-Clink-arg=-zstack-size={STACK}")]);
         cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.collect::<Vec<_>>().join("\u{1f}"));
         command::run(cargo)
     }
 }
 
-/// Builds and packs it if there is a compiler; returns a description.
+/// Builds and packs both if there is a compiler; returns a description.
 pub fn write(workspace: &Workspace) -> Result<String, String> {
     let Some(compiler) = Compiler::find()? else {
-        return Ok(format!("the committed wasm: no compiler for {TARGET}, see CONTRIBUTING.md"));
+        return Ok(format!("the committed wasm files: no compiler for {TARGET}, see CONTRIBUTING.md"));
     };
-    let folder = workspace.target().join("wasm");
-    compiler.build(workspace, &folder)?;
-    let built = folder.join(TARGET).join("web/mozzi_web.wasm");
-    let mut pack = Command::new("node");
-    pack.current_dir(workspace.path("page")).arg("pack.mjs").arg(built).arg(workspace.path(GZIP));
-    command::run(pack)?;
+    for wasm in &ALL {
+        wasm.write(workspace, &compiler)?;
+    }
     let version = printed(&compiler.rustc(), &["--version"]).unwrap_or_default();
-    let version = version.split(" (").next().unwrap_or_default();
-    let (hash, stamp) = (hash(workspace)?, stamp(workspace)?);
-    let note = format!(
-        "mozzi.wasm.gz, hash {hash}, is mozzi-web, stamp {stamp}, compiled by {version} with these packages:\n\n{}",
-        packages(workspace)?
-    );
-    std::fs::write(workspace.path(NOTE), note).map_err(|error| format!("{NOTE}: {error}"))?;
     Ok(format!("wasm by {version}"))
 }
 
-/// Checks that the committed wasm is the one of the note, and was made from the current interface.
-pub fn is_current(workspace: &Workspace) -> Result<(), String> {
-    let note = std::fs::read_to_string(workspace.path(NOTE)).map_err(|error| format!("{NOTE}: {error}"))?;
-    if !note.contains(&format!("hash {},", hash(workspace)?)) {
-        return Err(format!("{GZIP} is not the file of {NOTE}: run cargo xtask page"));
-    }
-    match note.contains(&format!("stamp {},", stamp(workspace)?)) {
-        true => Ok(()),
-        false => Err(format!("{GZIP} is older than {SOURCES}: run cargo xtask page with a compiler for {TARGET}")),
-    }
+/// Checks that each committed wasm is the one of its note, and was made from the current interface.
+pub fn are_current(workspace: &Workspace) -> Result<(), String> {
+    ALL.iter().try_for_each(|wasm| wasm.is_current(workspace))
 }
 
-fn hash(workspace: &Workspace) -> Result<String, String> {
-    let bytes = std::fs::read(workspace.path(GZIP)).map_err(|error| format!("{GZIP}: {error}"))?;
-    Ok(fnv(bytes))
+impl Wasm {
+    fn write(&self, workspace: &Workspace, compiler: &Compiler) -> Result<(), String> {
+        let folder = workspace.target().join("wasm");
+        compiler.build(workspace, &folder, self)?;
+        let built = folder.join(TARGET).join("web/mozzi_web.wasm");
+        let mut pack = Command::new("node");
+        pack.current_dir(workspace.path("page")).arg("pack.mjs").arg(built).arg(workspace.path(self.gzip));
+        command::run(pack)?;
+        let version = printed(&compiler.rustc(), &["--version"]).unwrap_or_default();
+        let version = version.split(" (").next().unwrap_or_default();
+        let (hash, stamp) = (self.hash(workspace)?, stamp(workspace)?);
+        let name = self.gzip.rsplit('/').next().unwrap_or_default();
+        let note = format!(
+            "{name}, hash {hash}, is mozzi-web, stamp {stamp}, compiled by {version} with these packages:\n\n{}",
+            self.packages(workspace)?
+        );
+        std::fs::write(workspace.path(self.note), note).map_err(|error| format!("{}: {error}", self.note))
+    }
+
+    fn is_current(&self, workspace: &Workspace) -> Result<(), String> {
+        let Wasm { gzip, note: name, .. } = self;
+        let note = std::fs::read_to_string(workspace.path(name)).map_err(|error| format!("{name}: {error}"))?;
+        if !note.contains(&format!("hash {},", self.hash(workspace)?)) {
+            return Err(format!("{gzip} is not the file of {name}: run cargo xtask page"));
+        }
+        match note.contains(&format!("stamp {},", stamp(workspace)?)) {
+            true => Ok(()),
+            false => Err(format!("{gzip} is older than {SOURCES}: run cargo xtask page with a compiler for {TARGET}")),
+        }
+    }
+
+    fn hash(&self, workspace: &Workspace) -> Result<String, String> {
+        let bytes = std::fs::read(workspace.path(self.gzip)).map_err(|error| format!("{}: {error}", self.gzip))?;
+        Ok(fnv(bytes))
+    }
+
+    /// The packages in it, each with its version and licence.
+    fn packages(&self, workspace: &Workspace) -> Result<String, String> {
+        let mut tree = workspace.cargo(&["tree", "--package", "mozzi-web", "--target", TARGET, "--edges", "normal"]);
+        tree.args(self.features);
+        tree.args(["--prefix", "none", "--no-dedupe", "--format", "{p}, {l}"]);
+        let (_, text) = command::output(tree)?;
+        let is_compiled_in = |line: &&str| !line.is_empty() && !line.contains("(proc-macro)") && !line.contains("(/");
+        let mut lines: Vec<&str> = text.lines().filter(is_compiled_in).collect();
+        lines.sort_unstable();
+        lines.dedup();
+        Ok(lines.join("\n") + "\n")
+    }
 }
 
 /// The hash of the interface's sources: of their names and texts.
@@ -131,19 +181,6 @@ fn sources(root: &Path, folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), S
         }
     }
     Ok(())
-}
-
-/// The packages in it, each with its version and licence.
-fn packages(workspace: &Workspace) -> Result<String, String> {
-    let mut tree = workspace.cargo(&["tree", "--package", "mozzi-web", "--target", TARGET, "--edges", "normal"]);
-    tree.arg("--no-default-features");
-    tree.args(["--prefix", "none", "--no-dedupe", "--format", "{p}, {l}"]);
-    let (_, text) = command::output(tree)?;
-    let is_compiled_in = |line: &&str| !line.is_empty() && !line.contains("(proc-macro)") && !line.contains("(/");
-    let mut lines: Vec<&str> = text.lines().filter(is_compiled_in).collect();
-    lines.sort_unstable();
-    lines.dedup();
-    Ok(lines.join("\n") + "\n")
 }
 
 fn rustc() -> PathBuf {

@@ -94,6 +94,9 @@ enum Command {
     /// Show the robot in a browser: a motion with plots, or a slider for each joint
     #[command(after_help = TABLES)]
     View(commands::view::ViewArguments),
+    /// Play with a robot in a browser: drop its file, drag it, simulate it in real time, read every quantity
+    #[command(mut_arg("model", commands::play::model))]
+    Play(commands::play::PlayArguments),
     /// Draw a figure as SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
     #[command(after_help = TABLES)]
     Plot(commands::plot::PlotArguments),
@@ -146,6 +149,7 @@ Examples:
   mozzi plot energy double_pendulum swing.csv --out energy.svg
   mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
   mozzi view double_pendulum swing.csv --out swing.html a motion from a table
+  mozzi play my_robot.urdf                              the playground: drag, simulate, edit, read every quantity
 
 Units: rad, m, s, kg, N. Twists and wrenches: angular part first.
 F_tip is the wrench that the robot applies to the environment, in the end effector's frame.
@@ -296,6 +300,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Man(arguments)) => commands::man::run(arguments, Arguments::command()),
         Some(Command::Xacro(arguments)) => commands::xacro::run(arguments),
         Some(Command::Plot(arguments)) => commands::plot::run(arguments),
+        Some(Command::Play(arguments)) => commands::play::run(arguments),
         Some(Command::View(arguments)) => commands::view::run(arguments),
     }
 }

@@ -20,8 +20,9 @@ const NOTES: usize = 3;
 /// A larger page is announced; in bytes.
 const LARGE: usize = 20_000_000;
 
+/// Which meshes go into a page.
 #[derive(Args, Debug)]
-pub struct PageArguments {
+pub struct MeshArguments {
     /// Which meshes of the robot's file go into the page, where they are at hand
     #[arg(long, value_name = "WHICH", default_value = "visual")]
     meshes: Which,
@@ -29,6 +30,12 @@ pub struct PageArguments {
     /// page, too
     #[arg(long, value_name = "FOLDER")]
     mesh_root: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub struct PageArguments {
+    #[command(flatten)]
+    meshes: MeshArguments,
     /// At most so many rows of the motion go into the page, at equal times; or "all"
     #[arg(long, value_name = "N", default_value_t = Rows(mozzi_report::ROWS))]
     page_rows: Rows,
@@ -66,23 +73,10 @@ enum Which {
     None,
 }
 
-impl PageArguments {
-    /// The number of rows of a motion to keep, if a page is requested.
-    pub fn rows(&self, is_wanted: bool) -> usize {
-        if is_wanted { self.page_rows.0 } else { 0 }
-    }
-
-    /// The page of a robot, by its name or its file, with a motion and the motion's full number of rows.
-    pub fn page(
-        &self,
-        robot: &RobotArguments,
-        model: &Model,
-        motion: Option<(Motion, usize)>,
-    ) -> Result<(String, String)> {
+impl MeshArguments {
+    /// The shapes of a robot with these meshes; prints what is omitted.
+    pub fn drawing(&self, robot: &RobotArguments) -> Result<Drawing> {
         let name_or_path = robot.model.as_str();
-        let motion = motion.map(|(motion, all)| (motion.thinned(self.page_rows.0), all));
-        let rows = motion.as_ref().map(|(motion, all)| format!("{} of {all} rows, ", motion.t.len()));
-        let motion = motion.as_ref().map(|(motion, _)| motion);
         let meshes = match self.meshes {
             Which::Visual => Meshes::Visual,
             Which::Collision => Meshes::Collision,
@@ -106,6 +100,27 @@ impl PageArguments {
                 drawing.notes.len()
             ));
         }
+        Ok(drawing)
+    }
+}
+
+impl PageArguments {
+    /// The number of rows of a motion to keep, if a page is requested.
+    pub fn rows(&self, is_wanted: bool) -> usize {
+        if is_wanted { self.page_rows.0 } else { 0 }
+    }
+
+    /// The page of a robot, by its name or its file, with a motion and the motion's full number of rows.
+    pub fn page(
+        &self,
+        robot: &RobotArguments,
+        model: &Model,
+        motion: Option<(Motion, usize)>,
+    ) -> Result<(String, String)> {
+        let motion = motion.map(|(motion, all)| (motion.thinned(self.page_rows.0), all));
+        let rows = motion.as_ref().map(|(motion, all)| format!("{} of {all} rows, ", motion.t.len()));
+        let motion = motion.as_ref().map(|(motion, _)| motion);
+        let drawing = self.meshes.drawing(robot)?;
         let page = mozzi_report::html(model, &drawing, motion).map_err(|error| Failure::wrong(error.to_string()))?;
         let size = format!("page: {}{:.1} MB", rows.unwrap_or_default(), page.len() as f64 / 1e6);
         if page.len() > LARGE {

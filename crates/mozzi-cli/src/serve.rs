@@ -2,8 +2,11 @@
 
 pub mod request;
 
+use crate::failure::{self, Failure};
 use crate::interrupt;
+use crate::json::print;
 use request::{Head, Reply};
+use serde_json::json;
 use std::io::{ErrorKind, Read, Result, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
@@ -53,6 +56,27 @@ impl Server {
             }
         }
     }
+}
+
+/// Serves a page until Ctrl-C, and says where: on standard error, with `is_json` also on standard output.
+pub fn show(
+    robot: &str,
+    page: String,
+    size: &str,
+    port: Option<u16>,
+    is_json: bool,
+) -> std::result::Result<(), Failure> {
+    let cannot = |error: std::io::Error| Failure::wrong(format!("the page cannot be served on 127.0.0.1: {error}"));
+    let server = Server::new(port.unwrap_or(0)).map_err(cannot)?;
+    let address = server.address().map_err(cannot)?;
+    failure::write(&format!("{robot} is at http://{address}/ on this machine only ({size}); Ctrl-C ends it\n"));
+    if is_json {
+        // before the page is served, which takes until Ctrl-C
+        let object = json!({ "robot": robot, "address": format!("http://{address}/") });
+        let mut output = std::io::stdout().lock();
+        output.write_all(print(&object).as_bytes()).and_then(|()| output.flush()).map_err(cannot)?;
+    }
+    server.run(page).map_err(cannot)
 }
 
 /// One request and its answer.

@@ -123,26 +123,18 @@ impl Drawing {
     pub(crate) fn shapes_to_json(&self, model: &Model) -> Value {
         let frame_of = |link: &str| model.frames().position(|(_, known)| known == link);
         let shape = |shape: &Shape| {
-            let (kind, size, mesh) = self.form(&shape.form);
             Some(json!({
                 "frame": frame_of(&shape.link)?, "use": shape.purpose.name(), "T": rows(shape.T),
-                "kind": kind, "size": size, "mesh": mesh, "color": shape.color,
+                "kind": shape.form.name(), "size": shape.form.size(), "mesh": self.mesh_of(&shape.form), "color": shape.color,
             }))
         };
         self.shapes.iter().filter_map(shape).collect()
     }
 
-    fn form(&self, form: &Form) -> (&'static str, Vec<f64>, Option<usize>) {
-        match form {
-            Form::Box { size } => ("box", size.to_vec(), None),
-            Form::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None),
-            Form::Capsule { radius, length } => ("capsule", vec![*radius, *length], None),
-            Form::Ellipsoid { radii } => ("ellipsoid", radii.to_vec(), None),
-            Form::Sphere { radius } => ("sphere", vec![*radius], None),
-            Form::Mesh { file, scale } => {
-                ("mesh", scale.to_vec(), self.meshes.iter().position(|mesh| mesh.address == *file))
-            }
-        }
+    /// The place of a form's mesh, if it has one.
+    fn mesh_of(&self, form: &Form) -> Option<usize> {
+        let Form::Mesh { file, .. } = form else { return None };
+        self.meshes.iter().position(|mesh| mesh.address == *file)
     }
 }
 

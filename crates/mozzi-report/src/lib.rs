@@ -19,6 +19,8 @@
 //! - `parameters`: the inertial parameters, if they are not those of the description;
 //! - `shapes`, each at a frame, and `meshes`: the files of meshes, gzipped;
 //! - `motion`: rows of a trajectory, as 32-bit floats (times: 64), and its contacts ([`Touches`]).
+//!
+//! [`play_html`] is the playground, which reads robots itself.
 mod base64;
 mod drawing;
 mod error;
@@ -28,6 +30,7 @@ mod fit_json;
 mod motion;
 mod page;
 pub mod pictures;
+mod play;
 #[cfg(test)]
 mod testing;
 mod touches;
@@ -37,6 +40,7 @@ pub use error::Error;
 pub use fit::fit_html;
 pub use fit_json::fit_json;
 pub use motion::Motion;
+pub use play::{Played, play_html};
 pub use touches::Touches;
 
 use mozzi::Model;

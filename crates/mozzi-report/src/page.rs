@@ -8,14 +8,19 @@ const PAGE: &str = include_str!("../bundle/page.html");
 /// mozzi-web for WebAssembly, gzipped, made by `cargo xtask page`.
 const WASM: &[u8] = include_bytes!("../bundle/mozzi.wasm.gz");
 
-/// The text in HTML elements and the JSON in its `<script>` must not contain a `<` that could end them.
+/// A page of a report.
 pub fn fill(title: &str, data: &Value) -> String {
+    filled(PAGE, WASM, title, data)
+}
+
+/// The text in HTML elements and the JSON in its `<script>` must not contain a `<` that could end them.
+pub fn filled(page: &str, wasm: &[u8], title: &str, data: &Value) -> String {
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let data = data.to_string().replace('<', "\\u003c");
-    let (head, rest) = PAGE.split_once("{{title}}").unwrap_or((PAGE, ""));
+    let (head, rest) = page.split_once("{{title}}").unwrap_or((page, ""));
     let (middle, rest) = rest.split_once("{{wasm}}").unwrap_or((rest, ""));
     let (last, tail) = rest.split_once("{{data}}").unwrap_or((rest, ""));
-    [head, &title, middle, &base64::encode(WASM), last, &data, tail].concat()
+    [head, &title, middle, &base64::encode(wasm), last, &data, tail].concat()
 }
 
 #[cfg(test)]

@@ -66,6 +66,23 @@ pub extern "C" fn web_load(name_length: usize) -> i32 {
     })
 }
 
+/// Opens the robot of dropped files: see [`Session::open`]. Returns its number and says what the page needs.
+#[cfg(feature = "play")]
+#[unsafe(no_mangle)]
+pub extern "C" fn web_open() -> i32 {
+    answered(-1, |session, text| {
+        let (robot, said) = session.open(text)?;
+        Ok((index(robot), said.to_string()))
+    })
+}
+
+/// Carries out the command in the text: see [`Robot::play`](crate::Robot::play). 0, or −1 for an error.
+#[cfg(feature = "play")]
+#[unsafe(no_mangle)]
+pub extern "C" fn web_play(robot: usize) -> i32 {
+    answered(-1, |session, text| Ok((0, session.robot(robot)?.play(text)?.to_string())))
+}
+
 /// Closes a robot and frees its arrays.
 #[unsafe(no_mangle)]
 pub extern "C" fn web_close(robot: usize) {

@@ -11,6 +11,8 @@ mod about;
 mod applied;
 mod bodies;
 pub mod drawn;
+#[cfg(feature = "play")]
+mod play;
 mod request;
 mod robot;
 mod session;

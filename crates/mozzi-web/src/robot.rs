@@ -19,6 +19,8 @@ pub struct Robot {
     applied: Applied,
     wrenches: Vec<(FrameId, Wrench)>,
     requests: Vec<Request>,
+    #[cfg(feature = "play")]
+    pub(crate) settings: crate::play::Settings,
 }
 
 impl Robot {
@@ -37,6 +39,8 @@ impl Robot {
             applied: Applied::default(),
             wrenches: Vec::new(),
             requests: Vec::new(),
+            #[cfg(feature = "play")]
+            settings: crate::play::Settings::default(),
             model,
         }
     }
@@ -93,7 +97,7 @@ impl Robot {
     /// # Errors
     /// There is no such request; the library's errors, such as a singular mass matrix. Outputs are then NaN.
     pub fn evaluate(&mut self, request: usize) -> Result<(), String> {
-        let Robot { model, bodies, inputs, applied, wrenches, requests } = self;
+        let Robot { model, bodies, inputs, applied, wrenches, requests, .. } = self;
         let request = requests.get_mut(request).ok_or_else(|| none(request))?;
         let [theta, ..] = &*inputs;
         let computed = applied.wrenches(model, theta, wrenches).and_then(|()| {
@@ -154,6 +158,30 @@ impl Robot {
         self.model = self.model.with_parameters(&parameters);
         self.bodies = Bodies::new(&self.model);
         Ok(())
+    }
+}
+
+#[cfg(feature = "play")]
+impl Robot {
+    /// θ of the inputs.
+    pub(crate) fn theta(&self) -> &[f64] {
+        self.named("theta")
+    }
+
+    /// θ̇ of the inputs.
+    pub(crate) fn dtheta(&self) -> &[f64] {
+        self.named("dtheta")
+    }
+
+    fn named(&self, name: &str) -> &[f64] {
+        INPUTS.iter().position(|input| input.name == name).map_or(&[], |place| &self.inputs[place])
+    }
+
+    /// Sets an input by its name, in place.
+    pub(crate) fn put(&mut self, name: &str, numbers: &[f64]) {
+        if let Some(place) = INPUTS.iter().position(|input| input.name == name) {
+            self.inputs[place].copy_from_slice(numbers);
+        }
     }
 }
 

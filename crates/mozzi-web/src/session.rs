@@ -25,6 +25,18 @@ impl Session {
         Ok(self.robots.len() - 1)
     }
 
+    /// Opens the robot of dropped files, and returns its number and what the page needs: see `play::open`.
+    ///
+    /// # Errors
+    /// All errors of the file, each with its place and its line.
+    #[cfg(feature = "play")]
+    pub fn open(&mut self, text: &str) -> Result<(usize, Value), String> {
+        let (robot, mut said) = crate::play::open(text)?;
+        said["about"] = robot.about()?;
+        self.robots.push(Some(robot));
+        Ok((self.robots.len() - 1, said))
+    }
+
     /// Closes a robot. Does nothing if it is not open.
     pub fn close(&mut self, robot: usize) {
         if let Some(robot) = self.robots.get_mut(robot) {

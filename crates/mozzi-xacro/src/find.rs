@@ -47,8 +47,8 @@ impl Expander<'_> {
 /// Searches the paths that ROS lists.
 fn installed(name: &str) -> Option<PathBuf> {
     let listed = |variable: &str| {
-        let list = std::env::var_os(variable).unwrap_or_default();
-        std::env::split_paths(&list).filter(|folder| !folder.as_os_str().is_empty()).collect::<Vec<_>>()
+        let Some(list) = std::env::var_os(variable) else { return Vec::new() };
+        std::env::split_paths(&list).filter(|folder| !folder.as_os_str().is_empty()).collect()
     };
     let share = |folder: PathBuf| Some(folder.join("share").join(name)).filter(|folder| folder.is_dir());
     let prefixes = listed("AMENT_PREFIX_PATH").into_iter().chain(listed("CMAKE_PREFIX_PATH"));

@@ -10,7 +10,7 @@ use crate::glob::{self, is_pattern};
 use crate::parse::parse;
 use crate::scope::{Definition, Macros, Property, Scope};
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
 impl Expander<'_> {
@@ -99,8 +99,8 @@ impl Expander<'_> {
 
     /// The text of a file, or its replacement.
     pub fn text_of(&self, path: &Path) -> Result<String> {
-        let name = path.to_string_lossy();
-        match self.given.texts.iter().find(|(known, _)| *known == name) {
+        let plain = without_parents(path);
+        match self.given.texts.iter().find(|(known, _)| Path::new(known) == path || Path::new(known) == plain) {
             Some((_, text)) => Ok(text.clone()),
             None => read_text(path),
         }
@@ -119,6 +119,21 @@ impl Expander<'_> {
         let text = self.files.borrow()[file as usize].text.clone();
         Ok(parse(&text, file, &mut self.document.borrow_mut(), &self.budget)?.root)
     }
+}
+
+/// The path with each `folder/..` removed, as written.
+fn without_parents(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        let is_up =
+            part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
+        if is_up {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
+    }
+    plain
 }
 
 /// The text of a file, without a byte order mark.

@@ -88,6 +88,9 @@ pub fn expand(path: impl AsRef<Path>, arguments: &Arguments) -> std::result::Res
 /// See [`expand`].
 pub fn expand_text(name: &str, text: &str, arguments: &Arguments) -> std::result::Result<Expansion, Error> {
     let run = || expand_here(name, text, arguments);
+    if cfg!(target_family = "wasm") {
+        return run(); // there are no threads; what nests too deep for its stack ends in a trap
+    }
     // macros and expressions nest to a bounded depth, but need more stack than every thread is sure to have
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("xacro".to_string()).stack_size(bounds::STACK);

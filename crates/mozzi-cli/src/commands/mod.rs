@@ -15,6 +15,7 @@ pub mod ik;
 pub mod info;
 pub mod man;
 pub mod outcome;
+pub mod play;
 pub mod plot;
 pub mod python;
 pub mod screws;

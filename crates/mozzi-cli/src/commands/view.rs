@@ -1,13 +1,12 @@
 //! `mozzi view`: shows the robot, still or moving, in a file or served to this machine's browser.
 
-use crate::failure::{self, Failure, Result};
+use crate::failure::Result;
 use crate::json::print;
 use crate::report::{self, PageArguments};
 use crate::robot::RobotArguments;
 use crate::serve;
 use clap::Args;
 use serde_json::json;
-use std::io::Write;
 
 #[derive(Args, Debug)]
 pub struct ViewArguments {
@@ -45,19 +44,6 @@ pub fn run(arguments: &ViewArguments) -> Result<String> {
         return Ok(if arguments.robot.json { print(&object) } else { said + "\n" });
     }
     let (page, size) = arguments.page.page(&arguments.robot, &model, motion)?;
-    let cannot = |error: std::io::Error| Failure::wrong(format!("the page cannot be served on 127.0.0.1: {error}"));
-    let server = serve::Server::new(arguments.port.unwrap_or(0)).map_err(cannot)?;
-    let address = server.address().map_err(cannot)?;
-    failure::write(&format!(
-        "{} is at http://{address}/ on this machine only ({size}); Ctrl-C ends it\n",
-        model.description().name
-    ));
-    if arguments.robot.json {
-        // before the page is served, which takes until Ctrl-C
-        let object = json!({ "robot": model.description().name, "address": format!("http://{address}/") });
-        let mut output = std::io::stdout().lock();
-        output.write_all(print(&object).as_bytes()).and_then(|()| output.flush()).map_err(cannot)?;
-    }
-    server.run(page).map_err(cannot)?;
+    serve::show(&model.description().name, page, &size, arguments.port, arguments.robot.json)?;
     Ok(String::new())
 }

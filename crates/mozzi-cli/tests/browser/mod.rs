@@ -16,8 +16,13 @@ pub fn browser() -> Result<(PathBuf, PathBuf), String> {
     }
 }
 
-pub fn look((browser, python): &(PathBuf, PathBuf), jobs: &Value) -> Vec<Value> {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser/look.py");
+pub fn look(program: &(PathBuf, PathBuf), jobs: &Value) -> Vec<Value> {
+    run("look.py", program, jobs)
+}
+
+/// What a script of this folder finds in pages.
+pub fn run(script: &str, (browser, python): &(PathBuf, PathBuf), jobs: &Value) -> Vec<Value> {
+    let script = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/browser")).join(script);
     let mut child = Command::new(python)
         .arg(script)
         .arg(browser)
@@ -27,7 +32,7 @@ pub fn look((browser, python): &(PathBuf, PathBuf), jobs: &Value) -> Vec<Value> 
         .expect("Python starts");
     child.stdin.take().expect("a pipe").write_all(jobs.to_string().as_bytes()).expect("written");
     let output = child.wait_with_output().expect("it ends");
-    assert!(output.status.success(), "look.py failed, see above");
+    assert!(output.status.success(), "the script failed, see above");
     serde_json::from_slice::<Vec<Value>>(&output.stdout).expect("JSON")
 }
 

@@ -8,13 +8,14 @@
 //! | [`ComputedTorque`] | M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) | ë + K_d ė + K_p e = 0 |
 //! | [`TaskSpace`], accelerations | Jᵀ(Λ(a + K_d 𝒱_e + K_p X_e) + η) | 𝒱̇_e + K_d 𝒱_e + K_p X_e = 0 |
 //! | [`TaskSpace`], impedance | Jᵀ(Λa + η + B𝒱_e + KX_e) | Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, applied to the environment |
-//! | [`Standing`] | Mθ̈ + h + Jᵀf, f within the feet's friction cones | goes to 0 while the cones allow it |
+//! | `Standing`, feature `standing` | Mθ̈ + h + Jᵀf, f within the feet's friction cones | goes to 0 while the cones allow it |
 //!
 //! with e = θ_d ⊖ θ, X_e = log(T⁻¹T_d), 𝒱_e = `[Ad_T⁻¹T_d]`𝒱_d − 𝒱. [`Saturated`] wraps any of them.
 
 mod computed_torque;
 mod pd_gravity;
 mod saturation;
+#[cfg(feature = "standing")]
 mod standing;
 mod task_space;
 mod tracking;
@@ -22,6 +23,7 @@ mod tracking;
 pub use computed_torque::ComputedTorque;
 pub use pd_gravity::PdGravity;
 pub use saturation::{Overload, Saturated};
+#[cfg(feature = "standing")]
 pub use standing::Standing;
 pub use task_space::{Law, TaskSpace};
 pub use tracking::{Tracking, TrackingError, tracking_error, tracking_error_of_rows};

@@ -60,8 +60,12 @@ pub fn geometry_with(name_or_path: &str, arguments: &XacroArguments) -> Result<G
 
 /// The shapes of a text. Diagnostics use the name as its file name.
 pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
-    let none = || Geometry { shapes: Vec::new(), left_out: Vec::new() };
-    parse_in(None, file_name, text.as_ref(), &XacroArguments::default()).unwrap_or_else(|_| none())
+    parse_with(file_name, text, &XacroArguments::default())
+}
+
+/// The same with xacro arguments; none if xacro cannot expand the text.
+pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, arguments: &XacroArguments) -> Geometry {
+    parse_in(None, file_name, text.as_ref(), arguments).unwrap_or_default()
 }
 
 /// The shapes of a text. Files that an MJCF text includes are searched in a folder.

@@ -76,3 +76,28 @@ pub enum Form {
         scale: [f64; 3],
     },
 }
+
+impl Form {
+    /// "box", "cylinder", "capsule", "ellipsoid", "sphere" or "mesh".
+    pub fn name(&self) -> &'static str {
+        match self {
+            Form::Box { .. } => "box",
+            Form::Cylinder { .. } => "cylinder",
+            Form::Capsule { .. } => "capsule",
+            Form::Ellipsoid { .. } => "ellipsoid",
+            Form::Sphere { .. } => "sphere",
+            Form::Mesh { .. } => "mesh",
+        }
+    }
+
+    /// Its lengths in the order of its fields; a mesh's scale factors.
+    pub fn size(&self) -> Vec<f64> {
+        match self {
+            Form::Box { size } => size.to_vec(),
+            Form::Cylinder { radius, length } | Form::Capsule { radius, length } => vec![*radius, *length],
+            Form::Ellipsoid { radii } => radii.to_vec(),
+            Form::Sphere { radius } => vec![*radius],
+            Form::Mesh { scale, .. } => scale.to_vec(),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! `mozzi play`: the playground, in a file or served to this machine's browser.
+
+use crate::columns::save;
+use crate::failure::{Failure, Result};
+use crate::input;
+use crate::json::print;
+use crate::report::MeshArguments;
+use crate::robot::RobotArguments;
+use crate::serve;
+use clap::{Arg, Args};
+use mozzi::Model;
+use mozzi_report::{Played, play_html};
+use mozzi_urdf::{embedded, expanded};
+use serde_json::json;
+use std::path::Path;
+
+/// The robot that is shown at first if none is named.
+const FIRST: &str = "panda";
+
+#[derive(Args, Debug)]
+pub struct PlayArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    #[command(flatten)]
+    meshes: MeshArguments,
+    /// Write the page to a file instead of serving it
+    #[arg(long, value_name = "FILE.html")]
+    out: Option<String>,
+    /// Port on 127.0.0.1 [default: a free one]
+    #[arg(long, value_name = "PORT", conflicts_with = "out")]
+    port: Option<u16>,
+}
+
+/// The robot need not be named.
+pub fn model(argument: Arg) -> Arg {
+    argument.required(false).default_value(FIRST)
+}
+
+pub fn run(arguments: &PlayArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    let name = &model.description().name;
+    let page = page(arguments, &model)?;
+    let size = format!("page: {:.1} MB", page.len() as f64 / 1e6);
+    if let Some(file) = &arguments.out {
+        save(file, &page)?;
+        let object = json!({ "robot": name, "out": file });
+        return Ok(if arguments.robot.json { print(&object) } else { format!("{size}, written to {file}\n") });
+    }
+    serve::show(name, page, &size, arguments.port, arguments.robot.json)?;
+    Ok(String::new())
+}
+
+fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
+    let name_or_path = arguments.robot.model.as_str();
+    let file = match embedded::unless_file(name_or_path) {
+        Some(text) => (format!("{name_or_path}.urdf"), text.to_string()),
+        None => text(&arguments.robot)?,
+    };
+    let drawing = arguments.meshes.drawing(&arguments.robot)?;
+    Ok(play_html(&Played { name: input::name(name_or_path), file: &file.0, text: &file.1, model, drawing: &drawing }))
+}
+
+/// A name and the text of the robot's file, expanded if it is xacro.
+fn text(robot: &RobotArguments) -> Result<(String, String)> {
+    let name_or_path = robot.model.as_str();
+    let cannot = |error: std::io::Error| Failure::wrong(format!("{name_or_path} cannot be read: {error}"));
+    let bytes = match name_or_path {
+        "-" => input::robot_text().map_err(cannot)?.to_vec(),
+        path => std::fs::read(path).map_err(cannot)?,
+    };
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let file = Path::new(input::name(name_or_path))
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    Ok(match expanded(input::name(name_or_path), &text, robot.settings())? {
+        Some(expansion) => (file.trim_end_matches(".xacro").trim_end_matches(".urdf").to_string() + ".urdf", expansion),
+        None => (file, text),
+    })
+}

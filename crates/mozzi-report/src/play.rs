@@ -1,0 +1,104 @@
+//! The playground as one HTML file: robots as the texts of their files, which the page reads itself.
+
+use crate::Drawing;
+use crate::page::filled;
+use mozzi::Model;
+use mozzi_urdf::{embedded, json};
+use serde_json::{Value, json};
+
+/// Made by `cargo xtask page` from `page/`.
+const PAGE: &str = include_str!("../bundle/play.html");
+/// mozzi-web with files and simulation for WebAssembly, gzipped, made by `cargo xtask page`.
+const WASM: &[u8] = include_bytes!("../bundle/play.wasm.gz");
+
+/// Robots next to the embedded ones: name, file, text.
+const MORE: [(&str, &str, &str); 4] = [
+    ("snake, a xacro", "snake.urdf.xacro", include_str!("../robots/snake.urdf.xacro")),
+    ("spherical pendulum, an MJCF", "spherical_pendulum.xml", include_str!("../robots/spherical_pendulum.xml")),
+    ("four-bar linkage", "four_bar.json", include_str!("../robots/four_bar.json")),
+    ("Delta robot", "delta.json", include_str!("../robots/delta.json")),
+];
+
+/// Where robots start: poses from which they fall, swing or stand, of our own choice.
+const STARTS: [(&str, &[f64]); 7] = [
+    ("anymal", &[0.0, 0.4, -0.8, 0.0, 0.4, -0.8, 0.0, -0.4, 0.8, 0.0, -0.4, 0.8]),
+    ("double_pendulum", &[1.6, 0.3]),
+    ("furuta_pendulum", &[0.0, 0.4]),
+    ("panda", &[0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8, 0.02]),
+    ("two_link_planar", &[0.3, 0.8]),
+    ("ur5", &[0.0, -1.2, 1.5, -0.3, -1.57, 0.0]),
+    ("snake, a xacro", &[0.3, -0.5, 0.2, 0.6, -0.3, 0.4]),
+];
+
+/// The robot that the playground shows at first.
+#[derive(Clone, Copy, Debug)]
+pub struct Played<'a> {
+    /// Its name in the menu: that of an embedded robot, or a path.
+    pub name: &'a str,
+    /// The name of its file.
+    pub file: &'a str,
+    /// The file's text: URDF, MJCF or JSON.
+    pub text: &'a str,
+    /// The robot itself; what differs from the text comes from options.
+    pub model: &'a Model,
+    /// Its meshes.
+    pub drawing: &'a Drawing,
+}
+
+/// The playground with a first robot, the embedded ones, a xacro, an MJCF and two closed loops.
+pub fn play_html(first: &Played) -> String {
+    let mut robots: Vec<Value> = embedded::names()
+        .map(|name| {
+            let file = format!("{name}.urdf");
+            entry(name, &file, embedded::text(name).unwrap_or_default(), true)
+        })
+        .chain(MORE.map(|(name, file, text)| entry(name, file, text, false)))
+        .collect();
+    let place = embedded::names().position(|name| name == first.name && is_as_embedded(name, first.model));
+    let place = place.unwrap_or_else(|| {
+        let name = first.name.rsplit(['/', '\\']).next().unwrap_or_default();
+        let mut own = entry(name, first.file, first.text, false);
+        own["description"] = json::to_value(first.model.description());
+        own["meshes"] = first.drawing.meshes_to_json();
+        robots.insert(0, own);
+        0
+    });
+    let title = format!("{}: mozzi's playground", first.model.description().name);
+    filled(PAGE, WASM, &title, &json!({ "robots": robots, "first": place }))
+}
+
+fn entry(name: &str, file: &str, text: &str, is_embedded: bool) -> Value {
+    let start = STARTS.iter().find(|(known, _)| *known == name).map(|(_, theta)| theta);
+    json!({ "name": name, "file": file, "files": { file: text }, "isEmbedded": is_embedded, "theta": start })
+}
+
+/// Does no option change the embedded robot?
+fn is_as_embedded(name: &str, model: &Model) -> bool {
+    mozzi_urdf::open(name).is_ok_and(|loaded| loaded.description == *model.description())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_playground_asks_for_nothing_and_is_small() {
+        assert!(PAGE.contains("default-src 'none'") && PAGE.contains("connect-src 'none'"));
+        assert!(PAGE.contains("three.js") && PAGE.contains("The MIT License"), "the notice of three.js");
+        let model = mozzi_urdf::open("ur5").expect("embedded").build().expect("sound");
+        let drawing = Drawing::default();
+        let page = play_html(&Played { name: "ur5", file: "ur5.urdf", text: "", model: &model, drawing: &drawing });
+        assert!(page.len() < 2_500_000, "{} bytes", page.len());
+        assert!(page.contains("\"first\":5") && page.contains("<title>ur5: mozzi's playground</title>"));
+    }
+
+    #[test]
+    fn another_robot_comes_first() {
+        let text = MORE[2].2;
+        let file = json::File::parse("four_bar.json", text).expect("JSON");
+        let model = json::read(&file).expect("sound").build().expect("sound");
+        let drawing = Drawing::default();
+        let page = play_html(&Played { name: "a/own.json", file: "own.json", text, model: &model, drawing: &drawing });
+        assert!(page.contains("\"first\":0") && page.contains("\"name\":\"own.json\""));
+    }
+}

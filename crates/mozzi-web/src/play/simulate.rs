@@ -1,0 +1,92 @@
+//! A few steps of a simulation, between two pictures.
+
+use super::close::within;
+use super::entry::number;
+use super::motors::motors;
+use super::push::Push;
+use crate::robot::Robot;
+use mozzi::simulation::{ContactPoint, Contacts, Input, Options, Plane, Policy, Simulation};
+use mozzi::{Error, FrameId, Wrench};
+use serde_json::{Value, json};
+
+/// Motors, and the mouse if it pushes.
+struct Both<'a>(Box<dyn Input + 'a>, Option<Push<'a>>);
+
+impl Input for Both<'_> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
+        self.0.torque(t, theta, dtheta, tau)
+    }
+
+    fn applied(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        wrenches: &mut Vec<(FrameId, Wrench)>,
+    ) -> Result<(), Error> {
+        self.1.as_mut().map_or(Ok(()), |push| push.applied(t, theta, dtheta, wrenches))
+    }
+
+    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        self.0.gains(stiffness, damping);
+    }
+}
+
+/// Steps from the state in the inputs; the new state, θ̈ and τ go there. Answers with energies, contacts and the push.
+pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
+    let said = |error: Error| error.to_string();
+    let (length, steps) = (number(command, "step")?, number(command, "steps")?);
+    let steps = steps as usize;
+    let [mut theta, dtheta] = [robot.theta().to_vec(), robot.dtheta().to_vec()];
+    if steps > 0 && robot.settings.limits == Policy::Respect {
+        within(robot.model(), &mut theta);
+    }
+    let (model, settings) = (robot.model(), &robot.settings);
+    let target = if settings.target.is_empty() { &theta } else { &settings.target };
+    let push = Push::parse(model, command)?;
+    let input = Both(motors(model, settings.kind, &settings.gains, target)?, push.clone());
+    let options = Options {
+        joint_limits: if steps > 0 { settings.limits } else { Policy::Ignore },
+        record_every: steps.max(1),
+        ..Options::new(length * steps as f64, steps.max(1))
+    };
+    let mut simulation = Simulation::new(options);
+    if let Some([mu, restitution]) = settings.ground {
+        let point = |point: &ContactPoint| ContactPoint { mu, restitution, ..point.clone() };
+        let points = settings.points.iter().map(point).collect();
+        simulation.contacts = Contacts { points, planes: vec![Plane::ground()] };
+    }
+    let run = simulation.run(model, &theta, &dtheta, input).map_err(said)?;
+    let (first, last) = (run.motion.sample(0), run.motion.last());
+    // each point and the only plane
+    let touched = simulation.contacts.frames(model, 0.0, last.theta);
+    let touches = simulation.contacts.points.iter().zip(&touched).zip(last.contact_forces.as_chunks::<3>().0);
+    let touches: Value = touches
+        .filter(|(_, f)| **f != [0.0; 3])
+        .map(|((point, T), f)| json!({ "frame": model.frame_name(point.frame), "p": T.p.0, "f": f }))
+        .collect();
+    let pushed = match &push {
+        Some(push) => Some(push.force(last.theta, last.dtheta).map_err(said)?),
+        None => None,
+    };
+    let (energy, drift) = (last.energy, last.energy.drift_since(&first.energy));
+    let account = &mut robot.settings;
+    account.time += last.t;
+    account.drift += drift;
+    account.works.motor_work += energy.motor_work;
+    account.works.friction_loss += energy.friction_loss;
+    account.works.applied_work += energy.applied_work;
+    let answer = json!({
+        "time": account.time, "kinetic": energy.kinetic, "potential": energy.potential, "total": energy.total(),
+        "motorWork": account.works.motor_work, "frictionLoss": account.works.friction_loss,
+        "appliedWork": account.works.applied_work, "drift": account.drift,
+        "touches": touches, "push": pushed.map(|(p, f)| json!({ "p": p.0, "f": f.0 })),
+        "method": run.method.name(), "limits": run.stops.iter().map(|stop| &stop.joint).collect::<Vec<_>>(),
+    });
+    let [theta, dtheta] = [last.theta.to_vec(), last.dtheta.to_vec()];
+    let [ddtheta, tau] = [last.ddtheta.to_vec(), last.tau.to_vec()];
+    for (name, numbers) in [("theta", theta), ("dtheta", dtheta), ("ddtheta", ddtheta), ("tau", tau)] {
+        robot.put(name, &numbers);
+    }
+    Ok(answer)
+}

@@ -1,0 +1,71 @@
+// Lines of Rust, Python and C++ that compute what the page shows.
+
+const list = (numbers, open, close) => `${open}${numbers.join(", ")}${close}`;
+
+const NEEDS = { frame: true, task: true };
+
+export const LANGUAGES = { python: "Python", rust: "Rust", cpp: "C++", shell: "Command line" };
+
+// `robot`: the name of an embedded robot or the file's; `inputs`: [name, numbers] pairs of the quantity.
+export function codeOf(language, { robot, isFloating, quantity, frame, inputs, outputs }) {
+  const names = inputs.map(([name]) => name);
+  const ofFrame = NEEDS[quantity.of];
+  switch (language) {
+    case "python":
+      return [
+        "import mozzi",
+        "",
+        `robot = ${pythonOf(robot, isFloating)}`,
+        ...inputs.map(([name, numbers]) => `${name} = ${list(numbers, "[", "]")}`),
+        `print(robot.${quantity.name}(${[...names, ...(ofFrame ? [`frame="${frame}"`] : [])].join(", ")}))`,
+      ].join("\n");
+    case "rust":
+      return [
+        "use mozzi::quantities::Query;",
+        "",
+        `let model = mozzi_urdf::open("${robot}")?.${isFloating ? "description.floating()." : ""}build()?;`,
+        ...inputs.map(([name, numbers]) => `let ${name} = ${list(numbers.map(float), "[", "]")};`),
+        `let query = Query::named("${quantity.name}")?${ofFrame ? `.of(model.frame("${frame}")?)` : ""};`,
+        `let outputs = model.compute(query, &[${names.map((name) => `&${name}`).join(", ")}], &model.environment())?;`,
+        'println!("{outputs:?}");',
+      ].join("\n");
+    case "shell":
+      return [
+        `mozzi compute ${robot} ${quantity.name.replaceAll("_", "-")}${isFloating ? " --floating" : ""}`,
+        ...inputs.map(([name, numbers]) => `--${name}=${numbers.join(",")}`),
+        ...(ofFrame ? [`--frame ${frame}`] : []),
+      ].join(" \\\n  ");
+    default:
+      return [
+        "#include <mozzi/mozzi.hpp>",
+        "#include <Eigen/Dense>",
+        "",
+        `mozzi::Model robot = mozzi::Model::open("${robot}").value()${isFloating ? ".with_base(true).value()" : ""};`,
+        "mozzi::Workspace workspace(robot);",
+        ...inputs.map(([name, numbers]) => `std::vector<double> ${name}${list(numbers, "{", "}")};`),
+        ...(ofFrame ? [`mozzi::Frame frame = robot.frame("${frame}").value();`] : []),
+        ...outputs.map(room),
+        `workspace.${quantity.name}(${[...names, ...(ofFrame ? ["frame"] : []), ...outputs.map(({ name }) => name)].join(", ")}).or_throw();`,
+      ].join("\n");
+  }
+}
+
+const EMBEDDED = ["anymal", "double_pendulum", "furuta_pendulum", "panda", "two_link_planar", "ur5"];
+
+function pythonOf(robot, isFloating) {
+  const floating = isFloating ? "floating=True" : "";
+  if (EMBEDDED.includes(robot)) return `mozzi.models.${robot}(${robot === "anymal" && !isFloating ? "floating=False" : floating})`;
+  // Python reads no JSON
+  if (/\.json$/i.test(robot)) return `mozzi.Model.from_urdf("robot.urdf")  # mozzi convert ${robot} robot.urdf`;
+  const reader = /\.(xml|mjcf)$/i.test(robot) ? "from_mjcf" : "from_urdf";
+  return `mozzi.Model.${reader}("${robot}"${floating && `, ${floating}`})`;
+}
+
+// Memory for an output in C++.
+function room({ name, shape }) {
+  if (shape.length === 2) return `Eigen::MatrixXd ${name}(${shape.join(", ")});`;
+  if (shape.length === 1) return `std::vector<double> ${name}(${shape[0]});`;
+  return shape.length === 0 ? `double ${name};` : `// ${name}: ${shape.join(" x ")} numbers`;
+}
+
+const float = (x) => (Number.isInteger(x) ? `${x}.0` : String(x));
