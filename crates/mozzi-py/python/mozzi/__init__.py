@@ -17,6 +17,7 @@ from ._mozzi import (
     SingularError,
     __version__,
 )
+from ._notebook import Page
 from ._quantities import *
 from ._results import (
     BaseParameters,
@@ -61,6 +62,7 @@ __all__ = [
     "MotionError",
     "NewtonEuler",
     "Occurrence",
+    "Page",
     "Reduction",
     "ReportSize",
     "Rollout",

@@ -7,6 +7,7 @@ mod constraints;
 mod directional;
 mod documentation;
 mod edits;
+mod play;
 mod positions;
 mod properties;
 mod quantity;

@@ -23,6 +23,28 @@ fn meshes(name: &str) -> PyResult<Meshes> {
     }
 }
 
+/// The shapes of a file; a warning for each that is left out.
+pub(super) fn drawing(
+    py: Python<'_>,
+    shapes: Option<PathBuf>,
+    meshes: &str,
+    mesh_root: Option<PathBuf>,
+) -> PyResult<Drawing> {
+    let meshes = self::meshes(meshes)?;
+    if let Some(folder) = mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
+        return Err(PyValueError::new_err(format!("mesh_root is '{}', expected a folder", folder.display())));
+    }
+    let Some(file) = shapes else { return Ok(Drawing::default()) };
+    let xacro = XacroArguments::default();
+    let drawing = Drawing::of_file_below(&file.to_string_lossy(), &xacro, meshes, mesh_root.as_deref())
+        .map_err(|error| of_loader(py, error))?;
+    for note in &drawing.notes {
+        let text = CString::new(note.replace('\0', "\\0")).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
+    }
+    Ok(drawing)
+}
+
 /// The numbers of an attribute.
 fn column(of: &Bound<'_, PyAny>, name: &'static str, shape: &[usize]) -> PyResult<Vec<f64>> {
     list(name, &of.getattr(name)?, shape)
@@ -133,25 +155,8 @@ impl PyModel {
         title: &str,
         rows: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (model, meshes) = (&self.robot().model, self::meshes(meshes)?);
-        if let Some(folder) = mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
-            return Err(PyValueError::new_err(format!("mesh_root is '{}', expected a folder", folder.display())));
-        }
-        let drawing = match shapes {
-            Some(file) => Drawing::of_file_below(
-                &file.to_string_lossy(),
-                &XacroArguments::default(),
-                meshes,
-                mesh_root.as_deref(),
-            )
-            .map_err(|error| of_loader(py, error))?,
-            None => Drawing::default(),
-        };
-        for note in &drawing.notes {
-            let text =
-                CString::new(note.replace('\0', "\\0")).map_err(|error| PyValueError::new_err(error.to_string()))?;
-            PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
-        }
+        let model = &self.robot().model;
+        let drawing = drawing(py, shapes, meshes, mesh_root)?;
         let motion = trajectory.map(|given| self::trajectory(model, given)).transpose()?;
         let all_rows = motion.as_ref().map_or(0, Trajectory::len);
         let touches =

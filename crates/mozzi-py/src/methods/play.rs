@@ -1,0 +1,54 @@
+//! The playground of a robot.
+
+use super::report::drawing;
+use crate::model::PyModel;
+use mozzi_report::{Played, play_html};
+use mozzi_urdf::json;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+#[pymethods]
+impl PyModel {
+    /// The robot in a page to play with: drag it, push it, let it fall, edit it, and see every quantity change. A
+    /// notebook shows it; `save` writes it to a file for a browser.
+    ///
+    /// Parameters
+    /// ----------
+    /// shapes : path or str, optional
+    ///     The robot's file, or the name of a robot that mozzi brings along, for its shapes; without it there is a
+    ///     skeleton.
+    /// meshes : {'visual', 'collision', 'none'}
+    ///     Which meshes of that file go into the page.
+    /// mesh_root : path, optional
+    ///     A folder above the meshes of that file that lie outside of its own folder and package.
+    ///
+    /// Returns
+    /// -------
+    /// Page
+    ///
+    /// Warns
+    /// -----
+    /// LoadWarning
+    ///     For each shape that is left out.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> mozzi.models.ur5().play()
+    /// <mozzi page of 2.3 MB: a notebook shows it, save(path) writes it>
+    #[pyo3(signature = (*, shapes=None, meshes="visual", mesh_root=None))]
+    fn play<'py>(
+        &self,
+        py: Python<'py>,
+        shapes: Option<PathBuf>,
+        meshes: &str,
+        mesh_root: Option<PathBuf>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (model, drawing) = (&self.robot().model, drawing(py, shapes, meshes, mesh_root)?);
+        let name = &model.description().name;
+        let text = json::to_value(model.description()).to_string();
+        let file = format!("{name}.json");
+        let page = play_html(&Played { name, file: &file, text: &text, model, drawing: &drawing });
+        py.import("mozzi._notebook")?.getattr("Page")?.call1((page,))
+    }
+}
