@@ -123,7 +123,8 @@ export class App {
     if (!isAlike) this.stage.look();
     this.stage.ground(this.settings.ground !== null);
     this.say(`${robot.n} velocities, ${robot.bodies.length - 1} moving links${robot.warnings.length > 0 ? `, ${robot.warnings.length} warnings: see ?` : ""}`);
-    addShapesNote(this.find("hint"), this.omitted);
+    // shapes that the ground does not touch are drawn all the same
+    addShapesNote(this.find("hint"), this.omitted.filter((note) => !robot.notes.includes(note)));
     this.fillNotes?.();
     return true;
   }
