@@ -3,6 +3,7 @@
 //! program of docs/cpp.md is built with it.
 
 use crate::command;
+use crate::glibc;
 use crate::report::{Outcome, Report};
 use crate::venv;
 use crate::workspace::Workspace;
@@ -46,7 +47,7 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
     command::run(tool(workspace, "cmake")?.arg("--install").arg(&build).arg("--prefix").arg(&stage))?;
 
     let (library, bytes) = shared_library(&stage)?;
-    let newest = newest_glibc(&bytes).ok_or_else(|| format!("{} names no version of glibc", library.display()))?;
+    let newest = glibc::newest(&bytes).ok_or_else(|| format!("{} names no version of glibc", library.display()))?;
     if newest > GLIBC {
         return Err(format!("{} needs glibc 2.{newest}, expected at most 2.{GLIBC}", library.display()));
     }
@@ -90,17 +91,6 @@ fn shared_library(stage: &Path) -> Result<(PathBuf, Vec<u8>), String> {
     Ok((file, bytes))
 }
 
-/// The largest minor version in the names GLIBC_2.N of a library's symbols.
-fn newest_glibc(library: &[u8]) -> Option<u32> {
-    const NAME: &[u8] = b"GLIBC_2.";
-    let places = library.windows(NAME.len()).enumerate().filter(|(_, name)| *name == NAME);
-    let versions = places.filter_map(|(at, _)| {
-        let digits = library[at + NAME.len()..].iter().take_while(|byte| byte.is_ascii_digit());
-        digits.map(|&byte| char::from(byte)).collect::<String>().parse().ok()
-    });
-    versions.max()
-}
-
 /// Unpacks the archive, builds the first program of docs/cpp.md with it, and runs it; the time that a user waits.
 fn use_it(workspace: &Workspace, archive: &Path, name: &str) -> Result<String, String> {
     let scratch = workspace.scratch("dist")?;
@@ -120,15 +110,4 @@ fn use_it(workspace: &Workspace, archive: &Path, name: &str) -> Result<String, S
     let seconds = begin.elapsed().as_secs_f64();
     command::run(Command::new(scratch.join("build/main")).current_dir(&scratch))?;
     Ok(format!("; the program of {page} was configured and built in {seconds:.1} s, and ran"))
-}
-
-#[cfg(test)]
-mod unit {
-    use super::newest_glibc;
-
-    #[test]
-    fn versions_are_numbers() {
-        assert_eq!(newest_glibc(b"\0GLIBC_2.2.5\0GLIBC_2.17\0GLIBC_2.9\0GLIBC_PRIVATE\0"), Some(17));
-        assert_eq!(newest_glibc(b"GLIBC_2.x"), None);
-    }
 }
