@@ -89,10 +89,9 @@ fn size(file: &Path) -> Result<u64, String> {
 /// Builds the program and copies it; its place among cargo's results.
 fn command_line(workspace: &Workspace, stage: &Path) -> Result<PathBuf, String> {
     let mut cargo = workspace.cargo(&["build", "--release", "--locked", "--package", "mozzi-cli"]);
-    if std::env::var_os("MOZZI_COMMIT").is_none() {
-        if let Some(commit) = workspace.git(&["rev-parse", "--short=12", "HEAD"]) {
-            cargo.env("MOZZI_COMMIT", commit);
-        }
+    let commit = std::env::var("MOZZI_COMMIT").ok();
+    if let Some(commit) = commit.or_else(|| workspace.git(&["rev-parse", "--short=12", "HEAD"])) {
+        cargo.env("MOZZI_COMMIT", commit);
     }
     command::run(cargo)?;
     let built = workspace.target().join("release/mozzi");
