@@ -7,6 +7,7 @@ use crate::glibc;
 use crate::report::{Outcome, Report};
 use crate::venv;
 use crate::workspace::Workspace;
+use crate::zig::{self, GLIBC};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -14,8 +15,6 @@ use std::process::Command;
 const TOOLS: &str = "crates/mozzi-c/requirements-dist.txt";
 const FOLDER: &str = "target/dist";
 const ARCHITECTURES: [&str; 2] = ["x86_64", "aarch64"];
-/// The oldest glibc that the library runs on: Debian 10, RHEL 8, Ubuntu 18.10.
-const GLIBC: u32 = 28;
 /// Of the shared library, without symbols: half of it are kernels (docs/performance-log.md).
 const MOST_BYTES: u64 = 12_000_000;
 
@@ -71,11 +70,8 @@ fn has_standard_library(triple: &str) -> Result<bool, String> {
 
 /// A program that finds cargo-zigbuild, and zig as a module of Python.
 fn tool(workspace: &Workspace, program: &str) -> Result<Command, String> {
-    let bin = venv::python(workspace).parent().map(Path::to_path_buf).unwrap_or_default();
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(bin).chain(std::env::split_paths(&path)));
     let mut command = Command::new(program);
-    command.env("PATH", path.map_err(|error| error.to_string())?);
+    zig::find(workspace, &mut command)?;
     Ok(command)
 }
 

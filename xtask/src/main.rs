@@ -37,6 +37,7 @@ mod venv;
 mod wasm;
 mod wheel;
 mod workspace;
+mod zig;
 
 use report::Report;
 use std::process::ExitCode;

@@ -2,6 +2,7 @@
 
 use crate::command;
 use crate::glibc;
+use crate::zig::GLIBC;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -31,6 +32,16 @@ impl Package {
         }
     }
 
+    /// Rust's name of the target.
+    pub fn triple(&self) -> String {
+        format!("{}-unknown-linux-gnu", std::env::consts::ARCH)
+    }
+
+    /// The same with the version of glibc, as cargo-zigbuild reads it.
+    pub fn target(&self) -> String {
+        format!("{}.2.{GLIBC}", self.triple())
+    }
+
     pub fn multiarch(&self) -> &str {
         self.multiarch
     }
@@ -45,6 +56,9 @@ impl Package {
         for binary in binaries {
             let bytes = std::fs::read(binary).map_err(|error| format!("{}: {error}", binary.display()))?;
             newest = newest.max(glibc::newest(&bytes).unwrap_or_default());
+        }
+        if newest > GLIBC {
+            return Err(format!("the binaries need glibc 2.{newest}, expected at most 2.{GLIBC}"));
         }
         let soname = binaries.iter().find_map(|binary| soname_version(binary)).ok_or("no library has a soname")?;
         let (_, sums) = command::output(

@@ -1,5 +1,6 @@
 //! `cargo xtask deb`: a Debian package with the command line, its completions and manual, and the C and C++ library,
-//! packed by dpkg-deb from a folder that looks like the system's.
+//! packed by dpkg-deb from a folder that looks like the system's. It is linked by zig against the glibc of 2018, with the
+//! wheel's flags and among the wheel's results, so that what both contain is compiled once.
 
 mod control;
 mod trial;
@@ -7,12 +8,16 @@ mod trial;
 use crate::command;
 use crate::report::{Outcome, Report};
 use crate::third_party;
+use crate::venv;
 use crate::workspace::Workspace;
+use crate::zig;
 use control::Package;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const FOLDER: &str = "target/deb";
+/// cargo-zigbuild and zig.
+const TOOLS: &str = "crates/mozzi-c/requirements-dist.txt";
 /// Of the program `mozzi` without symbols.
 const MOST_BYTES: u64 = 18_000_000;
 
@@ -27,6 +32,10 @@ pub fn run(workspace: &Workspace, report: &mut Report) {
     let missing =
         ["dpkg-deb", "cmake", "strip", "gzip"].into_iter().find(|name| !command::exists(&mut Command::new(name)));
     let mut file = Err("it was not built".to_owned());
+    if missing.is_none() {
+        report.step("Python environment", || venv::prepare(workspace));
+        report.step("zig", || venv::add(workspace, TOOLS));
+    }
     report.step("Debian package", || {
         if let Some(missing) = missing {
             return Outcome::Skipped(format!("{missing} is not installed"));
@@ -50,7 +59,7 @@ pub fn run(workspace: &Workspace, report: &mut Report) {
 fn build(workspace: &Workspace) -> Result<(PathBuf, String), String> {
     let package = Package::of_this_machine()?;
     let stage = workspace.fresh_folder(&format!("{FOLDER}/stage"))?;
-    let program = command_line(workspace, &stage)?;
+    let program = command_line(workspace, &stage, &package)?;
     let library = library(workspace, &stage, &package)?;
     documents(workspace, &stage, &program)?;
     let binaries = [stage.join("usr/bin/mozzi"), library];
@@ -87,14 +96,16 @@ fn size(file: &Path) -> Result<u64, String> {
 }
 
 /// Builds the program and copies it; its place among cargo's results.
-fn command_line(workspace: &Workspace, stage: &Path) -> Result<PathBuf, String> {
-    let mut cargo = workspace.cargo(&["build", "--release", "--locked", "--package", "mozzi-cli"]);
+fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Result<PathBuf, String> {
+    let mut cargo = workspace.cargo(&["zigbuild", "--release", "--locked", "--package", "mozzi-cli", "--target"]);
+    cargo.arg(package.target()).env("RUSTFLAGS", zig::flags(&workspace.root));
+    zig::find(workspace, &mut cargo)?;
     let commit = std::env::var("MOZZI_COMMIT").ok();
     if let Some(commit) = commit.or_else(|| workspace.git(&["rev-parse", "--short=12", "HEAD"])) {
         cargo.env("MOZZI_COMMIT", commit);
     }
     command::run(cargo)?;
-    let built = workspace.target().join("release/mozzi");
+    let built = workspace.target().join(package.triple()).join("release/mozzi");
     copy(&built, &stage.join("usr/bin/mozzi"))?;
     Ok(built)
 }
@@ -106,10 +117,13 @@ fn library(workspace: &Workspace, stage: &Path, package: &Package) -> Result<Pat
     let folder = format!("lib/{}", package.multiarch());
     let mut configure = Command::new("cmake");
     configure.arg("-S").arg(&workspace.root).arg("-B").arg(&build);
-    configure.args(["-DMOZZI_BUILD_EXAMPLES=OFF", "-DCMAKE_INSTALL_PREFIX=/usr"]);
+    configure.args(["-DMOZZI_BUILD_EXAMPLES=OFF", "-DMOZZI_CARGO_BUILD=zigbuild", "-DCMAKE_INSTALL_PREFIX=/usr"]);
+    configure.arg(format!("-DMOZZI_CARGO_TARGET={}", package.target()));
     configure.arg(format!("-DCMAKE_INSTALL_LIBDIR={folder}"));
     command::run(configure.arg(format!("-DMOZZI_CARGO_FOLDER={}", workspace.target().display())))?;
-    command::run(Command::new("cmake").arg("--build").arg(&build))?;
+    let mut cmake = Command::new("cmake");
+    zig::find(workspace, &mut cmake)?;
+    command::run(cmake.arg("--build").arg(&build).env("RUSTFLAGS", zig::flags(&workspace.root)))?;
     command::run(Command::new("cmake").arg("--install").arg(&build).env("DESTDIR", stage))?;
     let folder = stage.join("usr").join(folder);
     // Debian states licences in one file, which `documents` writes
