@@ -35,7 +35,7 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
         return Ok(Outcome::Skipped(format!("`rustup target add {triple}` installs what it needs")));
     }
     let (build, cargo) = (workspace.path(FOLDER).join(architecture), workspace.path(FOLDER).join("cargo"));
-    let name = format!("mozzi-{}-{architecture}-linux", env!("CARGO_PKG_VERSION"));
+    let name = format!("mozzi-{}-{architecture}-linux", workspace.version()?);
     let stage = workspace.fresh_folder(&format!("{FOLDER}/{name}"))?;
     let mut configure = tool(workspace, "cmake")?;
     configure.arg("-S").arg(&workspace.root).arg("-B").arg(&build);

@@ -55,6 +55,13 @@ impl Workspace {
         (output.status.success() && !text.is_empty()).then_some(text)
     }
 
+    /// The version of the published crates.
+    pub fn version(&self) -> Result<String, String> {
+        let text = std::fs::read_to_string(self.path("Cargo.toml")).map_err(|error| format!("Cargo.toml: {error}"))?;
+        let version = text.lines().find_map(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
+        version.map(str::to_owned).ok_or_else(|| "Cargo.toml states no version".into())
+    }
+
     /// SOURCE_DATE_EPOCH, the time that archives give their files: as set, or that of the last commit.
     pub fn time_of_commit(&self) -> Option<String> {
         std::env::var("SOURCE_DATE_EPOCH").ok().or_else(|| self.git(&["log", "-1", "--format=%ct"]))

@@ -7,7 +7,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// No address is known at which bugs are received.
+const NO_ADDRESS: &str = "mozzi@localhost";
 /// The first line is the synopsis.
 const DESCRIPTION: &str = "dynamics of robots by screws: command line, C and C++ library
  Rigid-body dynamics of robots in the notation of Lynch and Park's Modern
@@ -19,17 +20,23 @@ const DESCRIPTION: &str = "dynamics of robots by screws: command line, C and C++
 
 /// A package for one kind of processor, by Debian's name and by that of its folder of libraries.
 pub struct Package {
+    version: String,
+    maintainer: String,
     architecture: &'static str,
     multiarch: &'static str,
 }
 
 impl Package {
-    pub fn of_this_machine() -> Result<Package, String> {
-        match std::env::consts::ARCH {
-            "x86_64" => Ok(Package { architecture: "amd64", multiarch: "x86_64-linux-gnu" }),
-            "aarch64" => Ok(Package { architecture: "arm64", multiarch: "aarch64-linux-gnu" }),
-            other => Err(format!("{other} has no name in this list of Debian's architectures")),
-        }
+    /// Of the maintainer whom Debian's DEBFULLNAME and DEBEMAIL name.
+    pub fn of_this_machine(version: String) -> Result<Package, String> {
+        let (architecture, multiarch) = match std::env::consts::ARCH {
+            "x86_64" => ("amd64", "x86_64-linux-gnu"),
+            "aarch64" => ("arm64", "aarch64-linux-gnu"),
+            other => return Err(format!("{other} has no name in this list of Debian's architectures")),
+        };
+        let set = |name: &str, otherwise: &str| std::env::var(name).unwrap_or_else(|_| otherwise.to_owned());
+        let maintainer = format!("{} <{}>", set("DEBFULLNAME", "The mozzi contributors"), set("DEBEMAIL", NO_ADDRESS));
+        Ok(Package { version, maintainer, architecture, multiarch })
     }
 
     /// Rust's name of the target.
@@ -47,7 +54,7 @@ impl Package {
     }
 
     pub fn file_name(&self) -> String {
-        format!("mozzi_{VERSION}_{}.deb", self.architecture)
+        format!("mozzi_{}_{}.deb", self.version, self.architecture)
     }
 
     /// Writes DEBIAN/ into the staged folder, for binaries in it.
@@ -74,7 +81,7 @@ impl Package {
         [
             ("control", self.control(newest, size)),
             ("md5sums", sums),
-            ("shlibs", format!("libmozzi {soname} mozzi (>= {VERSION})\n")),
+            ("shlibs", format!("libmozzi {soname} mozzi (>= {})\n", self.version)),
             ("triggers", "activate-noawait ldconfig\n".to_owned()),
         ]
         .into_iter()
@@ -82,12 +89,18 @@ impl Package {
     }
 
     fn control(&self, glibc: u32, kilobytes: u64) -> String {
-        // no address is known at which bugs are received
         format!(
-            "Package: mozzi\nVersion: {VERSION}\nArchitecture: {}\nMaintainer: The mozzi contributors <mozzi@localhost>\n\
-             Installed-Size: {kilobytes}\nDepends: libc6 (>= 2.{glibc}), libgcc-s1\nSection: science\nPriority: optional\n\
+            "Package: mozzi\nVersion: {}\nArchitecture: {}\nMaintainer: {}\nInstalled-Size: {kilobytes}\nDepends: libc6 (>= 2.{glibc}), libgcc-s1\nSection: science\nPriority: optional\n\
              Description: {DESCRIPTION}\n",
-            self.architecture
+            self.version, self.architecture, self.maintainer
+        )
+    }
+
+    /// Debian's changelog, which names the project's; `date` is in the format of RFC 5322.
+    pub fn changelog(&self, date: &str) -> String {
+        format!(
+            "mozzi ({}) unstable; urgency=medium\n\n  * CHANGELOG.md.gz lists the changes.\n\n -- {}  {date}\n",
+            self.version, self.maintainer
         )
     }
 }
@@ -114,7 +127,7 @@ fn installed_kilobytes(folder: &Path) -> Result<u64, String> {
 pub fn copyright(licence: &str) -> String {
     let mut file = "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\nUpstream-Name: mozzi\n\
                     Comment: THIRD-PARTY.txt.gz, next to this file, has the licences of the linked packages.\n\nFiles: *\n\
-                    Copyright: The mozzi contributors\nLicense: MIT or Apache-2.0\n\nLicense: MIT\n"
+                    Copyright: (c) The mozzi contributors\nLicense: MIT or Apache-2.0\n\nLicense: MIT\n"
         .to_owned();
     for line in licence.lines().skip_while(|line| !line.starts_with("Permission")) {
         // writing to a String cannot fail
@@ -130,8 +143,14 @@ mod tests {
 
     #[test]
     fn the_control_file_states_what_is_needed() {
-        let package = Package { architecture: "amd64", multiarch: "x86_64-linux-gnu" };
+        let package = Package {
+            version: "1.2.3".into(),
+            maintainer: "A <a@b.org>".into(),
+            architecture: "amd64",
+            multiarch: "x86_64-linux-gnu",
+        };
         let text = package.control(28, 12);
+        assert!(package.changelog("now").starts_with("mozzi (1.2.3) ") && text.contains("\nMaintainer: A <a@b.org>\n"));
         assert!(text.contains("\nDepends: libc6 (>= 2.28), libgcc-s1\n") && text.contains("\nInstalled-Size: 12\n"));
         assert!(text.lines().all(|line| !line.is_empty()), "{text}");
     }

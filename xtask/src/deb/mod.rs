@@ -57,11 +57,11 @@ pub fn run(workspace: &Workspace, report: &mut Report) {
 
 /// The package's file, and its sizes.
 fn build(workspace: &Workspace) -> Result<(PathBuf, String), String> {
-    let package = Package::of_this_machine()?;
+    let package = Package::of_this_machine(workspace.version()?)?;
     let stage = workspace.fresh_folder(&format!("{FOLDER}/stage"))?;
     let program = command_line(workspace, &stage, &package)?;
     let library = library(workspace, &stage, &package)?;
-    documents(workspace, &stage, &program)?;
+    documents(workspace, &stage, &program, &package)?;
     let binaries = [stage.join("usr/bin/mozzi"), library];
     for binary in &binaries {
         command::run(Command::new("strip").args(["--strip-unneeded", "--remove-section=.comment"]).arg(binary))?;
@@ -138,7 +138,7 @@ fn library(workspace: &Workspace, stage: &Path, package: &Package) -> Result<Pat
 }
 
 /// Completions and manual, written by the program itself; licences and changelog.
-fn documents(workspace: &Workspace, stage: &Path, program: &Path) -> Result<(), String> {
+fn documents(workspace: &Workspace, stage: &Path, program: &Path, package: &Package) -> Result<(), String> {
     for (shell, file) in COMPLETIONS {
         let (true, script) = command::output(Command::new(program).args(["completions", shell]))? else {
             return Err(format!("`mozzi completions {shell}` failed"));
@@ -148,13 +148,17 @@ fn documents(workspace: &Workspace, stage: &Path, program: &Path) -> Result<(), 
     let manual = stage.join("usr/share/man/man1");
     command::run(Command::new(program).args(["man", "--out"]).arg(&manual))?;
     let doc = stage.join("usr/share/doc/mozzi");
-    copy(&workspace.path("CHANGELOG.md"), &doc.join("changelog"))?;
+    copy(&workspace.path("CHANGELOG.md"), &doc.join("CHANGELOG.md"))?;
+    let time = workspace.time_of_commit().unwrap_or_else(|| "0".into());
+    let (_, date) =
+        command::output(Command::new("date").args(["--utc", "--rfc-email", "--date"]).arg(format!("@{time}")))?;
+    write(&doc.join("changelog"), package.changelog(date.trim()).as_bytes())?;
     copy(&workspace.path(third_party::FILE), &doc.join(third_party::FILE))?;
     let licence = workspace.path("LICENSE-MIT");
     let licence = std::fs::read_to_string(&licence).map_err(|error| format!("{}: {error}", licence.display()))?;
     write(&doc.join("copyright"), control::copyright(&licence).as_bytes())?;
     let pages = std::fs::read_dir(&manual).map_err(|error| format!("{}: {error}", manual.display()))?;
-    let large = [doc.join("changelog"), doc.join(third_party::FILE)];
+    let large = ["changelog", "CHANGELOG.md", third_party::FILE].map(|name| doc.join(name));
     let files = pages.flatten().map(|entry| entry.path()).chain(large);
     command::run(Command::new("gzip").args(["-9", "--no-name"]).args(files))
 }
