@@ -3,9 +3,11 @@
 //! program of docs/cpp.md is built with it.
 
 use crate::command;
+use crate::glibc;
 use crate::report::{Outcome, Report};
 use crate::venv;
 use crate::workspace::Workspace;
+use crate::zig::{self, GLIBC};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -13,8 +15,6 @@ use std::process::Command;
 const TOOLS: &str = "crates/mozzi-c/requirements-dist.txt";
 const FOLDER: &str = "target/dist";
 const ARCHITECTURES: [&str; 2] = ["x86_64", "aarch64"];
-/// The oldest glibc that the library runs on: Debian 10, RHEL 8, Ubuntu 18.10.
-const GLIBC: u32 = 28;
 /// Of the shared library, without symbols: half of it are kernels (docs/performance-log.md).
 const MOST_BYTES: u64 = 12_000_000;
 
@@ -35,7 +35,7 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
         return Ok(Outcome::Skipped(format!("`rustup target add {triple}` installs what it needs")));
     }
     let (build, cargo) = (workspace.path(FOLDER).join(architecture), workspace.path(FOLDER).join("cargo"));
-    let name = format!("mozzi-{}-{architecture}-linux", env!("CARGO_PKG_VERSION"));
+    let name = format!("mozzi-{}-{architecture}-linux", workspace.version()?);
     let stage = workspace.fresh_folder(&format!("{FOLDER}/{name}"))?;
     let mut configure = tool(workspace, "cmake")?;
     configure.arg("-S").arg(&workspace.root).arg("-B").arg(&build);
@@ -46,7 +46,7 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
     command::run(tool(workspace, "cmake")?.arg("--install").arg(&build).arg("--prefix").arg(&stage))?;
 
     let (library, bytes) = shared_library(&stage)?;
-    let newest = newest_glibc(&bytes).ok_or_else(|| format!("{} names no version of glibc", library.display()))?;
+    let newest = glibc::newest(&bytes).ok_or_else(|| format!("{} names no version of glibc", library.display()))?;
     if newest > GLIBC {
         return Err(format!("{} needs glibc 2.{newest}, expected at most 2.{GLIBC}", library.display()));
     }
@@ -70,11 +70,8 @@ fn has_standard_library(triple: &str) -> Result<bool, String> {
 
 /// A program that finds cargo-zigbuild, and zig as a module of Python.
 fn tool(workspace: &Workspace, program: &str) -> Result<Command, String> {
-    let bin = venv::python(workspace).parent().map(Path::to_path_buf).unwrap_or_default();
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(bin).chain(std::env::split_paths(&path)));
     let mut command = Command::new(program);
-    command.env("PATH", path.map_err(|error| error.to_string())?);
+    zig::find(workspace, &mut command)?;
     Ok(command)
 }
 
@@ -88,17 +85,6 @@ fn shared_library(stage: &Path) -> Result<(PathBuf, Vec<u8>), String> {
     let file = file.ok_or_else(|| format!("{} has no libmozzi.so", folder.display()))?;
     let bytes = std::fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))?;
     Ok((file, bytes))
-}
-
-/// The largest minor version in the names GLIBC_2.N of a library's symbols.
-fn newest_glibc(library: &[u8]) -> Option<u32> {
-    const NAME: &[u8] = b"GLIBC_2.";
-    let places = library.windows(NAME.len()).enumerate().filter(|(_, name)| *name == NAME);
-    let versions = places.filter_map(|(at, _)| {
-        let digits = library[at + NAME.len()..].iter().take_while(|byte| byte.is_ascii_digit());
-        digits.map(|&byte| char::from(byte)).collect::<String>().parse().ok()
-    });
-    versions.max()
 }
 
 /// Unpacks the archive, builds the first program of docs/cpp.md with it, and runs it; the time that a user waits.
@@ -120,15 +106,4 @@ fn use_it(workspace: &Workspace, archive: &Path, name: &str) -> Result<String, S
     let seconds = begin.elapsed().as_secs_f64();
     command::run(Command::new(scratch.join("build/main")).current_dir(&scratch))?;
     Ok(format!("; the program of {page} was configured and built in {seconds:.1} s, and ran"))
-}
-
-#[cfg(test)]
-mod unit {
-    use super::newest_glibc;
-
-    #[test]
-    fn versions_are_numbers() {
-        assert_eq!(newest_glibc(b"\0GLIBC_2.2.5\0GLIBC_2.17\0GLIBC_2.9\0GLIBC_PRIVATE\0"), Some(17));
-        assert_eq!(newest_glibc(b"GLIBC_2.x"), None);
-    }
 }

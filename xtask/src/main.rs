@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | book | page | bench | accuracy | nightly | wheel | api | release | dist`: the same
-//! commands as in CI.
+//! `cargo xtask test | check | docs | book | page | bench | accuracy | nightly | wheel | api | release | dist | deb |
+//! licences`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -9,11 +9,13 @@ mod advisories;
 mod bench;
 mod book;
 mod command;
+mod deb;
 mod dist;
 mod docs;
 mod documents;
 mod examples;
 mod fuzz;
+mod glibc;
 mod house_rules;
 mod inlining;
 mod licences;
@@ -31,10 +33,12 @@ mod source_text;
 mod spdx;
 mod stamp;
 mod tests;
+mod third_party;
 mod venv;
 mod wasm;
 mod wheel;
 mod workspace;
+mod zig;
 
 use report::Report;
 use std::process::ExitCode;
@@ -69,12 +73,18 @@ usage: cargo xtask COMMAND
           --no-hard                                   without the cases that are hard by design
   nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
-  wheel   build the Python package for Linux into target/wheels, install it into an empty environment and run its README
+  wheel   build the Python package for Linux into target/wheels, install it into an empty environment, run its README and
+          the notebooks
+          --sdist                                     also the source distribution, twice; build the wheel from it elsewhere,
+                                                      without a network: both wheels must be the same file
           --of-tests                                  package the build of `test`, as `test` does it
   api     list the public items of the published crates in docs/api; `check` compares
   release --dry-run VERSION: version, changelog, metadata, features, public items; packages every crate that is published,
           and builds and runs their documentation's examples, a first program and the command line from the packages alone
-  dist    archives of the C and C++ library for Linux into target/dist, for glibc 2.28 or newer; needs cmake";
+  dist    archives of the C and C++ library for Linux into target/dist, for glibc 2.28 or newer; needs cmake
+  deb     a Debian package for this machine into target/deb: command line, completions, manual, C and C++ library; installs
+          it into an empty root and uses it; needs dpkg-deb and cmake, else it is skipped
+  licences  write THIRD-PARTY.txt, the licences of all linked packages, which the binaries are shipped with; `check` compares";
 
 /// Options of `test`, each with what it installs.
 const EXTRAS: [(&str, &str); 1] = [("--torch", venv::TORCH)];
@@ -92,14 +102,13 @@ fn main() -> ExitCode {
         ["book", "--code"] => one("code of the book", || book::code(&workspace)),
         ["page"] => one("page", || page::write(&workspace)),
         ["page", "--check"] => one("page", || page::compare(&workspace)),
-        ["wheel"] => wheel(&workspace),
-        ["dist"] => dist(&workspace),
+        ["wheel"] => steps(|report| wheel::run(&workspace, false, report)),
+        ["wheel", "--sdist"] => steps(|report| wheel::run(&workspace, true, report)),
+        ["dist"] => steps(|report| dist::run(&workspace, report)),
+        ["deb"] => steps(|report| deb::run(&workspace, report)),
+        ["licences"] => one("licence texts", || third_party::write(&workspace)),
         ["api"] => one("public items", || release::api::write(&workspace)),
-        ["release", "--dry-run", version] => {
-            let mut report = Report::default();
-            release::rehearse(&workspace, version, &mut report);
-            report.finish()
-        }
+        ["release", "--dry-run", version] => steps(|report| release::rehearse(&workspace, version, report)),
         ["nightly"] => nightly::run(&workspace, nightly::SECONDS),
         ["nightly", "--seconds", seconds] if seconds.parse::<u32>().is_ok() => {
             nightly::run(&workspace, seconds.parse().unwrap_or(nightly::SECONDS))
@@ -157,19 +166,6 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     exit
 }
 
-fn wheel(workspace: &Workspace) -> ExitCode {
-    let mut report = Report::default();
-    report.step("Python environment", || venv::prepare(workspace));
-    report.step("wheel", || wheel::build(workspace));
-    report.finish()
-}
-
-fn dist(workspace: &Workspace) -> ExitCode {
-    let mut report = Report::default();
-    dist::run(workspace, &mut report);
-    report.finish()
-}
-
 fn accuracy(workspace: &Workspace, options: &[&str]) -> ExitCode {
     let mut report = Report::default();
     report.step("Python environment", || venv::prepare(workspace));
@@ -211,9 +207,17 @@ fn check(workspace: &Workspace) -> ExitCode {
     });
     report.step("public items", || release::api::check(workspace));
     report.step("licences", || licences::check(workspace));
+    report.step("licence texts", || third_party::check(workspace));
     report.step("advisories", || advisories::check(workspace));
     report.step("house rules", || house_rules::check(workspace));
     report.step("lengths of documents", || documents::check(workspace));
+    report.finish()
+}
+
+/// A command that adds its steps itself.
+fn steps(add: impl FnOnce(&mut Report)) -> ExitCode {
+    let mut report = Report::default();
+    add(&mut report);
     report.finish()
 }
 

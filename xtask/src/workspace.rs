@@ -48,6 +48,25 @@ impl Workspace {
         command
     }
 
+    /// The answer of git, if this is a clone and git is installed.
+    pub fn git(&self, arguments: &[&str]) -> Option<String> {
+        let output = Command::new("git").args(arguments).current_dir(&self.root).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+        (output.status.success() && !text.is_empty()).then_some(text)
+    }
+
+    /// The version of the published crates.
+    pub fn version(&self) -> Result<String, String> {
+        let text = std::fs::read_to_string(self.path("Cargo.toml")).map_err(|error| format!("Cargo.toml: {error}"))?;
+        let version = text.lines().find_map(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
+        version.map(str::to_owned).ok_or_else(|| "Cargo.toml states no version".into())
+    }
+
+    /// SOURCE_DATE_EPOCH, the time that archives give their files: as set, or that of the last commit.
+    pub fn time_of_commit(&self) -> Option<String> {
+        std::env::var("SOURCE_DATE_EPOCH").ok().or_else(|| self.git(&["log", "-1", "--format=%ct"]))
+    }
+
     /// `cargo run` of something in this workspace, started in another folder.
     pub fn cargo_run_in(&self, folder: &Path, arguments: &[&str]) -> Command {
         let mut command = self.cargo(&["run", "--manifest-path"]);
