@@ -38,7 +38,7 @@ export class Quality {
     scene.sun.castShadow = level < 2;
     scene.scale = [1, 1, 0.75, 0.5][level];
     scene.resize();
-    scene.draw();
+    scene.drawNow(); // at once: another size empties the canvas
   }
 
   coarse(fine, level) {
