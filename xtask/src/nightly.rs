@@ -1,5 +1,5 @@
-//! Checks that take hours: long simulations, other processors, fuzzing with and without coverage guidance, accuracy at many states. The
-//! log of a night is `target/nightly/DATE.md`; each step is written when it ends.
+//! Checks that take hours: long simulations, other processors, fuzzing with and without coverage guidance, accuracy at
+//! many states. The log of a night is `target/nightly/DATE.md`; each step is written when it ends.
 
 use crate::accuracy;
 use crate::command;

@@ -24,8 +24,8 @@ fn play(robot: &mut Robot, command: Value) -> Value {
     robot.play(&command.to_string()).expect("a command")
 }
 
-const UR5: &str = include_str!("../../../models/ur5.urdf");
-const ANYMAL: &str = include_str!("../../../models/anymal.urdf");
+const UR5: &str = include_str!("../../mozzi-urdf/models/ur5.urdf");
+const ANYMAL: &str = include_str!("../../mozzi-urdf/models/anymal.urdf");
 const SNAKE: &str = include_str!("../../mozzi-report/robots/snake.urdf.xacro");
 const CART: &str = include_str!("../../mozzi-report/robots/spherical_pendulum.xml");
 const FOUR_BAR: &str = include_str!("../../mozzi-report/robots/four_bar.json");

@@ -1,6 +1,6 @@
 //! `cargo xtask deb`: a Debian package with the command line, its completions and manual, and the C and C++ library,
-//! packed by dpkg-deb from a folder that looks like the system's. It is linked by zig against the glibc of 2018, with the
-//! wheel's flags and among the wheel's results, so that what both contain is compiled once.
+//! packed by dpkg-deb from a folder that looks like the system's. It is linked by zig against the glibc of 2018, with
+//! the wheel's flags and among the wheel's results, so that what both contain is compiled once.
 
 mod control;
 mod trial;

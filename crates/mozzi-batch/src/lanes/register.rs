@@ -2,8 +2,8 @@
 //!
 //! Its values are made and used only inside the entries of `number.rs`, which run only if the processor has the
 //! instructions: every unsafe block here relies on that. Each method is inlined into an entry, where it becomes one or
-//! two instructions. Negation is −0 − x, which the compiler merges into a fused multiply-add. Some instructions are safe
-//! to call where every processor has them, hence `unused_unsafe`.
+//! two instructions. Negation is −0 − x, which the compiler merges into a fused multiply-add. Some instructions are
+//! safe to call where every processor has them, hence `unused_unsafe`.
 
 /// A register. Instructions are named in the order of their use.
 macro_rules! register {

@@ -1,6 +1,6 @@
-//! Segments of long code. What exceeds the first-level cache of instructions would be fetched anew for every register of
-//! states; cut into segments that fit, each of which runs on a group of registers before the next, it is fetched once a
-//! group. Between segments all values are in the frame, of which each register of the group has its own.
+//! Segments of long code. What exceeds the first-level cache of instructions would be fetched anew for every register
+//! of states; cut into segments that fit, each of which runs on a group of registers before the next, it is fetched
+//! once a group. Between segments all values are in the frame, of which each register of the group has its own.
 //!
 //! By AVX2 long programs take 0.82 to 0.97 of the time, on a Zen 5 by AVX-512 0.86 to 0.92; on a Zen 4, whose 512-bit
 //! instructions take two turns, 0.95 to 1.06 (docs/performance-log.md).

@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// θ ⊕ h θ̇: the positions after h seconds at constant velocities, θ + h θ̇ for joints of one axis, on the group for
-    /// a floating base, balls and free joints, whose quaternions stay unit.
+    /// θ ⊕ h θ̇: the positions after h seconds at constant velocities, θ + h θ̇ for joints of one axis, on the group
+    /// for a floating base, balls and free joints, whose quaternions stay unit.
     ///
     /// Parameters
     /// ----------
