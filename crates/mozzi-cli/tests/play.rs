@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-12;
 
 const SNAKE: &str = include_str!("../../mozzi-report/robots/snake.urdf.xacro");
 const CART: &str = include_str!("../../mozzi-report/robots/spherical_pendulum.xml");
-const UR5: &str = include_str!("../../../models/ur5.urdf");
+const UR5: &str = include_str!("../../mozzi-urdf/models/ur5.urdf");
 
 fn given(name: &str, [theta, dtheta, ddtheta]: &[Vec<f64>; 3]) -> Vec<f64> {
     match name {
