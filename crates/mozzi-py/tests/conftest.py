@@ -6,7 +6,7 @@ import mozzi
 import numpy as np
 import pytest
 
-MODELS = Path(__file__).parents[3] / "models"
+MODELS = Path(__file__).parents[2] / "mozzi-urdf/models"
 ORACLES = Path(__file__).parents[3] / "oracles"
 
 
