@@ -1,5 +1,5 @@
-//! The packages as crates.io would get them, in a directory that stands for it: cargo builds from it without network and
-//! without this workspace.
+//! The packages as crates.io would get them, in a directory that acts as its index: cargo builds from it without a
+//! network and without this workspace.
 
 use super::crates;
 use crate::command;
