@@ -14,6 +14,8 @@ use std::process::Command;
 /// cargo-zigbuild and zig.
 const TOOLS: &str = "crates/mozzi-c/requirements-dist.txt";
 const FOLDER: &str = "target/dist";
+/// cargo's results, of the Debian package, too.
+pub const CARGO: &str = "target/dist/cargo";
 const ARCHITECTURES: [&str; 2] = ["x86_64", "aarch64"];
 /// Of the shared library, without symbols: half of it are kernels (docs/performance-log.md).
 const MOST_BYTES: u64 = 12_000_000;
@@ -34,7 +36,7 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
     if !has_standard_library(&triple)? {
         return Ok(Outcome::Skipped(format!("`rustup target add {triple}` installs what it needs")));
     }
-    let (build, cargo) = (workspace.path(FOLDER).join(architecture), workspace.path(FOLDER).join("cargo"));
+    let (build, cargo) = (workspace.path(FOLDER).join(architecture), workspace.path(CARGO));
     let name = format!("mozzi-{}-{architecture}-linux", workspace.version()?);
     let stage = workspace.fresh_folder(&format!("{FOLDER}/{name}"))?;
     let mut configure = tool(workspace, "cmake")?;
@@ -42,7 +44,7 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
     configure.args(["-DMOZZI_CARGO_BUILD=zigbuild", "-DMOZZI_BUILD_EXAMPLES=OFF", "-DCMAKE_INSTALL_LIBDIR=lib"]);
     configure.arg(format!("-DMOZZI_CARGO_TARGET={triple}.2.{GLIBC}"));
     command::run(configure.arg(format!("-DMOZZI_CARGO_FOLDER={}", cargo.display())))?;
-    command::run(tool(workspace, "cmake")?.arg("--build").arg(&build).env("CARGO_PROFILE_RELEASE_STRIP", "symbols"))?;
+    command::run(tool(workspace, "cmake")?.arg("--build").arg(&build))?;
     command::run(tool(workspace, "cmake")?.arg("--install").arg(&build).arg("--prefix").arg(&stage))?;
 
     let (library, bytes) = shared_library(&stage)?;
@@ -68,10 +70,10 @@ fn has_standard_library(triple: &str) -> Result<bool, String> {
     Ok(found && Path::new(folder.trim()).is_dir())
 }
 
-/// A program that finds cargo-zigbuild, and zig as a module of Python.
+/// A program that builds by cargo-zigbuild.
 fn tool(workspace: &Workspace, program: &str) -> Result<Command, String> {
     let mut command = Command::new(program);
-    zig::find(workspace, &mut command)?;
+    zig::prepare(workspace, &mut command)?;
     Ok(command)
 }
 

@@ -18,6 +18,13 @@ pub fn find(workspace: &Workspace, command: &mut Command) -> Result<(), String> 
     Ok(())
 }
 
+/// Lets a command build by cargo-zigbuild, without symbols: the same for everything that shares cargo's results.
+pub fn prepare(workspace: &Workspace, command: &mut Command) -> Result<(), String> {
+    find(workspace, command)?;
+    command.env("CARGO_PROFILE_RELEASE_STRIP", "symbols").env("RUSTFLAGS", flags(&workspace.root));
+    Ok(())
+}
+
 /// rustc's flags: those that are set, and the names that stand for the folders of this machine in panics' messages.
 pub fn flags(root: &Path) -> String {
     let cargo = std::env::var_os("CARGO_HOME").map(PathBuf::from);

@@ -1,11 +1,12 @@
 //! `cargo xtask deb`: a Debian package with the command line, its completions and manual, and the C and C++ library,
-//! packed by dpkg-deb from a folder that looks like the system's. It is linked by zig against the glibc of 2018, with
-//! the wheel's flags and among the wheel's results, so that what both contain is compiled once.
+//! packed by dpkg-deb from a folder that looks like the system's. It is linked by zig against the glibc of 2018,
+//! among the results of `cargo xtask dist`, so that what both contain is compiled once.
 
 mod control;
 mod trial;
 
 use crate::command;
+use crate::dist;
 use crate::report::{Outcome, Report};
 use crate::third_party;
 use crate::venv;
@@ -98,14 +99,14 @@ fn size(file: &Path) -> Result<u64, String> {
 /// Builds the program and copies it; its place among cargo's results.
 fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Result<PathBuf, String> {
     let mut cargo = workspace.cargo(&["zigbuild", "--release", "--locked", "--package", "mozzi-cli", "--target"]);
-    cargo.arg(package.target()).env("RUSTFLAGS", zig::flags(&workspace.root));
-    zig::find(workspace, &mut cargo)?;
+    cargo.arg(package.target()).arg("--target-dir").arg(workspace.path(dist::CARGO));
+    zig::prepare(workspace, &mut cargo)?;
     let commit = std::env::var("MOZZI_COMMIT").ok();
     if let Some(commit) = commit.or_else(|| workspace.git(&["rev-parse", "--short=12", "HEAD"])) {
         cargo.env("MOZZI_COMMIT", commit);
     }
     command::run(cargo)?;
-    let built = workspace.target().join(package.triple()).join("release/mozzi");
+    let built = workspace.path(dist::CARGO).join(package.triple()).join("release/mozzi");
     copy(&built, &stage.join("usr/bin/mozzi"))?;
     Ok(built)
 }
@@ -120,10 +121,10 @@ fn library(workspace: &Workspace, stage: &Path, package: &Package) -> Result<Pat
     configure.args(["-DMOZZI_BUILD_EXAMPLES=OFF", "-DMOZZI_CARGO_BUILD=zigbuild", "-DCMAKE_INSTALL_PREFIX=/usr"]);
     configure.arg(format!("-DMOZZI_CARGO_TARGET={}", package.target()));
     configure.arg(format!("-DCMAKE_INSTALL_LIBDIR={folder}"));
-    command::run(configure.arg(format!("-DMOZZI_CARGO_FOLDER={}", workspace.target().display())))?;
+    command::run(configure.arg(format!("-DMOZZI_CARGO_FOLDER={}", workspace.path(dist::CARGO).display())))?;
     let mut cmake = Command::new("cmake");
-    zig::find(workspace, &mut cmake)?;
-    command::run(cmake.arg("--build").arg(&build).env("RUSTFLAGS", zig::flags(&workspace.root)))?;
+    zig::prepare(workspace, &mut cmake)?;
+    command::run(cmake.arg("--build").arg(&build))?;
     command::run(Command::new("cmake").arg("--install").arg(&build).env("DESTDIR", stage))?;
     let folder = stage.join("usr").join(folder);
     // Debian states licences in one file, which `documents` writes

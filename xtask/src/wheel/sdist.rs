@@ -31,8 +31,7 @@ pub fn build(workspace: &Workspace, wheel: &Path) -> Outcome {
         let folder = workspace.scratch("sdist")?;
         command::run(Command::new("tar").arg("-xzf").arg(find(workspace)?).arg("-C").arg(&folder))?;
         let root = only_file(&folder)?;
-        let sources =
-            Sources { project: root.clone(), root, target: workspace.scratch("sdist-target")?, offline: true };
+        let sources = Sources { target: root.join("target"), project: root.clone(), root, offline: true };
         let wheels = workspace.scratch("sdist-wheel")?;
         let start = Instant::now();
         maturin::build(workspace, &sources, &wheels)?;
