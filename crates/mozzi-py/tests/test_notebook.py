@@ -53,7 +53,7 @@ def test_a_model_plays(tmp_path):
     names = [robot["name"] for robot in data["robots"]]
     assert {"ur5", "panda", "anymal"} <= set(names) and names[data["first"]] == "ur5"
     # another robot than the embedded one comes first, as it is
-    heavier = ur5.with_payload("tool0", [2, 0, 0, 0.2, 0.1, 0, 0, 0.1, 0, 0.1])
+    heavier = ur5.with_payload("tool0", 2.0)
     data = json.loads(re.search(r'<script[^>]*type="application/json"[^>]*>(.*?)</script>', page(heavier.play()), re.S)[1])
     assert data["first"] == 0 and len(data["robots"]) == len(names) + 1
     shown.save(tmp_path / "play.html")
