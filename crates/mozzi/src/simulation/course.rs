@@ -4,7 +4,7 @@ use super::across::Crowd;
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
-use super::events::{Event, Occurrence, first_zero};
+use super::events::{Event, Occurrence, first_zero, parts};
 use super::impulses::{Impulses, Key};
 use super::midpoint::Midpoint;
 use super::modes::Modes;
@@ -295,10 +295,11 @@ impl<'r> Course<'r> {
     /// true.
     pub(super) fn events_until(&mut self, dense: &Dense, end: &mut f64) -> bool {
         let model = self.driven.model;
+        let parts = if self.events.is_empty() { return false } else { parts(model, dense, *end) };
         let mut found = Vec::new();
         for (k, event) in self.events.iter().enumerate() {
             let f = |state: &State| (event.function)(state.t, &state.theta, &state.dtheta);
-            found.extend(first_zero(model, dense, *end, event.direction, f).map(|t| (t, k)));
+            found.extend(first_zero(model, dense, &parts, event.direction, f).map(|t| (t, k)));
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (t, k) in found {

@@ -80,20 +80,25 @@ pub struct Occurrence {
 /// Parts of a step at whose ends signs are compared.
 const PARTS: usize = 4;
 
-/// The first zero of f within the step, after its beginning, with this direction: a time just after the sign change, to
-/// rounding.
+/// The states at the ends of the parts of a step up to `until`, for the zeros of any number of functions.
+pub(super) fn parts(model: &Model, dense: &Dense, until: f64) -> [State; PARTS + 1] {
+    let time = |k: usize| if k == PARTS { until } else { dense.t + (until - dense.t) * k as f64 / PARTS as f64 };
+    core::array::from_fn(|k| dense.at(model, time(k)))
+}
+
+/// The first zero of f within [`parts`], after their beginning, with this direction: a time just after the sign change,
+/// to rounding.
 pub(super) fn first_zero(
     model: &Model,
     dense: &Dense,
-    until: f64,
+    parts: &[State; PARTS + 1],
     direction: Direction,
     f: impl Fn(&State) -> f64,
 ) -> Option<f64> {
     let at = |t: f64| f(&dense.at(model, t));
-    let time = |k: usize| if k == PARTS { until } else { dense.t + (until - dense.t) * k as f64 / PARTS as f64 };
-    let mut before = (dense.t, at(dense.t));
-    for k in 1..=PARTS {
-        let after = (time(k), at(time(k)));
+    let mut before = (parts[0].t, f(&parts[0]));
+    for part in &parts[1..] {
+        let after = (part.t, f(part));
         let rises = before.1 < 0.0 && after.1 >= 0.0;
         let falls = before.1 > 0.0 && after.1 <= 0.0;
         if (rises && direction != Direction::Falling) || (falls && direction != Direction::Rising) {

@@ -3,7 +3,7 @@
 use super::Policy;
 use super::dense::Dense;
 use super::driven::Driven;
-use super::events::{Direction, first_zero};
+use super::events::{Direction, first_zero, parts};
 use super::held::Held;
 use super::options::check;
 use super::state::State;
@@ -138,11 +138,12 @@ impl Stops {
 
     /// The first time within the step, up to `until`, at which a joint that is not held reaches a stop.
     pub fn first_impact(&self, model: &Model, dense: &Dense, until: f64, held: &[Held]) -> Option<(f64, usize, usize)> {
-        let from = dense.at(model, dense.t).theta;
+        let parts = parts(model, dense, until);
+        let from = &parts[0].theta;
         let free = self.sides.iter().copied().filter(|&(k, _)| !is_held(self.bounds.places[k], held));
         let impacts = free.filter_map(|(k, side)| {
-            let excess = |state: &State| self.excess_from(&from, &state.theta, k, side);
-            first_zero(model, dense, until, Direction::Rising, excess).map(|t| (t, k, side))
+            let excess = |state: &State| self.excess_from(from, &state.theta, k, side);
+            first_zero(model, dense, &parts, Direction::Rising, excess).map(|t| (t, k, side))
         });
         impacts.min_by(|a, b| a.0.total_cmp(&b.0))
     }

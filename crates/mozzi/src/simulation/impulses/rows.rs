@@ -158,17 +158,27 @@ impl Impulses<'_> {
         Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, axes: all_axes })
     }
 
-    /// J M⁻¹Jᵀ: with M = LᵀDL, the products of the rows of D^{−½}L⁻ᵀJᵀ.
+    /// J M⁻¹Jᵀ: with M = LᵀDL, the products of the rows of D^{−½}L⁻ᵀJᵀ, which are 0 from where those of J are.
     pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
-        let (n, pattern) = (self.model.n(), &self.model.structure.pattern);
+        let (n, m, pattern) = (self.model.n(), J.nrows(), &self.model.structure.pattern);
+        let scale: Vec<f64> = (0..n).map(|j| 1.0 / Scalar::sqrt(self.M[j * n + j])).collect();
         let mut Y = J.transpose();
+        let mut ends = Vec::with_capacity(m);
         for mut column in Y.column_iter_mut() {
-            ldlt::solve_transposed_all(pattern, &self.M, column.as_mut_slice());
-            for j in 0..n {
-                column[j] /= Scalar::sqrt(self.M[j * n + j]);
+            let end = column.iter().rposition(|x| *x != 0.0).map_or(0, |last| last + 1);
+            ldlt::solve_transposed(pattern, &self.M, column.as_mut_slice(), (0..end).rev());
+            column.iter_mut().zip(&scale).for_each(|(y, scale)| *y *= scale);
+            ends.push(end);
+        }
+        let mut G = DMatrix::zeros(m, m);
+        for a in 0..m {
+            for b in 0..=a {
+                let end = ends[a].min(ends[b]);
+                let product = Y.column(a).rows(0, end).dot(&Y.column(b).rows(0, end));
+                (G[(a, b)], G[(b, a)]) = (product, product);
             }
         }
-        Y.tr_mul(&Y)
+        G
     }
 
     /// Every pair of a contact point and a plane.
