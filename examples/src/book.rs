@@ -11,4 +11,5 @@ pages! {
     Homework "../../book/src/learn/homework.md"
     Legged "../../book/src/use/legged.md"
     Million "../../book/src/use/million.md"
+    Play "../../book/src/use/play.md"
 }

@@ -15,7 +15,7 @@ export class App {
     Object.assign(this, { library, stage, find, robot: null, isPlaying: false, push: null, keeps: false, speed: 1, panels: [], last: null });
     this.settings = { motors: "off", omega: 8, zeta: 1, ground: null };
     this.history = new History(find("undo"), find("redo"), {
-      now: () => ({ entry: this.entry, description: this.description, theta: [...this.state.theta], dtheta: [...this.state.dtheta] }),
+      now: () => ({ entry: this.entry, values: this.values, description: this.description, theta: [...this.state.theta], dtheta: [...this.state.dtheta] }),
       restore: (state) => this.restore(state),
     });
   }
@@ -77,12 +77,13 @@ export class App {
     this.find("about").textContent = text;
   }
 
-  // Opens the robot of an entry, { name, files, file, meshes }, at its start or at a state. False if its files are wrong.
-  async open(entry, { description = null, theta = null, dtheta = null } = {}) {
+  // Opens the robot of an entry, { name, files, file, meshes }, at its start or at a state, with values of xacro's arguments. False if
+  // its files are wrong.
+  async open(entry, { description = null, theta = null, dtheta = null, values = entry === this.entry ? this.values : {} } = {}) {
     this.pause();
     let robot;
     try {
-      robot = openRobot(this.library, { file: entry.file, files: entry.files, description: description ?? entry.description ?? null });
+      robot = openRobot(this.library, { file: entry.file, files: entry.files, arguments: values, description: description ?? entry.description ?? null });
     } catch (error) {
       this.trouble(`${entry.name} cannot be opened; the last robot stays`, error.message);
       return false;
@@ -91,8 +92,10 @@ export class App {
     this.original = this.entry === entry && this.original && description ? this.original : JSON.stringify(robot.description);
     this.settings.target = null;
     const last = this.robot;
-    const isAlike = last && this.entry === entry && alike(last, robot);
-    Object.assign(this, { robot, entry, description: description ?? null });
+    const isAlike = last && this.entry === entry && this.values === values && alike(last, robot);
+    // edits keep the arguments of their file
+    robot.declared ??= this.entry === entry && this.values === values ? last.declared : [];
+    Object.assign(this, { robot, entry, values, description: description ?? null });
     const fits = theta?.length === robot.nq && dtheta?.length === robot.n;
     const start = entry.theta?.length === robot.nq ? entry.theta : robot.start;
     this.state = { time: 0, theta: fits ? theta : [...start], dtheta: fits ? dtheta : new Array(robot.n).fill(0) };
@@ -289,18 +292,24 @@ export class App {
 
   async revert() {
     this.remember();
-    await this.open(this.entry);
+    await this.open(this.entry, { values: {} });
   }
 
-  async restore({ entry, description, theta, dtheta }) {
-    if (entry === this.entry && description === this.description) {
+  // Another value of an argument of xacro.
+  async setArgument(name, value) {
+    this.remember();
+    await this.open(this.entry, { values: { ...this.values, [name]: value } });
+  }
+
+  async restore({ entry, values, description, theta, dtheta }) {
+    if (entry === this.entry && values === this.values && description === this.description) {
       this.pause();
       this.robot.set("theta", theta);
       this.robot.set("dtheta", dtheta);
       this.settings.target = [...theta];
       this.changed();
     } else {
-      await this.open(entry, { description, theta, dtheta });
+      await this.open(entry, { values, description, theta, dtheta });
       this.onEntry?.();
     }
   }
@@ -370,7 +379,7 @@ export class App {
   async share() {
     const { entry, state, settings } = this;
     const robot = entry.isDropped ? { name: entry.name, file: entry.file, files: entry.files } : { name: entry.name };
-    const link = await linkOf({ robot, description: this.description, theta: state.theta, dtheta: state.dtheta, settings, frame: this.stage.frame });
+    const link = await linkOf({ robot, values: this.values, description: this.description, theta: state.theta, dtheta: state.dtheta, settings, frame: this.stage.frame });
     history.replaceState(null, "", link);
     await this.copy(link, entry.isDropped && entry.meshes.length > 0 ? "The link is copied; meshes are not in it." : "The link is copied.");
     return link;

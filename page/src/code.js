@@ -23,11 +23,14 @@ export function codeOf(language, { robot, isFloating, quantity, frame, inputs, o
       return [
         "use mozzi::quantities::Query;",
         "",
-        `let model = mozzi_urdf::open("${robot}")?.${isFloating ? "description.floating()." : ""}build()?;`,
-        ...inputs.map(([name, numbers]) => `let ${name} = ${list(numbers.map(float), "[", "]")};`),
-        `let query = Query::named("${quantity.name}")?${ofFrame ? `.of(model.frame("${frame}")?)` : ""};`,
-        `let outputs = model.compute(query, &[${names.map((name) => `&${name}`).join(", ")}], &model.environment())?;`,
-        'println!("{outputs:?}");',
+        "fn main() -> Result<(), Box<dyn std::error::Error>> {",
+        `    let model = mozzi_urdf::open("${robot}")?.${isFloating ? "description.floating()." : ""}build()?;`,
+        ...inputs.map(([name, numbers]) => `    let ${name} = ${list(numbers.map(float), "[", "]")};`),
+        `    let query = Query::named("${quantity.name}")?${ofFrame ? `.of(model.frame("${frame}")?)` : ""};`,
+        `    let outputs = model.compute(query, &[${names.map((name) => `&${name}[..]`).join(", ")}], &model.environment())?;`,
+        '    println!("{outputs:?}");',
+        "    Ok(())",
+        "}",
       ].join("\n");
     case "shell":
       return [
@@ -38,14 +41,18 @@ export function codeOf(language, { robot, isFloating, quantity, frame, inputs, o
     default:
       return [
         "#include <mozzi/mozzi.hpp>",
-        "#include <Eigen/Dense>",
+        "#include <cstdio>",
+        "#include <vector>",
         "",
-        `mozzi::Model robot = mozzi::Model::open("${robot}").value()${isFloating ? ".with_base(true).value()" : ""};`,
-        "mozzi::Workspace workspace(robot);",
-        ...inputs.map(([name, numbers]) => `std::vector<double> ${name}${list(numbers, "{", "}")};`),
-        ...(ofFrame ? [`mozzi::Frame frame = robot.frame("${frame}").value();`] : []),
+        "int main() {",
+        `  const mozzi::Model robot = mozzi::Model::open("${robot}").value()${isFloating ? ".with_base(true).value()" : ""};`,
+        "  mozzi::Workspace workspace(robot);",
+        ...inputs.map(([name, numbers]) => `  const std::vector<double> ${name}${list(numbers, "{", "}")};`),
+        ...(ofFrame ? [`  const mozzi::Frame frame = robot.frame("${frame}").value();`] : []),
         ...outputs.map(room),
-        `workspace.${quantity.name}(${[...names, ...(ofFrame ? ["frame"] : []), ...outputs.map(({ name }) => name)].join(", ")}).or_throw();`,
+        `  workspace.${quantity.name}(${[...names, ...(ofFrame ? ["frame"] : []), ...outputs.map(({ name }) => name)].join(", ")}).or_throw();`,
+        ...outputs.map(printed),
+        "}",
       ].join("\n");
   }
 }
@@ -61,11 +68,13 @@ function pythonOf(robot, isFloating) {
   return `mozzi.Model.${reader}("${robot}"${floating && `, ${floating}`})`;
 }
 
-// Memory for an output in C++.
+// Memory for an output in C++; matrices by rows.
 function room({ name, shape }) {
-  if (shape.length === 2) return `Eigen::MatrixXd ${name}(${shape.join(", ")});`;
-  if (shape.length === 1) return `std::vector<double> ${name}(${shape[0]});`;
-  return shape.length === 0 ? `double ${name};` : `// ${name}: ${shape.join(" x ")} numbers`;
+  return shape.length === 0 ? `  double ${name};` : `  std::vector<double> ${name}(${shape.join(" * ")});`;
+}
+
+function printed({ name, shape }) {
+  return shape.length === 0 ? `  std::printf("%.17g\\n", ${name});` : `  for (const double x : ${name}) std::printf("%.17g\\n", x);`;
 }
 
 const float = (x) => (Number.isInteger(x) ? `${x}.0` : String(x));

@@ -70,7 +70,7 @@ export class CodePanel {
     } catch {
       outputs = quantity.outputs.map((name) => ({ name, shape: [] }));
     }
-    const isOther = app.isEdited && !app.isJustFreed;
+    const isOther = (app.isEdited && !app.isJustFreed) || Object.keys(app.values).length > 0;
     this.code.textContent = codeOf(this.language.value, {
       robot: isOther ? `${robot.name}.json` : app.entry.isEmbedded ? app.entry.name : app.entry.file.split("/").pop(),
       isFloating: robot.isFloating && app.isJustFreed,

@@ -44,6 +44,7 @@ export class EditPanel {
     this.heading("Gravity, m/s²");
     this.fields([["0", "g x"], ["1", "g y"], ["2", "g z"]], now.gravity, (entry, value) => ({ what: "gravity", gravity: now.gravity.map((x, k) => (String(k) === entry ? value : x)) }));
     this.pins(now);
+    this.declared();
     const row = host.appendChild(document.createElement("div"));
     row.className = "nudges";
     this.button(row, "Back to the file", () => this.app.revert());
@@ -59,6 +60,21 @@ export class EditPanel {
     if (ends.length > 1 && ends.length < 9) this.button(row, "Pin all tips", () => this.app.editAll(ends.filter((name) => !pins.includes(name)).map((frame) => ({ what: "pin", frame }))));
     for (const frame of pins) this.button(row, `Unpin ${frame}`, () => this.app.edit({ what: "unpin", frame }));
     this.note("A pinned frame stays where it is now, welded to the world: feet of a robot that stands.");
+  }
+
+  // Arguments of a xacro file: their values make another robot of it.
+  declared() {
+    if (this.robot.declared.length === 0) return;
+    this.heading("Arguments of the xacro file");
+    const box = this.host.appendChild(document.createElement("div"));
+    box.className = "fields";
+    for (const [name, value] of this.robot.declared) {
+      const label = box.appendChild(document.createElement("label"));
+      label.append(name);
+      const input = label.appendChild(Object.assign(document.createElement("input"), { type: "text", value }));
+      input.dataset.argument = name;
+      input.addEventListener("change", () => this.app.setArgument(name, input.value));
+    }
   }
 
   heading(text) {

@@ -2,6 +2,10 @@
 
 import * as THREE from "three";
 
+// Drawing by the processor, whose smooth edges would take half of a moving picture's time.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+// Pixels along an edge for one of the screen where that is so and nothing moves.
+const STILL = 1.5;
 // Milliseconds of a picture above which the next level is taken; pictures between two levels.
 const SLOW = 42;
 const WAIT = 4;
@@ -11,7 +15,11 @@ const CELLS = [0, 18, 12, 8];
 
 export class Quality {
   constructor(stage) {
-    Object.assign(this, { stage, level: 0, mean: 0, count: 0 });
+    Object.assign(this, { stage, level: 0, mean: 0, count: 0, isSoftware: SOFTWARE.test(rendererName()) });
+  }
+
+  get still() {
+    return this.isSoftware ? STILL : 1;
   }
 
   frame(interval) {
@@ -36,7 +44,7 @@ export class Quality {
         part.geometry = level > 0 ? this.coarse(part.userData.fine, level) : part.userData.fine;
       });
     scene.sun.castShadow = level < 2;
-    scene.scale = [1, 1, 0.75, 0.5][level];
+    scene.scale = [this.still, 1, 0.75, 0.5][level];
     scene.resize();
     scene.drawNow(); // at once: another size empties the canvas
   }
@@ -45,6 +53,16 @@ export class Quality {
     fine.userData.coarse ??= [];
     return (fine.userData.coarse[level] ??= coarse(fine, CELLS[level]));
   }
+}
+
+// What draws, such as "ANGLE (… SwiftShader …)"; empty without WebGL.
+function rendererName() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return "";
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return name;
 }
 
 // The geometry with all vertices of a cell of a grid made one; triangles within a cell go.

@@ -6,10 +6,10 @@ import { fromRows } from "./vectors.js";
 // { file, files: { path: text }, description, arguments } as an open robot, with its texts; throws what is wrong with the files.
 export function openRobot(library, asked) {
   const number = library.call("web_open", [], JSON.stringify(asked));
-  const { about, description, shapes, warnings, notes } = JSON.parse(library.said());
+  const { about, description, shapes, warnings, notes, arguments: declared } = JSON.parse(library.said());
   const robot = new Robot(library, number, about);
   robot.shapes = shapes.map((shape) => ({ ...shape, T: fromRows(shape.T) }));
-  return Object.assign(robot, { description, warnings, notes });
+  return Object.assign(robot, { description, warnings, notes, declared });
 }
 
 export function closeRobot(robot) {

@@ -28,7 +28,7 @@ export class Stage {
     this.robot = robot;
     this.overlays?.remove();
     if (this.scene) this.scene.setRobot(robot);
-    else this.scene = new Scene(this.host, robot);
+    else this.scene = new Scene(this.host, robot, { antialias: !this.quality.isSoftware, scale: this.quality.still });
     this.layers = { visual: [], collision: [] };
     this.reach = this.reachOf(theta);
     this.addOverlays();

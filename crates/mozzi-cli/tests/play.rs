@@ -5,7 +5,7 @@ mod browser;
 mod common;
 
 use browser::{browser, run, url};
-use common::{folder, json, numbers, rows, text};
+use common::{folder, json, numbers, text};
 use mozzi::quantities::{LIST, Of, Query};
 use mozzi::testing::state;
 use mozzi::{Description, Model};
@@ -18,6 +18,16 @@ const TOLERANCE: f64 = 1e-12;
 const SNAKE: &str = include_str!("../../mozzi-report/robots/snake.urdf.xacro");
 const CART: &str = include_str!("../../mozzi-report/robots/spherical_pendulum.xml");
 const UR5: &str = include_str!("../../mozzi-urdf/models/ur5.urdf");
+
+/// As many rods as the argument says.
+const ROW: &str = r#"<robot name="row" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="joints" default="1"/><xacro:include filename="rod.xacro"/>
+  <link name="l0"/><xacro:macro name="row" params="k"><xacro:if value="${k &lt;= int('$(arg joints)')}">
+  <xacro:rod k="${k}"/><xacro:row k="${k+1}"/></xacro:if></xacro:macro><xacro:row k="1"/></robot>"#;
+const ROD: &str = r#"<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="rod" params="k">
+  <link name="l${k}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="j${k}" type="continuous"><parent link="l${k-1}"/><child link="l${k}"/><axis xyz="0 1 0"/></joint>
+  </xacro:macro></robot>"#;
 
 fn given(name: &str, [theta, dtheta, ddtheta]: &[Vec<f64>; 3]) -> Vec<f64> {
     match name {
@@ -33,6 +43,14 @@ fn assert_same(what: &str, found: &[f64], expected: &[f64]) {
     let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert_eq!(found.len(), expected.len(), "{what}");
     assert!(apart <= TOLERANCE * size, "{what}: differs by {apart:e} of {size:e}: is the page's WebAssembly outdated?");
+}
+
+/// The numbers of nested lists.
+fn flat(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(list) => list.iter().flat_map(flat).collect(),
+        one => vec![one.as_f64().unwrap_or_else(|| panic!("no number: {one}"))],
+    }
 }
 
 /// The page of a robot.
@@ -146,18 +164,21 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
             &panda,
             json!({ "texts": { "spherical_pendulum.xml": CART }, "name": "spherical_pendulum" }),
         ),
+        job("argument", &panda, json!({ "texts": { "row.xacro": ROW, "rod.xacro": ROD }, "name": "row" })),
         job("wrong_file", &panda, json!({ "texts": { "ur5.urdf": wrong } })),
         job("drag", &ur5, json!({ "body": 2 })),
         job("share", &ur5, json!({ "theta": posed, "edit": mass })),
         job("edit", &ur5, json!({})),
-        job("panels", &ur5, json!({ "quantity": "body_jacobian" })),
+        job("panels", &ur5, json!({ "quantity": "body_jacobian", "theta": posed })),
         job("keyboard", &ur5, json!({ "width": 390, "height": 844 })),
         job("stand", &anymal, json!({ "legs": legs(), "width": 900, "height": 600 })),
         job("robots", &panda, json!({ "width": 700, "height": 500 })),
     ];
     let found = run("play.py", &program, &Value::Array(jobs.clone()));
     assert_quiet(&found, &jobs);
-    let [dropped, mjcf, wrong, drag, share, edit, panels, keyboard, stand, robots] = &found[..] else { panic!("ten") };
+    let [dropped, mjcf, argument, wrong, drag, share, edit, panels, keyboard, stand, robots] = &found[..] else {
+        panic!("as many as jobs")
+    };
 
     for (found, name) in [(dropped, "snake"), (mjcf, "spherical_pendulum")] {
         assert_eq!(found["after"]["name"], name);
@@ -191,6 +212,10 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
     assert!((link.inertia.mass - 7.5).abs() < 1e-12, "{}", link.inertia.mass);
     assert!(edit["Robot as JSON"].as_str().expect("text").contains("\"robot\": \"ur5"), "JSON");
 
+    assert_eq!((&argument["n"], &argument["value"], &argument["after"]), (&json!([1]), &json!("1"), &json!(3)));
+    let said = argument["said"].as_str().expect("text");
+    assert!(said.contains("many") && said.contains("row.xacro:"), "{said}");
+
     assert_eq!(panels["empty"], json!([]), "every quantity is shown or says why not");
     let entry = panels["entry"].as_str().expect("text");
     assert!(entry.starts_with("M (shoulder_pan_joint, shoulder_lift_joint) = "), "{entry}");
@@ -202,18 +227,35 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
         .and_then(|x| x.parse().ok())
         .expect("a number");
     assert_eq!(shown, panels["value"].as_f64().expect("a number"));
-    for (language, needed) in [
-        ("python", "mozzi.models.ur5()"),
-        ("rust", "mozzi_urdf::open(\"ur5\")"),
-        ("cpp", "workspace.body_jacobian(theta, frame, J)"),
-    ] {
-        let lines = panels["code"][language].as_str().expect("text");
-        assert!(lines.contains(needed), "{lines}");
+    // the programs of the book, which its own test runs
+    let book = include_str!("../../../book/src/use/play.md");
+    for (language, block) in [("python", "python"), ("rust", "rust"), ("cpp", "cpp"), ("shell", "sh")] {
+        let program = panels["code"][language].as_str().expect("text");
+        let block = format!("```{block}\n{program}\n```");
+        assert!(book.contains(&block), "book/src/use/play.md has not the page's lines:\n{block}");
     }
-    let line = panels["code"]["shell"].as_str().expect("text").replace("\\\n", " ");
-    let words: Vec<&str> = line.split_whitespace().skip(1).collect();
-    let computed = json(&words);
-    assert_same("the line of the command line", &numbers(&panels["expected"]["J"]), &rows(&computed["J"]).concat());
+    let lines = panels["lines"].as_array().expect("a list");
+    assert!(lines.len() >= 50, "{}", lines.len());
+    let mut agree = 0;
+    for line in lines {
+        let (name, words) = (&line["name"], line["line"].as_str().expect("text").replace("\\\n", " "));
+        let words: Vec<&str> = words.split_whitespace().skip(1).collect();
+        let answer = common::mozzi(&[&words[..], &["--json"]].concat());
+        let said = String::from_utf8(answer.stderr).expect("text");
+        match (answer.status.success(), line["shown"]["error"].as_str()) {
+            (true, None) => {
+                let computed: Value = serde_json::from_slice(&answer.stdout).expect("JSON");
+                for (output, shown) in line["shown"].as_object().expect("outputs") {
+                    assert_same(&format!("{words:?}: {output}"), &flat(&computed[output]), &flat(shown));
+                }
+                agree += 1;
+            }
+            // the command line does not compute with a robot's constraints where it has none
+            (false, None) => assert!(said.contains("ur5 has no constraints"), "{words:?}: {said}"),
+            (succeeded, Some(error)) => assert!(!succeeded && said.contains(error), "{name}: {said}, not {error}"),
+        }
+    }
+    assert!(agree >= 45, "{agree} lines");
 
     assert_eq!(keyboard["nameless"], json!([]), "every control has a name");
     let seen = keyboard["seen"].to_string();

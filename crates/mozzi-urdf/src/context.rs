@@ -1,5 +1,6 @@
 //! State that the readers of elements share.
 
+use crate::XacroArguments;
 use crate::dialect::Dialect;
 use crate::finding::{Finding, Findings};
 use crate::spelling::nearest;
@@ -17,8 +18,8 @@ pub(crate) struct Context {
     pub version: Version,
     /// Places of invalid numbers: a default may be used often, but is reported once.
     pub unreadable: BTreeSet<usize>,
-    /// Texts that replace those of included files, by name.
-    pub replaced: BTreeMap<String, String>,
+    /// Texts that are read instead of included files.
+    pub given: XacroArguments,
     /// The first places of attributes that do not affect the dynamics of the tree, by element and attribute.
     pub left_out: BTreeMap<(String, &'static str), Range<usize>>,
     kinds: BTreeMap<(String, String, &'static str), Option<String>>,

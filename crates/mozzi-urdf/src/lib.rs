@@ -134,6 +134,8 @@ pub struct Loaded {
     pub warnings: Vec<Diagnostic>,
     /// Valid content that mozzi does not use, such as appearance and contact: once per kind. See [`unused`].
     pub unused: Vec<Diagnostic>,
+    /// The arguments that a file of xacro declares or reads, with their values, by name.
+    pub xacro_arguments: Vec<(String, String)>,
 }
 
 impl Loaded {
@@ -191,6 +193,11 @@ pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, settings: impl Into<S
     parse_in(None, file_name, text.as_ref(), &settings.into())
 }
 
+/// Where files are searched that the text of a file includes: by default next to it if their texts are given.
+fn folder_of<'p>(folder: Option<&'p Path>, file_name: &'p str, given: &XacroArguments) -> Option<&'p Path> {
+    folder.or_else(|| Path::new(file_name).parent().filter(|_| !given.texts.is_empty()))
+}
+
 /// Reads a text; included files are searched in a folder.
 fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Settings) -> Result<Loaded, LoadError> {
     let policy = settings.policy;
@@ -202,6 +209,8 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     let (mut sources, mut description) = (vec![source], None);
     if !findings.has_errors() {
         let mut cx = Context::new(findings, dialect);
+        cx.given = settings.xacro.clone();
+        let folder = folder_of(folder, file_name, &settings.xacro);
         let result = match dialect {
             Dialect::Urdf => read_urdf(&sources[0], &mut cx),
             Dialect::Mjcf => mjcf::read(&mut sources, folder, &mut cx),
@@ -221,7 +230,9 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     match description {
         Some(description) if !refused => {
             let (unused, warnings) = diagnostics.into_iter().partition(is_unused);
-            Ok(Loaded { description, warnings, unused })
+            let expansion = sources[0].expansion.as_ref();
+            let xacro_arguments = expansion.map_or_else(Vec::new, |expansion| expansion.arguments.clone());
+            Ok(Loaded { description, warnings, unused, xacro_arguments })
         }
         _ => {
             let strictly = |found| if is_refused(&found) { found.into_error() } else { found };

@@ -17,7 +17,7 @@ pub enum Policy {
 pub struct Settings {
     /// How strictly.
     pub policy: Policy,
-    /// Arguments and packages for a file of xacro; others ignore them.
+    /// Arguments and packages for a file of xacro, and texts instead of files that it or an MJCF file includes.
     pub xacro: mozzi_xacro::Arguments,
 }
 

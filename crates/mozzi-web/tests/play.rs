@@ -82,6 +82,50 @@ fn xacro_finds_dropped_files_and_packages() {
 }
 
 #[test]
+fn arguments_of_xacro_change_the_robot() {
+    let text = r#"<robot name="rod" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="joints" default="1"/><xacro:arg name="mass" default="2.0"/>
+  <link name="l0"/><xacro:macro name="row" params="k"><xacro:if value="${k &lt;= int('$(arg joints)')}">
+  <link name="l${k}"><inertial><mass value="$(arg mass)"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="j${k}" type="continuous"><parent link="l${k-1}"/><child link="l${k}"/><axis xyz="0 1 0"/></joint>
+  <xacro:row k="${k+1}"/></xacro:if></xacro:macro><xacro:row k="1"/></robot>"#;
+    let mut session = Session::default();
+    let mut open = |arguments: Value| {
+        let asked = json!({ "file": "rod.xacro", "files": { "rod.xacro": text }, "arguments": arguments });
+        session
+            .open(&asked.to_string())
+            .map(|(number, said)| (session.robot(number).expect("open").model().n(), said["arguments"].clone()))
+    };
+    assert_eq!(open(json!({})), Ok((1, json!([["joints", "1"], ["mass", "2.0"]]))));
+    assert_eq!(open(json!({ "joints": "3" })), Ok((3, json!([["joints", "3"], ["mass", "2.0"]]))));
+    let error = open(json!({ "mass": "two" })).expect_err("no number");
+    assert!(error.contains("two") && error.contains("mass"), "{error}");
+}
+
+#[test]
+fn mjcf_finds_dropped_includes() {
+    let main = r#"<mujoco model="two"><include file="parts/../parts/defaults.xml"/>
+  <worldbody><body name="a"><include file="parts/rod.xml"/></body></worldbody></mujoco>"#;
+    let defaults = r#"<mujocoinclude><default><geom type="sphere" size="0.1" mass="2"/></default></mujocoinclude>"#;
+    let rod = r#"<mujocoinclude><joint name="swing" type="hinge" axis="0 1 0"/><geom pos="0 0 -1"/></mujocoinclude>"#;
+    for folder in ["", "robots/two/"] {
+        let asked = |names: &[(&str, &str)]| {
+            let files: serde_json::Map<String, Value> =
+                names.iter().map(|(name, text)| (format!("{folder}{name}"), json!(text))).collect();
+            json!({ "file": format!("{folder}two.xml"), "files": files }).to_string()
+        };
+        let all = [("two.xml", main), ("parts/defaults.xml", defaults), ("parts/rod.xml", rod)];
+        let mut session = Session::default();
+        let (number, said) = session.open(&asked(&all)).expect("sound");
+        let model = session.robot(number).expect("open").model();
+        let mass: f64 = model.description().links.iter().map(|link| link.inertia.mass).sum();
+        assert_eq!((model.n(), mass, said["shapes"].as_array().map(Vec::len)), (1, 2.0, Some(1)), "{said}");
+        let error = session.open(&asked(&all[..2])).expect_err("a file is missing");
+        assert!(error.contains("parts/rod.xml` cannot be read"), "{error}");
+    }
+}
+
+#[test]
 fn steps_are_the_simulations() {
     let mut session = Session::default();
     let (number, _) = opened(&mut session, "ur5.urdf", UR5);

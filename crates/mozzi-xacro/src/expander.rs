@@ -61,6 +61,12 @@ impl Expander<'_> {
         self.arguments.borrow().get(name).cloned()
     }
 
+    /// The arguments that files declare or read, with their values.
+    pub fn known_values(&self) -> Vec<(String, String)> {
+        let (known, values) = (self.known_arguments.borrow(), self.arguments.borrow());
+        known.iter().filter_map(|name| Some((name.to_string(), values.get(name)?.to_string()))).collect()
+    }
+
     /// Warns about given arguments that no file declares or reads.
     pub fn warn_of_unused_arguments(&self) {
         let known = self.known_arguments.borrow();

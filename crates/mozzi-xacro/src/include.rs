@@ -99,11 +99,7 @@ impl Expander<'_> {
 
     /// The text of a file, or its replacement.
     pub fn text_of(&self, path: &Path) -> Result<String> {
-        let plain = without_parents(path);
-        match self.given.texts.iter().find(|(known, _)| Path::new(known) == path || Path::new(known) == plain) {
-            Some((_, text)) => Ok(text.clone()),
-            None => read_text(path),
-        }
+        self.given.text_of(path).map_or_else(|| read_text(path), |text| Ok(text.to_string()))
     }
 
     pub fn add_file(&self, name: &str, text: &str) -> Result<u32> {
@@ -122,7 +118,7 @@ impl Expander<'_> {
 }
 
 /// The path with each `folder/..` removed, as written.
-fn without_parents(path: &Path) -> PathBuf {
+pub(crate) fn without_parents(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
         let is_up =

@@ -69,6 +69,15 @@ pub struct Arguments {
     pub texts: Vec<(String, String)>,
 }
 
+impl Arguments {
+    /// The text that is read instead of a file, if there is one; its name may contain `folder/..`.
+    pub fn text_of(&self, path: &Path) -> Option<&str> {
+        let plain = include::without_parents(path);
+        let found = self.texts.iter().find(|(known, _)| Path::new(known) == path || Path::new(known) == plain);
+        found.map(|(_, text)| text.as_str())
+    }
+}
+
 /// Expands a file.
 ///
 /// # Errors
@@ -126,8 +135,9 @@ fn expand_here(name: &str, text: &str, arguments: &Arguments) -> std::result::Re
     }
     let files = expander.files.take();
     let warnings = expander.warnings.take();
+    let arguments = expander.known_values();
     match result {
-        Ok((text, pieces)) => Ok(Expansion::new(text, files, pieces, warnings, expander.budget.work())),
+        Ok((text, pieces)) => Ok(Expansion { text, files, warnings, arguments, work: expander.budget.work(), pieces }),
         Err(fault) => Err(Error::new(*fault, files, warnings)),
     }
 }

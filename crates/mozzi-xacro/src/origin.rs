@@ -53,16 +53,14 @@ pub struct Expansion {
     pub files: Vec<File>,
     /// Messages of the file, and warnings.
     pub warnings: Vec<Warning>,
+    /// The arguments that the files declare or read, with their values, by name.
+    pub arguments: Vec<(String, String)>,
     /// Evaluation steps; the limit is two million.
     pub work: u64,
-    pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<Piece>,
 }
 
 impl Expansion {
-    pub(crate) fn new(text: String, files: Vec<File>, pieces: Vec<Piece>, warnings: Vec<Warning>, work: u64) -> Self {
-        Expansion { text, files, pieces, warnings, work }
-    }
-
     /// The origin of a part of the text: the place of the element, attribute or text in which it begins. None before
     /// the first element.
     pub fn origin(&self, span: Range<usize>) -> Option<Origin> {

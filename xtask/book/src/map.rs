@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 24] = [
+const IMPORTED: [(&str, &str); 25] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
     ("docs/features.md", "reference/features.md"),
     ("docs/command-line.md", "manual/command-line.md"),
+    ("docs/playground.md", "manual/playground.md"),
     ("docs/rust.md", "manual/rust.md"),
     ("crates/mozzi-py/README.md", "manual/python.md"),
     ("docs/cpp.md", "manual/cpp.md"),

@@ -11,7 +11,7 @@ pub type Robots = BTreeMap<String, Vec<String>>;
 /// The arguments that make a live page, before `FILE`: the only place to change if another command makes them.
 fn command(model: &str, options: &[&str]) -> Vec<String> {
     let words = match options {
-        [] => vec!["view", model, "--out"],
+        [] => vec!["play", model, "--out"],
         motion => [&["simulate", model], motion, &["--report"]].concat(),
     };
     words.into_iter().map(str::to_owned).collect()

@@ -59,6 +59,28 @@ def drop_and_play(page, job):
     return {"before": before, "after": page.evaluate(STATE), "row": page.evaluate("() => mozzi.app.record.rows.at(-1)"), "menu": page.eval_on_selector_all("#robot option", "(all) => all.map(({ textContent }) => textContent)")}
 
 
+def argument(page, job):
+    """A xacro file is dropped with its include; another value of its argument, undo, a wrong value."""
+    page.evaluate(DROP, job["texts"])
+    page.wait_for_function("(name) => mozzi.app.robot.name === name", arg=job["name"])
+    n = ["() => mozzi.app.robot.n", "() => mozzi.app.robot.n === 3"]
+    found = {"n": [page.evaluate(n[0])]}
+    page.click("#tab-edit")
+    field = page.locator('#page-edit input[data-argument="joints"]')
+    found["value"] = field.input_value()
+    field.fill("3")
+    field.press("Enter")
+    page.wait_for_function(n[1])
+    page.click("#undo")
+    page.wait_for_function("() => mozzi.app.robot.n === 1")
+    page.click("#redo")
+    page.wait_for_function(n[1])
+    field.fill("many")
+    field.press("Enter")
+    page.wait_for_selector("#trouble:not([hidden])")
+    return found | {"said": page.inner_text("#trouble pre"), "after": page.evaluate(n[0])}
+
+
 def wrong_file(page, job):
     before = page.evaluate(STATE)
     page.evaluate(DROP, job["texts"])
@@ -153,12 +175,21 @@ def panels(page, job):
     found["entry"] = page.inner_text("#entry")
     found["axes"] = page.evaluate("() => mozzi.app.stage.axes.length")
     found["value"] = float(cell.get_attribute("data-value"))
+    page.evaluate("(theta) => mozzi.app.setTheta(theta)", job["theta"])
     page.click("#tab-code")
     found["code"] = {}
     for language in ("python", "rust", "cpp", "shell"):
         page.select_option("#page-code select >> nth=0", language)
         page.select_option("#page-code select >> nth=1", job["quantity"])
         found["code"][language] = page.inner_text("#page-code .code")
+    # of every quantity the line of the command line, with what the page shows
+    page.select_option("#page-code select >> nth=0", "shell")
+    found["lines"] = []
+    for name in page.eval_on_selector_all("#page-code select >> nth=1 >> option", "(all) => all.map(({ value }) => value)"):
+        page.select_option("#page-code select >> nth=1", name)
+        request = page.evaluate("(name) => mozzi.app.quantities.request(mozzi.app.robot.quantities.find((one) => one.name === name))", name)
+        shown = page.evaluate(COMPUTED, [{"request": request}])
+        found["lines"].append({"name": name, "line": page.inner_text("#page-code .code"), "shown": shown[0]})
     found["expected"] = page.evaluate("(quantity) => mozzi.compute({ quantity, frame: mozzi.app.frameName })", job["quantity"])
     return found
 
@@ -301,7 +332,7 @@ def picture(page, job):
     return {}
 
 
-DO = {f.__name__: f for f in (numbers, drop_and_play, wrong_file, drag, share, edit, panels, keyboard, stand, robots, frames, picture)}
+DO = {f.__name__: f for f in (numbers, drop_and_play, argument, wrong_file, drag, share, edit, panels, keyboard, stand, robots, frames, picture)}
 
 
 def run(browser, job):

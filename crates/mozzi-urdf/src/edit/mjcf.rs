@@ -96,13 +96,13 @@ impl Model<'_> {
     fn sources(
         &self,
         text: &str,
-        replaced: BTreeMap<String, String>,
+        texts: Vec<(String, String)>,
     ) -> Result<(Vec<Source>, Description, Places), EditError> {
         let mut findings = Findings::default();
         let source = Source::new(self.file_name, bytes::read(text.as_bytes(), &mut findings));
         let source = syntax::mended(source, Dialect::Mjcf, &mut findings);
         let mut cx = Context::new(findings, Dialect::Mjcf);
-        cx.replaced = replaced;
+        cx.given.texts = texts;
         let mut sources = vec![source];
         match mjcf::read(&mut sources, self.folder, &mut cx) {
             Some((description, places)) => Ok((sources, description, places)),
@@ -112,14 +112,14 @@ impl Model<'_> {
 
     /// The robot of the edited texts.
     fn read_again(&self, text: &str, files: &[EditedFile]) -> Result<Description, EditError> {
-        let replaced: BTreeMap<_, _> = files.iter().map(|file| (file.name.clone(), file.text.clone())).collect();
-        let main = replaced.get(self.file_name).map_or(text, String::as_str);
-        self.sources(main, replaced.clone()).map(|(_, description, _)| description)
+        let texts = files.iter().map(|file| (file.name.clone(), file.text.clone())).collect();
+        let main = files.iter().find(|file| file.name == self.file_name).map_or(text, |file| &file.text);
+        self.sources(main, texts).map(|(_, description, _)| description)
     }
 
     /// The edited texts; `surplus` is the armature that joints have from elsewhere.
     fn files(&self, text: &str, surplus: &BTreeMap<String, f64>) -> Result<Vec<EditedFile>, EditError> {
-        let (sources, _, places) = self.sources(text, BTreeMap::new())?;
+        let (sources, _, places) = self.sources(text, Vec::new())?;
         let mut documents = Vec::new();
         for source in &sources {
             if source.file().text != source.text {

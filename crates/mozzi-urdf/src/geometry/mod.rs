@@ -23,7 +23,7 @@ use crate::finding::Findings;
 use crate::pages::Pages;
 use crate::source::Source;
 use crate::version::Version;
-use crate::{bytes, embedded, file_bytes, mjcf, syntax};
+use crate::{bytes, embedded, file_bytes, folder_of, mjcf, syntax};
 use std::path::Path;
 
 /// The shapes of a robot.
@@ -83,7 +83,7 @@ fn parse_in(
     let mut shapes = Vec::new();
     if dialect == Dialect::Mjcf && !findings.has_errors() {
         let mut sources = vec![source];
-        let (shapes, cx) = mjcf::shapes(&mut sources, folder);
+        let (shapes, cx) = mjcf::shapes(&mut sources, folder_of(folder, file_name, arguments), arguments);
         return Ok(placed(shapes, cx.findings, &sources, dialect));
     }
     if dialect == Dialect::Urdf && source.text.trim_start().starts_with('<') {

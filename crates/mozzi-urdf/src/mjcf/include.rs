@@ -1,5 +1,6 @@
 //! `<include>`: files whose content replaces the `<include>` that names them.
 
+use crate::XacroArguments;
 use crate::bytes::{self, MOST_BYTES};
 use crate::context::Context;
 use crate::dialect::Dialect;
@@ -8,7 +9,7 @@ use crate::source::Source;
 use crate::syntax;
 use crate::vocabulary::shown;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -45,11 +46,7 @@ pub(crate) fn gather(
         };
         for include in includes {
             let base = sources.last().map_or(0, |last| last.base + last.text.len() + 1);
-            let opened = open(&include, folder, &mut known).map(|(name, content)| {
-                let content = cx.replaced.get(&name).map_or(content, |text| text.clone().into_bytes());
-                (name, content)
-            });
-            match opened {
+            match open(&include, folder, &cx.given, &mut known) {
                 Ok((name, content)) if sources.len() < MOST_FILES && bytes + content.len() <= MOST_BYTES => {
                     bytes += content.len();
                     let mut findings = Findings::default();
@@ -99,7 +96,12 @@ fn includes_of(source: &Source) -> Result<Vec<Include>, Finding> {
 }
 
 /// The name and the content of an included file.
-fn open(include: &Include, folder: Option<&Path>, known: &mut BTreeSet<PathBuf>) -> Result<(String, Vec<u8>), Finding> {
+fn open(
+    include: &Include,
+    folder: Option<&Path>,
+    given: &XacroArguments,
+    known: &mut BTreeSet<PathBuf>,
+) -> Result<(String, Vec<u8>), Finding> {
     let error = |code, message: String| Finding::error(code, include.span.clone(), message);
     let Some(file) = include.file.as_deref().filter(|file| !file.is_empty()) else {
         return Err(error("missing_attribute", "include: has no attribute `file`".to_string()));
@@ -116,14 +118,21 @@ fn open(include: &Include, folder: Option<&Path>, known: &mut BTreeSet<PathBuf>)
         return Err(error("include", format!("include: `{shown}` is not on this machine, expected a file")));
     }
     let path = folder.join(file);
+    let text = given.text_of(&path);
     let fails = |why: String| {
         error("include", format!("include: `{shown}` cannot be read: {why}"))
             .help("files are searched in the folder of the main file")
     };
-    let real = path.canonicalize().map_err(|why| fails(why.to_string()))?;
-    if !real.is_file() {
-        return Err(fails("it is not a file".to_string()));
-    }
+    let real = match (path.canonicalize(), text) {
+        (Ok(real), _) if text.is_some() || real.is_file() => real,
+        (Ok(_), _) => return Err(fails("it is not a file".to_string())),
+        (Err(_), Some(_)) => path.clone(),
+        // WebAssembly has no files but the given ones
+        (Err(why), None) if why.kind() == ErrorKind::Unsupported => {
+            return Err(fails("it is not among the files".to_string()));
+        }
+        (Err(why), None) => return Err(fails(why.to_string())),
+    };
     if !known.insert(real.clone()) {
         return Err(error(
             "repeated_include",
@@ -131,8 +140,12 @@ fn open(include: &Include, folder: Option<&Path>, known: &mut BTreeSet<PathBuf>)
         )
         .help("include each file once"));
     }
+    let name = path.to_string_lossy().into_owned();
+    if let Some(text) = text {
+        return Ok((name, text.into()));
+    }
     let mut content = Vec::new();
     let read = std::fs::File::open(real).and_then(|file| file.take(MOST_BYTES as u64 + 1).read_to_end(&mut content));
     read.map_err(|why| fails(why.to_string()))?;
-    Ok((path.to_string_lossy().into_owned(), content))
+    Ok((name, content))
 }

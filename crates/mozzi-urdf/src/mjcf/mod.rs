@@ -68,6 +68,7 @@ pub(crate) use explain::CODES;
 pub use explain::codes;
 pub(crate) use orientation::quaternion;
 
+use crate::XacroArguments;
 use crate::context::Context;
 use crate::dialect::Dialect;
 use crate::element::Element;
@@ -121,8 +122,13 @@ pub(crate) fn read(
 }
 
 /// From texts to shapes, with the findings about them alone; none if the model is refused.
-pub(crate) fn shapes(sources: &mut Vec<Source>, folder: Option<&Path>) -> (Vec<Shape>, Context) {
+pub(crate) fn shapes(
+    sources: &mut Vec<Source>,
+    folder: Option<&Path>,
+    given: &XacroArguments,
+) -> (Vec<Shape>, Context) {
     let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
+    cx.given = given.clone();
     match read_pages(sources, folder, Wanted::Shapes, &mut cx) {
         Some((description, _, Some(shapes))) => shapes.named(&description.links),
         _ => (Vec::new(), Context::default()),

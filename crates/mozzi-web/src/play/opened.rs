@@ -30,7 +30,7 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
     };
     let settings = settings(files, asked["arguments"].as_object().unwrap_or(&none));
     let is_json = name.to_ascii_lowercase().ends_with(".json");
-    let (mut description, mut warnings) = (None, Vec::new());
+    let (mut description, mut warnings, mut arguments) = (None, Vec::new(), None);
     if is_json {
         description = Some(from_json(name, source)?);
     } else if asked["description"].is_null() {
@@ -39,6 +39,7 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
         warnings =
             loaded.warnings.iter().take(WARNINGS).map(|warning: &Diagnostic| warning.pretty(Style::Unicode)).collect();
         description = Some(loaded.description);
+        arguments = Some(loaded.xacro_arguments);
     }
     if !asked["description"].is_null() {
         description = Some(from_json("robot.json", &asked["description"].to_string())?);
@@ -56,6 +57,7 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
     let said = json!({
         "description": json::to_value(model.description()),
         "shapes": drawn(&model, &shapes), "warnings": warnings, "notes": notes,
+        "arguments": arguments,
     });
     let mut robot = Robot::new(model);
     robot.settings.points = points;
