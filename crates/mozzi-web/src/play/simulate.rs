@@ -56,7 +56,15 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         let points = settings.points.iter().map(point).collect();
         simulation.contacts = Contacts { points, planes: vec![Plane::ground()] };
     }
-    let run = simulation.run(model, &theta, &dtheta, input).map_err(said)?;
+    let within_ground = |error: Error| match &error {
+        Error::BadArgument { what: "the start", found, .. }
+            if found.starts_with("contact point") && !model.is_floating() =>
+        {
+            format!("{found}, the ground: with a floating base the robot is put on it")
+        }
+        _ => said(error),
+    };
+    let run = simulation.run(model, &theta, &dtheta, input).map_err(within_ground)?;
     let (first, last) = (run.motion.sample(0), run.motion.last());
     // each point and the only plane
     let touched = simulation.contacts.frames(model, 0.0, last.theta);
