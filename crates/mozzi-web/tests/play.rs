@@ -185,7 +185,10 @@ fn a_fixed_base_whose_feet_are_in_the_ground_says_what_to_do() {
     let mut session = Session::default();
     let (number, _) = opened(&mut session, "anymal.urdf", ANYMAL);
     let robot = session.robot(number).expect("open");
-    play(robot, json!({ "do": "set", "motors": "pd", "ground": { "friction": 0.8, "restitution": 0 } }));
+    play(
+        robot,
+        json!({ "do": "set", "motors": "pd", "omega": 8, "zeta": 1, "ground": { "friction": 0.8, "restitution": 0 } }),
+    );
     let error = robot.play(&json!({ "do": "step", "step": 0.001, "steps": 1 }).to_string()).expect_err("in the ground");
     assert!(error.contains("_FOOT` 0.4") && error.contains("with a floating base the robot is put on it"), "{error}");
 }
