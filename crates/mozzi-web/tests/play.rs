@@ -190,7 +190,7 @@ fn a_fixed_base_whose_feet_are_in_the_ground_says_what_to_do() {
         json!({ "do": "set", "motors": "pd", "omega": 8, "zeta": 1, "ground": { "friction": 0.8, "restitution": 0 } }),
     );
     let error = robot.play(&json!({ "do": "step", "step": 0.001, "steps": 1 }).to_string()).expect_err("in the ground");
-    assert!(error.contains("_FOOT` 0.4") && error.contains("with a floating base the robot is put on it"), "{error}");
+    assert!(error.contains("_FOOT` 0.571") && error.contains("with a floating base the robot is put on it"), "{error}");
 }
 
 #[test]
