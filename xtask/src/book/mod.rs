@@ -46,7 +46,15 @@ fn try_build(workspace: &Workspace, with_rustdoc: bool) -> Result<String, String
     if with_rustdoc {
         let target = workspace.path("target/book_rustdoc");
         let packages = DOCUMENTED.iter().flat_map(|name| ["--package", name]);
-        let mut doc = workspace.cargo(&["doc", "--quiet", "--no-deps", "--lib", "--features", "mozzi-urdf/pretty", "--target-dir"]);
+        let mut doc = workspace.cargo(&[
+            "doc",
+            "--quiet",
+            "--no-deps",
+            "--lib",
+            "--features",
+            "mozzi-urdf/pretty",
+            "--target-dir",
+        ]);
         command::run(doc.arg(&target).args(packages))?;
         builder.arg(target.join("doc"));
     }

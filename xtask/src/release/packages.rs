@@ -40,8 +40,12 @@ fn written(workspace: &Workspace, version: &str) -> Result<String, String> {
         }
         sizes.push(format!("{name} {} kB", size.div_ceil(1000)));
         command::run(Command::new("tar").arg("xzf").arg(&archive).arg("-C").arg(&registry))?;
+        // the sum of the archive is in the lock files of the packages that need it
+        let (_, sum) = command::output(Command::new("sha256sum").arg(&archive))?;
+        let sum = sum.split(' ').next().unwrap_or_default();
         let sums = registry.join(format!("{name}-{version}/.cargo-checksum.json"));
-        std::fs::write(&sums, "{\"files\":{}}").map_err(|error| format!("{}: {error}", sums.display()))?;
+        std::fs::write(&sums, format!("{{\"files\":{{}},\"package\":\"{sum}\"}}"))
+            .map_err(|error| format!("{}: {error}", sums.display()))?;
     }
     Ok(sizes.join(", "))
 }

@@ -11,7 +11,8 @@ use std::time::Instant;
 const PROGRAM: &str = r#"fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = mozzi_urdf::open("ur5")?.build()?;
     let (theta, dtheta, ddtheta) = ([0.0, -1.2, 1.5, 0.3, 1.1, 0.0], [0.1; 6], [0.5; 6]);
-    println!("{:.3?}", model.inverse_dynamics(&theta, &dtheta, &ddtheta)?);
+    let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment())?;
+    println!("{:.3?}", tau.as_slice());
     Ok(())
 }
 "#;
@@ -68,8 +69,10 @@ fn built(workspace: &Workspace, version: &str) -> Result<String, String> {
 /// Installs the command line and runs its first command.
 pub fn install(workspace: &Workspace, version: &str) -> Outcome {
     let installed = packages::folder(workspace, "install").and_then(|folder| {
-        let mut cargo = packages::cargo(workspace, &folder, &["install", "mozzi-cli", "--version", version, "--root"]);
-        command::run(cargo.arg(&folder))?;
+        // `cargo install` does not look for configuration where it is called
+        let mut cargo =
+            packages::cargo(workspace, &folder, &["install", "mozzi-cli", "--version", version, "--config"]);
+        command::run(cargo.arg(".cargo/config.toml").args(["--locked", "--root"]).arg(&folder))?;
         let mozzi = folder.join("bin/mozzi");
         let size = std::fs::metadata(&mozzi).map_err(|error| format!("{}: {error}", mozzi.display()))?.len();
         let mut run = std::process::Command::new(&mozzi);
