@@ -9,6 +9,7 @@ mod advisories;
 mod bench;
 mod book;
 mod command;
+mod cross;
 mod deb;
 mod dist;
 mod docs;

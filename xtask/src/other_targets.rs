@@ -1,6 +1,7 @@
 //! Other processors: AArch64 by an emulator, WebAssembly in Node.
 
 use crate::command;
+use crate::cross::Compiler;
 use crate::report::Outcome;
 use crate::workspace::Workspace;
 use std::process::Command;
@@ -18,6 +19,41 @@ pub fn aarch64(workspace: &Workspace) -> Outcome {
     let mut cargo = workspace.cargo(&["test", "--target", "aarch64-unknown-linux-gnu", "--tests", "--target-dir"]);
     cargo.arg(workspace.path("target/aarch64")).env("RUST_MIN_STACK", "16777216");
     command::outcome(cargo.args(["-p", "mozzi", "-p", "mozzi-batch", "-p", "mozzi-urdf", "-p", "mozzi-motion"]))
+}
+
+/// What users of these systems compile. Nothing is linked or run, for want of their linkers and their machines.
+const ELSEWHERE: [&str; 2] = ["x86_64-pc-windows-msvc", "aarch64-apple-darwin"];
+const CHECKED: [&str; 4] = ["mozzi-cli", "mozzi-c", "mozzi-py", "mozzi-identify"];
+
+/// Everything that is published compiles, without a warning, for Windows and macOS.
+pub fn windows_and_macos(workspace: &Workspace) -> Outcome {
+    let packages: Vec<&str> = CHECKED.iter().flat_map(|name| ["--package", name]).collect();
+    let mut without = Vec::new();
+    for target in ELSEWHERE {
+        let compiler = match Compiler::find(target) {
+            Ok(Some(compiler)) => compiler,
+            Ok(None) => {
+                without.push(target);
+                continue;
+            }
+            Err(why) => return Outcome::Failed(why),
+        };
+        let mut cargo = compiler.cargo(workspace, &["check"], target);
+        cargo.args(&packages).arg("--target-dir").arg(workspace.path("target/elsewhere"));
+        // no Python of that system is here; linking would need it, checking does not
+        cargo.env("PYO3_NO_PYTHON", "1").env("CARGO_ENCODED_RUSTFLAGS", "-Dwarnings");
+        if let Err(why) = command::run(cargo) {
+            return Outcome::Failed(format!("{target}: {why}"));
+        }
+    }
+    match without.is_empty() {
+        true => Outcome::Passed(format!("checked, not linked or run: {}", ELSEWHERE.join(", "))),
+        false => Outcome::Skipped(format!(
+            "no compiler for {}: `rustup target add`, or {} for the sources of the standard library",
+            without.join(", "),
+            crate::cross::FOLDER
+        )),
+    }
 }
 
 /// The page's WebAssembly computes the command line's torques.

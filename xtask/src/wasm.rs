@@ -6,6 +6,7 @@
 //! `crates/mozzi-cli/tests/page_numbers.rs` compares the page with the library.
 
 use crate::command;
+use crate::cross::{self, Compiler};
 use crate::stamp::fnv;
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
@@ -37,68 +38,35 @@ const SOURCES: &str = "crates/mozzi-web";
 const STACK: usize = 8 << 20;
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// A compiler for [`TARGET`].
-enum Compiler {
-    /// rustup's, with the target installed.
-    Rustup,
-    /// Another toolchain's folder, with `bin/rustc` and the sources of the standard library, named by `MOZZI_WASM`.
-    Folder(PathBuf),
-}
-
-impl Compiler {
-    fn find() -> Result<Option<Self>, String> {
-        if let Some(folder) = std::env::var_os("MOZZI_WASM").map(PathBuf::from) {
-            let rustc = folder.join("bin/rustc");
-            return match rustc.is_file() {
-                true => Ok(Some(Compiler::Folder(folder))),
-                false => Err(format!("MOZZI_WASM: {} does not exist", rustc.display())),
-            };
-        }
-        let libraries = printed(&rustc(), &["--print", "target-libdir", "--target", TARGET]);
-        Ok(libraries.filter(|folder| Path::new(folder).is_dir()).map(|_| Compiler::Rustup))
+/// Compiles one; messages of panics name no folder of this machine.
+fn compile(compiler: &Compiler, workspace: &Workspace, folder: &Path, wasm: &Wasm) -> Result<(), String> {
+    let build = ["build", "--package", "mozzi-web", "--lib", "--profile", "web"];
+    let mut cargo = compiler.cargo(workspace, &build, TARGET);
+    cargo.args(wasm.features).arg("--target-dir").arg(folder);
+    if let Compiler::Folder(_) = compiler {
+        cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", cross::lld());
     }
-
-    fn rustc(&self) -> PathBuf {
-        match self {
-            Compiler::Rustup => rustc(),
-            Compiler::Folder(folder) => folder.join("bin/rustc"),
-        }
-    }
-
-    /// `cargo build` with it; messages of panics name no folder of this machine.
-    fn build(&self, workspace: &Workspace, folder: &Path, wasm: &Wasm) -> Result<(), String> {
-        let mut cargo = workspace.cargo(&["build", "--package", "mozzi-web", "--lib", "--profile", "web"]);
-        cargo.args(wasm.features);
-        cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
-        if let Compiler::Folder(_) = self {
-            let host = printed(&rustc(), &["--print", "target-libdir"]).unwrap_or_default();
-            let linker = Path::new(&host).with_file_name("bin").join("rust-lld");
-            cargo.args(["-Z", "build-std=std,panic_abort"]).env("RUSTC_BOOTSTRAP", "1").env("RUSTC", self.rustc());
-            cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
-        }
-        let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-        let home = home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
-        let sysroot = printed(&self.rustc(), &["--print", "sysroot"]).map(PathBuf::from);
-        let library = sysroot.as_ref().and_then(|root| root.join("lib/rustlib/src/rust").canonicalize().ok());
-        let places =
-            [Some(workspace.root.clone()), home, sysroot, library].into_iter().zip(["mozzi", "cargo", "rust", "rust"]);
-        let flags = places.filter_map(|(place, name)| Some(format!("--remap-path-prefix={}={name}", place?.display())));
-        let flags = flags.chain([format!("-Clink-arg=-zstack-size={STACK}")]);
-        cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.collect::<Vec<_>>().join("\u{1f}"));
-        command::run(cargo)
-    }
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
+    let sysroot = compiler.sysroot();
+    let library = sysroot.as_ref().and_then(|root| root.join("lib/rustlib/src/rust").canonicalize().ok());
+    let places =
+        [Some(workspace.root.clone()), home, sysroot, library].into_iter().zip(["mozzi", "cargo", "rust", "rust"]);
+    let flags = places.filter_map(|(place, name)| Some(format!("--remap-path-prefix={}={name}", place?.display())));
+    let flags = flags.chain([format!("-Clink-arg=-zstack-size={STACK}")]);
+    cargo.env("CARGO_ENCODED_RUSTFLAGS", flags.collect::<Vec<_>>().join("\u{1f}"));
+    command::run(cargo)
 }
 
 /// Builds and packs both if there is a compiler; returns a description.
 pub fn write(workspace: &Workspace) -> Result<String, String> {
-    let Some(compiler) = Compiler::find()? else {
+    let Some(compiler) = Compiler::find(TARGET)? else {
         return Ok(format!("the committed wasm files: no compiler for {TARGET}, see CONTRIBUTING.md"));
     };
     for wasm in &ALL {
         wasm.write(workspace, &compiler)?;
     }
-    let version = printed(&compiler.rustc(), &["--version"]).unwrap_or_default();
-    Ok(format!("wasm by {version}"))
+    Ok(format!("wasm by {}", compiler.version()))
 }
 
 /// Checks that each committed wasm is the one of its note, and was made from the current interface.
@@ -109,12 +77,12 @@ pub fn are_current(workspace: &Workspace) -> Result<(), String> {
 impl Wasm {
     fn write(&self, workspace: &Workspace, compiler: &Compiler) -> Result<(), String> {
         let folder = workspace.target().join("wasm");
-        compiler.build(workspace, &folder, self)?;
+        compile(compiler, workspace, &folder, self)?;
         let built = folder.join(TARGET).join("web/mozzi_web.wasm");
         let mut pack = Command::new("node");
         pack.current_dir(workspace.path("page")).arg("pack.mjs").arg(built).arg(workspace.path(self.gzip));
         command::run(pack)?;
-        let version = printed(&compiler.rustc(), &["--version"]).unwrap_or_default();
+        let version = compiler.version();
         let version = version.split(" (").next().unwrap_or_default();
         let (hash, stamp) = (self.hash(workspace)?, stamp(workspace)?);
         let name = self.gzip.rsplit('/').next().unwrap_or_default();
@@ -181,15 +149,4 @@ fn sources(root: &Path, folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), S
         }
     }
     Ok(())
-}
-
-fn rustc() -> PathBuf {
-    std::env::var_os("RUSTC").map_or_else(|| "rustc".into(), PathBuf::from)
-}
-
-/// The one line that a program prints.
-fn printed(program: &Path, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program).args(arguments).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    output.status.success().then(|| text.trim().to_string())
 }
