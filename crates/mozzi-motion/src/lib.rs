@@ -23,10 +23,3 @@ pub mod trajectories;
 pub use error::Error;
 pub use inverse_kinematics::{Goal, InverseKinematics};
 pub use mozzi::simulation::Policy;
-
-/// The examples of the README and of docs/rust.md, run with the documentation's tests: here, where all of their crates
-/// are known.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-#[doc = include_str!("../../../docs/rust.md")]
-struct Readme;
