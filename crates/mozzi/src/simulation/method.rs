@@ -17,7 +17,8 @@ pub enum Method {
     /// The book's: θ\[k+1\] = θ\[k\] + θ̇\[k\]h, θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h. Order 1; a swinging robot gains
     /// energy.
     Euler,
-    /// θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h, then θ\[k+1\] = θ\[k\] + θ̇\[k+1\]h. Order 1; a pendulum's energy stays bounded.
+    /// θ̇\[k+1\] = θ̇\[k\] + θ̈\[k\]h, then θ\[k+1\] = θ\[k\] + θ̇\[k+1\]h. Order 1; the energy of a
+    /// single pendulum stays bounded, that of a robot whose inertia changes drifts.
     SemiImplicitEuler,
     /// The classical method with four stages. Order 4, as long as F is smooth: kinks of a table, Coulomb friction and
     /// contacts reduce the order of the step in which they occur.
