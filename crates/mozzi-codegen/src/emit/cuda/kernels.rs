@@ -157,7 +157,9 @@ fn rows(
     let is_input = |k: usize| k < function.inputs.len();
     let of_thread: usize = staged.iter().filter(|(_, is_staged)| *is_staged).map(|(x, _)| padded(x.length)).sum();
     lines.push("\n#ifndef MOZZI_ONLY_COLUMNS".to_string());
-    lines.push("// Of `count` states, a thread each: entry k of state i at i * length + k; blocks of a multiple of".into());
+    lines.push(
+        "// Of `count` states, a thread each: entry k of state i at i * length + k; blocks of a multiple of".into(),
+    );
     lines.push(format!("// 32 threads, at most {threads}."));
     lines.push(head(CudaLayout::Rows, threads));
     if of_thread == 0 {
@@ -170,7 +172,8 @@ fn rows(
     }
     lines.push(format!("    __shared__ {number} shared_[{threads} * {of_thread}];"));
     lines.push("    const unsigned lane_ = threadIdx.x % 32u;".to_string());
-    lines.push("    // the warp's first state, the number of its states, and its part of the shared memory".to_string());
+    lines
+        .push("    // the warp's first state, the number of its states, and its part of the shared memory".to_string());
     lines.push(
         "    const unsigned long long first_ = (unsigned long long) blockIdx.x * blockDim.x + (threadIdx.x - lane_);"
             .to_string(),
@@ -186,7 +189,8 @@ fn rows(
         place += padded(x.length);
     }
     let copies = |of_inputs: bool| {
-        let those = staged.iter().enumerate().filter(move |(k, (_, is_staged))| *is_staged && is_input(*k) == of_inputs);
+        let those =
+            staged.iter().enumerate().filter(move |(k, (_, is_staged))| *is_staged && is_input(*k) == of_inputs);
         those.map(move |(_, (x, _))| match of_inputs {
             true => format!("    {prefix}_fetch<{1}>({0} + first_ * {1}, {0}_, states_, lane_);", x.name, x.length),
             false => format!("    {prefix}_store<{1}>({0}_, {0} + first_ * {1}, states_, lane_);", x.name, x.length),
