@@ -54,8 +54,8 @@ fn expected(model: &Model, query: Query, precision: Precision) -> Vec<Vec<f64>> 
 /// In ε, relative to the largest entry of a state: sums, solves.
 fn tolerance(query: Query) -> f64 {
     match query.name() {
-        "forward_dynamics" | "forward_dynamics_vjp" => 20_000.0,
-        _ => 200.0,
+        "forward_dynamics" | "forward_dynamics_vjp" => 1000.0,
+        _ => 50.0,
     }
 }
 
@@ -105,9 +105,9 @@ fn packed_matrices_are_the_lower_triangle_by_rows() {
 #[test]
 fn a_singular_mass_matrix_gives_nan_and_tasks_are_refused() {
     let mut description = embedded("double_pendulum").description().clone();
-    let last = description.links.last_mut().expect("a link");
-    last.inertia = SpatialInertia::zero();
-    let model = description.build().expect("a massless link at the end is allowed");
+    description.links.iter_mut().for_each(|link| link.inertia = SpatialInertia::zero());
+    description.joints.iter_mut().for_each(|joint| joint.armature = 0.0);
+    let model = description.build().expect("massless links are allowed");
     let theta = vec![0.3; model.nq()];
     let (rates, tau) = (vec![0.1; model.n()], vec![1.0; model.n()]);
     assert!(model.forward_dynamics(&theta, &rates, &tau, &model.environment()).is_err());
