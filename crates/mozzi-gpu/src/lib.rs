@@ -37,11 +37,13 @@ mod error;
 mod guarded;
 mod number;
 mod nvrtc;
+mod order;
+mod rollout;
 mod source;
 
 pub use arch::Arch;
 pub use binary::{Binary, Resources};
-pub use driver::{Device, DeviceArray, Kernel, Stream};
+pub use driver::{Device, DeviceArray, Kernel, Rollout, RolloutArrays, RolloutInputs, Steps, Stream};
 pub use error::Error;
 pub use number::Number;
 pub use nvrtc::Nvrtc;

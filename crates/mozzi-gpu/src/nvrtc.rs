@@ -54,19 +54,30 @@ impl Nvrtc {
         Ok(FOUND.get_or_init(|| found).clone())
     }
 
-    /// The NVRTC in a folder of Python's packages, such as `site-packages`.
+    /// The first NVRTC in these folders of Python's packages, such as `site-packages`.
     ///
     /// # Errors
     /// [`Error::NoCompiler`].
-    pub fn in_packages(folder: &Path) -> Result<Nvrtc, Error> {
-        search(&of_packages(folder))
+    pub fn in_packages(folders: &[PathBuf]) -> Result<Nvrtc, Error> {
+        search(&folders.iter().flat_map(|folder| of_packages(folder)).collect::<Vec<_>>())
     }
 
-    /// Loads this library.
+    /// Loads this library, once in a process.
     ///
     /// # Errors
     /// [`Error::NotNvrtc`] if it cannot be loaded, or lacks NVRTC's functions.
     pub fn open(path: &Path) -> Result<Nvrtc, Error> {
+        static OPENED: Mutex<Vec<(PathBuf, Nvrtc)>> = Mutex::new(Vec::new());
+        let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, nvrtc)) = opened.iter().find(|(known, _)| known == path) {
+            return Ok(nvrtc.clone());
+        }
+        let nvrtc = Nvrtc::load(path)?;
+        opened.push((path.to_path_buf(), nvrtc.clone()));
+        Ok(nvrtc)
+    }
+
+    fn load(path: &Path) -> Result<Nvrtc, Error> {
         let name = path.display().to_string();
         let wrong = |reason: String| Error::NotNvrtc { path: name.clone(), reason };
         // SAFETY: loading runs the library's initialization; the caller, the user's variable or NVIDIA's names chose it
@@ -261,7 +272,7 @@ mod tests {
         // a file that is no library
         let error = Nvrtc::open(&found[0]).expect_err("text").to_string();
         assert!(error.contains("libnvrtc.so.12 is not NVRTC"), "{error}");
-        let error = Nvrtc::in_packages(&folder.join("lib")).expect_err("no packages").to_string();
+        let error = Nvrtc::in_packages(&[folder.join("lib")]).expect_err("no packages").to_string();
         assert!(error.contains("MOZZI_NVRTC"), "{error}");
         std::fs::remove_dir_all(&folder).unwrap();
     }

@@ -1,6 +1,7 @@
 //! The text of a kernel.
 
 use crate::guarded;
+use crate::order;
 use crate::{Arch, Binary, Error, Number, Nvrtc};
 use mozzi::Model;
 use mozzi::quantities::Query;
@@ -50,6 +51,8 @@ pub struct Source {
     pub(crate) outputs: Vec<Argument>,
     pub(crate) form: Form,
     pub(crate) block: Block,
+    /// Options that leave out other kernels of the text.
+    pub(crate) kernels: &'static str,
 }
 
 impl Source {
@@ -60,6 +63,7 @@ impl Source {
     /// [`record_quantity`](mozzi_codegen::record_quantity) and [`emit`](mozzi_codegen::emit).
     pub fn new<'q>(model: &Model, query: impl Into<Query<'q>>, form: Form) -> Result<Source, Error> {
         let program = guarded::program(model, query.into(), form.precision, form.is_packed)?;
+        let program = order::ordered(program, model.n());
         Source::of_program(&model.description().name, &program, form)
     }
 
@@ -84,6 +88,10 @@ impl Source {
             outputs: arguments(program.outputs().iter().map(|x| (x.name.as_str(), x.values.len())).collect()),
             form,
             block: Block::of(program, form.layout, form.precision),
+            kernels: match form.layout {
+                CudaLayout::Rows => "-DMOZZI_ONLY_ROWS",
+                CudaLayout::Columns => "-DMOZZI_ONLY_COLUMNS",
+            },
         })
     }
 
@@ -149,10 +157,6 @@ impl Source {
 
     /// NVRTC's options besides the architecture.
     pub(crate) fn options(&self) -> Vec<String> {
-        let only = match self.form.layout {
-            CudaLayout::Rows => "-DMOZZI_ONLY_ROWS",
-            CudaLayout::Columns => "-DMOZZI_ONLY_COLUMNS",
-        };
-        vec![only.to_string()]
+        self.kernels.split(' ').map(String::from).collect()
     }
 }

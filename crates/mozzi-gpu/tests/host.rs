@@ -6,7 +6,7 @@ mod common;
 use common::host::{Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, form, inputs, quantities, robots, transposed};
 use mozzi::quantities::{ForwardDynamics, InverseDynamics, MassMatrix, Query, TaskSpaceDynamics};
-use mozzi::{Model, SpatialInertia};
+use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia, Sym3, Vec3};
 use mozzi_codegen::{CudaLayout, Precision};
 use mozzi_gpu::{Error, Form, Source};
 
@@ -24,7 +24,7 @@ fn results(name: &str, cases: Vec<(&Model, Query, Form)>) -> Vec<Vec<Vec<f64>>> 
                 rows.iter().zip(source.inputs()).map(|(x, input)| transposed(x, input.length)).collect()
             }
         };
-        Call { source, inputs, states: STATES, further: String::new() }
+        Call { source, inputs, states: STATES, rollout: None }
     };
     let calls: Vec<Call> = cases.iter().map(call).collect();
     let mut results = run(name, &calls);
@@ -102,22 +102,35 @@ fn packed_matrices_are_the_lower_triangle_by_rows() {
     assert!(error(&found[0][0], &expected, n * (n + 1) / 2) < 1e-14);
 }
 
+/// Two revolute joints and a point mass at the end, which a straight arm cannot move outward.
+fn massless_arm() -> Model {
+    let home = [1.0, 2.0, 2.0].map(|x| SE3::translation([x, 0.0, 0.0]));
+    let screws = [0.0, 1.0].map(|x| ScrewAxis::from_line([0.0, -1.0, 0.0], [x, 0.0, 0.0], 0.0).expect("unit"));
+    let point = SpatialInertia::new(1.0, Vec3::zero(), Sym3::diagonal(0.0, 0.0, 0.0));
+    let bodies = [SpatialInertia::zero(), point];
+    let robot = Description::from_screws("arm", HomeFrames::Base(&home), &bodies, Screws::Space(&screws));
+    robot.expect("sound").build().expect("sound")
+}
+
 #[test]
 fn a_singular_mass_matrix_gives_nan_and_tasks_are_refused() {
-    let mut description = embedded("double_pendulum").description().clone();
-    description.links.iter_mut().for_each(|link| link.inertia = SpatialInertia::zero());
-    description.joints.iter_mut().for_each(|joint| joint.armature = 0.0);
-    let model = description.build().expect("massless links are allowed");
-    let theta = vec![0.3; model.nq()];
-    let (rates, tau) = (vec![0.1; model.n()], vec![1.0; model.n()]);
-    assert!(model.forward_dynamics(&theta, &rates, &tau, &model.environment()).is_err());
+    let model = massless_arm();
     let task = Query::from(TaskSpaceDynamics).of(model.end_effector().expect("an end"));
     assert!(matches!(Source::new(&model, task, Form::default()), Err(Error::Unsupported { .. })));
+    let (straight, bent) = ([0.3, 0.0], [0.3, 1.0]);
+    let compute = |theta: &[f64]| model.forward_dynamics(theta, &[0.1, 0.2], &[1.0, -1.0], &model.environment());
+    assert!(compute(&straight).is_err());
+    let expected = compute(&bent).expect("regular");
     if !exists() {
         return;
     }
-    let cases = PRECISIONS.map(|precision| (&model, ForwardDynamics.into(), form(precision, CudaLayout::Rows)));
-    for outputs in results("singular", cases.to_vec()) {
-        assert!(outputs[0].iter().all(|x| x.is_nan()), "{:?}", outputs[0]);
+    let calls = PRECISIONS.map(|precision| {
+        let source = Source::new(&model, ForwardDynamics, form(precision, CudaLayout::Rows)).expect("a text");
+        let inputs = vec![[straight, bent].concat(), [0.1, 0.2].repeat(2), [1.0, -1.0].repeat(2)];
+        Call { source, inputs, states: 2, rollout: None }
+    });
+    for outputs in run("singular", &calls) {
+        assert!(outputs[0][..2].iter().all(|x| x.is_nan()), "{:?}", outputs[0]);
+        assert!(error(&outputs[0][2..], expected.as_slice(), 2) < 1e-5, "{:?}", outputs[0]);
     }
 }

@@ -79,6 +79,23 @@ impl Kernel {
     pub unsafe fn launch(&self, inputs: &[u64], outputs: &[u64], states: usize, stream: Stream) -> Result<(), Error> {
         self.check_count("inputs", inputs.len(), self.source.inputs.len())?;
         self.check_count("outputs", outputs.len(), self.source.outputs.len())?;
+        let count = states as u64;
+        let numbers = inputs.iter().chain(outputs).chain([&count]);
+        let mut parameters: Vec<*mut c_void> = numbers.map(|x| std::ptr::from_ref(x).cast_mut().cast()).collect();
+        // SAFETY: pointers and a number, as the text declares; the caller answers for the addresses and the stream
+        unsafe { self.launch_with(&mut parameters, states, stream) }
+    }
+
+    /// Launches it with these parameters, each given by its address.
+    ///
+    /// # Safety
+    /// The parameters are those of the text. See [`launch`](Self::launch).
+    pub(super) unsafe fn launch_with(
+        &self,
+        parameters: &mut [*mut c_void],
+        states: usize,
+        Stream(stream): Stream,
+    ) -> Result<(), Error> {
         if states == 0 {
             return Ok(());
         }
@@ -87,17 +104,11 @@ impl Kernel {
         let blocks = u32::try_from(states.div_ceil(threads)).ok().filter(|&blocks| blocks <= i32::MAX as u32);
         let blocks =
             blocks.ok_or_else(|| Error::Driver { call: "cuLaunchKernel", reason: too_many(states, threads) })?;
-        let count = states as u64;
-        let numbers = inputs.iter().chain(outputs).chain([&count]);
-        let mut parameters: Vec<*mut c_void> = numbers.map(|x| std::ptr::from_ref(x).cast_mut().cast()).collect();
-        let threads = u32::try_from(threads).unwrap_or(u32::MAX);
-        let stream = stream.0 as sys::CUstream;
-        // SAFETY: the function is loaded; the parameters are copied during the call, in number and type as the text
-        // declares; the caller answers for the addresses and the stream
-        unsafe {
-            result::launch_kernel(self.module.function, (blocks, 1, 1), (threads, 1, 1), 0, stream, &mut parameters)
-        }
-        .map_err(failed("cuLaunchKernel"))
+        let (grid, block) = ((blocks, 1, 1), (u32::try_from(threads).unwrap_or(u32::MAX), 1, 1));
+        let stream = stream as sys::CUstream;
+        // SAFETY: the function is loaded; the parameters are copied during the call; the caller answers for the rest
+        unsafe { result::launch_kernel(self.module.function, grid, block, 0, stream, parameters) }
+            .map_err(failed("cuLaunchKernel"))
     }
 
     /// Launches it on arrays of the device, on the legacy default stream.

@@ -3,10 +3,12 @@
 mod array;
 mod device;
 mod kernel;
+mod rollout;
 
 pub use array::DeviceArray;
 pub use device::Device;
 pub use kernel::{Kernel, Stream};
+pub use rollout::{Rollout, RolloutArrays, RolloutInputs, Steps};
 
 use crate::Error;
 use cudarc::driver::DriverError;

@@ -29,6 +29,7 @@ static std::barrier<> warp(32);
 [[maybe_unused]] static long long __double_as_longlong(double x) { long long y; memcpy(&y, &x, 8); return y; }
 [[maybe_unused]] static double __longlong_as_double(long long x) { double y; memcpy(&y, &x, 8); return y; }
 [[maybe_unused]] static unsigned __float_as_uint(float x) { unsigned y; memcpy(&y, &x, 4); return y; }
+[[maybe_unused]] static float __fdividef(float x, float y) { return x / y; }
 [[maybe_unused]] static float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
 // one block more than needed, so that some threads have no state
 template <class Kernel> static void launch(Kernel kernel, unsigned long long count) {
@@ -53,12 +54,31 @@ template <class T> static void put(const std::vector<T> &x) {
 }
 "#;
 
-/// A kernel, its input arrays in its layout, and further arguments between the outputs and the number of states.
+/// A kernel, its input arrays in its layout, and what a rollout has besides.
 pub struct Call {
     pub source: Source,
     pub inputs: Vec<Vec<f64>>,
     pub states: usize,
-    pub further: String,
+    pub rollout: Option<Rollout>,
+}
+
+/// Arrays between the inputs and the outputs, rows of the outputs, and arguments between the outputs and the number of
+/// states.
+pub struct Rollout {
+    pub arrays: Vec<Vec<f64>>,
+    pub rows: usize,
+    pub arguments: String,
+}
+
+impl Call {
+    fn rows(&self) -> usize {
+        self.rollout.as_ref().map_or(1, |rollout| rollout.rows)
+    }
+
+    /// All arrays that the program reads.
+    fn arrays(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.inputs.iter().chain(self.rollout.iter().flat_map(|rollout| &rollout.arrays))
+    }
 }
 
 /// True if there is a compiler of C++20.
@@ -80,26 +100,30 @@ pub fn run(name: &str, calls: &[Call]) -> Vec<Vec<Vec<f64>>> {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
     let (mut main, mut body) = (HOST.to_string(), String::new());
-    for (k, Call { source, states, further, .. }) in calls.iter().enumerate() {
+    for (k, call) in calls.iter().enumerate() {
+        let (source, states) = (&call.source, call.states);
         // a function of C has one name in all namespaces
         std::fs::write(folder.join(format!("{k}.cu")), source.text().replace("extern \"C\"", "static"))
             .expect("a file");
-        let only = if source.form().layout == CudaLayout::Rows { "ROWS" } else { "COLUMNS" };
-        main += &format!(
-            "#define MOZZI_ONLY_{only}\nnamespace k{k} {{\n#include \"{k}.cu\"\n}}\n#undef MOZZI_ONLY_{only}\n"
-        );
+        let mut only = vec![if source.form().layout == CudaLayout::Rows { "ROWS" } else { "COLUMNS" }];
+        if call.rollout.is_some() {
+            only = vec!["ROWS", "COLUMNS"];
+        }
+        only.iter().for_each(|only| main += &format!("#define MOZZI_ONLY_{only}\n"));
+        main += &format!("namespace k{k} {{\n#include \"{k}.cu\"\n}}\n");
+        only.iter().for_each(|only| main += &format!("#undef MOZZI_ONLY_{only}\n"));
         let (number, mut arguments) = (number(source), String::new());
         body += "    {\n";
-        for (i, input) in source.inputs().iter().enumerate() {
-            body += &format!("        auto x{i} = get<{number}>({});\n", input.length * states);
-            arguments += &format!("x{i}.data(), ");
+        for (i, input) in call.arrays().enumerate() {
+            body += &format!("        auto x{i} = get<{number}>({});\n", input.len());
+            arguments += &if input.is_empty() { "nullptr, ".to_string() } else { format!("x{i}.data(), ") };
         }
         for (i, output) in source.outputs().iter().enumerate() {
-            body += &format!("        std::vector<{number}> y{i}({});\n", output.length * states);
+            body += &format!("        std::vector<{number}> y{i}({});\n", output.length * states * call.rows());
             arguments += &format!("y{i}.data(), ");
         }
-        body +=
-            &format!("        launch([&] {{ k{k}::{}({arguments}{further}{states}); }}, {states});\n", source.entry());
+        arguments += call.rollout.as_ref().map_or("", |rollout| &rollout.arguments);
+        body += &format!("        launch([&] {{ k{k}::{}({arguments}{states}); }}, {states});\n", source.entry());
         (0..source.outputs().len()).for_each(|i| body += &format!("        put(y{i});\n"));
         body += "    }\n";
     }
@@ -110,7 +134,7 @@ pub fn run(name: &str, calls: &[Call]) -> Vec<Vec<Vec<f64>>> {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 
     let bytes: Vec<u8> =
-        calls.iter().flat_map(|call| call.inputs.iter().flatten().flat_map(|&x| to_bytes(x, call))).collect();
+        calls.iter().flat_map(|call| call.arrays().flatten().flat_map(|&x| to_bytes(x, call))).collect();
     let piped = || Stdio::piped();
     let mut child = Command::new(folder.join("main")).stdin(piped()).stdout(piped()).spawn().expect("a program");
     let mut input = child.stdin.take().expect("a pipe");
@@ -127,7 +151,9 @@ pub fn run(name: &str, calls: &[Call]) -> Vec<Vec<Vec<f64>>> {
     };
     let results = calls
         .iter()
-        .map(|call| call.source.outputs().iter().map(|x| array(x.length * call.states, &call.source)).collect())
+        .map(|call| {
+            call.source.outputs().iter().map(|x| array(x.length * call.states * call.rows(), &call.source)).collect()
+        })
         .collect();
     assert!(rest.is_empty());
     results

@@ -10,7 +10,7 @@ use mozzi::quantities::{
 use mozzi::{Base, Model};
 use mozzi_codegen::{CudaLayout, Precision};
 use mozzi_gpu::{Form, Nvrtc};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 pub const LAYOUTS: [CudaLayout; 2] = [CudaLayout::Rows, CudaLayout::Columns];
@@ -45,12 +45,10 @@ pub fn form(precision: Precision, layout: CudaLayout) -> Form {
 /// The compiler in `MOZZI_NVRTC`, in the environment, or in the wheels of `cargo xtask gpu-report`.
 pub fn nvrtc() -> Option<Nvrtc> {
     let folders = ["../../target/nvidia", "../../target/venv"].map(|x| Path::new(env!("CARGO_MANIFEST_DIR")).join(x));
-    let wheels = || {
-        let libraries = folders.iter().filter_map(|folder| std::fs::read_dir(folder.join("lib")).ok());
-        let versions = libraries.flatten().filter_map(Result::ok);
-        versions.map(|version| version.path().join("site-packages")).find_map(|x| Nvrtc::in_packages(&x).ok())
-    };
-    let found = Nvrtc::find().ok().or_else(wheels);
+    let libraries = folders.iter().filter_map(|folder| std::fs::read_dir(folder.join("lib")).ok()).flatten();
+    let packages: Vec<PathBuf> =
+        libraries.filter_map(|version| Some(version.ok()?.path().join("site-packages"))).collect();
+    let found = Nvrtc::find().or_else(|_| Nvrtc::in_packages(&packages)).ok();
     if found.is_none() {
         eprintln!("skipped: no NVRTC here; `cargo xtask gpu-report` installs one, or set MOZZI_NVRTC");
     }
