@@ -1,7 +1,7 @@
 //! A loaded kernel, and its calls.
 
 use super::{Device, DeviceArray, failed};
-use crate::{Binary, Error, Number, Source};
+use crate::{Binary, Error, Number, Resources, Source};
 use cudarc::driver::result;
 use cudarc::driver::sys;
 use mozzi_codegen::CudaLayout;
@@ -18,6 +18,7 @@ pub struct Kernel {
     device: Device,
     source: Source,
     module: Arc<Module>,
+    resources: Resources,
 }
 
 /// The loaded code.
@@ -53,7 +54,12 @@ impl Kernel {
         // SAFETY: the module was just loaded
         let function = unsafe { result::module::get_function(module, name) };
         loaded.function = function.map_err(failed("cuModuleGetFunction"))?;
-        Ok(Kernel { device: device.clone(), source: source.clone(), module: Arc::new(loaded) })
+        Ok(Kernel {
+            device: device.clone(),
+            source: source.clone(),
+            module: Arc::new(loaded),
+            resources: binary.resources(),
+        })
     }
 
     /// Its device.
@@ -64,6 +70,11 @@ impl Kernel {
     /// Its text, with names and lengths of its arrays.
     pub fn source(&self) -> &Source {
         &self.source
+    }
+
+    /// Registers, spilled registers, shared memory.
+    pub fn resources(&self) -> Resources {
+        self.resources
     }
 
     /// Launches it on arrays of the device, given by their addresses, inputs and outputs in the order of
