@@ -1,6 +1,6 @@
 //! `cargo xtask gpu-bench`: states a second on this machine's GPU, into benches/GPU.md. Without a GPU it fails with "no
 //! CUDA device" and writes nothing. Arguments: `--robots FOLDER` of example-robot-data, `--only NAME` of a robot,
-//! `--states N`, `--page FILE` (else standard output), `--peers FILE` with lines of benches/gpu_peers.py.
+//! `--states N`, `--page FILE` (else standard output).
 
 #[path = "../cases/mod.rs"]
 mod cases;
@@ -63,8 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let rollouts = rollout::seconds(&device, &robots)?;
     let bandwidth = measure::bandwidth(&device)?;
-    let peers = option("--peers").map(std::fs::read_to_string).transpose()?;
-    let text = page::text(&device, &nvrtc, states, bandwidth, &speeds, &rollouts, peers.as_deref())?;
+    let text = page::text(&device, &nvrtc, states, bandwidth, &speeds, &rollouts)?;
     match option("--page") {
         Some(path) => std::fs::write(path, text)?,
         None => println!("{text}"),

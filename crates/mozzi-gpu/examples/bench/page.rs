@@ -13,7 +13,6 @@ pub fn text(
     bandwidth: f64,
     speeds: &[Speed],
     rollouts: &[Seconds],
-    peers: Option<&str>,
 ) -> Result<String, Box<dyn Error>> {
     let (major, minor) = nvrtc.version();
     let mut text = format!(
@@ -56,9 +55,6 @@ pub fn text(
     for Seconds { robot, robots, steps, seconds } in rollouts {
         let rate = 4.0 * (robots * steps) as f64 / seconds / 1e9;
         text += &format!("| {robot} | {robots} | {steps} | {seconds:.3} | {rate:.2} |\n");
-    }
-    if let Some(peers) = peers {
-        text += &format!("\n## Other libraries, in the same run\n\n{peers}");
     }
     Ok(text)
 }
