@@ -32,6 +32,7 @@
 
 mod arch;
 mod binary;
+mod cache;
 mod driver;
 mod error;
 mod guarded;

@@ -1,7 +1,8 @@
 //! NVRTC, NVIDIA's compiler at run time: a library with a dozen functions of C, found and loaded at the first use.
 
 use crate::binary::Resources;
-use crate::{Arch, Binary, Error};
+use crate::cache::Key;
+use crate::{Binary, Error};
 use libloading::{Library, Symbol};
 use std::collections::HashMap;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -21,9 +22,6 @@ struct Loaded {
     version: (u32, u32),
     compiled: Mutex<HashMap<Key, Arc<Binary>>>,
 }
-
-/// Text, entry, architecture and options.
-type Key = (String, String, Arch, Vec<String>);
 
 type Program = *mut c_void;
 
@@ -105,21 +103,22 @@ impl Nvrtc {
         self.library.version
     }
 
-    /// Compiles a text, or returns the code that it made of the same text with the same options.
-    pub(crate) fn compile(
-        &self,
-        text: &str,
-        entry: &str,
-        arch: Arch,
-        options: &[String],
-    ) -> Result<Arc<Binary>, Error> {
-        let key = (text.to_string(), entry.to_string(), arch, options.to_vec());
+    /// Compiles a text, or returns the code of an equal text with the same options, of this process or, if the variable
+    /// `MOZZI_GPU_CACHE` names a folder, of an earlier one.
+    pub(crate) fn compile(&self, key: Key) -> Result<Arc<Binary>, Error> {
         let compiled = || self.library.compiled.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(binary) = compiled().get(&key) {
             return Ok(binary.clone());
         }
-        let binary = Arc::new(self.library.compile(text, entry, arch, options)?);
-        Ok(compiled().entry(key).or_insert(binary).clone())
+        let binary = match key.read() {
+            Some(binary) => binary,
+            None => {
+                let binary = self.library.compile(&key)?;
+                key.write(&binary);
+                binary
+            }
+        };
+        Ok(compiled().entry(key).or_insert(Arc::new(binary)).clone())
     }
 }
 
@@ -158,7 +157,8 @@ fn candidates(variable: impl Fn(&str) -> Option<PathBuf>) -> Vec<PathBuf> {
 }
 
 impl Loaded {
-    fn compile(&self, text: &str, entry: &str, arch: Arch, options: &[String]) -> Result<Binary, Error> {
+    fn compile(&self, key: &Key) -> Result<Binary, Error> {
+        let (Key { text, entry, options, .. }, arch) = (key, key.arch);
         let failed = |reason: String, log: String| Error::Compile { entry: entry.to_string(), arch, reason, log };
         let c_string = |text: &str| CString::new(text).map_err(|error| failed(error.to_string(), String::new()));
         let (source, name) = (c_string(text)?, c_string(&format!("{entry}.cu"))?);

@@ -1,5 +1,6 @@
 //! The text of a kernel.
 
+use crate::cache::Key;
 use crate::guarded;
 use crate::order;
 use crate::{Arch, Binary, Error, Number, Nvrtc};
@@ -131,12 +132,14 @@ impl Source {
         numbers * if self.form.precision == Precision::F64 { 8 } else { 4 }
     }
 
-    /// Compiles it. Equal texts are compiled once for each architecture and NVRTC of a process. No GPU is needed.
+    /// Compiles it. Equal texts are compiled once for each architecture and NVRTC of a process; the
+    /// variable `MOZZI_GPU_CACHE` names a folder that keeps the code for later processes. No GPU is needed.
     ///
     /// # Errors
     /// [`Error::Compile`].
     pub fn compile(&self, nvrtc: &Nvrtc, arch: Arch) -> Result<Arc<Binary>, Error> {
-        nvrtc.compile(&self.text, &self.entry, arch, &self.options())
+        let (text, entry) = (self.text.clone(), self.entry.clone());
+        nvrtc.compile(Key { text, entry, arch, options: self.options() })
     }
 
     /// The number of states in inputs of these lengths, of numbers of this type.

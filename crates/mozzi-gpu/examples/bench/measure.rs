@@ -16,6 +16,9 @@ const CHECKED: usize = 500;
 /// Different random states; the rest repeats them.
 const RANDOM: usize = 4096;
 
+/// Bytes of all arrays, at most: a humanoid's matrices would not fit.
+const BYTES: usize = 1 << 30;
+
 /// What both number types offer.
 pub trait Real: Number + Into<f64> {
     const EPSILON: f64;
@@ -42,6 +45,7 @@ pub fn speed<T: Real>(
     states: usize,
 ) -> Result<Speed, Box<dyn Error>> {
     let kernel = device.kernel(source)?;
+    let states = states.min(BYTES / source.bytes_of_state());
     let rows = rows(robot, query);
     let form = source.form();
     let place = |length: usize, i: usize, k: usize| match form.layout {
