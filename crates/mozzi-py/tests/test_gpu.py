@@ -141,7 +141,7 @@ def test_wrong_results_and_names(ur5, fake):
         gpu.inverse_dynamics(*x, out=OnGpu(np.empty((5, 5))))
     with pytest.raises(TypeError, match="out has 2 arrays, expected 1"):
         gpu.inverse_dynamics(*x, out=[OnGpu(np.empty((5, 6)))] * 2)
-    with pytest.raises(AttributeError, match="no_such is no quantity"):
+    with pytest.raises(AttributeError, match="'no_such' is no quantity"):
         gpu.no_such(*x)
 
 

@@ -8,6 +8,7 @@ import importlib.util
 import math
 from collections.abc import Callable
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -193,13 +194,9 @@ def _empty(x: Any, shape: tuple[int, ...], dtype: str) -> Any:
     if framework == "torch":
         return x.new_empty(shape)
     if framework == "cupy":
-        import cupy
-
-        return cupy.empty(shape, dtype)
+        return import_module("cupy").empty(shape, dtype)
     if framework == "numba":
-        from numba import cuda
-
-        return cuda.device_array(shape, dtype)
+        return import_module("numba.cuda").device_array(shape, dtype)
     raise TypeError(f"results of a {type(x).__name__} need out=: arrays are made for PyTorch, CuPy and Numba")
 
 
@@ -207,44 +204,38 @@ def _stream(x: Any, views: list[View]) -> int:
     """The framework's current stream; else that of the arrays' interface; else the legacy default stream."""
     framework = _framework(x)
     if framework == "torch":
-        import torch
-
-        return int(torch.cuda.current_stream(x.device).cuda_stream)
+        return int(import_module("torch").cuda.current_stream(x.device).cuda_stream)
     if framework == "cupy":
-        import cupy
-
-        return int(cupy.cuda.get_current_stream().ptr)
+        return int(import_module("cupy").cuda.get_current_stream().ptr)
     return next((int(v.stream) for v in views if v.stream is not None), 0)
 
 
 def _wants_gradient(inputs: tuple[Any, ...]) -> bool:
     if _framework(inputs[0]) != "torch":
         return False
-    import torch
-
-    return torch.is_grad_enabled() and any(getattr(x, "requires_grad", False) for x in inputs)
+    is_enabled = bool(import_module("torch").is_grad_enabled())
+    return is_enabled and any(getattr(x, "requires_grad", False) for x in inputs)
 
 
 def _differentiable(gpu: Gpu, quantity: str, inputs: tuple[Any, ...], frame: str | None, stream: int | None) -> Any:
     """By PyTorch's autograd: the gradient is the quantity's vector-Jacobian product, a kernel, too."""
-    import torch
-
+    autograd = import_module("torch").autograd
+    base: Any = autograd.Function
     product = f"{quantity}_vjp"
     if not hasattr(_mozzi.Model, product):
         raise TypeError(f"{quantity} has no gradient on a GPU: there is no {product}; detach its arguments")
     if gpu.model.nq != gpu.model.n:
         raise TypeError("gradients on a GPU are for robots without quaternions; detach the arguments")
 
-    class Function(torch.autograd.Function):
+    class Function(base):  # type: ignore[misc]
         @staticmethod
         def forward(ctx: Any, *x: Any) -> Any:
             ctx.save_for_backward(*x)
             return gpu.compute(quantity, *(t.detach() for t in x), frame=frame, stream=stream)
 
         @staticmethod
-        @torch.autograd.function.once_differentiable
+        @autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, w: Any) -> Any:
-            found = gpu.compute(product, *ctx.saved_tensors, w.contiguous(), frame=frame, stream=stream)
-            return found
+            return gpu.compute(product, *ctx.saved_tensors, w.contiguous(), frame=frame, stream=stream)
 
     return Function.apply(*inputs)
