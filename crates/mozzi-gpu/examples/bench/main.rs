@@ -12,6 +12,7 @@ use mozzi_codegen::Precision;
 use mozzi_gpu::{Device, Form, Nvrtc, Source};
 use std::error::Error;
 use std::path::Path;
+use std::process::ExitCode;
 
 /// States of each array: many waves of threads, and more than the caches hold.
 const STATES: usize = 1 << 22;
@@ -31,7 +32,17 @@ pub struct Speed {
     error: f64,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let option = |name: &str| arguments.iter().position(|x| x == name).and_then(|k| arguments.get(k + 1));
     let device = Device::first()?;

@@ -14,6 +14,7 @@ use mozzi_gpu::{Arch, Form, Nvrtc, Resources, Source};
 use sass::Instructions;
 use std::error::Error;
 use std::path::Path;
+use std::process::ExitCode;
 
 /// A kernel's counts.
 struct Count {
@@ -26,7 +27,17 @@ struct Count {
     instructions: Instructions,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let option = |name: &str| arguments.iter().position(|x| x == name).and_then(|k| arguments.get(k + 1));
     let arch: Arch = option("--arch").map_or(Ok(Arch::SM_90), |name| name.parse())?;
