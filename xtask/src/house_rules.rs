@@ -5,14 +5,17 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, NumPy's arrays, Python's
-/// methods, XLA's calls, C's pointers, and exports to JavaScript. Each entry is a path prefix.
-const UNSAFE_ALLOWED: [&str; 10] = [
+/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, CUDA's libraries, NumPy's arrays,
+/// Python's methods, XLA's calls, C's pointers, and exports to JavaScript. Each entry is a path prefix.
+const UNSAFE_ALLOWED: [&str; 13] = [
     "crates/mozzi/src/fast",
     "crates/mozzi/src/scalar/four",
     "crates/mozzi-batch/src/number",
     "crates/mozzi-batch/src/lanes/",
     "crates/mozzi-codegen/src/jit/executable",
+    "crates/mozzi-gpu/src/nvrtc",
+    "crates/mozzi-gpu/src/driver/",
+    "crates/mozzi-py/src/gpu",
     "crates/mozzi-py/src/numpy",
     "crates/mozzi-py/src/methods/attach",
     "crates/mozzi-py/src/jax/interface",

@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | book | page | bench | accuracy | nightly | wheel | api | release | dist | deb |
-//! licences`: the same commands as in CI.
+//! `cargo xtask test | check | docs | book | page | bench | accuracy | gpu-report | gpu-bench | nightly | wheel | api |
+//! release | dist | deb | licences`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -17,6 +17,7 @@ mod documents;
 mod examples;
 mod fuzz;
 mod glibc;
+mod gpu;
 mod house_rules;
 mod inlining;
 mod licences;
@@ -72,6 +73,12 @@ usage: cargo xtask COMMAND
           --robots ur5,anymal:floating,FILE.urdf      only these robots, to standard output
           --quantities mass-matrix,forward-dynamics   likewise
           --no-hard                                   without the cases that are hard by design
+  gpu-report  count registers, spills and instructions of the GPU kernels, and the bounds that follow, into docs/gpu.md;
+          installs NVRTC and nvdisasm from PyPI into target/nvidia; no GPU is needed
+          --arch sm_90                                the architecture
+          --only UR5                                  only this robot, to standard output
+  gpu-bench  measure the GPU kernels on this machine's GPU, into benches/GPU.md
+          --only UR5, --states 4194304                only this robot, states in an array, to standard output
   nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment, run its README and
@@ -117,6 +124,8 @@ fn main() -> ExitCode {
         ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
+        ["gpu-report", ref options @ ..] => one("GPU kernels", || gpu::report(&workspace, options)),
+        ["gpu-bench", ref options @ ..] => one("GPU benchmarks", || gpu::bench(&workspace, options)),
         ["accuracy", ref options @ ..] => accuracy(&workspace, options),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
             Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),

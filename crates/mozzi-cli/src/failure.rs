@@ -72,6 +72,12 @@ impl From<mozzi_batch::Error> for Failure {
     }
 }
 
+impl From<mozzi_gpu::Error> for Failure {
+    fn from(error: mozzi_gpu::Error) -> Self {
+        Failure::Wrong(error.to_string())
+    }
+}
+
 impl From<mozzi_identify::Error> for Failure {
     fn from(error: mozzi_identify::Error) -> Self {
         Failure::Wrong(error.to_string())

@@ -42,7 +42,7 @@ mod traced;
 
 pub use arguments::{Arguments, pivot_names, record_quantity};
 pub use count::Count;
-pub use emit::{EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
+pub use emit::{Block, CudaLayout, EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
 pub use estimate::{LONGEST_TEXT, estimate, is_too_long};
 pub use function::Function;
 pub use jit::{Extent, Form, Kernel, MOST_ARRAYS, Refusal, Shape};

@@ -239,7 +239,7 @@ fn cuda_on_the_host() {
             return;
         }
         let modules = modules(Language::Cuda, precision);
-        let flags = ["-std=c++17", "-O0", "-Wall", "-Wextra", "-Werror", "-Wno-unknown-pragmas"];
+        let flags = ["-std=c++20", "-pthread", "-O0", "-Wall", "-Wextra", "-Werror", "-Wno-unknown-pragmas"];
         let folder = build(Language::Cuda, precision, &modules, &format!("cuda {precision:?}"), "g++", &flags);
         check(&format!("CUDA {precision:?}"), precision, &modules, &run(&folder, precision, &modules));
     }

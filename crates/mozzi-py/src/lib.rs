@@ -8,6 +8,7 @@ mod conventions;
 mod describe;
 mod environment;
 mod failure;
+mod gpu;
 mod html;
 mod identify;
 mod jax;
@@ -33,6 +34,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     robot::remember_process();
     module.add_class::<model::PyModel>()?;
     methods::add_to(&py.get_type::<model::PyModel>())?;
+    module.add_class::<gpu::GpuKernel>()?;
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 25] = [
+const IMPORTED: [(&str, &str); 27] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -17,6 +17,7 @@ const IMPORTED: [(&str, &str); 25] = [
     ("docs/gradients.md", "manual/gradients.md"),
     ("docs/jax.md", "manual/jax.md"),
     ("docs/pytorch.md", "manual/pytorch.md"),
+    ("docs/gpu-guide.md", "manual/gpu.md"),
     ("docs/contacts.md", "manual/contacts.md"),
     ("docs/xacro.md", "manual/xacro.md"),
     ("docs/agreement.md", "about/agreement.md"),
@@ -24,6 +25,7 @@ const IMPORTED: [(&str, &str); 25] = [
     ("docs/published-robots.md", "about/published-robots.md"),
     ("docs/published-models.md", "about/published-models.md"),
     ("benches/RESULTS.md", "about/times.md"),
+    ("docs/gpu.md", "about/gpu.md"),
     ("docs/performance-log.md", "about/performance-log.md"),
     ("DESIGN.md", "about/design.md"),
     ("docs/design-notes.md", "about/design-notes.md"),

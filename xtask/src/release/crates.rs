@@ -6,11 +6,12 @@ use crate::workspace::Workspace;
 use serde_json::Value;
 
 /// Those with a documented interface, in an order in which each depends on earlier ones.
-pub const PUBLIC: [&str; 8] = [
+pub const PUBLIC: [&str; 9] = [
     "mozzi",
     "mozzi-xacro",
     "mozzi-urdf",
     "mozzi-codegen",
+    "mozzi-gpu",
     "mozzi-motion",
     "mozzi-identify",
     "mozzi-batch",

@@ -4,8 +4,8 @@ use arrow_array::{ArrayRef, Float32Array, Float64Array};
 use mozzi_batch::Number;
 use std::sync::Arc;
 
-/// A number type of files and batches.
-pub trait Precision: Number {
+/// A number type of files, batches and GPUs.
+pub trait Precision: Number + mozzi_gpu::Number {
     /// "f64" or "f32".
     const NAME: &'static str;
 

@@ -60,7 +60,7 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
                 Function::Add => Some(format!("{a} + {b}")),
                 Function::Sub => Some(format!("{a} - {b}")),
                 Function::Mul => Some(format!("{a} * {b}")),
-                Function::Div => Some(format!("{a} / {b}")),
+                Function::Div => Some(dialect.quotient(&a, &b)),
                 Function::Neg => Some(format!("-{a}")),
                 Function::MulAdd => Some(fused(&a, &b, &c)),
                 Function::MulSub => Some(fused(&a, &b, &format!("-{c}"))),

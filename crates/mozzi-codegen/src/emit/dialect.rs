@@ -93,6 +93,10 @@ pub(super) trait Dialect {
     fn entry(&self, array: &str, index: usize) -> String;
     /// The name in the file of a helper or of a function of the language: `mul_add`, `sgn`, `sqrt`, `tanh`, `sin_cos`.
     fn helper(&self, name: &str) -> String;
+    /// A quotient.
+    fn quotient(&self, a: &str, b: &str) -> String {
+        format!("{a} / {b}")
+    }
     /// Defines a new number.
     fn bind(&self, name: &str, expression: &str) -> String;
     /// Defines new numbers: sines and cosines.

@@ -15,6 +15,7 @@ mod sin_cos;
 use crate::arguments::{Arguments, record_quantity};
 use crate::function::Function;
 use crate::program::{Program, Step};
+pub use cuda::{Block, CudaLayout};
 use dialect::{Argument, Emitted, Source};
 use mozzi::Model;
 use mozzi::quantities::Query;
@@ -32,8 +33,9 @@ pub enum Language {
     /// C99: a header and a source file that need only <stdint.h> and <math.h>; C++ can include the header.
     C,
     /// CUDA C: one file without includes. It has a function for one state and kernels for many states, one thread for
-    /// each state, in two layouts: `_rows` (entry k of state i at `i · length + k`) and `_columns` (at `k · count +
-    /// i`).
+    /// each state, in two layouts: `_rows` (entry k of state i at `i · length + k`, through shared memory) and
+    /// `_columns` (at `k · count + i`). Each kernel's comment has the largest block, a multiple of 32 threads; with
+    /// `MOZZI_ONLY_ROWS` or `MOZZI_ONLY_COLUMNS` defined, only the kernels of that layout are compiled.
     Cuda,
 }
 

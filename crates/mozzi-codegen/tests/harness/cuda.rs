@@ -1,4 +1,4 @@
-//! A main program that runs the CUDA text on the host, one thread after the other.
+//! A main program that runs the CUDA text on the host, a warp's threads as threads of the system.
 
 use super::{Module, c_number, compile};
 use mozzi_codegen::Precision;
@@ -6,20 +6,28 @@ use std::path::Path;
 
 /// The parts of CUDA that the text uses.
 const HOST: &str = r#"
+#include <barrier>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 #include <vector>
 #define __constant__ static const
+#define __shared__ static
+#define __launch_bounds__(threads)
+#define __syncwarp() warp.arrive_and_wait()
 #define __device__
 #define __global__
 #define __forceinline__ inline
 struct Index { unsigned x; };
-static Index blockIdx, blockDim = {4}, threadIdx;
+static const Index blockDim = {32};
+static thread_local Index blockIdx, threadIdx;
+static std::barrier<> warp(32);
 [[maybe_unused]] static long long __double_as_longlong(double x) { long long y; memcpy(&y, &x, 8); return y; }
 [[maybe_unused]] static double __longlong_as_double(long long x) { double y; memcpy(&y, &x, 8); return y; }
 [[maybe_unused]] static unsigned __float_as_uint(float x) { unsigned y; memcpy(&y, &x, 4); return y; }
+[[maybe_unused]] static float __fdividef(float x, float y) { return x / y; }
 [[maybe_unused]] static float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
 "#;
 
@@ -44,8 +52,16 @@ struct Array {
 };
 size_t Array::count;
 template <class Kernel> static void launch(Kernel kernel) {
-    for (blockIdx.x = 0; blockIdx.x < Array::count / blockDim.x + 2; blockIdx.x++)
-        for (threadIdx.x = 0; threadIdx.x < blockDim.x; threadIdx.x++) kernel();
+    std::vector<std::thread> threads;
+    for (unsigned t = 0; t < blockDim.x; t++)
+        threads.emplace_back([=] {
+            threadIdx.x = t;
+            for (blockIdx.x = 0; blockIdx.x < Array::count / blockDim.x + 2; blockIdx.x++) {
+                kernel();
+                __syncwarp(); // the next block has the same shared memory
+            }
+        });
+    for (std::thread &thread : threads) thread.join();
 }
 "#;
 

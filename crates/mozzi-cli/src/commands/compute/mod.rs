@@ -1,6 +1,7 @@
 //! `mozzi compute`: any quantity, at one state or at every state of a table.
 
 mod flags;
+mod gpu;
 mod list;
 mod one_state;
 mod subject;

@@ -1,6 +1,6 @@
 //! A quantity at every state of a file, on all cores, with progress.
 
-use super::subject;
+use super::{gpu, subject};
 use crate::failure::{self, Failure, Result};
 use crate::progress::Progress;
 use crate::quantity::{hyphenated, is_of_a_frame};
@@ -40,6 +40,9 @@ pub struct TableArguments {
     /// Instruction set: portable, neon, avx2 or avx512 [default: the widest that the machine has]
     #[arg(long, value_name = "NAME", value_parser = instruction_set, requires = "input")]
     instruction_set: Option<InstructionSet>,
+    /// Compute on the first NVIDIA GPU, by NVRTC (docs/gpu-guide.md)
+    #[arg(long, requires = "input", conflicts_with_all = ["threads", "instruction_set"])]
+    gpu: bool,
 }
 
 fn instruction_set(name: &str) -> Result<InstructionSet, String> {
@@ -78,6 +81,11 @@ impl Job<'_> {
         if let Some(set) = arguments.instruction_set {
             batch = batch.with_instruction_set(set)?;
         }
+        // before all states are read, too
+        let kernel = if arguments.gpu { Some(gpu::kernel::<T>(query, model)?) } else { None };
+        if arguments.gpu && !environment.applied.is_empty() {
+            return Err(Failure::wrong("--gpu: wrenches are given, expected none"));
+        }
         let states = States::<T>::read(file, query, model, environment.applied)?;
         if robot.gravity.is_some() && states.gravity.is_some() {
             return Err(Failure::wrong(format!(
@@ -90,7 +98,10 @@ impl Job<'_> {
         if robot.end_effector.is_some() && !is_of_a_frame(query) && !has_tip {
             return Err(Failure::wrong(format!("--frame has no effect: {file} has no wrench of that frame")));
         }
-        let (results, seconds) = compute(&batch, query, &states, environment)?;
+        let (results, seconds) = match &kernel {
+            Some(kernel) => gpu::compute(kernel, query, model, &states)?,
+            None => compute(&batch, query, &states, environment)?,
+        };
         let (count, all) = (results.first().map_or(0, |array| array.shape[0]), states.samples.count);
         let nan = nan(&results, count);
         if nan > 0 {
@@ -100,7 +111,10 @@ impl Job<'_> {
             None if robot.json => json::print(&object(query, model, &states, &results)),
             _ => results::write(output.unwrap_or("-"), query, model, &states, &results)?,
         };
-        let (registers, threads) = (batch.instruction_set().name(), batch.threads().min(count.max(1)));
+        let (registers, threads) = match &kernel {
+            Some(kernel) => (kernel.device().name(), 1),
+            None => (batch.instruction_set().name(), batch.threads().min(count.max(1))),
+        };
         let rate = count as f64 / seconds.max(1e-9);
         let text = match output {
             Some(output) if robot.json => {
@@ -118,7 +132,13 @@ impl Job<'_> {
             _ => {
                 let arrays: Vec<String> =
                     results.iter().map(|array| format!("{} {}", array.name, tuple(&array.shape))).collect();
-                let of_threads = if threads == 1 { "1 thread".to_string() } else { format!("{threads} threads") };
+                let of_threads = if kernel.is_some() {
+                    "transfers included".to_string()
+                } else if threads == 1 {
+                    "1 thread".to_string()
+                } else {
+                    format!("{threads} threads")
+                };
                 let place = output.filter(|file| *file != "-").unwrap_or("standard output");
                 failure::write(&format!(
                     "{count} states in {seconds:.3} s, {rate:.3e} states/s ({}, {registers}, {of_threads}): {} in {place}\n",

@@ -1,0 +1,116 @@
+//! Kernels on a GPU for `mozzi._gpu`, which gives the addresses of arrays.
+
+use crate::model::PyModel;
+use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_gpu::{Device, Error, Form, Kernel, Nvrtc, Source, Stream};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// A quantity's kernel on a device.
+#[pyclass(frozen, module = "mozzi._mozzi")]
+pub struct GpuKernel {
+    kernel: Kernel,
+    outputs: Vec<(&'static str, Vec<usize>)>,
+}
+
+fn failure(error: Error) -> PyErr {
+    match error {
+        Error::Model(error) => crate::failure::of_model(error),
+        error @ (Error::Unsupported { .. } | Error::WrongCount { .. }) => PyValueError::new_err(error.to_string()),
+        error => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+fn choice<T: Copy>(what: &str, found: &str, known: [(&str, T); 2]) -> PyResult<T> {
+    let [(first, _), (second, _)] = known;
+    let chosen = known.iter().find(|(name, _)| *name == found).map(|(_, value)| *value);
+    chosen.ok_or_else(|| PyValueError::new_err(format!("{what} is '{found}', expected '{first}' or '{second}'")))
+}
+
+#[pymethods]
+impl GpuKernel {
+    /// `packages`: folders in which NVRTC's wheel may be.
+    #[new]
+    #[allow(clippy::too_many_arguments)] // called by `mozzi._gpu` alone
+    #[pyo3(signature = (model, quantity, frame, dtype, layout, packed, device, packages))]
+    fn new(
+        model: &PyModel,
+        quantity: &str,
+        frame: Option<&str>,
+        dtype: &str,
+        layout: &str,
+        packed: bool,
+        device: usize,
+        packages: Vec<PathBuf>,
+    ) -> PyResult<Self> {
+        let query = model.query(quantity, frame)?;
+        let form = Form {
+            precision: choice("dtype", dtype, [("float32", Precision::F32), ("float64", Precision::F64)])?,
+            layout: choice("layout", layout, [("rows", CudaLayout::Rows), ("columns", CudaLayout::Columns)])?,
+            is_packed: packed,
+        };
+        let (device, robot) = (Device::open(device).map_err(failure)?, &model.robot().model);
+        let source = Source::new(robot, query, form).map_err(failure)?;
+        // the variable comes first, then the packages of this Python, then the system
+        let from_variable = std::env::var_os("MOZZI_NVRTC").is_some();
+        let of_packages = if from_variable { None } else { Nvrtc::in_packages(&packages).ok() };
+        let nvrtc = of_packages.map_or_else(Nvrtc::find, Ok).map_err(failure)?;
+        let binary = source.compile(&nvrtc, device.arch()).map_err(failure)?;
+        let kernel = device.load(&source, &binary).map_err(failure)?;
+        let shapes = query.declaration().outputs.iter().zip(query.shapes(robot)).zip(source.outputs());
+        // a packed matrix has no shape but its length
+        let shape =
+            |shape: Vec<usize>, length| if shape.iter().product::<usize>() == length { shape } else { vec![length] };
+        let outputs = shapes.map(|((output, all), found)| (output.name, shape(all, found.length))).collect();
+        Ok(GpuKernel { kernel, outputs })
+    }
+
+    /// Names and lengths.
+    #[getter]
+    fn inputs(&self) -> Vec<(String, usize)> {
+        self.kernel.source().inputs().iter().map(|input| (input.name.clone(), input.length)).collect()
+    }
+
+    /// Names and shapes.
+    #[getter]
+    fn outputs(&self) -> Vec<(&'static str, Vec<usize>)> {
+        self.outputs.clone()
+    }
+
+    /// Launches it on arrays at these addresses, whose lengths `mozzi._gpu` has checked.
+    fn launch(&self, inputs: Vec<u64>, outputs: Vec<u64>, states: usize, stream: usize) -> PyResult<()> {
+        // SAFETY: addresses and shapes are those of arrays that Python's frameworks own on this device, checked by
+        // `mozzi._gpu`, which also hands over the stream on which they are used
+        unsafe { self.kernel.launch(&inputs, &outputs, states, Stream(stream)) }.map_err(failure)
+    }
+}
+
+#[pymethods]
+impl PyModel {
+    /// The robot on an NVIDIA GPU: its quantities of arrays that are there, where they are.
+    ///
+    /// Parameters
+    /// ----------
+    /// layout : {'rows', 'columns'}
+    ///     'rows': arrays (..., n), as everywhere in mozzi. 'columns': arrays (n, N), faster on a GPU.
+    /// device : int
+    ///     The device's number.
+    ///
+    /// Returns
+    /// -------
+    /// Gpu
+    ///     With the quantities as methods: see docs/gpu-guide.md.
+    ///
+    /// Raises
+    /// ------
+    /// RuntimeError
+    ///     No CUDA device was found, or no NVRTC (``pip install nvidia-cuda-nvrtc``).
+    #[pyo3(signature = (*, layout="rows", device=0))]
+    fn to_gpu<'py>(slf: Bound<'py, Self>, layout: &str, device: usize) -> PyResult<Bound<'py, PyAny>> {
+        choice("layout", layout, [("rows", ()), ("columns", ())])?;
+        Device::open(device).map_err(failure)?;
+        let py = slf.py();
+        py.import("mozzi._gpu")?.getattr("Gpu")?.call1((slf, layout, device))
+    }
+}

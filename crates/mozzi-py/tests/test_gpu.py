@@ -1,0 +1,167 @@
+"""Arrays on a GPU: parsing, checks and calls, on arrays of the host that claim to be on one; and without a GPU, the error.
+
+A fake kernel reads and writes addresses of the host by the model itself.
+"""
+
+import ctypes
+
+import numpy as np
+import pytest
+
+import mozzi
+from mozzi import _gpu, _mozzi
+
+
+class OnGpu:
+    """An array of the host with the interface of CUDA's arrays."""
+
+    def __init__(self, array, stream=None):
+        self.array = array
+        self.__cuda_array_interface__ = {
+            "shape": array.shape,
+            "typestr": array.dtype.str,
+            "data": (array.ctypes.data, False),
+            "strides": None if array.flags.c_contiguous else array.strides,
+            "version": 3,
+            "stream": stream,
+        }
+
+
+class OfDlpack:
+    """An array of the host by DLPack alone, on a device of choice."""
+
+    def __init__(self, array, device=(2, 0)):
+        self.array, self.device = array, device
+
+    def __dlpack__(self, stream=None):
+        return self.array.__dlpack__()
+
+    def __dlpack_device__(self):
+        return self.device
+
+
+class Kernel:
+    """`_mozzi.GpuKernel` on the host."""
+
+    launched = []
+
+    def __init__(self, model, quantity, frame, dtype, layout, packed, device, packages):
+        assert all(isinstance(folder, str) for folder in packages)
+        self.model, self.quantity, self.dtype, self.layout = model, quantity, np.dtype(dtype), layout
+        n = model.n
+        arguments = {"forward_dynamics": 3, "mass_matrix": 1}.get(quantity, 3)
+        self.inputs = [("theta", n), ("dtheta", n), ("tau", n), ("x", n)][:arguments]
+        if quantity.endswith("_vjp"):
+            self.inputs.append(("x", n))
+        self.outputs = [("M", [n, n])] if quantity == "mass_matrix" else [("tau", [n])]
+        if quantity.endswith("_vjp"):
+            self.outputs = [("d_theta", [n]), ("d_dtheta", [n]), ("d_ddtheta", [n])]
+
+    def at(self, address, states, length):
+        number = ctypes.c_float if self.dtype == np.float32 else ctypes.c_double
+        flat = np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(number)), (states * length,))
+        return flat.reshape(states, length) if self.layout == "rows" else flat.reshape(length, states).T
+
+    def launch(self, inputs, outputs, states, stream):
+        Kernel.launched.append((self.quantity, states, stream))
+        given = [self.at(x, states, length) for x, (_, length) in zip(inputs, self.inputs)]
+        found = getattr(self.model, self.quantity)(*(x.copy() for x in given))
+        for address, array in zip(outputs, found if isinstance(found, tuple) else (found,)):
+            self.at(address, states, array[0].size)[:] = array.reshape(states, -1)
+
+
+@pytest.fixture
+def ur5():
+    return mozzi.models.ur5()
+
+
+@pytest.fixture
+def fake(monkeypatch):
+    monkeypatch.setattr(_mozzi, "GpuKernel", Kernel)
+    Kernel.launched.clear()
+
+
+def state(n, states=5, dtype=np.float64):
+    random = np.random.default_rng(1)
+    return [random.uniform(-1, 1, (states, n)).astype(dtype) for _ in range(3)]
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("kind", [OnGpu, OfDlpack])
+def test_rows_in_rows_out(ur5, fake, dtype, kind):
+    x, tau = state(6, dtype=dtype), np.empty((5, 6), dtype)
+    gpu = _gpu.Gpu(ur5)
+    out = OnGpu(tau)
+    assert gpu.inverse_dynamics(*map(kind, x), out=out) is out
+    assert Kernel.launched == [("inverse_dynamics", 5, 0)]
+    np.testing.assert_allclose(tau, ur5.inverse_dynamics(*x), rtol=1e-5)
+
+
+def test_columns_and_streams(ur5, fake):
+    x = [np.ascontiguousarray(a.T) for a in state(6)]
+    gpu, M = _gpu.Gpu(ur5, "columns"), np.empty((6, 6, 5))
+    gpu.mass_matrix(OnGpu(x[0], stream=7), out=OnGpu(M))
+    np.testing.assert_allclose(M.transpose(2, 0, 1), ur5.mass_matrix(x[0].T), atol=1e-14)
+    gpu.mass_matrix(OnGpu(x[0], stream=7), out=OnGpu(M), stream=9)
+    assert [stream for _, _, stream in Kernel.launched] == [7, 9]
+
+
+def test_several_results_and_leading_axes(ur5, fake):
+    x = [a.reshape(1, 5, 6) for a in state(6)]
+    out = [OnGpu(np.empty((1, 5, 6))) for _ in range(3)]
+    found = _gpu.Gpu(ur5).inverse_dynamics_vjp(*map(OnGpu, [*x, x[0]]), out=out)
+    for array, expected in zip(found, ur5.inverse_dynamics_vjp(*x, x[0])):
+        np.testing.assert_allclose(array.array, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "error", "words"),
+    [
+        (lambda x: [x[0], OnGpu(x[1]), OnGpu(x[2])], ValueError, "argument 1 is on DLPack's device"),
+        (lambda x: [1.0, OnGpu(x[1]), OnGpu(x[2])], TypeError, "argument 1 is a float, expected an array on a GPU"),
+        (lambda x: [OnGpu(x[0]), OnGpu(x[1].astype(np.float32)), OnGpu(x[2])], TypeError, "dtheta is float32"),
+        (lambda x: [OnGpu(x[0].astype(int)), OnGpu(x[1]), OnGpu(x[2])], TypeError, "argument 1 has numbers of type '<i8'"),
+        (lambda x: [OnGpu(x[0][:, :5].copy()), OnGpu(x[1]), OnGpu(x[2])], ValueError, r"theta has shape \(5, 5\)"),
+        (lambda x: [OnGpu(x[0]), OnGpu(x[1][:4]), OnGpu(x[2])], ValueError, r"dtheta has shape \(4, 6\), expected \(5, 6\)"),
+        (lambda x: [OnGpu(x[0][::2]), OnGpu(x[1]), OnGpu(x[2])], ValueError, "argument 1 is not contiguous"),
+        (lambda x: [OnGpu(x[0])], TypeError, r"takes 3 arrays \(theta, dtheta, tau\), found 1"),
+        (lambda x: [OnGpu(a) for a in x], TypeError, "results of a OnGpu need out="),
+        (lambda x: [], TypeError, "found none"),
+    ],
+)
+def test_wrong_arrays_are_named(ur5, fake, arrays, error, words):
+    with pytest.raises(error, match=words):
+        _gpu.Gpu(ur5).inverse_dynamics(*arrays(state(6)))
+    assert not Kernel.launched
+
+
+def test_wrong_results_and_names(ur5, fake):
+    gpu, x = _gpu.Gpu(ur5), list(map(OnGpu, state(6)))
+    with pytest.raises(ValueError, match=r"out \(tau\) has shape \(5, 5\), expected \(5, 6\)"):
+        gpu.inverse_dynamics(*x, out=OnGpu(np.empty((5, 5))))
+    with pytest.raises(TypeError, match="out has 2 arrays, expected 1"):
+        gpu.inverse_dynamics(*x, out=[OnGpu(np.empty((5, 6)))] * 2)
+    with pytest.raises(AttributeError, match="'no_such' is no quantity"):
+        gpu.no_such(*x)
+
+
+def test_gradients_of_torch(ur5, fake, monkeypatch):
+    torch = pytest.importorskip("torch")
+    monkeypatch.setattr(_gpu, "view", lambda x, name: _gpu.View(x.data_ptr(), tuple(x.shape), "float64", None))
+    x = [torch.tensor(a, requires_grad=True) for a in state(6)]
+    w = torch.ones(5, 6, dtype=torch.float64)
+    (_gpu.Gpu(ur5).compute("inverse_dynamics", *x, stream=0) * w).sum().backward()
+    expected = ur5.inverse_dynamics_vjp(*(a.detach().numpy() for a in x), w.numpy())
+    for a, gradient in zip(x, expected):
+        np.testing.assert_allclose(a.grad.numpy(), gradient, atol=1e-12)
+
+
+def test_without_a_gpu_the_error_names_it(ur5):
+    with pytest.raises(ValueError, match="layout is 'blocks', expected 'rows' or 'columns'"):
+        ur5.to_gpu(layout="blocks")
+    try:
+        gpu = ur5.to_gpu()
+    except RuntimeError as error:
+        assert str(error).startswith("no CUDA device: ")
+    else:
+        assert isinstance(gpu, _gpu.Gpu)
