@@ -41,8 +41,8 @@ pub struct TableArguments {
     #[arg(long, value_name = "NAME", value_parser = instruction_set, requires = "input")]
     instruction_set: Option<InstructionSet>,
     /// Compute on the first NVIDIA GPU, by NVRTC (docs/gpu-guide.md)
-    #[arg(long, requires = "input", conflicts_with_all = ["threads", "instruction_set"])]
-    gpu: bool,
+    #[arg(long, conflicts_with_all = ["threads", "instruction_set"])]
+    pub gpu: bool,
 }
 
 fn instruction_set(name: &str) -> Result<InstructionSet, String> {
