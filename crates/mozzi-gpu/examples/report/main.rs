@@ -1,6 +1,6 @@
 //! `cargo xtask gpu-report`: what each kernel needs, counted in its machine code, and the bounds that follow. No GPU is
 //! needed; NVRTC and nvdisasm are. Arguments: `--nvdisasm PATH`, `--arch sm_90`, `--robots FOLDER` of
-//! example-robot-data, `--only NAME` of a robot, `--page FILE` (else standard output).
+//! example-robot-data, `--only NAME` of a robot, `--quantity NAME`, `--page FILE` (else standard output).
 
 mod card;
 #[path = "../cases/mod.rs"]
@@ -48,7 +48,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let mut counts = Vec::new();
     for robot in robots.iter().filter(|robot| only.is_none_or(|name| *name == robot.name)) {
         for (precision, layout) in cases::FORMS {
-            for (query, is_packed) in cases::quantities() {
+            for (query, is_packed) in cases::quantities(option("--quantity").map(String::as_str)) {
                 let form = Form { precision, layout, is_packed };
                 counts.push(count(robot, query, form, &nvrtc, arch, nvdisasm)?);
                 let Count { robot, quantity, resources, .. } = &counts[counts.len() - 1];
