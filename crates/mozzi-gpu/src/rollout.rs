@@ -108,7 +108,7 @@ ENTRY(const NUMBER *__restrict__ theta, const NUMBER *__restrict__ dtheta, const
         }
 #pragma unroll 1
         for (int stage = 0; stage < 4; ++stage) {
-            FUNCTION(q, v, u, a, 1);
+            FUNCTION<false>(q, v, u, a, 1);
             const NUMBER part = stage == 0 || stage == 3 ? h / 6 : h / 3, ahead = stage < 2 ? h / 2 : h;
 #pragma unroll
             for (int j = 0; j < COUNT; ++j) {

@@ -16,6 +16,9 @@ use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
+/// Lines of text of the longest kernel that is compiled: longer ones take minutes.
+const LONGEST: usize = 20_000;
+
 /// A kernel's counts.
 struct Count {
     robot: String,
@@ -50,7 +53,12 @@ fn run() -> Result<(), Box<dyn Error>> {
         for (precision, layout) in cases::FORMS {
             for (query, is_packed) in cases::quantities(option("--quantity").map(String::as_str)) {
                 let form = Form { precision, layout, is_packed };
-                counts.push(count(robot, query, form, &nvrtc, arch, nvdisasm)?);
+                let source = Source::new(&robot.model, query, form)?;
+                if source.text().lines().count() > LONGEST {
+                    eprintln!("{} {} {form:?}: left out, longer than {LONGEST} lines", robot.name, query.name());
+                    continue;
+                }
+                counts.push(count(robot, query.name(), &source, &nvrtc, arch, nvdisasm)?);
                 let Count { robot, quantity, resources, .. } = &counts[counts.len() - 1];
                 eprintln!("{robot} {quantity} {form:?}: {resources:?}");
             }
@@ -66,13 +74,12 @@ fn run() -> Result<(), Box<dyn Error>> {
 
 fn count(
     Robot { name, model }: &Robot,
-    query: mozzi::quantities::Query,
-    form: Form,
+    quantity: &'static str,
+    source: &Source,
     nvrtc: &Nvrtc,
     arch: Arch,
     nvdisasm: &str,
 ) -> Result<Count, Box<dyn Error>> {
-    let source = Source::new(model, query, form)?;
     let binary = source.compile(nvrtc, arch)?;
     let file = std::env::temp_dir().join(format!("mozzi-{}.cubin", std::process::id()));
     std::fs::write(&file, binary.code())?;
@@ -86,8 +93,8 @@ fn count(
     Ok(Count {
         robot: name.clone(),
         n: model.n(),
-        quantity: query.name(),
-        form,
+        quantity,
+        form: source.form(),
         bytes: source.bytes_of_state(),
         resources: binary.resources(),
         instructions,
