@@ -1,6 +1,6 @@
 //! `cargo xtask gpu-bench`: states a second on this machine's GPU, into benches/GPU.md. Without a GPU it fails with "no
-//! CUDA device" and writes nothing. Arguments: `--robots FOLDER` of example-robot-data, `--only NAME` of a robot, `--quantity NAME`,
-//! `--states N`, `--page FILE` (else standard output).
+//! CUDA device" and writes nothing. Arguments: `--robots FOLDER` of example-robot-data, `--only NAME` of a robot,
+//! `--quantity NAME`, `--states N`, `--page FILE` (else standard output).
 
 #[path = "../cases/mod.rs"]
 mod cases;
