@@ -16,8 +16,8 @@ impl Source {
     /// [`Rollout`](crate::Rollout).
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for robots with a floating base, ball or free joints, whose θ is no vector, and for robots
-    /// with constraints.
+    /// [`Error::Unsupported`] for robots with a floating base, ball or free joints, whose θ is no vector, and for
+    /// robots with constraints.
     pub fn rollout(model: &Model, precision: Precision, layout: CudaLayout) -> Result<Source, Error> {
         let unsupported = |reason| Err(Error::Unsupported { quantity: "rollout", reason });
         if model.nq() != model.n() || model.is_floating() {

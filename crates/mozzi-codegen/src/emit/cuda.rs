@@ -50,8 +50,8 @@ impl Dialect for Cuda<'_> {
             _ => self.c.helper(name),
         }
     }
-    /// In `float` within 2 ulp for divisors up to 2¹²⁶: the exact quotient has a branch, around which the compiler moves
-    /// nothing, and makes the Panda's forward dynamics a sixth longer.
+    /// In `float` within 2 ulp for divisors up to 2¹²⁶: the exact quotient has a branch, around which the compiler
+    /// moves nothing, and makes the Panda's forward dynamics a sixth longer.
     fn quotient(&self, a: &str, b: &str) -> String {
         if self.is_f64() { format!("{a} / {b}") } else { format!("__fdividef({a}, {b})") }
     }
