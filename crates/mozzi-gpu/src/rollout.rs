@@ -67,8 +67,8 @@ fn kernel(robot: &str, entry: &str, n: usize, precision: Precision, layout: Cuda
 
 const TEXT: &str = r#"
 // `steps` Runge-Kutta steps of h seconds for `count` robots, a thread each. tau: a row of COUNT numbers for each step
-// and robot, or null for zeros. gains: COUNT rows of 2 COUNT numbers for all robots, or null; target: (theta, dtheta) of
-// each robot, 2 COUNT numbers. The states after each `every` steps go to the tables.
+// and robot, or null for zeros. gains: COUNT rows of 2 COUNT numbers for all robots, or null; target: (theta, dtheta)
+// of each robot, 2 COUNT numbers. The states after each `every` steps go to the tables.
 #define AT(k, width) (AT_)
 extern "C" __global__ void __launch_bounds__(THREADS)
 ENTRY(const NUMBER *__restrict__ theta, const NUMBER *__restrict__ dtheta, const NUMBER *__restrict__ tau,
