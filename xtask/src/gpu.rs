@@ -40,7 +40,7 @@ fn run(workspace: &Workspace, example: &str, page: &str, options: &[&str]) -> Ou
         }
         None => println!("without Talos: MOZZI_ROBOTS does not name the folder of example-robot-data"),
     }
-    if !options.iter().any(|option| ["--only", "--states", "--page"].contains(option)) {
+    if !options.iter().any(|option| ["--only", "--quantity", "--states", "--page"].contains(option)) {
         cargo.arg("--page").arg(workspace.path(page));
     }
     command::outcome(&mut cargo)

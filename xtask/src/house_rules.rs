@@ -5,8 +5,8 @@ use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
-/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, CUDA's libraries, NumPy's arrays,
-/// Python's methods, XLA's calls, C's pointers, and exports to JavaScript. Each entry is a path prefix.
+/// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, CUDA's libraries, NumPy's
+/// arrays, Python's methods, XLA's calls, C's pointers, and exports to JavaScript. Each entry is a path prefix.
 const UNSAFE_ALLOWED: [&str; 13] = [
     "crates/mozzi/src/fast",
     "crates/mozzi/src/scalar/four",

@@ -76,9 +76,10 @@ usage: cargo xtask COMMAND
   gpu-report  count registers, spills and instructions of the GPU kernels, and the bounds that follow, into docs/gpu.md;
           installs NVRTC and nvdisasm from PyPI into target/nvidia; no GPU is needed
           --arch sm_90                                the architecture
-          --only UR5                                  only this robot, to standard output
+          --only UR5, --quantity mass_matrix          only this robot or quantity, to standard output
   gpu-bench  measure the GPU kernels on this machine's GPU, into benches/GPU.md
-          --only UR5, --states 4194304                only this robot, states in an array, to standard output
+          --only UR5, --quantity mass_matrix          only this robot or quantity, to standard output
+          --states 4194304                            at most this many states in an array, likewise
   nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment, run its README and

@@ -28,9 +28,9 @@ fn pairs(program: &Program, n: usize) -> Vec<Value> {
 }
 
 impl Program {
-    /// The same program in another order: for each of these values in turn, the steps that it needs and no earlier value
-    /// needed, as they were recorded; then the rest. Where values of the outputs are finished one by one, less is alive at
-    /// the same time.
+    /// The same program in another order: for each of these values in turn, the steps that it needs and no earlier
+    /// value needed, as they were recorded; then the rest. Where values of the outputs are finished one by one, less is
+    /// alive at the same time.
     ///
     /// # Panics
     /// If a value is not of this program.

@@ -16,8 +16,8 @@ impl Source {
     /// [`Rollout`](crate::Rollout).
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for robots with a floating base, ball or free joints, whose θ is no vector, and for robots
-    /// with constraints.
+    /// [`Error::Unsupported`] for robots with a floating base, ball or free joints, whose θ is no vector, and for
+    /// robots with constraints.
     pub fn rollout(model: &Model, precision: Precision, layout: CudaLayout) -> Result<Source, Error> {
         let unsupported = |reason| Err(Error::Unsupported { quantity: "rollout", reason });
         if model.nq() != model.n() || model.is_floating() {
@@ -66,8 +66,8 @@ fn kernel(robot: &str, entry: &str, n: usize, precision: Precision, layout: Cuda
 }
 
 const TEXT: &str = r#"
-// `steps` Runge-Kutta steps of h seconds for `count` robots, a thread each. tau: a row of COUNT numbers for each step and
-// robot, or null for zeros. gains: COUNT rows of 2 COUNT numbers, by rows, for all robots, or null; target: (theta, dtheta)
+// `steps` Runge-Kutta steps of h seconds for `count` robots, a thread each. tau: a row of COUNT numbers for each step
+// and robot, or null for zeros. gains: COUNT rows of 2 COUNT numbers for all robots, or null; target: (theta, dtheta)
 // of each robot, 2 COUNT numbers. The states after each `every` steps go to the tables.
 #define AT(k, width) (AT_)
 extern "C" __global__ void __launch_bounds__(THREADS)
@@ -108,7 +108,7 @@ ENTRY(const NUMBER *__restrict__ theta, const NUMBER *__restrict__ dtheta, const
         }
 #pragma unroll 1
         for (int stage = 0; stage < 4; ++stage) {
-            FUNCTION(q, v, u, a, 1);
+            FUNCTION<false>(q, v, u, a, 1);
             const NUMBER part = stage == 0 || stage == 3 ? h / 6 : h / 3, ahead = stage < 2 ? h / 2 : h;
 #pragma unroll
             for (int j = 0; j < COUNT; ++j) {

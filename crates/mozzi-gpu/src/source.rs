@@ -60,8 +60,8 @@ impl Source {
     /// The kernel of a quantity of this robot, in the robot's own gravity, its base at rest, without applied wrenches.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for tasks, and for packed forms of quantities that have no symmetric matrix; the errors of
-    /// [`record_quantity`](mozzi_codegen::record_quantity) and [`emit`](mozzi_codegen::emit).
+    /// [`Error::Unsupported`] for tasks, and for packed forms of quantities that have no symmetric matrix; the errors
+    /// of [`record_quantity`](mozzi_codegen::record_quantity) and [`emit`](mozzi_codegen::emit).
     pub fn new<'q>(model: &Model, query: impl Into<Query<'q>>, form: Form) -> Result<Source, Error> {
         let program = guarded::program(model, query.into(), form.precision, form.is_packed)?;
         let program = order::ordered(program, model.n());

@@ -93,7 +93,8 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// layout : {'rows', 'columns'}
-    ///     'rows': arrays (..., n), as everywhere in mozzi. 'columns': arrays (n, N), faster on a GPU.
+    ///     'rows': arrays (..., n), as everywhere in mozzi. 'columns': arrays (n, N), which need
+    ///     fewer instructions.
     /// device : int
     ///     The device's number.
     ///

@@ -13,10 +13,10 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
         Step::Input(array, index) => dialect.entry(&function.inputs[array as usize].name, index as usize),
         Step::Apply(..) => format!("v{value}"),
     };
-    let mut entries: Vec<Vec<String>> = vec![Vec::new(); steps.len()];
+    let mut entries: Vec<Vec<(&str, usize)>> = vec![Vec::new(); steps.len()];
     for (output, argument) in function.program.outputs.iter().zip(&function.outputs) {
         for (index, value) in output.values.iter().enumerate() {
-            entries[*value as usize].push(dialect.entry(&argument.name, index));
+            entries[*value as usize].push((&argument.name, index));
         }
     }
     let mut is_needed: Vec<bool> = entries.iter().map(|entries| !entries.is_empty()).collect();
@@ -73,7 +73,7 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
             lines.extend(expression.map(|expression| dialect.bind(&name, &expression)));
         }
         let value = operand(place);
-        lines.extend(entries[place as usize].iter().map(|entry| format!("{entry} = {value};")));
+        lines.extend(entries[place as usize].iter().map(|&(array, index)| dialect.store(array, index, &value)));
     }
     lines
 }

@@ -39,6 +39,9 @@ impl Dialect for Cuda<'_> {
     fn entry(&self, array: &str, index: usize) -> String {
         format!("{array}[{index} * stride]")
     }
+    fn store(&self, array: &str, index: usize, value: &str) -> String {
+        format!("{}_put<columns, {index}>({array}, stride, {value});", self.prefix)
+    }
     fn helper(&self, name: &str) -> String {
         match name {
             "mul_add" if self.is_f64() => "fma".to_string(),
@@ -47,8 +50,8 @@ impl Dialect for Cuda<'_> {
             _ => self.c.helper(name),
         }
     }
-    /// In `float` within 2 ulp for divisors up to 2¹²⁶: the exact quotient has a branch, around which the compiler moves
-    /// nothing, and makes the Panda's forward dynamics a sixth longer.
+    /// In `float` within 2 ulp for divisors up to 2¹²⁶: the exact quotient has a branch, around which the compiler
+    /// moves nothing, and makes the Panda's forward dynamics a sixth longer.
     fn quotient(&self, a: &str, b: &str) -> String {
         if self.is_f64() { format!("{a} / {b}") } else { format!("__fdividef({a}, {b})") }
     }
@@ -90,7 +93,8 @@ pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     let cuda = Cuda { c: C(source.precision), prefix: name, constants: RefCell::default() };
     // the constants are known once the code that uses them is written, and are emitted before it
     let helpers = helpers(source, &cuda);
-    let mut functions = kernels::copies(source, &cuda);
+    let mut functions = kernels::put(&cuda);
+    functions.extend(kernels::copies(source, &cuda));
     functions.extend(source.functions.iter().flat_map(|function| kernels::lines(function, &cuda)));
     let mut lines: Vec<String> = source.about.iter().map(|line| format!("// {line}").trim_end().to_string()).collect();
     let constants = cuda.constants.take();

@@ -91,6 +91,10 @@ pub(super) trait Dialect {
     fn literal(&self, x: f64) -> String;
     /// An entry of an argument.
     fn entry(&self, array: &str, index: usize) -> String;
+    /// Sets an entry of an argument.
+    fn store(&self, array: &str, index: usize, value: &str) -> String {
+        format!("{} = {value};", self.entry(array, index))
+    }
     /// The name in the file of a helper or of a function of the language: `mul_add`, `sgn`, `sqrt`, `tanh`, `sin_cos`.
     fn helper(&self, name: &str) -> String;
     /// A quotient.

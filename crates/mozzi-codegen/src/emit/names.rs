@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 /// Words that are reserved by one of the languages or its library, that are not allowed as file names on some system,
 /// or that the emitted text uses.
-const KEPT: &str = " abstract alignas alignof and asm assert auto aux become bool box break case catch char class con concept const \
+const KEPT: &str = " abstract alignas alignof and asm assert auto aux become bool box break case catch char class columns con concept const \
     constexpr continue count crate decltype default delete do double dyn else enum entry explicit export extern extern_c f32 f64 false final \
     float fn for friend goto if impl in inline int let long loop macro match mod move mul_add mut mutable namespace new noexcept not nul \
     nullptr operator or override priv private prn protected pub ref register restrict return self short signed sgn sin_cos sizeof \

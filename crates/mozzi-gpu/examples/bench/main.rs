@@ -1,6 +1,6 @@
 //! `cargo xtask gpu-bench`: states a second on this machine's GPU, into benches/GPU.md. Without a GPU it fails with "no
 //! CUDA device" and writes nothing. Arguments: `--robots FOLDER` of example-robot-data, `--only NAME` of a robot,
-//! `--states N`, `--page FILE` (else standard output).
+//! `--quantity NAME`, `--states N`, `--page FILE` (else standard output).
 
 #[path = "../cases/mod.rs"]
 mod cases;
@@ -53,7 +53,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let robots = cases::robots(option("--robots").map(Path::new))?;
     for robot in robots.iter().filter(|robot| only.is_none_or(|name| *name == robot.name)) {
         for (precision, layout) in cases::FORMS {
-            for (query, is_packed) in cases::quantities() {
+            for (query, is_packed) in cases::quantities(option("--quantity").map(String::as_str)) {
                 let source = Source::new(&robot.model, query, Form { precision, layout, is_packed })?;
                 let speed = match precision {
                     Precision::F32 => measure::speed::<f32>(&device, robot, query, &source, states)?,

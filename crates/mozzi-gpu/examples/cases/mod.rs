@@ -21,16 +21,17 @@ pub const FORMS: [(Precision, CudaLayout); 4] = [
     (Precision::F64, CudaLayout::Rows),
 ];
 
-/// Quantities, and whether their matrix is packed.
-pub fn quantities() -> [(Query<'static>, bool); 6] {
-    [
+/// Quantities, and whether their matrix is packed: all, or those of one name.
+pub fn quantities(name: Option<&str>) -> impl Iterator<Item = (Query<'static>, bool)> {
+    let all: [(Query, bool); 6] = [
         (InverseDynamics.into(), false),
         (ForwardDynamics.into(), false),
         (MassMatrix.into(), false),
         (MassMatrix.into(), true),
         (InverseDynamicsDerivatives.into(), false),
         (InverseDynamicsVjp.into(), false),
-    ]
+    ];
+    all.into_iter().filter(move |(query, _)| name.is_none_or(|name| name == query.name()))
 }
 
 /// UR5; Panda with locked fingers, 7 joints; ANYmal, floating; and Talos, floating, if there is the folder of

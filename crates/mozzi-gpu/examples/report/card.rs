@@ -13,8 +13,8 @@ pub struct Card {
     pub flops_f64: f64,
 }
 
-/// "NVIDIA H100 Tensor Core GPU" and "NVIDIA H200 Tensor Core GPU", data sheets, columns SXM: FP32 67, FP64 34 teraFLOPS;
-/// 3.35 and 4.8 TB/s.
+/// "NVIDIA H100 Tensor Core GPU" and "NVIDIA H200 Tensor Core GPU", data sheets, columns SXM: FP32 67, FP64 34
+/// teraFLOPS; 3.35 and 4.8 TB/s.
 pub const CARDS: [Card; 2] = [
     Card { name: "H100 SXM", bandwidth: 3.35e12, flops_f32: 67e12, flops_f64: 34e12 },
     Card { name: "H200 SXM", bandwidth: 4.8e12, flops_f32: 67e12, flops_f64: 34e12 },

@@ -1,6 +1,6 @@
 //! `cargo xtask gpu-report`: what each kernel needs, counted in its machine code, and the bounds that follow. No GPU is
 //! needed; NVRTC and nvdisasm are. Arguments: `--nvdisasm PATH`, `--arch sm_90`, `--robots FOLDER` of
-//! example-robot-data, `--only NAME` of a robot, `--page FILE` (else standard output).
+//! example-robot-data, `--only NAME` of a robot, `--quantity NAME`, `--page FILE` (else standard output).
 
 mod card;
 #[path = "../cases/mod.rs"]
@@ -15,6 +15,9 @@ use sass::Instructions;
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
+
+/// Lines of text of the longest kernel that is compiled: longer ones take minutes.
+const LONGEST: usize = 20_000;
 
 /// A kernel's counts.
 struct Count {
@@ -48,9 +51,14 @@ fn run() -> Result<(), Box<dyn Error>> {
     let mut counts = Vec::new();
     for robot in robots.iter().filter(|robot| only.is_none_or(|name| *name == robot.name)) {
         for (precision, layout) in cases::FORMS {
-            for (query, is_packed) in cases::quantities() {
+            for (query, is_packed) in cases::quantities(option("--quantity").map(String::as_str)) {
                 let form = Form { precision, layout, is_packed };
-                counts.push(count(robot, query, form, &nvrtc, arch, nvdisasm)?);
+                let source = Source::new(&robot.model, query, form)?;
+                if source.text().lines().count() > LONGEST {
+                    eprintln!("{} {} {form:?}: left out, longer than {LONGEST} lines", robot.name, query.name());
+                    continue;
+                }
+                counts.push(count(robot, query.name(), &source, &nvrtc, arch, nvdisasm)?);
                 let Count { robot, quantity, resources, .. } = &counts[counts.len() - 1];
                 eprintln!("{robot} {quantity} {form:?}: {resources:?}");
             }
@@ -66,13 +74,12 @@ fn run() -> Result<(), Box<dyn Error>> {
 
 fn count(
     Robot { name, model }: &Robot,
-    query: mozzi::quantities::Query,
-    form: Form,
+    quantity: &'static str,
+    source: &Source,
     nvrtc: &Nvrtc,
     arch: Arch,
     nvdisasm: &str,
 ) -> Result<Count, Box<dyn Error>> {
-    let source = Source::new(model, query, form)?;
     let binary = source.compile(nvrtc, arch)?;
     let file = std::env::temp_dir().join(format!("mozzi-{}.cubin", std::process::id()));
     std::fs::write(&file, binary.code())?;
@@ -86,8 +93,8 @@ fn count(
     Ok(Count {
         robot: name.clone(),
         n: model.n(),
-        quantity: query.name(),
-        form,
+        quantity,
+        form: source.form(),
         bytes: source.bytes_of_state(),
         resources: binary.resources(),
         instructions,

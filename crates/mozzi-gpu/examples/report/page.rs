@@ -21,6 +21,8 @@ are lower. `cargo xtask gpu-bench` measures on a machine with a GPU. How to use 
 - **bounds**, 10⁹ states a second: *memory* is the bandwidth over the bytes; *arithmetic* the card's multiply-adds a
   second over the instructions of its arithmetic units; *issue* one instruction of a warp in each cycle of each
   scheduler. The smallest is in the last column, with its name.
+
+Kernels of more than 20,000 lines, which take minutes to compile, are left out: those of Talos's ∂τ.
 ";
 
 /// The page.

@@ -111,11 +111,11 @@ impl Kernel {
             return Ok(());
         }
         self.device.bind()?;
-        let threads = self.source.threads();
-        let blocks = u32::try_from(states.div_ceil(threads)).ok().filter(|&blocks| blocks <= i32::MAX as u32);
-        let blocks =
-            blocks.ok_or_else(|| Error::Driver { call: "cuLaunchKernel", reason: too_many(states, threads) })?;
-        let (grid, block) = ((blocks, 1, 1), (u32::try_from(threads).unwrap_or(u32::MAX), 1, 1));
+        // strides of columns have 32 bits
+        let all =
+            u32::try_from(states).map_err(|_| Error::Driver { call: "cuLaunchKernel", reason: too_many(states) })?;
+        let threads = u32::try_from(self.source.threads()).unwrap_or(u32::MAX);
+        let (grid, block) = ((all.div_ceil(threads), 1, 1), (threads, 1, 1));
         let stream = stream as sys::CUstream;
         // SAFETY: the function is loaded; the parameters are copied during the call; the caller answers for the rest
         unsafe { result::launch_kernel(self.module.function, grid, block, 0, stream, parameters) }
@@ -166,6 +166,6 @@ impl Kernel {
     }
 }
 
-fn too_many(states: usize, threads: usize) -> String {
-    format!("{states} states, expected at most {}", threads * i32::MAX as usize)
+fn too_many(states: usize) -> String {
+    format!("{states} states, expected at most {}", u32::MAX)
 }

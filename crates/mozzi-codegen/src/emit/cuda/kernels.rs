@@ -69,6 +69,20 @@ fn padded(length: usize) -> usize {
     length | 1
 }
 
+/// How results are stored. By columns the address is computed for this one store: compilers would otherwise share
+/// offsets between arrays and keep hundreds of them in registers.
+pub(super) fn put(cuda: &Cuda) -> Vec<String> {
+    let (number, prefix) = (cuda.c.number(), cuda.prefix);
+    let (bits, constraint) = if cuda.is_f64() { (64, 'd') } else { (32, 'f') };
+    vec![format!(
+        "\n// Entry k of a result; columns are in global memory.\ntemplate <bool columns, unsigned k>\nstatic __device__ \
+         __forceinline__ void {prefix}_put({number} *__restrict__ to, const unsigned long long stride, const {number} \
+         x)\n{{\n#ifdef __CUDA_ARCH__\n    if (columns) {{\n        asm volatile(\"{{ .reg .u64 a; mad.wide.u32 a, %1, %2, %0; \
+         st.global.f{bits} [a], %3; }}\"\n            :: \"l\"(__cvta_generic_to_global(to)), \"r\"((unsigned) stride), \
+         \"n\"(k * (unsigned) sizeof x), \"{constraint}\"(x));\n        return;\n    }}\n#endif\n    to[k * stride] = x;\n}}"
+    )]
+}
+
 /// The copies of rows to and from shared memory that the kernels call.
 pub(super) fn copies(source: &Source, cuda: &Cuda) -> Vec<String> {
     let is_staged = |function: &Emitted| {
@@ -105,9 +119,9 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     let arguments = arguments.join(", ");
     let mut lines = vec![String::new()];
     lines.extend(function.lines().iter().map(|line| format!("// {line}")));
-    lines.push("// Of one state: entry k of an array is at k * stride.".to_string());
+    lines.push("// Of one state: entry k of an array is at k * stride; columns have a stride below 2^32.".to_string());
     lines.push(format!(
-        "static __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
+        "template <bool columns>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
     ));
     lines.extend(function.unused().map(|input| format!("    (void) {};", input.name)));
     lines.extend(body::lines(function, cuda).iter().map(|line| format!("    {line}")));
@@ -141,7 +155,7 @@ fn columns(
     lines.push(
         "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string(),
     );
-    lines.push(format!("    if (i < count) {name}({arrays}count);\n}}\n#endif"));
+    lines.push(format!("    if (i < count) {name}<true>({arrays}count);\n}}\n#endif"));
 }
 
 fn rows(
@@ -167,7 +181,7 @@ fn rows(
             "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string(),
         );
         let arrays: String = staged.iter().map(|(x, _)| format!("{0} + i * {1}, ", x.name, x.length)).collect();
-        lines.push(format!("    if (i < count) {name}({arrays}1);\n}}\n#endif"));
+        lines.push(format!("    if (i < count) {name}<false>({arrays}1);\n}}\n#endif"));
         return;
     }
     lines.push(format!("    __shared__ {number} shared_[{threads} * {of_thread}];"));
@@ -202,7 +216,7 @@ fn rows(
         true => format!("{}_ + lane_ * {}, ", x.name, padded(x.length)),
         false => format!("{} + (first_ + lane_) * {}, ", x.name, x.length),
     };
-    lines.push(format!("    if (lane_ < states_) {name}({}1);", staged.iter().map(row).collect::<String>()));
+    lines.push(format!("    if (lane_ < states_) {name}<false>({}1);", staged.iter().map(row).collect::<String>()));
     lines.push("    __syncwarp();".to_string());
     lines.extend(copies(false));
     lines.push("}\n#endif".to_string());
