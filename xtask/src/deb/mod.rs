@@ -20,7 +20,7 @@ const FOLDER: &str = "target/deb";
 /// cargo-zigbuild and zig.
 const TOOLS: &str = "crates/mozzi-c/requirements-dist.txt";
 /// Of the program `mozzi` without symbols: a third are kernels of 57 quantities for six kinds of registers.
-const MOST_BYTES: u64 = 26_000_000;
+const MOST_BYTES: u64 = 28_000_000;
 
 /// Where the completions of each shell are found.
 const COMPLETIONS: [(&str, &str); 3] = [
