@@ -8,7 +8,7 @@ pub struct Binary {
     pub(crate) code: Vec<u8>,
     pub(crate) entry: String,
     pub(crate) arch: Arch,
-    pub(crate) resources: Resources,
+    pub(crate) resources: Option<Resources>,
 }
 
 /// What a thread and a block of a kernel need, as counted by the assembler.
@@ -42,8 +42,8 @@ impl Binary {
         self.arch
     }
 
-    /// Registers, spilled registers, shared memory.
-    pub fn resources(&self) -> Resources {
+    /// Registers, spilled registers, shared memory; `None` if the assembler does not report them, as that of NVRTC 13.0.
+    pub fn resources(&self) -> Option<Resources> {
         self.resources
     }
 }

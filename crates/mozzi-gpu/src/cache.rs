@@ -47,7 +47,7 @@ impl Key {
     }
 
     fn bytes(&self, binary: &Binary) -> Vec<u8> {
-        let (content, r) = (self.content(), binary.resources);
+        let (content, r) = (self.content(), binary.resources.unwrap_or_default()); // 0 registers if not known
         let counts = [r.registers, r.stack_bytes, r.spill_stores, r.spill_loads, r.shared_bytes, content.len()];
         let mut bytes = MAGIC.to_vec();
         counts.iter().for_each(|&count| bytes.extend((count as u64).to_le_bytes()));
@@ -64,6 +64,7 @@ impl Key {
         let (content, code) = rest.split_at_checked(length)?;
         let resources = Resources { registers, stack_bytes, spill_stores, spill_loads, shared_bytes };
         let is_same = content == self.content().as_bytes() && code.starts_with(b"\x7fELF");
+        let resources = (registers > 0).then_some(resources);
         is_same.then(|| Binary { code: code.to_vec(), entry: self.entry.clone(), arch: self.arch, resources })
     }
 }
@@ -81,12 +82,14 @@ mod tests {
             arch: Arch::SM_90,
             options: vec!["-DX".to_string()],
         };
-        let resources = Resources { registers: 64, spill_loads: 8, shared_bytes: 1024, ..Resources::default() };
+        let resources = Some(Resources { registers: 64, spill_loads: 8, shared_bytes: 1024, ..Resources::default() });
         let code = b"\x7fELF and more".to_vec();
         let binary = Binary { code: code.clone(), entry: "f_rows".to_string(), arch: Arch::SM_90, resources };
         let bytes = key("one").bytes(&binary);
         let found = key("one").parse(&bytes).expect("the same");
         assert_eq!((found.code, found.resources), (code, resources));
+        let unknown = key("one").bytes(&Binary { resources: None, ..binary });
+        assert_eq!(key("one").parse(&unknown).expect("the same").resources, None);
         assert!(key("two").parse(&bytes).is_none());
         assert!(Key { options: Vec::new(), ..key("one") }.parse(&bytes).is_none());
         for length in 0..bytes.len() - 13 {

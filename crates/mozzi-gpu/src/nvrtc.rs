@@ -193,9 +193,7 @@ impl Loaded {
         result.map_err(|reason| failed(reason, log.clone()))?;
         let code =
             self.bytes(&program, "nvrtcGetCUBINSize", "nvrtcGetCUBIN").map_err(|reason| failed(reason, log.clone()))?;
-        let resources = Resources::parse(&log)
-            .ok_or_else(|| failed("the assembler reported no registers".to_string(), log.clone()))?;
-        Ok(Binary { code, entry: entry.to_string(), arch, resources })
+        Ok(Binary { code, entry: entry.to_string(), arch, resources: Resources::parse(&log) })
     }
 
     /// A result of NVRTC: its length by one function, its bytes by another.

@@ -117,7 +117,7 @@ fn rollouts_compile_and_robots_whose_positions_are_no_vector_are_refused() {
     let Some(nvrtc) = nvrtc() else { return };
     for layout in LAYOUTS {
         let source = Source::rollout(&embedded("ur5"), Precision::F32, layout).expect("a text");
-        let resources = source.compile(&nvrtc, Arch::SM_90).expect("a binary").resources();
+        let resources = source.compile(&nvrtc, Arch::SM_90).expect("a binary").resources().expect("counts");
         eprintln!("{}: {resources:?}", source.entry());
         assert!(resources.registers <= 168 && resources.spill_stores == 0, "{resources:?}");
     }

@@ -96,7 +96,7 @@ fn count(
         quantity,
         form: source.form(),
         bytes: source.bytes_of_state(),
-        resources: binary.resources(),
+        resources: binary.resources().ok_or("this NVRTC reports no registers; 13.5 does")?,
         instructions,
     })
 }

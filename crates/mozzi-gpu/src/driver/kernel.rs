@@ -1,7 +1,7 @@
 //! A loaded kernel, and its calls.
 
 use super::{Device, DeviceArray, failed};
-use crate::{Binary, Error, Number, Resources, Source};
+use crate::{Binary, Error, Number, Source};
 use cudarc::driver::result;
 use cudarc::driver::sys;
 use mozzi_codegen::CudaLayout;
@@ -18,7 +18,6 @@ pub struct Kernel {
     device: Device,
     source: Source,
     module: Arc<Module>,
-    resources: Resources,
 }
 
 /// The loaded code.
@@ -54,12 +53,7 @@ impl Kernel {
         // SAFETY: the module was just loaded
         let function = unsafe { result::module::get_function(module, name) };
         loaded.function = function.map_err(failed("cuModuleGetFunction"))?;
-        Ok(Kernel {
-            device: device.clone(),
-            source: source.clone(),
-            module: Arc::new(loaded),
-            resources: binary.resources(),
-        })
+        Ok(Kernel { device: device.clone(), source: source.clone(), module: Arc::new(loaded) })
     }
 
     /// Its device.
@@ -72,9 +66,16 @@ impl Kernel {
         &self.source
     }
 
-    /// Registers, spilled registers, shared memory.
-    pub fn resources(&self) -> Resources {
-        self.resources
+    /// The 32-bit registers of a thread.
+    ///
+    /// # Errors
+    /// [`Error::Driver`].
+    pub fn registers(&self) -> Result<usize, Error> {
+        let attribute = sys::CUfunction_attribute_enum::CU_FUNC_ATTRIBUTE_NUM_REGS;
+        self.device.bind()?;
+        // SAFETY: the function is loaded
+        let count = unsafe { result::function::get_function_attribute(self.module.function, attribute) };
+        count.map(|count| usize::try_from(count).unwrap_or(0)).map_err(failed("cuFuncGetAttribute"))
     }
 
     /// Launches it on arrays of the device, given by their addresses, inputs and outputs in the order of
