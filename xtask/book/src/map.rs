@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 27] = [
+const IMPORTED: [(&str, &str); 28] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -25,6 +25,7 @@ const IMPORTED: [(&str, &str); 27] = [
     ("docs/published-robots.md", "about/published-robots.md"),
     ("docs/published-models.md", "about/published-models.md"),
     ("benches/RESULTS.md", "about/times.md"),
+    ("benches/GPU.md", "about/times-gpu.md"),
     ("docs/gpu.md", "about/gpu.md"),
     ("docs/performance-log.md", "about/performance-log.md"),
     ("DESIGN.md", "about/design.md"),
