@@ -42,7 +42,8 @@ impl Binary {
         self.arch
     }
 
-    /// Registers, spilled registers, shared memory; `None` if the assembler does not report them, as that of NVRTC 13.0.
+    /// Registers, spilled registers, shared memory; `None` if the assembler does not report them: that of NVRTC 13.0
+    /// does not.
     pub fn resources(&self) -> Option<Resources> {
         self.resources
     }

@@ -236,6 +236,7 @@ def _differentiable(gpu: Gpu, quantity: str, inputs: tuple[Any, ...], frame: str
         @staticmethod
         @autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, w: Any) -> Any:
-            return gpu.compute(product, *ctx.saved_tensors, w.contiguous(), frame=frame, stream=stream)
+            saved = (t.detach() for t in ctx.saved_tensors)
+            return gpu.compute(product, *saved, w.contiguous().detach(), frame=frame, stream=stream)
 
     return Function.apply(*inputs)
