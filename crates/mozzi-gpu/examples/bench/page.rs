@@ -1,8 +1,7 @@
 //! benches/GPU.md.
 
-use super::Speed;
 use super::rollout::Seconds;
-use mozzi_codegen::{CudaLayout, Precision};
+use super::{Speed, cases};
 use mozzi_gpu::{Device, Nvrtc};
 use std::error::Error;
 
@@ -38,12 +37,10 @@ pub fn text(
             text += "|---|---|---|---|---|---|---|\n";
         }
         let [median, least] = speed.states_per_second.map(|x| x / 1e9);
-        let precision = if speed.form.precision == Precision::F64 { "f64" } else { "f32" };
-        let layout = if speed.form.layout == CudaLayout::Rows { "rows" } else { "SoA" };
         text += &format!(
-            "| {}{} | {precision} {layout} | {} | {median:.3} ({least:.3}) | {:.4} | {:.0} % | {:.1} |\n",
-            speed.quantity.replace('_', " "),
-            if speed.form.is_packed { ", packed" } else { "" },
+            "| {} | {} | {} | {median:.3} ({least:.3}) | {:.4} | {:.0} % | {:.1} |\n",
+            cases::title(speed.quantity, speed.form),
+            cases::name(speed.form),
             speed.registers,
             speed.with_transfer / 1e9,
             100.0 * speed.states_per_second[0] * speed.bytes as f64 / bandwidth,

@@ -1,7 +1,7 @@
 //! docs/gpu.md.
 
 use super::card::{Bounds, CARDS};
-use super::{Count, layout, name};
+use super::{Count, cases};
 use mozzi_gpu::Arch;
 
 const HEAD: &str = "\
@@ -60,13 +60,11 @@ fn row(count: &Count) -> String {
     let [h100, h200] = CARDS.each_ref().map(|card| Bounds::of(card, count));
     let giga = |x: f64| format!("{:.*}", usize::from(x < 99.5e9) * if x < 9.95e9 { 2 } else { 1 }, x / 1e9);
     let (least, by) = h200.least();
-    let packed = if count.form.is_packed { ", packed" } else { "" };
     let (resources, i) = (count.resources, count.instructions);
     format!(
-        "| {}{packed} | {} {} | {} | {} + {} | {} | {} | {} | {} | {} | {} | {} | {} | {}, {} | {} | {} | {} {by} |\n",
-        count.quantity.replace('_', " "),
-        name(count.form.precision),
-        layout(count.form.layout),
+        "| {} | {} | {} | {} + {} | {} | {} | {} | {} | {} | {} | {} | {} | {}, {} | {} | {} | {} {by} |\n",
+        cases::title(count.quantity, count.form),
+        cases::name(count.form),
         resources.registers,
         resources.spill_stores,
         resources.spill_loads,
