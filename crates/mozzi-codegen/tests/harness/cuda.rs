@@ -5,33 +5,9 @@ use mozzi_codegen::Precision;
 use std::path::Path;
 
 /// The parts of CUDA that the text uses.
-const HOST: &str = r#"
-#include <barrier>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <thread>
-#include <vector>
-#define __constant__ static const
-#define __shared__ static
-#define __launch_bounds__(threads)
-#define __syncwarp() warp.arrive_and_wait()
-#define __device__
-#define __global__
-#define __forceinline__ inline
-struct Index { unsigned x; };
-static const Index blockDim = {32};
-static thread_local Index blockIdx, threadIdx;
-static std::barrier<> warp(32);
-[[maybe_unused]] static long long __double_as_longlong(double x) { long long y; memcpy(&y, &x, 8); return y; }
-[[maybe_unused]] static double __longlong_as_double(long long x) { double y; memcpy(&y, &x, 8); return y; }
-[[maybe_unused]] static unsigned __float_as_uint(float x) { unsigned y; memcpy(&y, &x, 4); return y; }
-[[maybe_unused]] static float __fdividef(float x, float y) { return x / y; }
-[[maybe_unused]] static float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
-"#;
+const HOST: &str = include_str!("cuda_host.hpp");
 
-/// Arrays of all states in both layouts. There is one block more than needed, so that some threads have no state.
+/// Arrays of all states in both layouts.
 const ARRAYS: &str = r#"
 struct Array {
     std::vector<number> rows, columns;
@@ -51,18 +27,6 @@ struct Array {
     }
 };
 size_t Array::count;
-template <class Kernel> static void launch(Kernel kernel) {
-    std::vector<std::thread> threads;
-    for (unsigned t = 0; t < blockDim.x; t++)
-        threads.emplace_back([=] {
-            threadIdx.x = t;
-            for (blockIdx.x = 0; blockIdx.x < Array::count / blockDim.x + 2; blockIdx.x++) {
-                kernel();
-                __syncwarp(); // the next block has the same shared memory
-            }
-        });
-    for (std::thread &thread : threads) thread.join();
-}
 "#;
 
 pub fn build(folder: &Path, precision: Precision, modules: &[Module], compiler: &str, flags: &[&str]) {
@@ -89,7 +53,7 @@ pub fn build(folder: &Path, precision: Precision, modules: &[Module], compiler: 
             for layout in ["rows", "columns"] {
                 let data: String = x.iter().chain(&y).map(|name| format!("{name}.{layout}.data(), ")).collect();
                 let kernel = format!("{}_{}_{layout}", module.name(), call.function);
-                main += &format!("        launch([&] {{ {kernel}({data}Array::count); }});\n");
+                main += &format!("        launch([&] {{ {kernel}({data}Array::count); }}, Array::count);\n");
             }
             main += &each(&y, "put");
             main += "    }\n";

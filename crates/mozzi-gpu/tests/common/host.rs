@@ -7,43 +7,10 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// The parts of CUDA that the texts use.
-const HOST: &str = r#"
-#include <barrier>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <thread>
-#include <vector>
-#define __constant__ static const
-#define __device__
-#define __global__
-#define __shared__ static
-#define __forceinline__ inline
-#define __launch_bounds__(threads)
-#define __syncwarp() warp.arrive_and_wait()
-struct Index { unsigned x; };
-static const Index blockDim = {32};
-static thread_local Index blockIdx, threadIdx;
-static std::barrier<> warp(32);
-[[maybe_unused]] static long long __double_as_longlong(double x) { long long y; memcpy(&y, &x, 8); return y; }
-[[maybe_unused]] static double __longlong_as_double(long long x) { double y; memcpy(&y, &x, 8); return y; }
-[[maybe_unused]] static unsigned __float_as_uint(float x) { unsigned y; memcpy(&y, &x, 4); return y; }
-[[maybe_unused]] static float __fdividef(float x, float y) { return x / y; }
-[[maybe_unused]] static float __uint_as_float(unsigned x) { float y; memcpy(&y, &x, 4); return y; }
-// one block more than needed, so that some threads have no state
-template <class Kernel> static void launch(Kernel kernel, unsigned long long count) {
-    std::vector<std::thread> threads;
-    for (unsigned t = 0; t < blockDim.x; t++)
-        threads.emplace_back([=] {
-            threadIdx.x = t;
-            for (blockIdx.x = 0; blockIdx.x < count / blockDim.x + 2; blockIdx.x++) {
-                kernel();
-                warp.arrive_and_wait(); // the next block has the same shared memory
-            }
-        });
-    for (std::thread &thread : threads) thread.join();
-}
+const HOST: &str = include_str!("../../../mozzi-codegen/tests/harness/cuda_host.hpp");
+
+/// Arrays from and to the test.
+const ARRAYS: &str = r#"
 template <class T> static std::vector<T> get(size_t n) {
     std::vector<T> x(n);
     if (fread(x.data(), sizeof(T), n, stdin) != n) exit(3);
@@ -99,7 +66,7 @@ pub fn run(name: &str, calls: &[Call]) -> Vec<Vec<Vec<f64>>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
-    let (mut main, mut body) = (HOST.to_string(), String::new());
+    let (mut main, mut body) = (format!("{HOST}{ARRAYS}"), String::new());
     for (k, call) in calls.iter().enumerate() {
         let (source, states) = (&call.source, call.states);
         // a function of C has one name in all namespaces
