@@ -1,6 +1,5 @@
 //! State that the readers of elements share.
 
-use crate::XacroArguments;
 use crate::dialect::Dialect;
 use crate::finding::{Finding, Findings};
 use crate::spelling::nearest;
@@ -18,8 +17,6 @@ pub(crate) struct Context {
     pub version: Version,
     /// Places of invalid numbers: a default may be used often, but is reported once.
     pub unreadable: BTreeSet<usize>,
-    /// Texts that are read instead of included files.
-    pub given: XacroArguments,
     /// The first places of attributes that do not affect the dynamics of the tree, by element and attribute.
     pub left_out: BTreeMap<(String, &'static str), Range<usize>>,
     kinds: BTreeMap<(String, String, &'static str), Option<String>>,

@@ -209,11 +209,10 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     let (mut sources, mut description) = (vec![source], None);
     if !findings.has_errors() {
         let mut cx = Context::new(findings, dialect);
-        cx.given = settings.xacro.clone();
         let folder = folder_of(folder, file_name, &settings.xacro);
         let result = match dialect {
             Dialect::Urdf => read_urdf(&sources[0], &mut cx),
-            Dialect::Mjcf => mjcf::read(&mut sources, folder, &mut cx),
+            Dialect::Mjcf => mjcf::read(&mut sources, folder, &settings.xacro, &mut cx),
         };
         findings = cx.findings;
         description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));

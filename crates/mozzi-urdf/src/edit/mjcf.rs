@@ -4,6 +4,7 @@ use super::element::{Editor, Tag};
 use super::joint::is_near;
 use super::link::comment_of;
 use super::{EditError, EditedFile, differences, refused, unsupported};
+use crate::XacroArguments;
 use crate::context::Context;
 use crate::dialect::Dialect;
 use crate::finding::Findings;
@@ -102,9 +103,9 @@ impl Model<'_> {
         let source = Source::new(self.file_name, bytes::read(text.as_bytes(), &mut findings));
         let source = syntax::mended(source, Dialect::Mjcf, &mut findings);
         let mut cx = Context::new(findings, Dialect::Mjcf);
-        cx.given.texts = texts;
+        let given = XacroArguments { texts, ..XacroArguments::default() };
         let mut sources = vec![source];
-        match mjcf::read(&mut sources, self.folder, &mut cx) {
+        match mjcf::read(&mut sources, self.folder, &given, &mut cx) {
             Some((description, places)) => Ok((sources, description, places)),
             None => Err(refused(vec![format!("{} cannot be read again", self.file_name)])),
         }

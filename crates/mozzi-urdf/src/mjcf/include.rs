@@ -1,6 +1,6 @@
 //! `<include>`: files whose content replaces the `<include>` that names them.
 
-use crate::XacroArguments;
+use super::Files;
 use crate::bytes::{self, MOST_BYTES};
 use crate::context::Context;
 use crate::dialect::Dialect;
@@ -27,7 +27,7 @@ struct Include {
 /// its source; None, with a diagnostic, if something cannot be read.
 pub(crate) fn gather(
     sources: &mut Vec<Source>,
-    folder: Option<&Path>,
+    (folder, given): Files,
     cx: &mut Context,
 ) -> Option<BTreeMap<usize, usize>> {
     let (mut pages, mut known, mut next) = (BTreeMap::new(), BTreeSet::new(), 0);
@@ -46,7 +46,7 @@ pub(crate) fn gather(
         };
         for include in includes {
             let base = sources.last().map_or(0, |last| last.base + last.text.len() + 1);
-            match open(&include, folder, &cx.given, &mut known) {
+            match open(&include, (folder, given), &mut known) {
                 Ok((name, content)) if sources.len() < MOST_FILES && bytes + content.len() <= MOST_BYTES => {
                     bytes += content.len();
                     let mut findings = Findings::default();
@@ -98,8 +98,7 @@ fn includes_of(source: &Source) -> Result<Vec<Include>, Finding> {
 /// The name and the content of an included file.
 fn open(
     include: &Include,
-    folder: Option<&Path>,
-    given: &XacroArguments,
+    (folder, given): Files,
     known: &mut BTreeSet<PathBuf>,
 ) -> Result<(String, Vec<u8>), Finding> {
     let error = |code, message: String| Finding::error(code, include.span.clone(), message);

@@ -115,9 +115,10 @@ enum Wanted {
 pub(crate) fn read(
     sources: &mut Vec<Source>,
     folder: Option<&Path>,
+    given: &XacroArguments,
     cx: &mut Context,
 ) -> Option<(Description, Places)> {
-    let (description, places, _) = read_pages(sources, folder, Wanted::Dynamics, cx)?;
+    let (description, places, _) = read_pages(sources, (folder, given), Wanted::Dynamics, cx)?;
     Some((description, places))
 }
 
@@ -128,17 +129,19 @@ pub(crate) fn shapes(
     given: &XacroArguments,
 ) -> (Vec<Shape>, Context) {
     let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
-    cx.given = given.clone();
-    match read_pages(sources, folder, Wanted::Shapes, &mut cx) {
+    match read_pages(sources, (folder, given), Wanted::Shapes, &mut cx) {
         Some((description, _, Some(shapes))) => shapes.named(&description.links),
         _ => (Vec::new(), Context::default()),
     }
 }
 
+/// Where included files are searched, and texts that are read instead of files.
+type Files<'f> = (Option<&'f Path>, &'f XacroArguments);
+
 type Read = (Description, Places, Option<Shapes>);
 
-fn read_pages(sources: &mut Vec<Source>, folder: Option<&Path>, wanted: Wanted, cx: &mut Context) -> Option<Read> {
-    let includes = include::gather(sources, folder, cx)?;
+fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut Context) -> Option<Read> {
+    let includes = include::gather(sources, files, cx)?;
     let mut pages = Vec::new();
     for source in sources.iter() {
         match syntax::parse(source, Dialect::Mjcf) {
