@@ -5,6 +5,7 @@ use crate::command;
 use crate::oracles;
 use crate::report::Outcome;
 use crate::stamp::Stamp;
+use crate::venv;
 use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -56,8 +57,7 @@ fn install(workspace: &Workspace) -> Result<PathBuf, String> {
     if !stamp.is_fresh() {
         stamp.remove()?;
         command::run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&folder))?;
-        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "-r"];
-        command::run(Command::new(&python).args(pip).arg(workspace.path(REQUIREMENTS)))?;
+        venv::pip(workspace, &python, &[], REQUIREMENTS)?;
         stamp.write()?;
     }
     packages(&folder)

@@ -78,7 +78,12 @@ pub fn add(workspace: &Workspace, file: &str) -> Outcome {
 }
 
 fn install(workspace: &Workspace, options: &[&str], file: &str) -> Result<(), String> {
-    let mut pip = Command::new(python(workspace));
+    pip(workspace, &python(workspace), options, file)
+}
+
+/// Installs requirements into the environment of this interpreter.
+pub fn pip(workspace: &Workspace, python: &Path, options: &[&str], file: &str) -> Result<(), String> {
+    let mut pip = Command::new(python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"]).args(options);
     command::run(pip.arg("-r").arg(workspace.path(file)))
 }

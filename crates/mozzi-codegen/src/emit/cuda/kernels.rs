@@ -43,6 +43,9 @@ pub struct Block {
 /// Shared memory that a kernel may have without asking the driver for more.
 const SHARED_BYTES: usize = 48 * 1024;
 
+/// A thread's state.
+const STATE: &str = "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;";
+
 impl Block {
     /// The block of a program's kernel. Rows that do not fit into shared memory with 32 threads, the longest first, are
     /// read and written in place.
@@ -152,9 +155,7 @@ fn columns(
         "// Of `count` states, a thread each: entry k of state i at k * count + i; blocks of at most {threads} threads."
     ));
     lines.push(head(CudaLayout::Columns, threads));
-    lines.push(
-        "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string(),
-    );
+    lines.push(STATE.to_string());
     lines.push(format!("    if (i < count) {name}<true>({arrays}count);\n}}\n#endif"));
 }
 
@@ -177,9 +178,7 @@ fn rows(
     lines.push(format!("// 32 threads, at most {threads}."));
     lines.push(head(CudaLayout::Rows, threads));
     if of_thread == 0 {
-        lines.push(
-            "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;".to_string(),
-        );
+        lines.push(STATE.to_string());
         let arrays: String = staged.iter().map(|(x, _)| format!("{0} + i * {1}, ", x.name, x.length)).collect();
         lines.push(format!("    if (i < count) {name}<false>({arrays}1);\n}}\n#endif"));
         return;

@@ -1,5 +1,5 @@
 //! The function around the code: it saves the caller's registers, takes the arrays' addresses, makes its frame, and
-//! runs the code as often as it is told to.
+//! runs the code in a loop, whose number of passes is an argument.
 
 use super::{Assembler, BASES, LARGEST_ON_STACK};
 
