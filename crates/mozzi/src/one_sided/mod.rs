@@ -132,7 +132,7 @@ pub fn solve(problem: &Problem, guess: &DVector<f64>, tolerance: f64) -> Solutio
         sweeps: 0,
         admm_iterations: 0,
     };
-    let is_finite = problem.G.iter().chain(&problem.b).all(|x| x.is_finite());
+    let is_finite = problem.G.as_slice().iter().chain(problem.b.as_slice()).all(|x| x.is_finite());
     if !is_finite {
         best.residual = f64::NAN;
     }

@@ -1,17 +1,16 @@
 //! The equation of motion, with joints that rest against their stops.
 
 use super::closing::Closer;
+use super::factored_mass::FactoredMass;
 use super::held::Held;
 use super::modes::Modes;
 use super::state::State;
 use super::{Closing, Energy, Equation, Input, Options, Powers};
-use crate::dynamics::mass_matrix;
-use crate::model::{Error, Freedom, Model, Workspace};
+use crate::model::{Error, Freedom, Model};
 use alloc::boxed::Box;
-use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 /// A robot, its input, and the joints that are held at a stop, which do not accelerate beyond it.
 pub(super) struct Driven<'m, I = &'m mut (dyn Input + 'm)> {
@@ -20,8 +19,8 @@ pub(super) struct Driven<'m, I = &'m mut (dyn Input + 'm)> {
     pub held: Vec<Held>,
     /// The stops' forces at the last evaluation, one for each held joint.
     pub reactions: Vec<f64>,
-    workspace: Workspace,
-    M: Vec<f64>,
+    /// M of the last call of `factor`.
+    pub mass: FactoredMass<'m>,
     closer: Option<Closer>,
     /// A of the constraints at the last factorization of M.
     A: DMatrix<f64>,
@@ -38,8 +37,7 @@ impl<'m, I: Input> Driven<'m, I> {
             equation,
             held: Vec::new(),
             reactions: Vec::new(),
-            workspace: Workspace::new(model),
-            M: vec![0.0; n * n],
+            mass: FactoredMass::new(model),
             closer: Closer::new(model),
             A: DMatrix::zeros(0, n),
             modes: None,
@@ -68,8 +66,8 @@ impl<'m, I: Input> Driven<'m, I> {
             powers[2] += given;
         }
         if !self.held.is_empty() {
-            let M = self.factored(theta)?;
-            self.reactions = self.bring_to_rest(&M, theta, Some(dtheta), ddtheta);
+            self.factor(theta)?;
+            self.reactions = self.bring_to_rest(theta, Some(dtheta), ddtheta);
         }
         Ok(powers)
     }
@@ -110,51 +108,18 @@ impl<'m, I: Input> Driven<'m, I> {
         self.equation.energy(theta, dtheta, works)
     }
 
-    /// M(θ).
-    pub fn mass(&mut self, theta: &[f64]) -> DMatrix<f64> {
-        mass_matrix(self.model, theta, &mut self.workspace, &mut self.M);
-        DMatrix::from_row_slice(self.model.n(), self.model.n(), &self.M)
-    }
-
-    /// M(θ), factored.
-    pub fn factored(&mut self, theta: &[f64]) -> Result<Cholesky<f64, Dyn>, Error> {
-        self.factored_with(theta, 0.0)
-    }
-
-    /// M(θ) + s d, factored; d is viscous friction.
-    pub fn factored_with(&mut self, theta: &[f64], s: f64) -> Result<Cholesky<f64, Dyn>, Error> {
+    /// M(θ), factored in `mass`.
+    pub fn factor(&mut self, theta: &[f64]) -> Result<(), Error> {
         if self.has_constraints() {
             self.A = self.model.constraint_rows_at(theta, &vec![0.0; self.model.n()]).A;
         }
-        let mut M = self.mass(theta);
-        for (j, &damping) in self.model.damping.iter().enumerate() {
-            M[(j, j)] += s * damping;
-        }
-        match M.cholesky() {
-            Some(M) => Ok(M),
-            // checks each pivot, and names the joint
-            None => {
-                let zeros = vec![0.0; self.model.n()];
-                self.model.forward_dynamics_by_mass_matrix(theta, &zeros, &zeros, &self.model.environment())?;
-                Err(Error::BadArgument {
-                    what: "M(θ)",
-                    found: format!("not positive definite at θ = {theta:?}"),
-                    expected: "positive definite",
-                })
-            }
-        }
+        self.mass.factor(theta, 0.0, &[])
     }
 
     /// x ← x + M⁻¹Eλ, and returns the λ that keeps the held joints at their limits. For velocities x, Eᵀx = 0 and λ are
     /// impulses; for accelerations x at the velocities θ̇, Eᵀx + Ėᵀθ̇ = 0 and λ are forces. E has the column n of each
     /// held joint.
-    pub fn bring_to_rest(
-        &self,
-        M: &Cholesky<f64, Dyn>,
-        theta: &[f64],
-        moving: Option<&[f64]>,
-        x: &mut [f64],
-    ) -> Vec<f64> {
+    pub fn bring_to_rest(&self, theta: &[f64], moving: Option<&[f64]>, x: &mut [f64]) -> Vec<f64> {
         let count = self.held.len();
         let mut E = DMatrix::zeros(x.len(), count);
         for (held, mut column) in self.held.iter().zip(E.column_iter_mut()) {
@@ -162,7 +127,7 @@ impl<'m, I: Input> Driven<'m, I> {
         }
         let excess =
             |held: &Held, x: &[f64]| held.along(theta, x) + moving.map_or(0.0, |dtheta| held.rate_along(theta, dtheta));
-        let columns = self.response(M, &E);
+        let columns = self.response(&E);
         let A = E.transpose() * &columns;
         let b = DVector::from_iterator(count, self.held.iter().map(|held| -excess(held, x)));
         let lambda = match self.has_constraints() {
@@ -176,10 +141,14 @@ impl<'m, I: Input> Driven<'m, I> {
     }
 
     /// The accelerations due to forces E: M⁻¹E; for a robot with constraints, their projection M⁻¹P E.
-    fn response(&self, M: &Cholesky<f64, Dyn>, E: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut columns = M.solve(E);
+    fn response(&self, E: &DMatrix<f64>) -> DMatrix<f64> {
+        let divide = |mut X: DMatrix<f64>| {
+            X.column_iter_mut().for_each(|mut column| self.mass.divide(column.as_mut_slice()));
+            X
+        };
+        let mut columns = divide(E.clone());
         if self.has_constraints() {
-            let by_constraints = M.solve(&self.A.transpose());
+            let by_constraints = divide(self.A.transpose());
             let G = &self.A * &by_constraints;
             columns -= by_constraints * pseudo_solve(G, &(&self.A * &columns));
         }
@@ -188,10 +157,10 @@ impl<'m, I: Input> Driven<'m, I> {
 
     /// Releases the held joints whose stop would have to pull, the worst first. x and `moving`, as for
     /// [`bring_to_rest`](Self::bring_to_rest), are the values without stops. Returns whether some were released.
-    pub fn let_go(&mut self, M: &Cholesky<f64, Dyn>, theta: &[f64], moving: Option<&[f64]>, x: &[f64]) -> bool {
+    pub fn let_go(&mut self, theta: &[f64], moving: Option<&[f64]>, x: &[f64]) -> bool {
         let mut found = false;
         while !self.held.is_empty() {
-            let lambda = self.bring_to_rest(M, theta, moving, &mut x.to_vec());
+            let lambda = self.bring_to_rest(theta, moving, &mut x.to_vec());
             let pull = |k: &usize| lambda[*k] * self.held[*k].side;
             let worst = (0..lambda.len()).max_by(|a, b| pull(a).total_cmp(&pull(b)));
             match worst {
@@ -228,8 +197,8 @@ impl<'m, I: Input> Driven<'m, I> {
         }
         self.held.iter().for_each(|held| held.project(&mut state.theta));
         let before = self.energy(&state.theta, &state.dtheta, state.works).kinetic;
-        let M = self.factored(&state.theta)?;
-        self.bring_to_rest(&M, &state.theta, None, &mut state.dtheta);
+        self.factor(&state.theta)?;
+        self.bring_to_rest(&state.theta, None, &mut state.dtheta);
         state.works[1] += before - self.energy(&state.theta, &state.dtheta, state.works).kinetic;
         self.complete(state)
     }
@@ -239,10 +208,10 @@ impl<'m, I: Input> Driven<'m, I> {
         if self.held.is_empty() {
             return Ok(());
         }
-        let M = self.factored(&state.theta)?;
+        self.factor(&state.theta)?;
         let mut free = vec![0.0; self.model.n()];
         self.equation.evaluate(state.t, &state.theta, &state.dtheta, &mut free)?;
-        if self.let_go(&M, &state.theta, Some(&state.dtheta), &free) {
+        if self.let_go(&state.theta, Some(&state.dtheta), &free) {
             self.complete(state)?;
         }
         Ok(())

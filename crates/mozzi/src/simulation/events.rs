@@ -109,25 +109,87 @@ pub(super) fn first_zero(
     None
 }
 
-/// The Illinois method: chords, with a halved weight of the end that stays, which always bracket the zero.
-pub(super) fn bisect(mut f: impl FnMut(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
-    let side = |x: f64, rises: bool| if rises { x >= 0.0 } else { x <= 0.0 };
+/// A zero of f between a and b, where f has different signs: to rounding, on the side of b.
+pub(super) fn bisect(f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64)) -> f64 {
+    bisect_until([0.0; 2], f, a, b)
+}
+
+/// The same, until |f| < `enough` or the zero is known to `width`. Chandrupatla's method (1997): the parabola t(f)
+/// through the last three points where it is monotonic, else bisection, so that jumps are found as well.
+pub(super) fn bisect_until(
+    [enough, width]: [f64; 2],
+    mut f: impl FnMut(f64) -> f64,
+    a: (f64, f64),
+    b: (f64, f64),
+) -> f64 {
     let rises = a.1 < 0.0;
-    for k in 0..200 {
-        if b.0 - a.0 <= 4.0 * f64::EPSILON * b.0.abs() || a.1 == b.1 {
+    let beyond = |value: f64| if rises { value >= 0.0 } else { value <= 0.0 };
+    // the zero is between the newest point and `other`
+    let (mut newest, mut other, mut part) = (b, a, 0.5_f64);
+    for _ in 0..200 {
+        let least = width.max(4.0 * f64::EPSILON * newest.0.abs().max(other.0.abs())) / (newest.0 - other.0).abs();
+        if least >= 1.0 {
             break;
         }
-        let chord = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
-        // every third step bisects, so that a function that is not smooth converges, too
-        let t = if k % 3 == 2 || !(chord > a.0 && chord < b.0) { 0.5 * (a.0 + b.0) } else { chord };
+        let t = newest.0 + part.max(0.5 * least).min(1.0 - 0.5 * least) * (other.0 - newest.0);
         let value = f(t);
-        if side(value, rises) {
-            b = (t, value);
-            a.1 *= 0.5;
-        } else {
-            a = (t, value);
-            b.1 *= 0.5;
+        if value.abs() < enough {
+            return t;
         }
+        let last = if beyond(value) == beyond(newest.1) { newest } else { other };
+        if last == other {
+            other = newest;
+        }
+        newest = (t, value);
+        let xi = (newest.0 - other.0) / (last.0 - other.0);
+        let phi = (newest.1 - other.1) / (last.1 - other.1);
+        part = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+            let to_other = newest.1 / (other.1 - newest.1) * last.1 / (other.1 - last.1);
+            let slope = (last.0 - newest.0) / (other.0 - newest.0);
+            to_other + slope * newest.1 / (last.1 - newest.1) * other.1 / (last.1 - other.1)
+        } else {
+            0.5
+        };
     }
-    b.0
+    if beyond(newest.1) { newest.0 } else { other.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bisect_until;
+
+    /// The zero and the number of evaluations.
+    fn zero(ends: [f64; 2], tolerances: [f64; 2], f: impl Fn(f64) -> f64) -> (f64, usize) {
+        let (mut count, [a, b]) = (0, ends);
+        let counted = |t: f64| {
+            count += 1;
+            f(t)
+        };
+        (bisect_until(tolerances, counted, (a, f(a)), (b, f(b))), count)
+    }
+
+    #[test]
+    fn zeros_of_smooth_functions_take_few_steps() {
+        let (t, steps) = zero([0.0, 1.0], [0.0; 2], |t| 0.3 - t);
+        assert!((t - 0.3).abs() < 1e-15 && steps < 6, "{t} {steps}");
+        let (t, steps) = zero([0.0, 2.0], [0.0; 2], |t| t * t * t - 2.0);
+        assert!((t - 2.0_f64.cbrt()).abs() < 2e-15 && t * t * t >= 2.0 && steps < 12, "{t} {steps}");
+        let (t, steps) = zero([0.0, 2.0], [1e-9, 0.0], |t| 2.0 - t * t * t);
+        assert!((t - 2.0_f64.cbrt()).abs() < 1e-9 && steps < 9, "{t} {steps}");
+        // a triple zero
+        let (t, steps) = zero([0.0, 1.0], [0.0; 2], |t| (t - 0.7) * (t - 0.7) * (t - 0.7));
+        assert!((t - 0.7).abs() < 1e-15 && steps < 100, "{t} {steps}");
+    }
+
+    #[test]
+    fn jumps_and_flat_zeros_are_bisected() {
+        let jump = |t: f64| if t < 0.1 { 5.0 - t } else { -1.0 };
+        let (t, steps) = zero([0.0, 1.0], [0.0; 2], jump);
+        assert!((0.0..1e-15).contains(&(t - 0.1)) && steps < 60, "{t} {steps}");
+        let (t, steps) = zero([0.0, 1.0], [1e-9, 1e-9], jump);
+        assert!((0.0..1e-9).contains(&(t - 0.1)) && steps < 35, "{t} {steps}");
+        // 0 from 0.2 on: the beginning is found
+        let (t, steps) = zero([0.0, 1.0], [0.0; 2], |t| (0.2 - t).max(0.0));
+        assert!((0.0..1e-15).contains(&(t - 0.2)) && steps < 70, "{t} {steps}");
+    }
 }

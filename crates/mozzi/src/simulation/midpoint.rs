@@ -17,7 +17,7 @@ use super::driven::Driven;
 use super::rollout::series;
 use super::stall::velocity;
 use super::state::State;
-use crate::dynamics::mass_matrix_rate;
+use crate::dynamics::{mass_matrix, mass_matrix_rate};
 use crate::kinematics::integrate;
 use crate::lie::SE3;
 use crate::model::{Error, Freedom, Model, Place, Workspace};
@@ -37,6 +37,7 @@ pub(super) struct Midpoint {
     /// v of the last step.
     pub velocity: Vec<f64>,
     workspace: Workspace,
+    M: Vec<f64>,
     dM: Vec<f64>,
     ddtheta: Vec<f64>,
 }
@@ -45,12 +46,18 @@ impl Midpoint {
     pub fn new(model: &Model) -> Self {
         let n = model.n();
         let (velocity, workspace) = (vec![0.0; n], Workspace::new(model));
-        Midpoint { momentum: None, velocity, workspace, dM: vec![0.0; n * n], ddtheta: vec![0.0; n] }
+        let zeros = || vec![0.0; n * n];
+        Midpoint { momentum: None, velocity, workspace, M: zeros(), dM: zeros(), ddtheta: vec![0.0; n] }
     }
 
     /// Restarts after the state was changed from outside: p is then Mθ̇.
     pub fn restart(&mut self) {
         self.momentum = None;
+    }
+
+    fn mass_matrix(&mut self, model: &Model, theta: &[f64]) -> DMatrix<f64> {
+        mass_matrix(model, theta, &mut self.workspace, &mut self.M);
+        DMatrix::from_row_slice(model.n(), model.n(), &self.M)
     }
 
     /// A step of h seconds, which ends at a time.
@@ -65,7 +72,7 @@ impl Midpoint {
         let (middle, half) = (from.t + 0.5 * h, 0.5 * h);
         let p = match self.momentum.take() {
             Some((t, p)) if t == from.t => p,
-            _ => driven.mass(&from.theta) * DVector::from_column_slice(&from.dtheta),
+            _ => self.mass_matrix(model, &from.theta) * DVector::from_column_slice(&from.dtheta),
         };
         let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
         let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
@@ -77,8 +84,8 @@ impl Midpoint {
             integrate(model, &mut theta, v.as_slice(), half);
             powers = driven.evaluate(middle, &theta, v.as_slice(), &mut self.ddtheta)?;
             mass_matrix_rate(model, &theta, v.as_slice(), &mut self.workspace, &mut self.dM);
-            M = driven.mass(&theta);
-            let factors = driven.factored_with(&theta, half)?;
+            M = self.mass_matrix(model, &theta);
+            driven.mass.factor(&theta, half, &model.damping)?;
             let dM = DMatrix::from_row_slice(n, n, &self.dM); // symmetric
             let rate = &M * DVector::from_column_slice(&self.ddtheta) + dM * &v; // ṗ
             let mut momentum = &p + &rate * half;
@@ -93,10 +100,11 @@ impl Midpoint {
             for (j, &damping) in model.damping.iter().enumerate() {
                 momentum[j] += half * damping * v[j];
             }
-            let mut next = factors.solve(&momentum);
+            let mut next = momentum;
+            driven.mass.divide(next.as_mut_slice());
             if !driven.held.is_empty() {
-                let factors = driven.factored(&theta)?;
-                driven.bring_to_rest(&factors, &theta, None, next.as_mut_slice());
+                driven.factor(&theta)?;
+                driven.bring_to_rest(&theta, None, next.as_mut_slice());
             }
             let differences = &next - &v;
             worst = (n > 0).then(|| differences.iamax());
@@ -127,12 +135,13 @@ impl Midpoint {
         to.theta.copy_from_slice(&from.theta);
         integrate(model, &mut to.theta, v.as_slice(), h);
         (0..3).for_each(|k| to.works[k] += h * powers[k]);
-        let factors = driven.factored(&to.theta)?;
-        to.dtheta.copy_from_slice(factors.solve(&p).as_slice());
+        driven.factor(&to.theta)?;
+        to.dtheta.copy_from_slice(p.as_slice());
+        driven.mass.divide(&mut to.dtheta);
         if driven.held.is_empty() {
             self.momentum = Some((to.t, p));
         } else {
-            driven.bring_to_rest(&factors, &to.theta, None, &mut to.dtheta);
+            driven.bring_to_rest(&to.theta, None, &mut to.dtheta);
         }
         driven.complete(&mut to)?;
         Ok(to)

@@ -37,6 +37,7 @@ mod dormand_prince;
 mod driven;
 mod equation;
 mod events;
+mod factored_mass;
 mod friction;
 mod held;
 mod impulse_steps;

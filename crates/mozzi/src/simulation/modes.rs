@@ -116,12 +116,12 @@ impl<'r> Modes<'r> {
                 }
             }
         }
-        self.impulses.divide(&mut known);
+        self.impulses.mass.divide(&mut known);
         ddtheta.iter_mut().zip(&known).for_each(|(x, change)| *x += change);
         let mut p = DVector::zeros(u.len());
         if !C.is_empty() {
             let (C, mut X) = (DMatrix::from_rows(&C), DMatrix::from_rows(&B).transpose());
-            X.column_iter_mut().for_each(|mut column| self.impulses.divide(column.as_mut_slice()));
+            X.column_iter_mut().for_each(|mut column| self.impulses.mass.divide(column.as_mut_slice()));
             let right = &C * DVector::from_column_slice(ddtheta) - DVector::from_vec(target);
             let found = least_squares(&C * &X, right).unwrap_or_else(|| DVector::zeros(held.len()));
             let change = X * &found;
@@ -384,7 +384,7 @@ impl Modes<'_> {
             let G = self.impulses.delassus(&J);
             if let Some(p) = least_squares(G, u) {
                 let mut change = J.tr_mul(&p);
-                self.impulses.divide(change.as_mut_slice());
+                self.impulses.mass.divide(change.as_mut_slice());
                 state.dtheta.iter_mut().zip(change.iter()).for_each(|(rate, x)| *rate += x);
             }
         }

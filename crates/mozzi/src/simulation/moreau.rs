@@ -7,7 +7,7 @@
 //! friction comes to rest.
 
 use super::equation::Equation;
-use super::events::bisect;
+use super::events::bisect_until;
 use super::impulses::{Choice, Impulses, Key, Solved, System};
 use super::{Input, Powers};
 use crate::kinematics::integrate;
@@ -24,6 +24,8 @@ const PASSES: usize = 2;
 const DIVISIONS: usize = 8;
 /// Joints slower than this are at rest, rad/s or m/s.
 const AT_REST: f64 = 1e-9;
+/// How close to 0 the speed is brought at which a joint comes to rest, rad/s or m/s.
+const RESTS: f64 = 1e-11;
 
 /// Memory of the step.
 pub(super) struct Moreau {
@@ -116,23 +118,27 @@ impl Moreau {
             let speeds = stopping.iter().map(|&j| trial[j] * state.dtheta[j].signum());
             speeds.fold(f64::INFINITY, f64::min)
         };
-        let (mut failure, start) = (None, least(&state.dtheta));
+        let start = least(&state.dtheta);
+        let (mut failure, mut last) = (None, None);
         let mut speed = |s: f64| match self.trial(equation, impulses, state, s, stopping) {
-            Ok(trial) => least(&trial.to.dtheta),
+            Ok(trial) => least(&last.insert(trial).to.dtheta),
             Err(error) => {
                 failure.get_or_insert(error);
                 f64::NAN
             }
         };
         let end = speed(h);
-        let s = if end <= 0.0 { bisect(&mut speed, (0.0, start), (h, end)) } else { f64::NAN };
+        let s = if end <= 0.0 { bisect_until([RESTS, 1e-9 * h], &mut speed, (0.0, start), (h, end)) } else { f64::NAN };
         if let Some(error) = failure {
             return Err(error);
         }
         if !(s > 0.0) {
             return Ok(None); // the joints come to rest only by a force that another law produces
         }
-        Ok(Some((s, self.trial(equation, impulses, state, s, stopping)?)))
+        match last {
+            Some(trial) if trial.h == s => Ok(Some((s, trial))),
+            _ => Ok(Some((s, self.trial(equation, impulses, state, s, stopping)?))),
+        }
     }
 
     /// A step of h seconds that may count; `sliding` joints keep their full dry friction.
@@ -163,7 +169,7 @@ impl Moreau {
                 force[j] = h * (force[j] + damping[j] * (v_m[j] - v[j]));
             }
             sliding.iter().for_each(|&j| force[j] -= h * model.friction[j] * v[j].signum());
-            impulses.divide(&mut force);
+            impulses.mass.divide(&mut force);
             if !system.rows.is_empty() {
                 // the laws hold for the velocities at the end, where the rows differ from those at the middle
                 end_of(model, state, &v, &after, h, &mut to);

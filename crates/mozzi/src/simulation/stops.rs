@@ -184,9 +184,9 @@ impl Stops {
         let comes = held.along(&state.theta, &state.dtheta) * held.side > 0.0;
         let before = driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
         driven.held.push(held);
-        let M = driven.factored(&state.theta)?;
-        driven.let_go(&M, &state.theta, None, &state.dtheta.clone());
-        driven.bring_to_rest(&M, &state.theta, None, &mut state.dtheta);
+        driven.factor(&state.theta)?;
+        driven.let_go(&state.theta, None, &state.dtheta.clone());
+        driven.bring_to_rest(&state.theta, None, &mut state.dtheta);
         state.works[1] += before - driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
         driven.complete(state)?;
         driven.release(state)?;

@@ -8,11 +8,12 @@ pub use account::OneSidedAccount;
 pub(super) use rows::{Choice, Key, System};
 
 use super::contact::{Contacts, Surface};
+use super::factored_mass::FactoredMass;
 use super::{Friction, Options, Policy};
 use crate::kinematics::forward_kinematics;
 use crate::lie::SE3;
-use crate::linalg::{Vec3, ldlt};
-use crate::model::{Bounds, Error, FrameId, Model, Workspace};
+use crate::linalg::Vec3;
+use crate::model::{Bounds, Error, FrameId, Model};
 use crate::one_sided::{Law, Problem, solve};
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -54,8 +55,8 @@ pub(super) struct Impulses<'r> {
     pub account: OneSidedAccount,
     /// The force that each pair of a point and a plane applies to the plane, in {s}: three numbers each, N.
     pub forces: Vec<f64>,
-    workspace: Workspace,
-    M: Vec<f64>,
+    /// That of the last system.
+    pub mass: FactoredMass<'r>,
 }
 
 /// Impulses of a system.
@@ -134,36 +135,14 @@ impl<'r> Impulses<'r> {
             struck: Vec::new(),
             account: OneSidedAccount::default(),
             forces: vec![0.0; 3 * contacts.pairs()],
-            workspace: Workspace::new(model),
-            M: vec![0.0; model.n() * model.n()],
+            mass: FactoredMass::new(model),
         }))
-    }
-
-    /// M(θ) with an addition to its diagonal, factored.
-    fn factor(&mut self, theta: &[f64], diagonal: &[f64]) -> Result<(), Error> {
-        let n = self.model.n();
-        crate::dynamics::mass_matrix(self.model, theta, &mut self.workspace, &mut self.M);
-        diagonal.iter().enumerate().for_each(|(j, x)| self.M[j * n + j] += x);
-        ldlt::factor(&self.model.structure.pattern, &mut self.M, &mut self.workspace.pivots);
-        if self.workspace.pivots[..n].iter().all(|d| *d > 0.0) {
-            return Ok(());
-        }
-        let zeros = vec![0.0; n];
-        // names the joint
-        self.model.forward_dynamics_by_mass_matrix(theta, &zeros, &zeros, &self.model.environment())?;
-        let found = alloc::format!("not positive definite at θ = {theta:?}");
-        Err(Error::BadArgument { what: "M(θ)", found, expected: "positive definite" })
-    }
-
-    /// x ← M⁻¹x, with the M of the last [`factor`](Self::factor).
-    pub fn divide(&self, x: &mut [f64]) {
-        ldlt::solve(&self.model.structure.pattern, &self.M, x);
     }
 
     /// θ̇ ← θ̇ − M⁻¹Jᵀp.
     pub fn apply(&self, system: &System, p: &DVector<f64>, dtheta: &mut [f64]) {
         let mut change = system.J.tr_mul(p);
-        self.divide(change.as_mut_slice());
+        self.mass.divide(change.as_mut_slice());
         dtheta.iter_mut().zip(change.iter()).for_each(|(rate, x)| *rate -= x);
     }
 

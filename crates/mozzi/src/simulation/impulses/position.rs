@@ -47,13 +47,13 @@ impl Impulses<'_> {
             }
             last = size;
             if !is_factored {
-                self.factor(theta, &[])?;
+                self.mass.factor(theta, 0.0, &[])?;
                 is_factored = true;
             }
             let J = self.jacobian(theta, open);
             let Some(impulse) = least_squares(self.delassus(&J), errors) else { break };
             let mut change = J.tr_mul(&impulse);
-            self.divide(change.as_mut_slice());
+            self.mass.divide(change.as_mut_slice());
             debug_assert!(change.len() == n);
             integrate(self.model, theta, change.as_slice(), 1.0);
         }
@@ -91,7 +91,7 @@ impl Impulses<'_> {
         let m = model.constraint_rows();
         if m > 0 {
             let (mut A, mut phi, still) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; n]);
-            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut phi);
+            constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut phi);
             rows.extend(A.chunks_exact(n).map(|row| OpenRow::Constraint(RowDVector::from_row_slice(row))));
             errors.extend(phi.iter().map(|x| -x));
         }

@@ -3,10 +3,9 @@
 use super::Impulses;
 use crate::constraints::constraint_jacobian;
 use crate::kinematics::{body_jacobian, forward_kinematics, twist_of};
-use crate::linalg::{Vec3, ldlt};
+use crate::linalg::Vec3;
 use crate::model::{Error, FrameId, Freedom};
 use crate::one_sided::Law;
-use crate::scalar::Scalar;
 use crate::simulation::contact::Touch;
 use crate::spatial::Twist;
 use alloc::vec;
@@ -77,7 +76,7 @@ impl Impulses<'_> {
         let surfaces = self.surfaces(t);
         if m > 0 {
             let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
-            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut []);
+            constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut []);
             for (r, row) in A.chunks_exact(n).enumerate() {
                 u[r] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
             }
@@ -114,7 +113,7 @@ impl Impulses<'_> {
         let m = model.constraint_rows();
         if m > 0 {
             let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
-            constraint_jacobian(model, theta, &still, &mut self.workspace, &mut A, &mut [], &mut []);
+            constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut []);
             for (r, row) in A.chunks_exact(n).enumerate() {
                 blocks.push((Key::Constraint(r), rows.len(), Law::Bilateral));
                 rows.push(RowDVector::from_row_slice(row));
@@ -151,30 +150,28 @@ impl Impulses<'_> {
             }
             all_axes.push((key, touch.axes));
         }
-        self.factor(theta, diagonal)?;
+        self.mass.factor(theta, 1.0, diagonal)?;
         let J = if rows.is_empty() { DMatrix::zeros(0, n) } else { DMatrix::from_rows(&rows) };
         let G = self.delassus(&J);
         let laws = blocks.iter().map(|&(_, _, law)| law).collect();
         Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, axes: all_axes })
     }
 
-    /// J M⁻¹Jᵀ: with M = LᵀDL, the products of the rows of D^{−½}L⁻ᵀJᵀ, which are 0 from where those of J are.
+    /// J M⁻¹Jᵀ: the products of the rows of D^{−½}L⁻ᵀJᵀ.
     pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
-        let (n, m, pattern) = (self.model.n(), J.nrows(), &self.model.structure.pattern);
-        let scale: Vec<f64> = (0..n).map(|j| 1.0 / Scalar::sqrt(self.M[j * n + j])).collect();
-        let mut Y = J.transpose();
-        let mut ends = Vec::with_capacity(m);
-        for mut column in Y.column_iter_mut() {
-            let end = column.iter().rposition(|x| *x != 0.0).map_or(0, |last| last + 1);
-            ldlt::solve_transposed(pattern, &self.M, column.as_mut_slice(), (0..end).rev());
-            column.iter_mut().zip(&scale).for_each(|(y, scale)| *y *= scale);
-            ends.push(end);
-        }
-        let mut G = DMatrix::zeros(m, m);
+        let (n, m) = (self.model.n(), J.nrows());
+        let (mut Y, mut G) = (J.transpose(), DMatrix::zeros(m, m));
+        let mut sparse: Vec<Vec<(usize, f64)>> = Vec::with_capacity(m);
         for a in 0..m {
+            let (before, rest) = Y.as_mut_slice().split_at_mut(a * n);
+            let y = &mut rest[..n];
+            let support = self.mass.halve(y);
+            sparse.push(support.into_iter().map(|k| (k, y[k])).collect());
             for b in 0..=a {
-                let end = ends[a].min(ends[b]);
-                let product = Y.column(a).rows(0, end).dot(&Y.column(b).rows(0, end));
+                let dense = if b < a { &before[b * n..][..n] } else { &*y };
+                let (few, all) =
+                    if sparse[b].len() < sparse[a].len() { (&sparse[b], &*y) } else { (&sparse[a], dense) };
+                let product = few.iter().map(|&(k, y)| y * all[k]).sum();
                 (G[(a, b)], G[(b, a)]) = (product, product);
             }
         }

@@ -1,0 +1,63 @@
+//! M = LᵀDL at a state of a simulation.
+
+use crate::dynamics::mass_matrix;
+use crate::linalg::ldlt;
+use crate::model::{Error, Model, Workspace};
+use crate::scalar::Scalar;
+use alloc::format;
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// M(θ), with an addition to its diagonal, factored along the robot's tree.
+pub(super) struct FactoredMass<'m> {
+    model: &'m Model,
+    pub workspace: Workspace,
+    /// L and D.
+    M: Vec<f64>,
+    /// D^{−½}
+    scale: Vec<f64>,
+}
+
+impl<'m> FactoredMass<'m> {
+    pub fn new(model: &'m Model) -> Self {
+        let (n, workspace) = (model.n(), Workspace::new(model));
+        FactoredMass { model, workspace, M: vec![0.0; n * n], scale: vec![0.0; n] }
+    }
+
+    /// Computes and factors M(θ) + diag(s d).
+    pub fn factor(&mut self, theta: &[f64], s: f64, d: &[f64]) -> Result<(), Error> {
+        let n = self.model.n();
+        mass_matrix(self.model, theta, &mut self.workspace, &mut self.M);
+        d.iter().enumerate().for_each(|(j, d)| self.M[j * n + j] += s * d);
+        ldlt::factor(&self.model.structure.pattern, &mut self.M, &mut self.workspace.pivots);
+        self.scale.iter_mut().zip(&self.workspace.pivots).for_each(|(scale, d)| *scale = 1.0 / Scalar::sqrt(*d));
+        if self.workspace.pivots[..n].iter().all(|d| *d > 0.0) {
+            return Ok(());
+        }
+        let zeros = vec![0.0; n];
+        // checks each pivot, and names the joint
+        self.model.forward_dynamics_by_mass_matrix(theta, &zeros, &zeros, &self.model.environment())?;
+        let found = format!("not positive definite at θ = {theta:?}");
+        Err(Error::BadArgument { what: "M(θ)", found, expected: "positive definite" })
+    }
+
+    /// x ← M⁻¹x.
+    pub fn divide(&self, x: &mut [f64]) {
+        ldlt::solve(&self.model.structure.pattern, &self.M, x);
+    }
+
+    /// y ← D^{−½}L⁻ᵀy, so that yᵀz is that of M⁻¹. Returns where it is not 0: where y was not, and the ancestors there.
+    pub fn halve(&self, y: &mut [f64]) -> Vec<usize> {
+        let (n, pattern) = (self.model.n(), &self.model.structure.pattern);
+        let mut is_in = vec![false; n];
+        let mut support = Vec::with_capacity(n);
+        for (k, _) in y.iter().enumerate().filter(|(_, y)| **y != 0.0) {
+            support.extend(core::iter::once(k).chain(pattern.ancestors(k)).take_while(|&i| !is_in[i]));
+            support.iter().for_each(|&i| is_in[i] = true);
+        }
+        support.sort_unstable_by(|a, b| b.cmp(a));
+        ldlt::solve_transposed(pattern, &self.M, y, support.iter().copied());
+        support.iter().for_each(|&k| y[k] *= self.scale[k]);
+        support
+    }
+}
