@@ -33,6 +33,7 @@ Each quantity works in each of these ways:
 | a recorded program, printed, parsed and counted | `mozzi_codegen::record_quantity` |
 | machine code at one state and at many (x86-64 with AVX2 and FMA, or AVX-512) | `mozzi_batch::compile` |
 | Rust, C and CUDA source text | `mozzi_codegen::emit`, `mozzi codegen` |
+| arrays on an NVIDIA GPU, but for quantities of tasks | `mozzi_gpu::Source::new`, `mozzi compute … --gpu`, `model.to_gpu()` in Python |
 | the command line | `mozzi compute MODEL QUANTITY` |
 | Python, one state and arrays | `model.quantity(…)`, `model.compile(\"quantity\")` |
 | C and C++, one state and many | `mozzi_quantity(model, workspace, …)`, `workspace.quantity(…)`, `mozzi_batch_compute` |

@@ -2,10 +2,11 @@
 
 use crate::model::PyModel;
 use mozzi_codegen::{CudaLayout, Precision};
-use mozzi_gpu::{Device, Error, Form, Kernel, Nvrtc, Source, Stream};
+use mozzi_gpu::{Binary, Device, Error, Form, Kernel, Nvrtc, Rollout, RolloutArrays, Source, Steps, Stream};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A quantity's kernel on a device.
 #[pyclass(frozen, module = "mozzi._mozzi")]
@@ -28,6 +29,21 @@ fn choice<T: Copy>(what: &str, found: &str, known: [(&str, T); 2]) -> PyResult<T
     chosen.ok_or_else(|| PyValueError::new_err(format!("{what} is '{found}', expected '{first}' or '{second}'")))
 }
 
+fn precision(dtype: &str) -> PyResult<Precision> {
+    choice("dtype", dtype, [("float32", Precision::F32), ("float64", Precision::F64)])
+}
+
+fn layout(layout: &str) -> PyResult<CudaLayout> {
+    choice("layout", layout, [("rows", CudaLayout::Rows), ("columns", CudaLayout::Columns)])
+}
+
+/// By NVRTC of `MOZZI_NVRTC`, else of Python's packages, else of the system.
+pub fn compiled(source: &Source, device: &Device, packages: &[PathBuf]) -> Result<Arc<Binary>, Error> {
+    let from_variable = std::env::var_os("MOZZI_NVRTC").is_some();
+    let of_packages = if from_variable { None } else { Nvrtc::in_packages(packages).ok() };
+    source.compile(&of_packages.map_or_else(Nvrtc::find, Ok)?, device.arch())
+}
+
 #[pymethods]
 impl GpuKernel {
     /// `packages`: folders in which NVRTC's wheel may be.
@@ -45,18 +61,10 @@ impl GpuKernel {
         packages: Vec<PathBuf>,
     ) -> PyResult<Self> {
         let query = model.query(quantity, frame)?;
-        let form = Form {
-            precision: choice("dtype", dtype, [("float32", Precision::F32), ("float64", Precision::F64)])?,
-            layout: choice("layout", layout, [("rows", CudaLayout::Rows), ("columns", CudaLayout::Columns)])?,
-            is_packed: packed,
-        };
+        let form = Form { precision: precision(dtype)?, layout: self::layout(layout)?, is_packed: packed };
         let (device, robot) = (Device::open(device).map_err(failure)?, &model.robot().model);
         let source = Source::new(robot, query, form).map_err(failure)?;
-        // the variable comes first, then the packages of this Python, then the system
-        let from_variable = std::env::var_os("MOZZI_NVRTC").is_some();
-        let of_packages = if from_variable { None } else { Nvrtc::in_packages(&packages).ok() };
-        let nvrtc = of_packages.map_or_else(Nvrtc::find, Ok).map_err(failure)?;
-        let binary = source.compile(&nvrtc, device.arch()).map_err(failure)?;
+        let binary = compiled(&source, &device, &packages).map_err(failure)?;
         let kernel = device.load(&source, &binary).map_err(failure)?;
         let shapes = query.declaration().outputs.iter().zip(query.shapes(robot)).zip(source.outputs());
         // a packed matrix has no shape but its length
@@ -86,6 +94,43 @@ impl GpuKernel {
     }
 }
 
+/// Steps of many robots on a device.
+#[pyclass(frozen, module = "mozzi._mozzi")]
+pub struct GpuRollout(Rollout);
+
+#[pymethods]
+impl GpuRollout {
+    #[new]
+    fn new(model: &PyModel, dtype: &str, layout: &str, device: usize, packages: Vec<PathBuf>) -> PyResult<Self> {
+        let (device, robot) = (Device::open(device).map_err(failure)?, &model.robot().model);
+        let source = Source::rollout(robot, precision(dtype)?, self::layout(layout)?).map_err(failure)?;
+        let binary = compiled(&source, &device, &packages).map_err(failure)?;
+        Rollout::load(&device, &source, &binary).map(GpuRollout).map_err(failure)
+    }
+
+    /// Launches it on arrays at these addresses, whose lengths `mozzi._gpu` has checked: θ and θ̇; τ or none; gains and
+    /// desired states or none; the tables of θ and θ̇.
+    #[allow(clippy::too_many_arguments)] // called by `mozzi._gpu` alone
+    fn launch(
+        &self,
+        state: [u64; 2],
+        tau: Option<u64>,
+        feedback: Option<[u64; 2]>,
+        tables: [u64; 2],
+        step: f64,
+        steps: usize,
+        every: usize,
+        robots: usize,
+        stream: usize,
+    ) -> PyResult<()> {
+        let ([theta, dtheta], [theta_table, dtheta_table]) = (state, tables);
+        let arrays = RolloutArrays { theta, dtheta, tau, feedback, theta_table, dtheta_table };
+        let steps = Steps { step, steps, every };
+        // SAFETY: as of `GpuKernel::launch`
+        unsafe { self.0.launch(&arrays, &steps, robots, Stream(stream)) }.map_err(failure)
+    }
+}
+
 #[pymethods]
 impl PyModel {
     /// The robot on an NVIDIA GPU: its quantities of arrays that are there, where they are.
@@ -109,7 +154,7 @@ impl PyModel {
     ///     No CUDA device was found, or no NVRTC (``pip install nvidia-cuda-nvrtc``).
     #[pyo3(signature = (*, layout="rows", device=0))]
     fn to_gpu<'py>(slf: Bound<'py, Self>, layout: &str, device: usize) -> PyResult<Bound<'py, PyAny>> {
-        choice("layout", layout, [("rows", ()), ("columns", ())])?;
+        self::layout(layout)?;
         Device::open(device).map_err(failure)?;
         let py = slf.py();
         py.import("mozzi._gpu")?.getattr("Gpu")?.call1((slf, layout, device))

@@ -35,6 +35,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model::PyModel>()?;
     methods::add_to(&py.get_type::<model::PyModel>())?;
     module.add_class::<gpu::GpuKernel>()?;
+    module.add_class::<gpu::GpuRollout>()?;
     module.add_class::<conventions::Pinocchio>()?;
     module.add_class::<conventions::MuJoCo>()?;
     module.add_function(wrap_pyfunction!(compare::_compare, module)?)?;

@@ -48,9 +48,9 @@ class Kernel:
     def __init__(self, model, quantity, frame, dtype, layout, packed, device, packages):
         assert all(isinstance(folder, str) for folder in packages)
         self.model, self.quantity, self.dtype, self.layout = model, quantity, np.dtype(dtype), layout
-        n = model.n
+        n, nq = model.n, model.nq
         arguments = {"forward_dynamics": 3, "mass_matrix": 1}.get(quantity, 3)
-        self.inputs = [("theta", n), ("dtheta", n), ("tau", n), ("x", n)][:arguments]
+        self.inputs = [("theta", nq), ("dtheta", n), ("tau", n), ("x", n)][:arguments]
         if quantity.endswith("_vjp"):
             self.inputs.append(("x", n))
         self.outputs = [("M", [n, n])] if quantity == "mass_matrix" else [("tau", [n])]
@@ -70,6 +70,32 @@ class Kernel:
             self.at(address, states, array[0].size)[:] = array.reshape(states, -1)
 
 
+class Rollout:
+    """`_mozzi.GpuRollout` on the host."""
+
+    def __init__(self, model, dtype, layout, device, packages):
+        self.kernel = Kernel(model, "rollout", None, dtype, layout, False, device, packages)
+
+    def launch(self, state, tau, feedback, tables, step, steps, every, robots, stream):
+        Kernel.launched.append(("rollout", robots, stream))
+        model, n = self.kernel.model, self.kernel.model.n
+        theta, dtheta = (self.kernel.at(x, robots, n).copy() for x in state)
+        torques = None if tau is None else self.kernel.at(tau, robots, steps * n)
+        if feedback is not None:
+            gains = Kernel.at(self.kernel, feedback[0], 1, 2 * n * n).reshape(n, 2 * n)
+            target = self.kernel.at(feedback[1], robots, 2 * n)
+        for k in range(steps):
+            held = np.zeros((robots, n)) if tau is None else torques[:, k * n : (k + 1) * n].copy()
+            if feedback is not None:
+                held += (target - np.hstack([theta, dtheta])) @ gains.T
+            found = model.rollout(theta, dtheta, held[:, None, :], step)
+            theta, dtheta = found.theta[:, 1], found.dtheta[:, 1]
+            if (k + 1) % every == 0:
+                row = slice((k + 1) // every * n - n, (k + 1) // every * n)
+                for address, x in zip(tables, (theta, dtheta)):
+                    self.kernel.at(address, robots, steps // every * n)[:, row] = x
+
+
 @pytest.fixture
 def ur5():
     return mozzi.models.ur5()
@@ -78,6 +104,7 @@ def ur5():
 @pytest.fixture
 def fake(monkeypatch):
     monkeypatch.setattr(_mozzi, "GpuKernel", Kernel)
+    monkeypatch.setattr(_mozzi, "GpuRollout", Rollout)
     Kernel.launched.clear()
 
 
@@ -145,6 +172,45 @@ def test_wrong_results_and_names(ur5, fake):
         gpu.no_such(*x)
 
 
+def on_gpu(gpu, x):
+    """Rows as the layout has them."""
+    return np.ascontiguousarray(np.moveaxis(x, 0, -1) if gpu.layout == "columns" else x)
+
+
+@pytest.mark.parametrize("layout", ["rows", "columns"])
+def test_rollouts(ur5, fake, layout):
+    theta, dtheta, _ = state(6)
+    tau = np.random.default_rng(2).uniform(-5, 5, (5, 4, 6))
+    gpu = _gpu.Gpu(ur5, layout)
+    start, out = [OnGpu(on_gpu(gpu, x)) for x in (theta, dtheta)], [on_gpu(gpu, np.empty((5, 2, 6))) for _ in range(2)]
+    found = gpu.rollout(*start, OnGpu(on_gpu(gpu, tau)), step=0.01, every=2, out=list(map(OnGpu, out)), stream=3)
+    assert Kernel.launched == [("rollout", 5, 3)]
+    for array, table in zip(found, ur5.rollout(theta, dtheta, tau, 0.01)):
+        np.testing.assert_allclose(array.array, on_gpu(gpu, table[:, 2::2]), atol=1e-13)
+
+
+def test_rollouts_with_feedback(ur5, fake):
+    theta, dtheta, target = state(6)
+    gains = np.hstack([100.0 * np.eye(6), 20.0 * np.eye(6)])
+    target = np.hstack([target, np.zeros((5, 6))])
+    x, out = list(map(OnGpu, (theta, dtheta))), [np.empty((5, 1, 6)) for _ in range(2)]
+    gpu, held = _gpu.Gpu(ur5), (target - np.hstack([theta, dtheta])) @ gains.T
+    feedback = {"gains": OnGpu(gains), "target": OnGpu(target)}
+    gpu.rollout(*x, step=0.01, steps=1, out=list(map(OnGpu, out)), **feedback)
+    for array, table in zip(out, ur5.rollout(theta, dtheta, held[:, None], 0.01)):
+        np.testing.assert_allclose(array, table[:, 1:], atol=1e-13)
+    for arguments, error, words in [
+        ({}, TypeError, "tau or steps, found neither"),
+        ({"steps": 3, "every": 2}, ValueError, "every is 2, expected a divisor of the number of steps, 3"),
+        ({"steps": 2, "gains": OnGpu(gains)}, TypeError, "gains and target belong together"),
+        ({"steps": 2, **feedback, "gains": OnGpu(gains[:, :6].copy())}, ValueError, r"gains has shape \(6, 6\), expected \(6, 12\)"),
+        ({"tau": OnGpu(np.zeros((5, 6)))}, ValueError, r"tau has shape \(5, 6\), expected \(\.\.\., K, 6\)"),
+        ({"tau": OnGpu(np.zeros((5, 3, 6))), "steps": 2}, ValueError, "tau has shape .* the torques of 3 steps"),
+    ]:
+        with pytest.raises(error, match=words):
+            gpu.rollout(*x, step=0.01, out=list(map(OnGpu, out)), **arguments)
+
+
 def test_gradients_of_torch(ur5, fake, monkeypatch):
     torch = pytest.importorskip("torch")
     monkeypatch.setattr(_gpu, "view", lambda x, name: _gpu.View(x.data_ptr(), tuple(x.shape), "float64", None))
@@ -154,6 +220,61 @@ def test_gradients_of_torch(ur5, fake, monkeypatch):
     expected = ur5.inverse_dynamics_vjp(*(a.detach().numpy() for a in x), w.numpy())
     for a, gradient in zip(x, expected):
         np.testing.assert_allclose(a.grad.numpy(), gradient, atol=1e-12)
+
+
+def test_gradients_by_quaternions(fake, monkeypatch):
+    torch = pytest.importorskip("torch")
+    import mozzi.torch
+
+    monkeypatch.setattr(_gpu, "view", lambda x, name: _gpu.View(x.data_ptr(), tuple(x.shape), "float64", None))
+    anymal = mozzi.models.anymal(floating=True)
+    n, nq = anymal.n, anymal.nq
+    random = np.random.default_rng(3)
+    x = [random.uniform(-1, 1, (4, k)) for k in (nq, n, n)]
+    x[0][:, :4] /= np.linalg.norm(x[0][:, :4], axis=1, keepdims=True)
+    on_gpu, on_cpu = ([torch.tensor(a, requires_grad=True) for a in x] for _ in range(2))
+    w = torch.tensor(random.uniform(-1, 1, (4, n)))
+    (_gpu.Gpu(anymal).compute("inverse_dynamics", *on_gpu, stream=0) * w).sum().backward()
+    (mozzi.torch.Model(anymal).inverse_dynamics(*on_cpu) * w).sum().backward()
+    for a, b in zip(on_gpu, on_cpu):
+        np.testing.assert_allclose(a.grad.numpy(), b.grad.numpy(), atol=1e-10)
+
+
+def test_cuda_tensors_of_mozzi_torch(ur5, fake, monkeypatch):
+    torch = pytest.importorskip("torch")
+    import mozzi.torch
+    from mozzi import _torch_gpu
+    from mozzi._torch_operators import value_op
+
+    # the operators' CUDA kernels on the host
+    monkeypatch.setattr(_gpu, "view", lambda x, name: _gpu.View(x.data_ptr(), tuple(x.shape), "float64", None))
+    monkeypatch.setattr(_gpu, "stream_of", lambda x, views: 0)
+    robot = mozzi.torch.Model(ur5)
+    key = f"{robot._contents}:inverse_dynamics:"
+    x, w = [torch.tensor(a) for a in state(6)], torch.ones(5, 6, dtype=torch.float64)
+    np.testing.assert_allclose(_torch_gpu.value(x, key), ur5.inverse_dynamics(*map(np.asarray, x)), atol=1e-12)
+    expanded = [x[0], x[1], x[2][:1].expand(5, 6)]
+    for found, expected in zip(
+        _torch_gpu.pull_back(expanded, w, key, False), ur5.inverse_dynamics_vjp(*map(np.asarray, expanded), w.numpy())
+    ):
+        np.testing.assert_allclose(found, expected, atol=1e-12)
+    with pytest.raises(ValueError, match="parameters are given for inverse_dynamics on cpu"):
+        _torch_gpu.value([*x, torch.ones(1)], key)
+    with pytest.raises(TypeError, match="mass_matrix has no gradient on a GPU"):
+        _torch_gpu.pull_back(x[:1], w, f"{robot._contents}:mass_matrix:", False)
+    # and the operator's rule for vmap
+    over = torch.func.vmap(lambda theta: value_op([theta, x[1], x[2]], key))(torch.stack([x[0], 2 * x[0]]))
+    np.testing.assert_allclose(over[1], ur5.inverse_dynamics(2 * x[0].numpy(), x[1].numpy(), x[2].numpy()), atol=1e-12)
+    if not torch.cuda.is_available():
+        with pytest.raises(ValueError, match="dtheta is on meta, but theta is on cpu: expected one device"):
+            robot.inverse_dynamics(x[0], x[1].to("meta"), x[2])
+    else:
+        on_card = [a.cuda().requires_grad_() for a in x]
+        tau = robot.inverse_dynamics(*on_card)
+        np.testing.assert_allclose(tau.detach().cpu(), ur5.inverse_dynamics(*map(np.asarray, x)), atol=1e-9)
+        tau.sum().backward()
+        for a, expected in zip(on_card, ur5.inverse_dynamics_vjp(*map(np.asarray, x), w.numpy())):
+            np.testing.assert_allclose(a.grad.cpu(), expected, atol=1e-9)
 
 
 def test_without_a_gpu_the_error_names_it(ur5):

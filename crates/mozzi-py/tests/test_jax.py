@@ -327,6 +327,44 @@ def test_structs_are_those_of_the_header(tmp_path):
     assert dict(zip(layout, map(int, found))) == layout
 
 
+def on_cuda(function, *x):
+    """The program for a GPU, which need not be there."""
+    return jax.jit(function).trace(*x).lower(lowering_platforms=("cuda",)).as_text()
+
+
+def test_programs_for_a_gpu():
+    ur5 = mozzi.models.ur5()
+    theta = jnp.zeros((3, 6), jnp.float32)
+    text = on_cuda(lambda q: mj.inverse_dynamics(ur5, q, q, q), theta)
+    assert text.count("@mozzi_quantity_gpu(") == 1 and 'quantity = "inverse_dynamics"' in text
+    text = on_cuda(jax.grad(lambda q: mj.forward_dynamics(ur5, q, q, q).sum()), theta)
+    assert 'quantity = "forward_dynamics_vjp"' in text and "@mozzi_quantity(" not in text
+    # a quaternion's gradient has four numbers, from three of the kernel
+    anymal = mozzi.models.anymal(floating=True)
+    q, v = jnp.ones((2, anymal.nq)), jnp.ones((2, anymal.n))
+    text = on_cuda(jax.grad(lambda q: mj.inverse_dynamics(anymal, q, v, v).sum()), q)
+    assert 'quantity = "inverse_dynamics_vjp"' in text and text.count("stablehlo.custom_call") == 1
+    for function, words in [
+        (jax.jacfwd(lambda q: mj.inverse_dynamics(ur5, q, q, q).sum()), "of first order, in reverse mode"),
+        (lambda q: mj.mass_matrix(ur5, q, parameters=jnp.asarray(ur5.parameters, q.dtype)), "of given parameters on a GPU"),
+    ]:
+        with pytest.raises(NotImplementedError, match=words):
+            on_cuda(function, theta)
+    with pytest.raises(TypeError, match="mass_matrix has no gradient on a GPU"):
+        on_cuda(jax.grad(lambda q: mj.mass_matrix(ur5, q).sum()), theta)
+
+
+@pytest.mark.skipif(jax.default_backend() != "gpu", reason="JAX has no GPU")
+def test_arrays_on_a_gpu():
+    ur5 = mozzi.models.ur5()
+    x = jax.random.uniform(jax.random.key(1), (3, 100, 6), jnp.float32, -1, 1)
+    host = [np.asarray(a, np.float64) for a in x]
+    tau = jax.jit(lambda x: mj.inverse_dynamics(ur5, *x))(x)
+    np.testing.assert_allclose(tau, ur5.inverse_dynamics(*host), atol=1e-3)
+    gradient = jax.grad(lambda x: mj.inverse_dynamics(ur5, *x).sum())(x)
+    np.testing.assert_allclose(gradient, ur5.inverse_dynamics_vjp(*host, np.ones((100, 6))), atol=1e-2)
+
+
 def test_the_package_does_not_import_jax(tmp_path):
     code = (
         "import sys, mozzi; assert 'jax' not in sys.modules\ntry: import mozzi.jax\nexcept ImportError as e: print(e)"

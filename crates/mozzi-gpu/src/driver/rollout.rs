@@ -1,7 +1,7 @@
 //! Rollouts on a device.
 
 use super::{Device, Kernel, Stream};
-use crate::{Error, Number, Source};
+use crate::{Binary, Error, Number, Source};
 use mozzi_codegen::Precision;
 use std::ffi::c_void;
 
@@ -73,6 +73,14 @@ impl Rollout {
     /// See [`Device::kernel`].
     pub fn new(device: &Device, source: &Source) -> Result<Rollout, Error> {
         Ok(Rollout { kernel: device.kernel(source)? })
+    }
+
+    /// Loads such a text's code.
+    ///
+    /// # Errors
+    /// See [`Device::load`].
+    pub fn load(device: &Device, source: &Source, binary: &Binary) -> Result<Rollout, Error> {
+        Ok(Rollout { kernel: device.load(source, binary)? })
     }
 
     /// Launches it on arrays of the device for this many robots. It neither waits nor allocates.

@@ -1,31 +1,17 @@
-"""A robot's quantities of arrays on an NVIDIA GPU. No mathematics: addresses and shapes are checked and handed on.
+"""A robot's quantities of arrays on an NVIDIA GPU. No mathematics: addresses and shapes are checked and handed on."""
 
-An array is any object with ``__cuda_array_interface__`` (CuPy, Numba, PyTorch's CUDA tensors) or ``__dlpack__``.
-"""
-
-import ctypes
 import importlib.util
 import math
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from . import _mozzi
+from . import _mozzi, _tangent
+from ._gpu_arrays import View, empty, framework_of, stream_of, view
 
 __all__ = ["Gpu"]
-
-DTYPES = {"<f4": "float32", "<f8": "float64"}
-
-
-class View(NamedTuple):
-    """Where an array is."""
-
-    address: int
-    shape: tuple[int, ...]
-    dtype: str
-    stream: int | None
 
 
 class Gpu:
@@ -79,7 +65,7 @@ class Gpu:
             self._check(x, name, self._shape(leading, (length,)), dtype)
         shapes = [self._shape(leading, tuple(shape)) for _, shape in kernel.outputs]
         if out is None:
-            results = tuple(_empty(inputs[0], shape, dtype) for shape in shapes)
+            results = tuple(empty(inputs[0], shape, dtype) for shape in shapes)
         else:
             results = tuple(out) if isinstance(out, (tuple, list)) else (out,)
             if len(results) != len(shapes):
@@ -87,14 +73,118 @@ class Gpu:
         places = [view(x, "out") for x in results]
         for x, (name, _), shape in zip(places, kernel.outputs, shapes):
             self._check(x, f"out ({name})", shape, dtype)
-        chosen = _stream(inputs[0], views) if stream is None else stream
+        chosen = stream_of(inputs[0], views) if stream is None else stream
         kernel.launch([x.address for x in views], [x.address for x in places], math.prod(leading), chosen)
         return results[0] if len(results) == 1 else results
+
+    def rollout(
+        self,
+        theta: Any,
+        dtheta: Any,
+        tau: Any = None,
+        *,
+        step: float,
+        steps: int | None = None,
+        every: int = 1,
+        gains: Any = None,
+        target: Any = None,
+        out: Any = None,
+        stream: int | None = None,
+    ) -> tuple[Any, Any]:
+        """The states of many robots after each ``every`` Runge-Kutta steps, in one kernel: a thread for each robot.
+
+        Torques are held over each step: those of ``tau``, plus G(x_d − x) with ``gains`` G and ``target`` x_d, of the
+        state x = (θ, θ̇) at the beginning of the step. Joint limits have no effect.
+
+        Parameters
+        ----------
+        theta, dtheta : arrays, shape (..., n), by columns (n, N)
+            The start.
+        tau : array, shape (..., K, n), by columns (K, n, N), optional
+            The torques of K steps. Default: zeros.
+        step : float
+            The length of a step, s.
+        steps : int, optional
+            K, if ``tau`` is not given.
+        every : int
+            A divisor of K.
+        gains, target : arrays, shapes (n, 2n) and (..., 2n), by columns (2n, N), optional
+            Feedback, the same gains for all robots.
+        out : two arrays, optional
+            The results.
+        stream : int, optional
+            As of the other methods.
+
+        Returns
+        -------
+        theta, dtheta : arrays, shape (..., K/every, n), by columns (K/every, n, N)
+
+        Raises
+        ------
+        ValueError
+            The robot has a floating base, a ball, a free joint or constraints; or shapes do not go together.
+        """
+        if (gains is None) != (target is None):
+            raise TypeError("gains and target belong together: one is missing")
+        if _wants_gradient((theta, dtheta, tau, gains, target)):
+            raise TypeError("a rollout in one kernel has no gradient: see mozzi.torch.Model.rollout, or detach")
+        n = self.model.n
+        views = [view(theta, "theta"), view(dtheta, "dtheta")]
+        dtype, leading = views[0].dtype, self._leading(views[0].shape, "theta", n)
+        self._check(views[1], "dtheta", self._shape(leading, (n,)), dtype)
+        torques, steps = self._torques(tau, steps, leading, dtype)
+        feedback = None
+        if gains is not None:
+            pair = [view(gains, "gains"), view(target, "target")]
+            self._check(pair[0], "gains", (n, 2 * n), dtype)
+            self._check(pair[1], "target", self._shape(leading, (2 * n,)), dtype)
+            feedback = [x.address for x in pair]
+        if steps < 1 or every < 1 or steps % every:
+            raise ValueError(f"every is {every}, expected a divisor of the number of steps, {steps}")
+        shape = self._shape(leading, (steps // every, n))
+        results = tuple(empty(theta, shape, dtype) for _ in range(2)) if out is None else tuple(out)
+        if len(results) != 2:
+            raise TypeError(f"out has {len(results)} arrays, expected 2")
+        tables = [view(x, "out") for x in results]
+        for x, name in zip(tables, ("theta", "dtheta")):
+            self._check(x, f"out ({name})", shape, dtype)
+        if ("rollout", dtype) not in self._kernels:
+            made = _mozzi.GpuRollout(self.model, dtype, self.layout, self.device, packages())
+            self._kernels["rollout", dtype] = made
+        self._kernels["rollout", dtype].launch(
+            [x.address for x in views],
+            None if torques is None else torques.address,
+            feedback,
+            [x.address for x in tables],
+            step,
+            steps,
+            every,
+            math.prod(leading),
+            stream_of(theta, views) if stream is None else stream,
+        )
+        return results[0], results[1]
+
+    def _torques(
+        self, tau: Any, steps: int | None, leading: tuple[int, ...], dtype: str
+    ) -> tuple[View | None, int]:
+        if tau is None:
+            if steps is None:
+                raise TypeError("rollout takes tau or steps, found neither")
+            return None, steps
+        torques = view(tau, "tau")
+        if len(torques.shape) != len(leading) + 2:
+            expected = f"(..., K, {self.model.n})" if self.layout == "rows" else f"(K, {self.model.n}, N)"
+            raise ValueError(f"tau has shape {torques.shape}, expected {expected}")
+        found = torques.shape[-2 if self.layout == "rows" else 0]
+        if steps not in (None, found):
+            raise ValueError(f"steps is {steps}, but tau has shape {torques.shape}, the torques of {found} steps")
+        self._check(torques, "tau", self._shape(leading, (found, self.model.n)), dtype)
+        return torques, found
 
     def _kernel(self, quantity: str, frame: str | None, dtype: str, packed: bool) -> Any:
         key = quantity, frame, dtype, packed
         if key not in self._kernels:
-            options = (dtype, self.layout, packed, self.device, _packages())
+            options = (dtype, self.layout, packed, self.device, packages())
             self._kernels[key] = _mozzi.GpuKernel(self.model, quantity, frame, *options)
         return self._kernels[key]
 
@@ -115,117 +205,32 @@ class Gpu:
             raise ValueError(f"{name} has shape {x.shape}, expected {shape}")
 
 
-def _packages() -> list[str]:
+def packages() -> list[str]:
     """The folders in which NVIDIA's packages are, such as site-packages."""
     found = importlib.util.find_spec("nvidia")
     return [] if found is None else [str(Path(place).parent) for place in found.submodule_search_locations or ()]
 
 
-def view(x: Any, name: str) -> View:
-    """The address, shape and dtype of an array on a GPU, which must be contiguous by rows."""
-    interface = getattr(x, "__cuda_array_interface__", None)
-    if interface is None:
-        if hasattr(x, "__dlpack__") and hasattr(x, "__dlpack_device__"):
-            return _of_dlpack(x, name)
-        found = f"a {type(x).__name__}"
-        raise TypeError(f"{name} is {found}, expected an array on a GPU (__cuda_array_interface__ or __dlpack__)")
-    shape, strides = tuple(interface["shape"]), interface.get("strides")
-    dtype = _dtype(interface["typestr"], name)
-    size = 4 if dtype == "float32" else 8
-    _check_strides(shape, None if strides is None else [s // size for s in strides], name)
-    return View(interface["data"][0], shape, dtype, interface.get("stream"))
-
-
-def _dtype(typestr: str, name: str) -> str:
-    if typestr not in DTYPES:
-        raise TypeError(f"{name} has numbers of type {typestr!r}, expected float32 or float64")
-    return DTYPES[typestr]
-
-
-def _check_strides(shape: tuple[int, ...], strides: Any, name: str) -> None:
-    """Strides in numbers, for axes longer than one."""
-    expected = 1
-    for length, stride in zip(reversed(shape), reversed(strides or ())):
-        if length > 1 and stride != expected:
-            raise ValueError(f"{name} is not contiguous: strides {tuple(strides)}, shape {shape}; make a copy")
-        expected *= length
-
-
-class _Tensor(ctypes.Structure):
-    """DLPack's DLTensor, as it is in a DLManagedTensor."""
-
-    _fields_ = [
-        ("data", ctypes.c_void_p),
-        ("device_type", ctypes.c_int32),
-        ("device_id", ctypes.c_int32),
-        ("ndim", ctypes.c_int32),
-        ("code", ctypes.c_uint8),
-        ("bits", ctypes.c_uint8),
-        ("lanes", ctypes.c_uint16),
-        ("shape", ctypes.POINTER(ctypes.c_int64)),
-        ("strides", ctypes.POINTER(ctypes.c_int64)),
-        ("byte_offset", ctypes.c_uint64),
-    ]
-
-
-def _of_dlpack(x: Any, name: str) -> View:
-    """Reads a capsule without taking it: the array stays the owner, and the capsule frees its own part."""
-    if int(x.__dlpack_device__()[0]) != 2:
-        raise ValueError(f"{name} is on DLPack's device {tuple(x.__dlpack_device__())}, expected a CUDA device (2, …)")
-    capsule = x.__dlpack__()
-    pointer = ctypes.pythonapi.PyCapsule_GetPointer
-    pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
-    tensor = _Tensor.from_address(pointer(capsule, b"dltensor"))
-    shape = tuple(tensor.shape[k] for k in range(tensor.ndim))
-    strides = [tensor.strides[k] for k in range(tensor.ndim)] if tensor.strides else None
-    kind = {2: "f"}.get(tensor.code, "?") if tensor.lanes == 1 else "?"
-    dtype = _dtype(f"<{kind}{tensor.bits // 8}", name)
-    _check_strides(shape, strides, name)
-    return View((tensor.data or 0) + tensor.byte_offset, shape, dtype, None)
-
-
-def _framework(x: Any) -> str:
-    return type(x).__module__.split(".")[0]
-
-
-def _empty(x: Any, shape: tuple[int, ...], dtype: str) -> Any:
-    """An array of x's framework."""
-    framework = _framework(x)
-    if framework == "torch":
-        return x.new_empty(shape)
-    if framework == "cupy":
-        return import_module("cupy").empty(shape, dtype)
-    if framework == "numba":
-        return import_module("numba.cuda").device_array(shape, dtype)
-    raise TypeError(f"results of a {type(x).__name__} need out=: arrays are made for PyTorch, CuPy and Numba")
-
-
-def _stream(x: Any, views: list[View]) -> int:
-    """The framework's current stream; else that of the arrays' interface; else the legacy default stream."""
-    framework = _framework(x)
-    if framework == "torch":
-        return int(import_module("torch").cuda.current_stream(x.device).cuda_stream)
-    if framework == "cupy":
-        return int(import_module("cupy").cuda.get_current_stream().ptr)
-    return next((int(v.stream) for v in views if v.stream is not None), 0)
-
-
 def _wants_gradient(inputs: tuple[Any, ...]) -> bool:
-    if _framework(inputs[0]) != "torch":
+    if framework_of(inputs[0]) != "torch":
         return False
     is_enabled = bool(import_module("torch").is_grad_enabled())
     return is_enabled and any(getattr(x, "requires_grad", False) for x in inputs)
+
+
+def gradient_of(quantity: str) -> str:
+    """The name of its vector-Jacobian product."""
+    product = f"{quantity}_vjp"
+    if not hasattr(_mozzi.Model, product):
+        raise TypeError(f"{quantity} has no gradient on a GPU: there is no {product}; detach its arguments")
+    return product
 
 
 def _differentiable(gpu: Gpu, quantity: str, inputs: tuple[Any, ...], frame: str | None, stream: int | None) -> Any:
     """By PyTorch's autograd: the gradient is the quantity's vector-Jacobian product, a kernel, too."""
     autograd = import_module("torch").autograd
     base: Any = autograd.Function
-    product = f"{quantity}_vjp"
-    if not hasattr(_mozzi.Model, product):
-        raise TypeError(f"{quantity} has no gradient on a GPU: there is no {product}; detach its arguments")
-    if gpu.model.nq != gpu.model.n:
-        raise TypeError("gradients on a GPU are for robots without quaternions; detach the arguments")
+    product, quaternions = gradient_of(quantity), gpu.model._quaternions
 
     class Function(base):  # type: ignore[misc]
         @staticmethod
@@ -236,7 +241,14 @@ def _differentiable(gpu: Gpu, quantity: str, inputs: tuple[Any, ...], frame: str
         @staticmethod
         @autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, w: Any) -> Any:
-            saved = (t.detach() for t in ctx.saved_tensors)
-            return gpu.compute(product, *saved, w.contiguous().detach(), frame=frame, stream=stream)
+            saved = [t.detach() for t in ctx.saved_tensors]
+            found = gpu.compute(product, *saved, w.contiguous().detach(), frame=frame, stream=stream)
+            if not quaternions:
+                return found
+            torch = import_module("torch")
+            first, *others = found if isinstance(found, tuple) else (found,)
+            theta, first = (t if gpu.layout == "rows" else t.T for t in (saved[0], first))
+            first = _tangent.position_gradient(torch, quaternions, theta, first)
+            return (first if gpu.layout == "rows" else first.T, *others)
 
     return Function.apply(*inputs)

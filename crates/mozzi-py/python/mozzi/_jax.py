@@ -35,7 +35,8 @@ import jax.interpreters.mlir
 import jax.numpy as jnp
 import numpy as np
 
-from . import _mozzi
+from . import _mozzi, _tangent
+from ._gpu import gradient_of, packages
 
 # these parts of JAX have no types
 ad: Any = jax.interpreters.ad
@@ -47,7 +48,12 @@ except ImportError:  # jax 0.4
     ffi = importlib.import_module("jax.extend.ffi")
 
 TARGET = "mozzi_quantity"
+GPU_TARGET = "mozzi_quantity_gpu"
 MOST_DIRECTIONS = 2
+
+
+MODELS: dict[int, _mozzi.Model] = {}
+"""The robots by their numbers."""
 
 
 class Quantity(NamedTuple):
@@ -71,6 +77,7 @@ def register() -> None:
     """Registers the handler in XLA, after JAX's backends: a handler that the runtime refuses would take them along."""
     jax.devices()
     ffi.register_ffi_target(TARGET, _mozzi._jax_handler(), platform="cpu")
+    ffi.register_ffi_target(GPU_TARGET, _mozzi._jax_gpu_handler(packages()), platform="CUDA")
 
 
 def quantity(model: _mozzi.Model, name: str, frame: str | None, parameters: bool, threads: int | None) -> Quantity:
@@ -81,7 +88,9 @@ def quantity(model: _mozzi.Model, name: str, frame: str | None, parameters: bool
     if parameters:
         widths.append(("parameters", len(model.parameters)))
     shapes = tuple(tuple(shape) for _, shape in outputs)
-    return Quantity(model._jax_handle(), name, frame, tuple(widths), shapes, parameters, threads or 0)
+    handle = model._jax_handle()
+    MODELS[handle] = model
+    return Quantity(handle, name, frame, tuple(widths), shapes, parameters, threads or 0)
 
 
 def bits(mask: int) -> list[int]:
@@ -154,6 +163,46 @@ def lower(ctx: Any, *operands: Any, of: Quantity, along: tuple[int, ...], wanted
     )
 
 
+# On an NVIDIA GPU: values, and the gradients of quantities with a vector-Jacobian product, by the kernels of
+# `Model.to_gpu`. A kernel of gradients computes those of all inputs, along the velocities.
+
+gradients_p = Primitive("mozzi_gradients")
+gradients_p.multiple_results = True
+
+
+def call_gpu(ctx: Any, *operands: Any, of: Quantity, name: str) -> Any:
+    names = {"model": np.int64(of.model), "quantity": name, "frame": of.frame}
+    return ffi.ffi_lowering(GPU_TARGET)(ctx, *operands, **names)
+
+
+def lower_on_gpu(ctx: Any, *operands: Any, of: Quantity, along: tuple[int, ...], wanted: int) -> Any:
+    if of.parameters:
+        raise NotImplementedError(f"{of.name} of given parameters on a GPU: a kernel has the robot's own")
+    if along:
+        raise NotImplementedError(f"derivatives of {of.name} on a GPU are of first order, in reverse mode")
+    if not wanted:
+        return call_gpu(ctx, *operands, of=of, name=of.name)
+    gradient_of(of.name)
+
+    def gradients(*operands: Any) -> list[Any]:
+        found = gradients_p.bind(*operands, of=of)
+        if places := MODELS[of.model]._quaternions:
+            found[0] = _tangent.position_gradient(jnp, places, operands[0], found[0])
+        return [found[k] for k in bits(wanted)]
+
+    return mlir.lower_fun(gradients, multiple_results=True)(ctx, *operands)
+
+
+def abstract_gradients(*operands: Any, of: Quantity) -> list[Any]:
+    _, _, outputs = MODELS[of.model]._jax_shapes(gradient_of(of.name), of.frame or None)
+    array: Any = jax.core.ShapedArray  # pyright: ignore[reportAttributeAccessIssue]
+    return [array((*operands[0].shape[:-1], *shape), operands[0].dtype) for _, shape in outputs]
+
+
+def lower_gradients(ctx: Any, *operands: Any, of: Quantity) -> Any:
+    return call_gpu(ctx, *operands, of=of, name=gradient_of(of.name))
+
+
 def is_zero(tangent: Any) -> bool:
     return type(tangent) is ad.Zero
 
@@ -217,6 +266,9 @@ def batch(operands: Any, axes: Any, *, of: Quantity, along: tuple[int, ...], wan
 quantity_p.def_impl(evaluate)
 quantity_p.def_abstract_eval(abstract)
 mlir.register_lowering(quantity_p, lower, platform="cpu")
+mlir.register_lowering(quantity_p, lower_on_gpu, platform="cuda")
+gradients_p.def_abstract_eval(abstract_gradients)
+mlir.register_lowering(gradients_p, lower_gradients, platform="cuda")
 ad.primitive_jvps[quantity_p] = jvp
 ad.primitive_transposes[quantity_p] = transpose
 jax.interpreters.batching.primitive_batchers[quantity_p] = batch

@@ -15,6 +15,11 @@ from . import _tangent
 from ._torch_tensors import arrays, batched, check, check_lengths, model_of
 
 
+def check_rows(model, tau):
+    if tau.ndim < 2:
+        raise ValueError(f"tau has shape {tuple(tau.shape)}, expected (..., N, {model.n}): a row for each step")
+
+
 def run(model, step, method, theta, dtheta, tau):
     """θ (..., N + 1, nq) and θ̇ (..., N + 1, n)."""
     found = model.rollout(*arrays((theta, dtheta, tau)), step, method)
@@ -142,8 +147,7 @@ def rollout(model, contents, step, method, theta, dtheta, tau):
     """By `Model.rollout`, with leading axes broadcast by torch."""
     if not torch.compiler.is_compiling():
         check(("theta", "dtheta", "tau"), (theta, dtheta, tau))
-    if tau.ndim < 2:
-        raise ValueError(f"tau has shape {tuple(tau.shape)}, expected (..., N, {model.n}): a row for each step")
+    check_rows(model, tau)
     leading = torch.broadcast_shapes(theta.shape[:-1], dtheta.shape[:-1], tau.shape[:-2])
     theta, dtheta = (t.expand(*leading, t.shape[-1]) for t in (theta, dtheta))
     tau = tau.expand(*leading, *tau.shape[-2:])
@@ -157,7 +161,8 @@ def rollout(model, contents, step, method, theta, dtheta, tau):
 
 def steps(quaternions, dynamics, step, method, theta, dtheta, tau):
     """The table of a rollout by torch's operations, with θ̈ = dynamics(θ, θ̇, τ)."""
-    states = [(theta, dtheta)]
+    leading = torch.broadcast_shapes(theta.shape[:-1], dtheta.shape[:-1], tau.shape[:-2])
+    states = [tuple(t.expand(*leading, t.shape[-1]) for t in (theta, dtheta))]
     for k in range(tau.shape[-2]):
         theta, dtheta, force = *states[-1], tau[..., k, :]
         if method == "rk4":

@@ -26,7 +26,7 @@ def tensors(arrays):
 
 
 def check(names, x):
-    """One dtype, on the CPU; the package checks shapes."""
+    """One dtype, on the CPU or on one GPU; the package checks shapes."""
     dtype = getattr(x[0], "dtype", None)
     for name, t in zip(names, x):
         if not isinstance(t, Tensor) or t.dtype not in DTYPES:
@@ -34,8 +34,10 @@ def check(names, x):
             raise TypeError(f"{name} is {found}, expected a tensor of torch.float64 or torch.float32")
         if t.dtype is not dtype:
             raise TypeError(f"{name} is {t.dtype}, but {names[0]} is {dtype}: expected one dtype")
-        if not t.is_cpu:
-            raise ValueError(f"{name} is on {t.device}, expected cpu: mozzi computes on the CPU")
+        if t.device != x[0].device:
+            raise ValueError(f"{name} is on {t.device}, but {names[0]} is on {x[0].device}: expected one device")
+        if not (t.is_cpu or t.is_cuda):
+            raise ValueError(f"{name} is on {t.device}, expected cpu or cuda")
 
 
 def check_lengths(names, x, lengths):

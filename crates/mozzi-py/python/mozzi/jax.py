@@ -6,10 +6,11 @@
 >>> jax.jit(jax.grad(effort))(jax.numpy.zeros(6))                                         # doctest: +SKIP
 
 Each function takes a `mozzi.Model`, which is a constant of the compiled program, and arrays whose last axis is a state;
-leading axes are many states, broadcast by NumPy's rule and computed by one call on all cores, as those of `vmap`. It
-computes on the CPU, by the package's own library.
+leading axes are many states, broadcast by NumPy's rule and computed by one call on all cores, as those of `vmap`.
+Arrays on the CPU are computed by the package's own library, those on the first NVIDIA GPU by the kernels of
+`Model.to_gpu`, with gradients of inverse and forward dynamics in reverse mode.
 
-Derivatives up to the second order are exact, in both modes. With respect to θ they are derivatives by its nq numbers: a
+Derivatives up to the second order are exact, in both modes, on the CPU. With respect to θ they are derivatives by its nq numbers: a
 quaternion's length has no effect, so that its gradient is tangent to the unit sphere. `tangent_gradient` converts such
 a gradient to n numbers along the velocities, in which the package's own derivatives are; `integrate` is θ ⊕ δ.
 

@@ -5,9 +5,11 @@
 >>> theta = torch.zeros(6, dtype=torch.float64, requires_grad=True)     # doctest: +SKIP
 >>> robot.mass_matrix(theta).trace().backward()                         # doctest: +SKIP
 
-Tensors are on the CPU, float64 or float32, all of one dtype; memory is shared with them, not copied. Leading axes are
-states and are broadcast. All of `torch.autograd` and `torch.func` works, to second order; `torch.compile` and
-`torch.export` call the same functions as custom operators, to first order in reverse.
+Tensors are float64 or float32, all of one dtype, on the CPU or on one NVIDIA GPU; memory is shared with them, not
+copied. Leading axes are states and are broadcast. All of `torch.autograd` and `torch.func` works, to second order;
+`torch.compile` and `torch.export` call the same functions as custom operators, to first order in reverse. On a GPU
+these operators are the kernels of `mozzi.Model.to_gpu`: gradients of inverse and forward dynamics and of rollouts, of
+first order, in reverse.
 
 θ has nq numbers. A gradient by a quaternion is that of a function of q/‖q‖: tangent to the sphere.
 """
@@ -26,9 +28,9 @@ from torch._C import _are_functorch_transforms_active as _is_transformed
 from torch._C._functorch import is_legacy_batchedtensor
 from torch.autograd import forward_ad
 
-from . import _mozzi, _tangent
-from ._torch_operators import known, packed_op, run, to_positions, value_op
-from ._torch_rollout import rollout, steps
+from . import _mozzi, _tangent, _torch_gpu  # noqa: F401  the last one's kernels of value_op
+from ._torch_operators import known, packed_op, refuse_forward_mode, run, to_positions, value_op
+from ._torch_rollout import check_rows, rollout, steps
 from ._torch_tensors import DTYPES, MODELS, arrays, batched, check
 from ._torch_tensors import tensors as as_tensors
 
@@ -222,6 +224,9 @@ def _call(robot, name, x, frame=None):
         has_gradient = has_gradient or t.requires_grad
     if not is_plain or dtype not in DTYPES:
         check((*quantity.inputs, "parameters"), x)
+        if x[0].is_cuda:
+            refuse_forward_mode(x)
+            return value_op(list(_broadcast(x)), key)
     if _is_transformed() or forward_ad._current_level >= 0:
         return _Value.apply(quantity, *_broadcast(x))
     if not is_plain:
@@ -311,10 +316,11 @@ class Model:
         by_steps : bool
             Whether each step is an operation of torch: slower, and needed for forward mode and second derivatives.
         """
-        if parameters is None and not by_steps:
+        if parameters is None and not by_steps and not getattr(theta, "is_cuda", False):
             return rollout(self.model, self._contents, float(step), method, theta, dtheta, tau)
 
         def dynamics(theta: Tensor, dtheta: Tensor, tau: Tensor) -> Tensor:
             return self.forward_dynamics(theta, dtheta, tau, parameters=parameters)
 
+        check_rows(self.model, tau)
         return steps(self.model._quaternions, dynamics, float(step), method, theta, dtheta, tau)

@@ -5,8 +5,11 @@
 //! on its side, so that everything is checked here. All of the binding's `unsafe` for JAX is in this file.
 
 use super::call::{self, Argument, Attributes};
+use super::gpu;
 use super::registry::Batched;
 use crate::numpy::Element;
+use mozzi_codegen::Precision;
+use mozzi_gpu::Stream;
 use pyo3::ffi;
 use pyo3::prelude::*;
 use std::ffi::{CString, c_char, c_int, c_void};
@@ -45,6 +48,13 @@ struct ErrorArguments {
     message: *const c_char,
     code: c_int,
 }
+#[repr(C)]
+struct StreamArguments {
+    struct_size: usize,
+    extension: *mut Extension,
+    context: *mut c_void,
+    stream: *mut c_void,
+}
 /// The first fields of the runtime's table of functions.
 #[repr(C)]
 struct Api {
@@ -53,6 +63,8 @@ struct Api {
     version: Version,
     internal: *const c_void,
     error_create: unsafe extern "C" fn(*mut ErrorArguments) -> *mut c_void,
+    others: [*const c_void; 3],
+    stream_get: unsafe extern "C" fn(*mut StreamArguments) -> *mut c_void,
 }
 #[repr(C)]
 struct Buffer {
@@ -118,7 +130,7 @@ const INTERNAL: c_int = 13;
 const CAPSULE: &std::ffi::CStr = c"xla._CUSTOM_CALL_TARGET";
 
 /// Expressions of C's header with their values here, for a test that compiles it.
-pub const LAYOUT: [(&str, usize); 27] = [
+pub const LAYOUT: [(&str, usize); 31] = [
     ("offsetof(XLA_FFI_Extension_Base, type)", offset_of!(Extension, kind)),
     ("offsetof(XLA_FFI_Metadata_Extension, metadata)", offset_of!(MetadataExtension, metadata)),
     ("offsetof(XLA_FFI_Api_Version, minor_version)", offset_of!(Version, minor)),
@@ -128,6 +140,10 @@ pub const LAYOUT: [(&str, usize); 27] = [
     ("offsetof(XLA_FFI_Error_Create_Args, message)", offset_of!(ErrorArguments, message)),
     ("offsetof(XLA_FFI_Error_Create_Args, errc)", offset_of!(ErrorArguments, code)),
     ("offsetof(XLA_FFI_Api, XLA_FFI_Error_Create)", offset_of!(Api, error_create)),
+    ("offsetof(XLA_FFI_Api, XLA_FFI_Stream_Get)", offset_of!(Api, stream_get)),
+    ("offsetof(XLA_FFI_Stream_Get_Args, ctx)", offset_of!(StreamArguments, context)),
+    ("offsetof(XLA_FFI_Stream_Get_Args, stream)", offset_of!(StreamArguments, stream)),
+    ("sizeof(XLA_FFI_Stream_Get_Args)", size_of::<StreamArguments>()),
     ("offsetof(XLA_FFI_Buffer, dtype)", offset_of!(Buffer, dtype)),
     ("offsetof(XLA_FFI_Buffer, data)", offset_of!(Buffer, data)),
     ("offsetof(XLA_FFI_Buffer, rank)", offset_of!(Buffer, rank)),
@@ -148,23 +164,50 @@ pub const LAYOUT: [(&str, usize); 27] = [
     ("XLA_FFI_DataType_F64", FLOAT64 as usize),
 ];
 
+/// Where the arrays are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    Host,
+    Gpu,
+}
+
 /// The handler, as XLA wants it: a capsule with the function's address.
 ///
 /// # Errors
 /// `MemoryError`.
-pub fn capsule(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+pub fn capsule(py: Python<'_>, place: Place) -> PyResult<Bound<'_, PyAny>> {
+    let handler = match place {
+        Place::Host => on_host as *const (),
+        Place::Gpu => on_gpu as *const (),
+    };
     // SAFETY: the address is not null; the name is static.
     unsafe {
-        let capsule = ffi::PyCapsule_New(handler as *const () as *mut c_void, CAPSULE.as_ptr(), None);
+        let capsule = ffi::PyCapsule_New(handler.cast_mut().cast(), CAPSULE.as_ptr(), None);
         Bound::from_owned_ptr_or_err(py, capsule)
     }
 }
 
-/// What XLA calls. Returns null, or an error.
+/// What XLA calls on the CPU. Returns null, or an error.
 ///
 /// # Safety
 /// The frame is one that the runtime passed.
-unsafe extern "C" fn handler(frame: *mut CallFrame) -> *mut c_void {
+unsafe extern "C" fn on_host(frame: *mut CallFrame) -> *mut c_void {
+    // SAFETY: by the caller
+    unsafe { respond(frame, answer) }
+}
+
+/// The same on a GPU.
+///
+/// # Safety
+/// The frame is one that the runtime passed.
+unsafe extern "C" fn on_gpu(frame: *mut CallFrame) -> *mut c_void {
+    // SAFETY: by the caller
+    unsafe { respond(frame, launch) }
+}
+
+/// # Safety
+/// The frame is one that the runtime passed.
+unsafe fn respond(frame: *mut CallFrame, answer: fn(&CallFrame) -> Result<(), String>) -> *mut c_void {
     // SAFETY: the runtime keeps the frame, its extension and the metadata while the handler runs.
     let frame = unsafe {
         if let Some(extension) = (*frame).extension.as_ref()
@@ -195,11 +238,54 @@ unsafe extern "C" fn handler(frame: *mut CallFrame) -> *mut c_void {
     unsafe { ((*frame.api).error_create)(&mut arguments) }
 }
 
-fn answer(frame: &CallFrame) -> Result<(), String> {
-    let (found, expected) = (frame.struct_size, size_of::<CallFrame>());
-    if found < expected {
-        return Err(format!("XLA's call has {found} bytes, expected at least {expected}: jaxlib is too old"));
+/// Launches the kernel on XLA's stream.
+fn launch(frame: &CallFrame) -> Result<(), String> {
+    frame.check_size()?;
+    let (precision, dtype) = match frame.arguments.buffers().next().map(|buffer| buffer.dtype) {
+        Some(FLOAT64) => (Precision::F64, FLOAT64),
+        Some(FLOAT32) => (Precision::F32, FLOAT32),
+        other => return Err(format!("an argument has XLA's type {other:?}, expected float32 or float64")),
+    };
+    let attributes = &frame.attributes;
+    let kernel =
+        gpu::kernel(attributes.integer("model")?, attributes.text("quantity")?, attributes.text("frame")?, precision)?;
+    let read = |buffers: &Buffers| -> Result<(Vec<u64>, Vec<usize>), String> {
+        let each = buffers.buffers().map(|buffer| {
+            let length =
+                if precision == Precision::F64 { buffer.length::<f64>(dtype) } else { buffer.length::<f32>(dtype) };
+            Ok((buffer.data as u64, length?))
+        });
+        Ok(each.collect::<Result<Vec<_>, String>>()?.into_iter().unzip())
+    };
+    let ((inputs, given), (outputs, wanted)) = (read(&frame.arguments)?, read(&frame.results)?);
+    let states = gpu::states(&kernel, &given, &wanted)?;
+    let stream = Stream(frame.stream()? as usize);
+    // SAFETY: XLA's buffers are on its device, have the checked lengths, and are used on this stream
+    unsafe { kernel.launch(&inputs, &outputs, states, stream) }.map_err(|error| error.to_string())
+}
+
+impl CallFrame {
+    fn check_size(&self) -> Result<(), String> {
+        let (found, expected) = (self.struct_size, size_of::<CallFrame>());
+        match found < expected {
+            true => Err(format!("XLA's call has {found} bytes, expected at least {expected}: jaxlib is too old")),
+            false => Ok(()),
+        }
     }
+
+    /// The stream of a call on a GPU.
+    fn stream(&self) -> Result<*mut c_void, String> {
+        let (extension, stream) = (std::ptr::null_mut(), std::ptr::null_mut());
+        let struct_size = size_of::<StreamArguments>();
+        let mut arguments = StreamArguments { struct_size, extension, context: self.context, stream };
+        // SAFETY: the runtime's function fills in the stream, or returns an error
+        let error = unsafe { ((*self.api).stream_get)(&mut arguments) };
+        if error.is_null() { Ok(arguments.stream) } else { Err("XLA has no stream for this call".into()) }
+    }
+}
+
+fn answer(frame: &CallFrame) -> Result<(), String> {
+    frame.check_size()?;
     let attributes = Attributes {
         model: frame.attributes.integer("model")?,
         quantity: frame.attributes.text("quantity")?,

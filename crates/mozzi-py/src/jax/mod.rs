@@ -5,6 +5,7 @@
 mod call;
 mod derivative;
 mod evaluate;
+mod gpu;
 mod interface;
 mod registry;
 mod tangent;
@@ -15,6 +16,7 @@ use mozzi::quantities::{Of, Query};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 
 /// Names of arrays with their shapes at one state.
 type Shapes = Vec<(&'static str, Vec<usize>)>;
@@ -44,10 +46,17 @@ impl PyModel {
     }
 }
 
-/// XLA's handler, as a capsule.
+/// XLA's handler on the CPU, as a capsule.
 #[pyfunction]
 fn _jax_handler(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-    interface::capsule(py)
+    interface::capsule(py, interface::Place::Host)
+}
+
+/// That on an NVIDIA GPU. `packages`: folders in which NVRTC's wheel may be.
+#[pyfunction]
+fn _jax_gpu_handler(py: Python<'_>, packages: Vec<PathBuf>) -> PyResult<Bound<'_, PyAny>> {
+    gpu::PACKAGES.get_or_init(|| packages);
+    interface::capsule(py, interface::Place::Gpu)
 }
 
 /// Expressions of XLA's header in C, and their values in this library.
@@ -60,5 +69,6 @@ fn _jax_layout(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(_jax_handler, module)?)?;
+    module.add_function(wrap_pyfunction!(_jax_gpu_handler, module)?)?;
     module.add_function(wrap_pyfunction!(_jax_layout, module)?)
 }
